@@ -87,4 +87,11 @@ struct scene *scene_ready(struct scene *scene);
  */
 struct affine placement_random(uint64_t *random, double spread, bool mirrored);
 
+/* whit_camera of eye, target, up and vertical angle in degrees. */
+#define CAMERA_AT(ex, ey, ez, tx, ty, tz, ux, uy, uz, fov)                                         \
+    {                                                                                              \
+        .own = true, .eye = {ex, ey, ez}, .target = {tx, ty, tz}, .up = {ux, uy, uz},              \
+        .fov_y_degrees = fov                                                                       \
+    }
+
 #endif

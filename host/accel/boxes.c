@@ -4,14 +4,13 @@ struct walk {
     const struct accel *accel;
     const struct affine *to_world; /* NULL: the nodes are in world space */
     uint32_t instance, level;
-    bool (*fn)(void *user, const struct accel_box *box);
+    bool (*fn)(void *user, const whit_box *box);
     void *user;
 };
 
 static bool give(const struct walk *walk, const struct gpu_bvh_node *node, uint32_t level)
 {
-    struct accel_box box = {
-        .instance = walk->instance, .level = level, .leaf = bvh_count(node) > 0};
+    whit_box box = {.instance = walk->instance, .level = level, .leaf = bvh_count(node) > 0};
     for (uint32_t i = 0; i < 8; ++i) {
         double corner[3];
         for (uint32_t k = 0; k < 3; ++k)
@@ -34,7 +33,7 @@ static bool visit(const struct walk *walk, uint32_t index, uint32_t level)
 }
 
 void accel_boxes(const struct accel *accel, const struct scene_pose *pose, bool over_instances,
-                 uint32_t level, bool (*fn)(void *user, const struct accel_box *box), void *user)
+                 uint32_t level, bool (*fn)(void *user, const whit_box *box), void *user)
 {
     struct walk walk = {
         .accel = accel, .instance = HIT_NONE, .level = level, .fn = fn, .user = user};

@@ -168,44 +168,22 @@ whit_result whit_accel_validate(const whit_accel *handle)
     return result == WHIT_ERROR_FAILED ? WHIT_ERROR_STATUS : result;
 }
 
-enum { REPORT_RAYS = 1 << 15 };
-_Static_assert((int)WHIT_DEPTH_BINS == (int)REPORT_DEPTH_BINS, "bins are copied");
-_Static_assert((int)WHIT_LEAF_BINS == (int)REPORT_LEAF_BINS, "bins are copied");
-
 whit_result whit_accel_get_report(const whit_accel *handle, whit_accel_report *report)
 {
-    struct accel_report inner;
-    *report = (whit_accel_report){0};
-    whit_result result = accel_report(handle->accel, REPORT_RAYS, &inner);
-    if (result != WHIT_OK)
-        return result;
-    *report = (whit_accel_report){
-        .sah_cost = inner.sah_cost,
-        .epo = inner.epo,
-        .overlap = inner.overlap,
-        .predicted_visits = inner.predicted_inner_nodes,
-        .predicted_triangles = inner.predicted_triangles,
-        .measured_visits = inner.measured_inner_nodes,
-        .measured_triangles = inner.measured_triangles,
-        .measured_rays = inner.measured_rays,
-    };
-    memcpy(report->leaves_at_depth, inner.leaves_at_depth, sizeof report->leaves_at_depth);
-    memcpy(report->leaves_of_size, inner.leaves_of_size, sizeof report->leaves_of_size);
-    return WHIT_OK;
+    enum { RAYS = 1 << 15 };
+    return accel_report(handle->accel, RAYS, report);
 }
 
 /* ---- Boxes ---- */
 
-_Static_assert(sizeof(whit_box) == sizeof(struct accel_box), "boxes are handed on as they are");
-
 struct box_list {
-    struct accel_box *boxes;
+    whit_box *boxes;
     uint32_t count, capacity;
     uint64_t max, total;
     bool failed;
 };
 
-static bool add_box(void *user, const struct accel_box *box)
+static bool add_box(void *user, const whit_box *box)
 {
     struct box_list *list = user;
     if (list->total++ >= list->max)
@@ -233,7 +211,7 @@ whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_i
         free(list.boxes);
         return result;
     }
-    *boxes = (whit_box *)list.boxes;
+    *boxes = list.boxes;
     *total = list.total;
     return WHIT_OK;
 }

@@ -3,13 +3,13 @@
 #define API_HANDLES_H
 
 #include "accel/accel.h"
-#include "api/whit.h"
 #include "base/file.h"
 #include "device/device.h"
 #include "image/image.h"
 #include "load/load.h"
 #include "render/render.h"
 #include "scene/scene.h"
+#include "whit/whit.h"
 
 struct whit_scene {
     struct scene *scene;
@@ -41,8 +41,6 @@ struct whit_renderer {
     struct renderer *renderer;   /* NULL: CPU only */
     struct accel *accel;         /* borrowed */
     whit_renderer_params params; /* of the picture; its strings are not read again */
-    uint32_t order;              /* ORDER_* */
-    uint32_t numerics;           /* NUMERICS_* */
     struct log log;
 };
 
@@ -57,11 +55,6 @@ struct whit_file {
     struct file_write write;
     struct log log;
 };
-
-/* renderer_api.c. WHIT_ERROR_USAGE, logged, for names that there are none of. */
-WHIT_CHECK whit_result render_params_from_public(const struct log *log,
-                                                 const whit_renderer_params *params,
-                                                 struct render_params *out);
 
 static inline struct log log_from_public(const whit_log *log)
 {

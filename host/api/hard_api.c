@@ -1,351 +1,39 @@
-#include <stdio.h>
+/* Hard cases, with a device of the caller's. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "api/handles.h"
-#include "base/array.h"
-#include "base/clock.h"
-#include "base/hash.h"
-#include "hard/hard.h"
+#include "hard/run.h"
 
-_Static_assert((uint32_t)WHIT_NUMERICS_WATERTIGHT == NUMERICS_WATERTIGHT &&
-                   (uint32_t)WHIT_NUMERICS_FAST == NUMERICS_FAST &&
-                   (uint32_t)WHIT_NUMERICS_EXACT == NUMERICS_EXACT,
-               "levels are handed on as they are");
+enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SIDE = 16 };
 
-/* Seeds are the cases' numbers: the hash is of the first rays of each. */
-enum {
-    LEVELS = 3,
-    RAYS_DEFAULT = 20000,
-    RAYS_HASHED = 512,
-    PIECE = 1 << 20, /* rays in memory */
-    RENDERER_SIDE = 16,
+/* hard_device.user. */
+struct traced_on {
+    struct device *device;
+    const volatile bool *cancel;
 };
 
-struct hard_run {
-    const whit_hard_params *params;
-    struct log log;
-    struct device *device; /* NULL: the twin alone */
-    uint32_t levels;
-    uint64_t ray_count; /* of a row */
-    uint64_t piece;     /* of them in memory now */
-    double deadline_ms; /* 0: none */
-    whit_hard_report *report;
-    uint32_t row_capacity;
-    struct hard_ray *rays;
-    struct gpu_ray *plain; /* the same, as the device takes them */
-    struct rational_hit *exact;
-    struct gpu_hit *hits, *twin;
-};
-
-static whit_result allocate(struct hard_run *run)
+static whit_result trace(const struct hard_device *device, const struct log *log,
+                         struct accel *accel, double time_s, uint32_t numerics,
+                         const struct gpu_ray *rays, uint64_t count, struct gpu_hit *hits,
+                         double *device_ms)
 {
-    size_t count = (size_t)(run->ray_count < PIECE ? run->ray_count : PIECE);
-    run->rays = array_alloc(count, sizeof *run->rays);
-    run->plain = array_alloc(count, sizeof *run->plain);
-    run->exact = array_alloc(count, sizeof *run->exact);
-    run->hits = array_alloc(count, sizeof *run->hits);
-    run->twin = array_alloc(count, sizeof *run->twin);
-    run->report = calloc(1, sizeof *run->report);
-    if (run->rays && run->plain && run->exact && run->hits && run->twin && run->report)
-        return WHIT_OK;
-    log_error(&run->log, "out of memory for %llu rays", (unsigned long long)count);
-    return WHIT_ERROR_MEMORY;
-}
-
-static whit_result still_wanted(const struct hard_run *run)
-{
-    if (run->params->cancel && *run->params->cancel)
-        return WHIT_ERROR_CANCELLED;
-    if (run->deadline_ms > 0.0 && clock_ms() > run->deadline_ms) {
-        log_error(&run->log, "the time limit has passed");
-        return WHIT_ERROR_TIME_LIMIT;
-    }
-    return WHIT_OK;
-}
-
-static void say_progress(const struct hard_run *run, double done)
-{
-    if (run->params->progress)
-        run->params->progress(run->params->progress_user, done);
-}
-
-/* The last error, until it is known whether it is one. */
-struct held_log {
-    char text[512];
-};
-
-static void hold_back(void *user, whit_log_level level, const char *message)
-{
-    struct held_log *held = user;
-    if (level == WHIT_LOG_ERROR)
-        snprintf(held->text, sizeof held->text, "%s", message);
-}
-
-/* *cut: the device says that its hits are not to be trusted, which the table tells. */
-static whit_result trace_on_device(struct hard_run *run, const struct hard_scene *hard,
-                                   uint32_t numerics, double *device_ms, bool *cut)
-{
-    const struct render_params params = {.width = RENDERER_SIDE,
+    const struct traced_on *on = device->user;
+    const whit_renderer_params params = {.width = RENDERER_SIDE,
                                          .height = RENDERER_SIDE,
-                                         .cancel = run->params->cancel,
-                                         .numerics = numerics,
-                                         .trace_rays = (uint32_t)run->piece};
-    struct held_log held = {""};
-    const struct log log = {.fn = hold_back, .user = &held};
+                                         .time_s = time_s,
+                                         .cancel = on->cancel,
+                                         .numerics = (whit_numerics)numerics,
+                                         .trace_rays = (uint32_t)count};
     struct renderer *renderer = NULL;
-    whit_result result = renderer_create(&log, run->device, hard->accel, &params, &renderer);
+    whit_result result = renderer_create(log, on->device, accel, &params, &renderer);
     if (result == WHIT_OK) /* some drivers finish a kernel when it first runs */
-        result = renderer_trace(renderer, run->plain, 1, false, run->hits, NULL);
+        result = renderer_trace(renderer, rays, 1, false, hits, NULL);
     if (result == WHIT_OK)
-        result = renderer_trace(renderer, run->plain, run->piece, false, run->hits, NULL);
-    *cut = result == WHIT_ERROR_STATUS;
-    if (*cut)
-        result = WHIT_OK;
-    else if (result == WHIT_OK)
-        *device_ms += renderer_trace_device_ms(renderer);
-    else if (held.text[0])
-        log_error(&run->log, "%s", held.text);
+        result = renderer_trace(renderer, rays, count, false, hits, NULL);
+    if (result == WHIT_OK)
+        *device_ms = renderer_trace_device_ms(renderer);
     renderer_destroy(renderer);
     return result;
-}
-
-/* NULL: no hits, which no set of rays has. */
-static uint64_t hash_hits(uint64_t value, const struct gpu_hit *hits, uint64_t count)
-{
-    for (uint64_t i = 0; i < count && hits; ++i) {
-        const struct rational_hit id = {.primitive = hits[i].primitive,
-                                        .instance = hits[i].instance};
-        value = hard_hash(value, &id, 1);
-    }
-    return value;
-}
-
-static void add_tally(whit_hard_row *row, const struct hard_tally *tally)
-{
-    row->rays += tally->rays;
-    row->hits += tally->hits;
-    row->misses += tally->misses;
-    row->leaks += tally->leaks;
-    row->false_hits += tally->false_hits;
-    row->other_ids += tally->other_ids;
-    row->wrong_keys += tally->wrong_keys;
-    row->wrong += tally->wrong;
-    row->double_hits += tally->double_hits;
-    row->self_hits += tally->self_hits;
-    row->ulp_max = tally->ulp_max > row->ulp_max ? tally->ulp_max : row->ulp_max;
-}
-
-/* The rays in run->rays at one level. */
-static whit_result trace_level(struct hard_run *run, const struct hard_scene *hard,
-                               const struct hard_topology *topology, whit_hard_row *row)
-{
-    struct hard_judgement judgement = {.hard = hard,
-                                       .topology = topology,
-                                       .rays = run->rays,
-                                       .exact = run->exact,
-                                       .hits = run->twin,
-                                       .numerics = (uint32_t)row->numerics,
-                                       .count = run->piece};
-    struct hard_tally tally;
-    bool cut = false, first = row->rays == 0;
-    double start_ms = clock_ms();
-    whit_result result = hard_trace_twin(hard, judgement.numerics, run->rays, run->piece,
-                                         run->params->threads, run->twin);
-    row->twin_ms += clock_ms() - start_ms;
-    if (result == WHIT_OK && run->device)
-        result = trace_on_device(run, hard, judgement.numerics, &row->device_ms, &cut);
-    bool answered = run->device && !cut;
-    if (answered)
-        judgement.hits = run->hits;
-    if (result == WHIT_OK)
-        result = hard_judge(&judgement, run->params->threads, &tally);
-    if (result != WHIT_OK)
-        return result;
-    row->unanswered |= cut;
-    if (answered)
-        row->differing += hard_count_differing(run->hits, run->twin, run->piece);
-    if (first && run->device && run->report->hash && row->numerics == WHIT_NUMERICS_EXACT)
-        run->report->hash_met =
-            hash_hits(run->report->hash_met, answered ? run->hits : NULL, RAYS_HASHED);
-    add_tally(row, &tally);
-    return WHIT_OK;
-}
-
-static whit_result keep_row(struct hard_run *run, whit_hard_row *row)
-{
-    const struct hard_tally tally = {.misses = row->misses,
-                                     .leaks = row->leaks,
-                                     .false_hits = row->false_hits,
-                                     .other_ids = row->other_ids,
-                                     .wrong_keys = row->wrong_keys,
-                                     .wrong = row->wrong};
-    row->kept = hard_promise_kept((uint32_t)row->numerics, row->promised, &tally) &&
-                (row->numerics == WHIT_NUMERICS_FAST || row->differing == 0);
-    if (!run->device || row->unanswered)
-        row->device_ms = -1.0;
-    run->report->broken += !row->kept;
-    run->report->unanswered += row->unanswered;
-    if (ARRAY_PUSH(run->report->rows, run->report->row_count, run->row_capacity, *row))
-        return WHIT_OK;
-    log_error(&run->log, "out of memory");
-    return WHIT_ERROR_MEMORY;
-}
-
-static void make_rays(struct hard_run *run, const struct hard_scene *hard, enum hard_rays kind,
-                      uint64_t seed, uint64_t first)
-{
-    run->piece = run->ray_count - first < PIECE ? run->ray_count - first : PIECE;
-    for (uint64_t i = 0; i < run->piece; ++i) {
-        run->rays[i] = hard_ray_make(hard, kind, seed, first + i);
-        run->plain[i] = run->rays[i].ray;
-    }
-}
-
-/* All rays of a row at every level. Names of the rows are the caller's. */
-static whit_result shoot(struct hard_run *run, const struct hard_scene *hard, enum hard_rays kind,
-                         uint64_t seed, const whit_hard_row *names)
-{
-    static const whit_numerics order[LEVELS] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_WATERTIGHT,
-                                                WHIT_NUMERICS_EXACT};
-    whit_hard_row rows[LEVELS];
-    struct hard_topology topology;
-    whit_result result = hard_topology_init(hard->scene, &topology);
-    for (int l = 0; l < LEVELS; ++l) {
-        rows[l] = *names;
-        rows[l].numerics = order[l];
-    }
-    for (uint64_t first = 0; result == WHIT_OK && first < run->ray_count; first += PIECE) {
-        make_rays(run, hard, kind, seed, first);
-        result = hard_trace_exact(hard, run->rays, run->piece, run->params->threads, run->exact);
-        if (result == WHIT_OK && first == 0 && run->report->hash)
-            run->report->hash = hard_hash(run->report->hash, run->exact, RAYS_HASHED);
-        for (int l = 0; result == WHIT_OK && l < LEVELS; ++l) {
-            result = still_wanted(run);
-            if (result == WHIT_OK && (run->levels >> order[l] & 1u))
-                result = trace_level(run, hard, &topology, &rows[l]);
-        }
-    }
-    for (int l = 0; result == WHIT_OK && l < LEVELS; ++l)
-        if (run->levels >> order[l] & 1u)
-            result = keep_row(run, &rows[l]);
-    hard_topology_finish(&topology);
-    return result;
-}
-
-/* ---- The built-in cases ---- */
-
-static const char *place_of(double offset)
-{
-    return offset == 0.0 ? "0" : offset == 1e3 ? "1e3" : offset == 1e5 ? "1e5" : "1e7";
-}
-
-static whit_result run_cases(struct hard_run *run)
-{
-    uint32_t count;
-    const struct hard_case *cases = hard_cases(&count);
-    whit_result result = WHIT_OK;
-    bool all = run->params->filter == NULL;
-    run->report->hash = run->report->hash_met = all ? HASH_START : 0;
-    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
-        const whit_hard_row names = {.name = cases[i].name,
-                                     .place = place_of(cases[i].offset),
-                                     .promised = !cases[i].not_promised};
-        struct hard_scene hard;
-        if (!all && !strstr(names.name, run->params->filter))
-            continue;
-        say_progress(run, (double)i / count);
-        result = hard_scene_init(&run->log, &cases[i], &hard);
-        if (result != WHIT_OK)
-            break;
-        result = shoot(run, &hard, hard.rays, i + 1, &names);
-        hard_scene_finish(&hard);
-    }
-    if (!run->device || !(run->levels >> NUMERICS_EXACT & 1u))
-        run->report->hash_met = 0;
-    if (result == WHIT_OK && run->report->row_count == 0) {
-        log_error(&run->log, "no case has `%s` in its name", run->params->filter);
-        result = WHIT_ERROR_USAGE;
-    }
-    return result;
-}
-
-/* ---- A scene of the user's ---- */
-
-static whit_result describe_surface(struct hard_run *run, const struct scene *scene)
-{
-    whit_hard_report *report = run->report;
-    struct hard_topology topology;
-    whit_result result = hard_topology_init(scene, &topology);
-    if (result != WHIT_OK)
-        return result;
-    report->triangles = topology.triangles;
-    report->edges = topology.edges;
-    report->open_edges = topology.open_edges;
-    report->crowded_edges = topology.crowded_edges;
-    report->flipped_edges = topology.flipped_edges;
-    report->duplicates = topology.duplicates;
-    hard_topology_finish(&topology);
-    return WHIT_OK;
-}
-
-static whit_result run_variants(struct hard_run *run, const struct hard_scene *given,
-                                double progress)
-{
-    uint32_t count;
-    const struct hard_variant *variants = hard_variants(&count);
-    whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
-        const whit_hard_row names = {
-            .name = hard_rays_name(HARD_MIXED), .place = variants[i].name, .promised = true};
-        struct hard_scene hard;
-        say_progress(run, progress + (1.0 - progress) * i / count);
-        result = hard_scene_vary(&run->log, given, &variants[i], &hard);
-        if (result != WHIT_OK || !hard.scene)
-            continue;
-        result = shoot(run, &hard, HARD_MIXED, i + 100, &names);
-        hard_scene_finish(&hard);
-    }
-    return result;
-}
-
-static whit_result run_scene(struct hard_run *run, const whit_scene *scene)
-{
-    static const enum hard_rays kinds[] = {HARD_AROUND,  HARD_AXIAL, HARD_FLAT,
-                                           HARD_GRAZING, HARD_FAR,   HARD_LEAVING};
-    const uint32_t count = sizeof kinds / sizeof *kinds;
-    struct hard_scene given;
-    whit_result result = hard_scene_borrow(&run->log, scene->scene, 0.0,
-                                           api_one_tree(scene, run->params->instances), &given);
-    if (result != WHIT_OK)
-        return result;
-    result = describe_surface(run, scene->scene);
-    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
-        const whit_hard_row names = {
-            .name = hard_rays_name(kinds[i]), .place = "as given", .promised = true};
-        say_progress(run, 0.3 * i / count);
-        result = shoot(run, &given, kinds[i], i + 1, &names);
-    }
-    if (result == WHIT_OK)
-        result = run_variants(run, &given, 0.3);
-    hard_scene_finish(&given);
-    return result;
-}
-
-/* ---- From outside ---- */
-
-static whit_result check_params(const struct hard_run *run)
-{
-    if (run->ray_count < RAYS_HASHED || run->ray_count > UINT32_MAX / 2) {
-        log_error(&run->log, "%llu rays: %d to %u are possible", (unsigned long long)run->ray_count,
-                  RAYS_HASHED, UINT32_MAX / 2);
-        return WHIT_ERROR_USAGE;
-    }
-    if (run->levels >> LEVELS) {
-        log_error(&run->log, "levels %#x: there are three", run->levels);
-        return WHIT_ERROR_USAGE;
-    }
-    return WHIT_OK;
 }
 
 whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
@@ -353,36 +41,46 @@ whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
                           whit_hard_report **out)
 {
     const whit_hard_params defaults = {0};
-    struct hard_run run = {.params = params ? params : &defaults, .log = log_from_public(log)};
-    *out = NULL;
-    run.device = device ? device->device : NULL;
-    run.levels = run.params->levels ? run.params->levels : (1u << LEVELS) - 1;
-    run.ray_count = run.params->rays ? run.params->rays : RAYS_DEFAULT;
-    if (run.params->time_limit_s > 0.0)
-        run.deadline_ms = clock_ms() + 1e3 * run.params->time_limit_s;
-    whit_result result = check_params(&run);
-    if (result == WHIT_OK)
-        result = allocate(&run);
-    if (result == WHIT_OK && scene)
-        result = run_scene(&run, scene);
-    else if (result == WHIT_OK)
-        result = run_cases(&run);
-    free(run.rays);
-    free(run.plain);
-    free(run.exact);
-    free(run.hits);
-    free(run.twin);
-    if (result == WHIT_OK)
-        *out = run.report;
-    else
-        whit_hard_report_destroy(run.report);
-    return result;
+    const struct log inner = log_from_public(log);
+    params = params ? params : &defaults;
+    struct traced_on on = {device ? device->device : NULL, params->cancel};
+    const struct hard_device hard_device = {trace, &on};
+    return hard_run(device ? &hard_device : NULL, scene ? scene->scene : NULL,
+                    scene && api_one_tree(scene, params->instances), params, &inner, out);
 }
 
 void whit_hard_report_destroy(whit_hard_report *report)
 {
-    if (!report)
-        return;
-    free(report->rows);
-    free(report);
+    hard_report_destroy(report);
+}
+
+whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
+                           const whit_hard_view_params *params, const whit_log *log,
+                           uint64_t *wrong_pixels, uint64_t *other_pixels, whit_image **out)
+{
+    whit_hard_view_params own = params ? *params : (whit_hard_view_params){0};
+    const struct log inner = log_from_public(log);
+    struct traced_on on = {device ? device->device : NULL, NULL};
+    const struct hard_device hard_device = {trace, &on};
+    *out = NULL;
+    own.width = own.width ? own.width : WIDTH_DEFAULT;
+    own.height = own.height ? own.height : HEIGHT_DEFAULT;
+    if (own.width > SIDE_MAX || own.height > SIDE_MAX) {
+        log_error(&inner, "%u x %u: at most %d on a side", own.width, own.height, SIDE_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    whit_image *image = calloc(1, sizeof *image);
+    whit_result result =
+        image ? image_init(&image->image, own.width, own.height, 3, false) : WHIT_ERROR_MEMORY;
+    if (result != WHIT_OK)
+        log_error(&inner, "out of memory");
+    if (result == WHIT_OK)
+        result = hard_view(device ? &hard_device : NULL, scene ? scene->scene : NULL,
+                           scene && api_one_tree(scene, own.instances), &own, &inner,
+                           image->image.pixels, wrong_pixels, other_pixels);
+    if (result == WHIT_OK)
+        *out = image;
+    else
+        whit_image_destroy(image);
+    return result;
 }

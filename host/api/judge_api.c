@@ -38,7 +38,7 @@ static whit_result camera_rays(whit_judge *judge, const whit_judge_params *param
     uint32_t width, height;
     grid_of(params, wanted, &width, &height);
     judge->count = (uint64_t)width * height;
-    return camera_all_rays(&judge->log, &judge->hard.pose, params->camera, width, height,
+    return camera_all_rays(&judge->log, &judge->hard.pose, &params->camera, width, height,
                            (struct gpu_ray *)judge->plain);
 }
 
@@ -181,18 +181,11 @@ whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics, con
                                              .hits = (const struct gpu_hit *)hits,
                                              .numerics = (uint32_t)numerics,
                                              .count = judge->count};
-    struct hard_tally tally;
-    *out = (whit_judgement){.rays = judge->count};
+    *out = (whit_judgement){.tally = {.rays = judge->count}};
     if (judge->count == 0)
         return WHIT_OK;
-    whit_result result = hard_judge(&judgement, judge->threads, &tally);
+    whit_result result = hard_judge(&judgement, judge->threads, &out->tally);
     if (result != WHIT_OK)
         return result;
-    out->hits = tally.hits;
-    out->misses = tally.misses;
-    out->false_hits = tally.false_hits;
-    out->other_ids = tally.other_ids;
-    out->leaks = tally.leaks;
-    out->wrong = tally.wrong;
     return measure_t(judge, hits, out);
 }

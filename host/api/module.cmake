@@ -1,11 +1,10 @@
 whit_module(api
-  SOURCES scene_api.c accel_api.c device_api.c renderer_api.c probe_api.c reference_api.c hard_api.c hard_view.c judge_api.c image_api.c file_api.c
+  SOURCES scene_api.c accel_api.c device_api.c renderer_api.c probe_api.c reference_api.c hard_api.c judge_api.c image_api.c file_api.c
   LINK whit_base whit_image whit_scene whit_load whit_hard whit_picture whit_device whit_render whit_reference)
-target_include_directories(whit_api PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/base>)
 
 # libwhit: the objects of all modules in one archive. Its users link `whit`; its headers are found
 # as <whit/whit.h>, and as "whit.h".
-set(library_modules base image scene load bvh accel twin oracle hard picture device render reference api kernels)
+set(library_modules base image scene load bvh accel twin oracle picture hard device render reference api kernels)
 list(TRANSFORM library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:whit_\\1>"
   OUTPUT_VARIABLE library_objects)
 add_library(whit STATIC ${library_objects})
@@ -26,9 +25,7 @@ foreach(library whit whit_shared)
       Threads::Threads m)
 endforeach()
 
-set(public_headers api/whit.h api/whit_accel.h api/whit_compare.h api/whit_device.h api/whit_file.h
-  api/whit_hard.h api/whit_image.h api/whit_probe.h api/whit_reference.h api/whit_renderer.h
-  api/whit_scene.h api/whit_types.h base/whit_base.h)
+file(GLOB public_headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/whit/*.h)
 foreach(header ${public_headers})
   get_filename_component(name ${header} NAME)
   configure_file(${header} ${PROJECT_BINARY_DIR}/include/whit/${name} COPYONLY)

@@ -1,22 +1,14 @@
 /* The reference in double: pictures and ray trees. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "api/handles.h"
 #include "reference/reference.h"
 
-_Static_assert(sizeof(whit_tree_ray) == sizeof(struct reference_ray) &&
-                   offsetof(whit_tree_ray, radiance) == offsetof(struct reference_ray, radiance) &&
-                   offsetof(whit_tree_ray, t) == offsetof(struct reference_ray, t) &&
-                   offsetof(whit_tree_ray, light) == offsetof(struct reference_ray, light),
-               "rays are handed on as they are");
-_Static_assert((uint32_t)WHIT_TREE_STRAIGHT == REFERENCE_STRAIGHT &&
-                   (uint32_t)WHIT_TREE_BAILOUT == REFERENCE_END_BAILOUT &&
-                   (uint32_t)WHIT_TREE_LIGHT == REFERENCE_END_LIGHT,
-               "kinds and ends");
-
 struct whit_reference {
     struct reference *reference;
     whit_renderer_params params; /* its strings are not read again */
+    const struct accel *accel;   /* borrowed */
     struct log log;
 };
 
@@ -24,20 +16,18 @@ whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params 
                                   uint32_t threads, whit_reference **out)
 {
     const whit_renderer_params defaults = whit_renderer_defaults();
-    struct reference_params inner = {.thread_count = threads};
+    const struct reference_params inner = {.picture = params ? *params : defaults,
+                                           .thread_count = threads};
     *out = NULL;
-    whit_result result =
-        render_params_from_public(&accel->log, params ? params : &defaults, &inner.picture);
-    if (result != WHIT_OK)
-        return result;
     whit_reference *reference = calloc(1, sizeof *reference);
     if (!reference) {
         log_error(&accel->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
     reference->log = accel->log;
-    reference->params = params ? *params : defaults;
-    result = reference_create(&accel->log, accel->accel, &inner, &reference->reference);
+    reference->accel = accel->accel;
+    reference->params = inner.picture;
+    whit_result result = reference_create(&accel->log, accel->accel, &inner, &reference->reference);
     if (result != WHIT_OK) {
         whit_reference_destroy(reference);
         return result;
@@ -77,11 +67,63 @@ whit_result whit_reference_render(whit_reference *reference, whit_image **color,
     return result;
 }
 
+static void to_floats(const double from[3], float to[3])
+{
+    for (int i = 0; i < 3; ++i)
+        to[i] = (float)from[i];
+}
+
+static whit_probe_ray ray_of(const struct accel *accel, const struct reference_ray *all,
+                             uint32_t index)
+{
+    const struct reference_ray *from = &all[index];
+    const whit_probe_hit none = {INFINITY, WHIT_NONE, WHIT_NONE};
+    bool shadow = from->kind == REFERENCE_SHADOW, straight = from->kind == REFERENCE_STRAIGHT;
+    uint32_t medium = from->medium;
+    whit_probe_ray ray = {
+        .kind = straight ? WHIT_RAY_REFRACTED : (whit_ray_kind)from->kind,
+        .straight = straight,
+        .end = from->end,
+        .parent = from->parent,
+        .ray.t_max = (float)from->t_max,
+        .device = from->instance == WHIT_NONE
+                      ? none
+                      : (whit_probe_hit){from->t, from->instance, from->primitive},
+        .twin = none,
+        .exact = none,
+        .material = from->material,
+        .medium = medium,
+        .ior = medium == WHIT_NONE ? 1.0f : accel->scene->materials[medium].ior,
+        .light = from->light,
+        .light_sample = shadow ? from->point : WHIT_NONE,
+    };
+    to_floats(from->origin, ray.ray.origin);
+    to_floats(from->dir, ray.ray.dir);
+    to_floats(shadow ? all[from->parent].weight : from->weight, ray.weight);
+    to_floats(shadow ? from->weight : from->radiance, ray.added);
+    to_floats(from->normal, ray.normal);
+    for (int i = 0; i < 3 && from->instance != WHIT_NONE; ++i)
+        ray.point[i] = (float)(from->origin[i] + from->t * from->dir[i]);
+    return ray;
+}
+
 whit_result whit_reference_rays(whit_reference *reference, uint32_t x, uint32_t y, uint32_t sample,
-                                whit_tree_ray **rays, uint32_t *count)
+                                whit_probe_ray **rays, uint32_t *count)
 {
     struct reference_ray *found = NULL;
+    *rays = NULL;
     whit_result result = reference_ray_tree(reference->reference, x, y, sample, &found, count);
-    *rays = (whit_tree_ray *)(void *)found;
+    if (result == WHIT_OK)
+        *rays = calloc(*count, sizeof **rays);
+    if (result == WHIT_OK && !*rays) {
+        log_error(&reference->log, "out of memory");
+        result = WHIT_ERROR_MEMORY;
+    }
+    for (uint32_t i = 0; result == WHIT_OK && i < *count; ++i) {
+        whit_probe_ray *ray = &(*rays)[i];
+        *ray = ray_of(reference->accel, found, i);
+        ray->generation = ray->parent == WHIT_NONE ? 0 : (*rays)[ray->parent].generation + 1;
+    }
+    free(found);
     return result;
 }

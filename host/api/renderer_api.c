@@ -17,64 +17,6 @@ _Static_assert((uint32_t)WHIT_RAY_KINDS == RAY_KIND_COUNT &&
 
 enum { DEPTH_DEFAULT = 8, LIGHT_SAMPLES_DEFAULT = 16, CPU_BATCH = 4096 };
 
-static uint32_t effect_by_name(const char *name, size_t length)
-{
-    for (uint32_t i = 0; i < SCENE_EFFECT_COUNT; ++i) {
-        const char *own = scene_effect_name((enum scene_effect)i);
-        if (strlen(own) == length && strncmp(own, name, length) == 0)
-            return i;
-    }
-    return SCENE_EFFECT_COUNT;
-}
-
-/* One "+name" or "-name" of `length` characters. */
-static whit_result switch_effect(const struct log *log, const char *text, size_t length,
-                                 struct render_params *out)
-{
-    bool adds = text[0] == '+';
-    if (!adds && text[0] != '-') {
-        log_error(log, "effects: `%.*s`: after auto or all, every name has a + or a - in front",
-                  (int)length, text);
-        return WHIT_ERROR_USAGE;
-    }
-    uint32_t effect = effect_by_name(text + 1, length - 1);
-    if (effect == SCENE_EFFECT_COUNT) {
-        log_error(log, "effects: there is no effect `%.*s`", (int)length - 1, text + 1);
-        return WHIT_ERROR_USAGE;
-    }
-    if (adds ? !render_effect_can_add(effect) : !render_effect_can_remove(effect)) {
-        log_error(log, "effects: `%s` cannot be %s: the scene's %s decides",
-                  scene_effect_name(effect), adds ? "added" : "left out",
-                  effect == SCENE_EFFECT_INSTANCES || effect == SCENE_EFFECT_SPHERES ? "geometry"
-                                                                                     : "camera");
-        return WHIT_ERROR_USAGE;
-    }
-    uint64_t bit = UINT64_C(1) << effect;
-    if ((adds ? out->effects_removed : out->effects_added) & bit) {
-        log_error(log, "effects: `%s` is both added and left out", scene_effect_name(effect));
-        return WHIT_ERROR_USAGE;
-    }
-    *(adds ? &out->effects_added : &out->effects_removed) |= bit;
-    return WHIT_OK;
-}
-
-/* "auto", "all", "+a,-b", "all,-b". */
-static whit_result effects_from_text(const struct log *log, const char *text,
-                                     struct render_params *out)
-{
-    whit_result result = WHIT_OK;
-    const char *at = text ? text : "auto";
-    for (bool first = true; result == WHIT_OK && at; first = false) {
-        size_t length = strcspn(at, ",");
-        if (first && length == 3 && strncmp(at, "all", length) == 0)
-            out->all_effects = true;
-        else if (!first || length != 4 || strncmp(at, "auto", length) != 0)
-            result = switch_effect(log, at, length, out);
-        at = at[length] ? at + length + 1 : NULL;
-    }
-    return result;
-}
-
 const char *whit_effect_name(uint32_t index)
 {
     return index < SCENE_EFFECT_COUNT ? scene_effect_name((enum scene_effect)index) : NULL;
@@ -106,55 +48,9 @@ whit_renderer_params whit_renderer_defaults(void)
                                   .bailout = WHIT_BAILOUT_DEFAULT};
 }
 
-whit_result render_params_from_public(const struct log *log, const whit_renderer_params *params,
-                                      struct render_params *out)
-{
-    *out = (struct render_params){
-        .width = params->width,
-        .height = params->height,
-        .camera = params->camera,
-        .time_s = params->time_s,
-        .samples = params->samples,
-        .depth = params->depth,
-        .bailout = params->bailout != 0.0 ? params->bailout : -1.0,
-        .no_shadows = params->shadows == WHIT_SHADOWS_NONE,
-        .adaptive = params->adaptive,
-        .light_samples = params->light_samples,
-        .schlick = params->schlick,
-        .opaque_shadows = params->shadows == WHIT_SHADOWS_OPAQUE,
-        .compile_async = params->compile_async,
-        .many_pictures = params->many_pictures,
-        .tile_size = params->tile_size,
-        .cancel = params->cancel,
-        .progress = params->progress,
-        .progress_user = params->progress_user,
-        .time_limit_s = params->time_limit_s,
-        .order = params->traversal == WHIT_TRAVERSAL_SIGN    ? ORDER_SIGN
-                 : params->traversal == WHIT_TRAVERSAL_BASIC ? ORDER_BASIC
-                                                             : ORDER_DISTANCE,
-        .numerics = params->numerics == WHIT_NUMERICS_FAST    ? NUMERICS_FAST
-                    : params->numerics == WHIT_NUMERICS_EXACT ? NUMERICS_EXACT
-                                                              : NUMERICS_WATERTIGHT,
-        .packets = params->packets == WHIT_PACKETS_ON    ? RENDER_PACKETS_ON
-                   : params->packets == WHIT_PACKETS_OFF ? RENDER_PACKETS_OFF
-                                                         : RENDER_PACKETS_AUTO,
-        .classes = params->classes == WHIT_CLASSES_ONE    ? RENDER_CLASSES_ONE
-                   : params->classes == WHIT_CLASSES_MANY ? RENDER_CLASSES_MANY
-                                                          : RENDER_CLASSES_AUTO,
-        .segments = params->segments,
-        .load_path = params->load_path == WHIT_LOAD_STORAGE ? RENDER_LOAD_STORAGE
-                     : params->load_path == WHIT_LOAD_TEXEL ? RENDER_LOAD_TEXEL
-                                                            : RENDER_LOAD_AUTO,
-        .count = params->count,
-    };
-    return effects_from_text(log, params->effects, out);
-}
-
 whit_classes whit_classes_of(const whit_renderer_params *params)
 {
-    struct render_params inner;
-    whit_result result = render_params_from_public(&(struct log){0}, params, &inner);
-    return result == WHIT_OK && render_few_kernels(&inner) ? WHIT_CLASSES_ONE : WHIT_CLASSES_MANY;
+    return render_few_kernels(params) ? WHIT_CLASSES_ONE : WHIT_CLASSES_MANY;
 }
 
 static whit_result pose_on_cpu(struct accel *accel, double time_s)
@@ -175,10 +71,6 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
         params = &defaults;
     *out = NULL;
     struct log log = device ? device->log : accel->log;
-    struct render_params inner;
-    whit_result result = render_params_from_public(&log, params, &inner);
-    if (result != WHIT_OK)
-        return result;
     whit_renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer) {
         log_error(&log, "out of memory");
@@ -187,11 +79,9 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     renderer->log = log;
     renderer->accel = accel->accel;
     renderer->params = *params;
-    renderer->order = inner.order;
-    renderer->numerics = inner.numerics;
-    result = device
-                 ? renderer_create(&log, device->device, accel->accel, &inner, &renderer->renderer)
-                 : pose_on_cpu(accel->accel, params->time_s);
+    whit_result result =
+        device ? renderer_create(&log, device->device, accel->accel, params, &renderer->renderer)
+               : pose_on_cpu(accel->accel, params->time_s);
     if (result != WHIT_OK) {
         whit_renderer_destroy(renderer);
         return result;
@@ -234,12 +124,9 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
 
 whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *params)
 {
-    struct render_params inner;
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
-        result = render_params_from_public(&renderer->log, params, &inner);
-    if (result == WHIT_OK)
-        result = renderer_set_view(renderer->renderer, &inner);
+        result = renderer_set_view(renderer->renderer, params);
     if (result == WHIT_OK) {
         const volatile bool *cancel = renderer->params.cancel;
         renderer->params = *params;
@@ -250,20 +137,9 @@ whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_
 
 whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_info *info)
 {
-    struct render_kernel_info inner;
     *info = (whit_kernel_info){0};
     whit_result result = api_need_device(renderer);
-    if (result == WHIT_OK)
-        result = renderer_get_kernel(renderer->renderer, &inner);
-    if (result == WHIT_OK)
-        *info = (whit_kernel_info){
-            .instructions = inner.instructions,
-            .general_instructions = inner.general_instructions,
-            .largest_instructions = inner.largest_instructions,
-            .bindings = inner.bindings,
-            .general_bindings = inner.general_bindings,
-        };
-    return result;
+    return result == WHIT_OK ? renderer_get_kernel(renderer->renderer, info) : result;
 }
 
 whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
@@ -271,13 +147,8 @@ whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                               uint32_t *count)
 {
     const whit_renderer_params defaults = whit_renderer_defaults();
-    struct render_params inner;
-    *count = 0;
-    whit_result result =
-        render_params_from_public(&device->log, params ? params : &defaults, &inner);
-    return result == WHIT_OK ? render_list_kernels(&device->log, device->device, accel->accel,
-                                                   &inner, kernels, count)
-                             : result;
+    return render_list_kernels(&device->log, device->device, accel->accel,
+                               params ? params : &defaults, kernels, count);
 }
 
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
@@ -370,76 +241,11 @@ whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, wh
     return WHIT_OK;
 }
 
-static whit_cost cost_to_public(const struct cost_sum *cost)
-{
-    return (whit_cost){
-        .rays = cost->rays,
-        .inner_nodes = cost->inner_nodes,
-        .leaves = cost->leaves,
-        .instances = cost->instances,
-        .triangles = cost->triangles,
-        .stack = cost->stack,
-        .depth = cost->depth,
-        .records = cost->records,
-        .stack_sum = cost->stack_sum,
-        .depth_sum = cost->depth_sum,
-        .max_inner_nodes = cost->max_inner_nodes,
-        .max_leaves = cost->max_leaves,
-        .max_instances = cost->max_instances,
-        .max_triangles = cost->max_triangles,
-    };
-}
-
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
 {
     *stats = (whit_stats){.render_device_ms = -1.0, .bailout_bound = -1.0, .load_path = "storage"};
-    if (!renderer->renderer)
-        return;
-    struct render_stats inner = {0};
-    renderer_get_stats(renderer->renderer, &inner);
-    *stats = (whit_stats){
-        .upload_ms = inner.upload_ms,
-        .compile_ms = inner.compile_ms,
-        .render_ms = inner.render_ms,
-        .render_device_ms = inner.render_device_ms,
-        .rays_primary = inner.rays_primary,
-        .rays_shadow = inner.rays_shadow,
-        .rays_reflected = inner.rays_reflected,
-        .rays_refracted = inner.rays_refracted,
-        .rays_cut_depth = inner.rays_cut_depth,
-        .rays_cut_bailout = inner.rays_cut_bailout,
-        .weight_cut_depth = inner.weight_cut_depth,
-        .weight_cut_bailout = inner.weight_cut_bailout,
-        .bailout_bound = inner.bailout_bound,
-        .kernel_instructions = inner.kernel_instructions,
-        .general = inner.general,
-        .device_bytes = inner.device_bytes,
-        .dispatches = inner.dispatches,
-        .tiles = inner.tiles,
-        .deferred = inner.deferred,
-        .tile_size = inner.tile_size,
-        .load_path = inner.texel_loads ? "texel" : "storage",
-        .packets = inner.packets,
-    };
-    memcpy(stats->pixels_by_samples, inner.pixels_by_samples, sizeof stats->pixels_by_samples);
-    for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)
-        stats->costs[kind] = cost_to_public(&inner.costs[kind]);
-    _Static_assert(WHIT_STAGES == RENDER_STAGE_COUNT, "a row for each");
-    for (uint32_t i = 0; i < WHIT_STAGES; ++i) {
-        stats->stages[i].rays = inner.stages[i].items;
-        stats->stages[i].ms = inner.stages[i].ms;
-        memcpy(stats->stages[i].name, inner.stages[i].name, sizeof stats->stages[i].name);
-    }
-    _Static_assert(WHIT_SHARES == RENDER_SHARES, "room for each");
-    stats->share_count = inner.share_count;
-    for (uint32_t i = 0; i < inner.share_count; ++i)
-        stats->shares[i] = (whit_share){.stage = inner.shares[i].stage,
-                                        .material = inner.shares[i].material,
-                                        .share = inner.shares[i].share};
-    uint64_t rays =
-        inner.rays_primary + inner.rays_shadow + inner.rays_reflected + inner.rays_refracted;
-    if (inner.render_ms > 0.0)
-        stats->mrays_per_s = (double)rays / inner.render_ms * 1e-3;
+    if (renderer->renderer)
+        renderer_get_stats(renderer->renderer, stats);
 }
 
 /* ---- Rays on the CPU ---- */
@@ -450,8 +256,8 @@ struct cpu_trace {
     struct gpu_hit *hits;
     uint64_t count;
     bool any, brute;
-    struct cost_sum *costs; /* one a batch, or NULL */
-    uint32_t *statuses;     /* one a batch: threads share nothing */
+    whit_cost *costs;   /* one a batch, or NULL */
+    uint32_t *statuses; /* one a batch: threads share nothing */
 };
 
 static bool cancelled(const whit_renderer *renderer)
@@ -466,8 +272,8 @@ static void trace_batch(void *context, uint32_t index)
     uint64_t first = (uint64_t)index * CPU_BATCH;
     uint64_t end = first + CPU_BATCH < trace->count ? first + CPU_BATCH : trace->count;
     const struct traverse_params params = {
-        .order = trace->renderer->order,
-        .numerics = trace->renderer->numerics,
+        .order = (uint32_t)trace->renderer->params.traversal,
+        .numerics = (uint32_t)trace->renderer->params.numerics,
         .any = trace->any,
         .brute = trace->brute,
         .skip_instance = HIT_NONE,
@@ -503,7 +309,7 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     }
     threads_for(renderer->accel->params.mesh.thread_count, (uint32_t)batches, trace_batch, trace);
     uint32_t status = 0;
-    struct cost_sum sum = {0};
+    whit_cost sum = {0};
     for (uint64_t i = 0; i < batches; ++i) {
         status |= trace->statuses[i];
         if (cost)
@@ -521,7 +327,7 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
         return WHIT_ERROR_STATUS;
     }
     if (cost)
-        *cost = cost_to_public(&sum);
+        *cost = sum;
     return WHIT_OK;
 }
 
@@ -537,11 +343,11 @@ static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray
         }
     }
     whit_result result = renderer_trace(renderer->renderer, rays, count, any, hits, costs);
-    struct cost_sum sum = {0};
+    whit_cost sum = {0};
     for (uint64_t i = 0; cost && result == WHIT_OK && i < count; ++i)
         cost_add(&sum, &costs[i]);
     if (cost && result == WHIT_OK)
-        *cost = cost_to_public(&sum);
+        *cost = sum;
     free(costs);
     return result;
 }

@@ -2,8 +2,9 @@
 #include <stdlib.h>
 
 #include "api/handles.h"
+#include "base/vec.h"
 
-static const double DEGREES = 180.0 / 3.14159265358979323846;
+static const double DEGREES = 180.0 / PI;
 
 whit_result whit_scene_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_scene **out)

@@ -10,7 +10,7 @@
 
 #include <jansson.h>
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 json_t *document_object(void);
 /* An object with the version of whit and that of the names of keys, which begin every document.

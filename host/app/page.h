@@ -3,7 +3,7 @@
 #ifndef APP_PAGE_H
 #define APP_PAGE_H
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 /* What was written so far. A zeroed one is empty. Memory that ran out is told by page_save. */
 struct page {

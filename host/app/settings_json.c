@@ -4,17 +4,13 @@
 
 #include "app/commands.h"
 
-/* Whether a setting belongs to pictures of costs, and means nothing for pictures of colours. */
-static bool is_of_costs(const struct setting *row)
-{
-    return strncmp(row->name, "view", 4) == 0;
-}
-
+/* What is painted of costs means nothing for pictures of colours. */
 static bool is_described(const struct setting *row, const struct settings *settings,
                          enum settings_command command)
 {
     return row->commands & (uint32_t)command && row->change >= SETTING_LIGHT &&
-           row->kind != SETTING_FOLDERS && (settings->paint != PAINT_COLOR || !is_of_costs(row));
+           row->kind != SETTING_FOLDERS &&
+           (settings->paint != PAINT_COLOR || row->change != SETTING_PAINT);
 }
 
 /* A number where the text is one. */
@@ -51,8 +47,10 @@ void settings_describe(const struct settings *settings, enum settings_command co
                        json_t *object)
 {
     struct settings told = *settings;
-    if (!strchr(told.effects, '-')) /* what is compiled and not called for changes nothing */
-        told.effects[0] = '\0';
+    if (told.picture.effects_removed == 0) { /* kernels with more in them draw the same */
+        told.picture.effects_added = 0;
+        told.picture.all_effects = false;
+    }
     for (const struct setting *row = settings_table; row->name; ++row) {
         if (is_described(row, &told, command))
             put(object, row, &told);

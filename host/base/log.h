@@ -2,7 +2,7 @@
 #ifndef BASE_LOG_H
 #define BASE_LOG_H
 
-#include "base/whit_base.h"
+#include "whit/whit_base.h"
 
 /* Copied freely; a zeroed log is silent. Messages above `level` are not formatted. */
 struct log {

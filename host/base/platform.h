@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/whit_base.h"
+#include "whit/whit_base.h"
 
 /* From here on threads share a few heaps, so that what one gave back is there for the next: for
    programs that go on long, and start many threads. Before any thread. */

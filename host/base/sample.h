@@ -2,7 +2,7 @@
 #ifndef BASE_SAMPLE_H
 #define BASE_SAMPLE_H
 
-#include "base/whit_base.h"
+#include "whit/whit_base.h"
 
 /* Upwards; none of the values may be NAN. */
 void sample_sort(double *values, uint32_t count);

@@ -2,7 +2,7 @@
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 
-#include "base/whit_base.h"
+#include "whit/whit_base.h"
 
 /* A message quotes at most this many characters of a file: enough to find the place, too few to
    read the file by its messages. */

@@ -34,6 +34,8 @@ static inline float float_above(double x)
     return (double)f < x ? nextafterf(f, INFINITY) : f;
 }
 
+#define PI 3.14159265358979323846
+
 struct vec3 {
     float x, y, z;
 };
@@ -128,6 +130,17 @@ static inline void double3_cross(const double a[3], const double b[3], double ou
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double double3_length(const double v[3])
+{
+    return sqrt(double3_dot(v, v));
+}
+
+static inline double double3_distance(const double a[3], const double b[3])
+{
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return double3_length(d);
 }
 
 /* The zero vector stays zero. */

@@ -69,7 +69,7 @@ static uint64_t inexact_hits(const struct cost_row *row)
     uint64_t sum = 0;
     for (uint32_t set = 0; set < COST_SETS; ++set) {
         const whit_judgement *judged = &row->hits[set].judged;
-        sum += judged->misses + judged->false_hits + judged->other_ids;
+        sum += judged->tally.misses + judged->tally.false_hits + judged->tally.other_ids;
     }
     return sum;
 }

@@ -46,6 +46,35 @@ WHIT_CHECK whit_result cost_colors(whit_renderer *a, whit_renderer *b, const whi
 /* The clock that counts: the device's where it has one, the CPU's where that is the device. */
 enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer);
 
+/* ---- Effects (effects.c) ---- */
+
+struct cost_effect {
+    bool compiled;           /* the usual picture has it, and is priced without it; else with it */
+    bool priced;             /* what follows is known */
+    enum cost_clock clock;   /* that counts */
+    struct cost_price price; /* `setting`: the effect is switched */
+    whit_difference error;   /* of the picture with the effect switched, to the usual one */
+};
+struct cost_effects {
+    const whit_scene *scene;
+    whit_device *device;
+    whit_accel *accel;
+    whit_renderer *usual;               /* has rendered */
+    const whit_renderer_params *params; /* that it was made with */
+    bool added;                         /* effects that it lacks are priced too */
+    uint32_t rounds;
+    const whit_log *log;
+    /* Called before each effect that is priced, with what is done, 0..1. Another result than
+       WHIT_OK stops. */
+    whit_result (*begin)(void *user, double done, const char *name);
+    /* Called for each effect there is, by the index of whit_effect_name. */
+    void (*found)(void *user, uint32_t index, const struct cost_effect *effect);
+    void *user;
+};
+/* How many effects of the picture can be switched, and are priced. */
+uint32_t cost_effects_count(const struct cost_effects *request);
+WHIT_CHECK whit_result cost_effects_measure(const struct cost_effects *request);
+
 /* The two sets of rays. */
 enum cost_set { COST_CAMERA, COST_AIMED, COST_SETS };
 const char *cost_set_name(enum cost_set set); /* "picture" */

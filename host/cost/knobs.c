@@ -173,13 +173,17 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
 
 void knob_apply(const struct knob *knob, uint32_t setting, struct settings *settings)
 {
-    char text[2 * SETTING_TEXT_BYTES], why[SETTING_WHY_BYTES];
-    bool more = knob->settings[setting].text && knob->settings[setting].text[0] == '-' &&
-                settings->effects[0];
-    snprintf(text, sizeof text, "%s%s%s", more ? settings->effects : "", more ? "," : "",
-             text_of(knob, setting));
-    if (knob->setting)
-        setting_read(settings_row(knob->setting), text, settings, why);
+    const whit_renderer_params before = settings->picture;
+    char why[SETTING_WHY_BYTES];
+    if (!knob->setting)
+        return;
+    setting_read(settings_row(knob->setting), text_of(knob, setting), settings, why);
+    if (strcmp(knob->setting, "effects") == 0) { /* one less than those that there are */
+        settings->picture.all_effects |= before.all_effects;
+        settings->picture.effects_added |=
+            before.effects_added & ~settings->picture.effects_removed;
+        settings->picture.effects_removed |= before.effects_removed;
+    }
 }
 
 void knob_option(const struct knob *knob, uint32_t setting, char *text, size_t text_bytes)

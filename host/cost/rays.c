@@ -22,7 +22,7 @@ static whit_result make_judges(struct measure *measure, whit_instances instances
         const whit_judge_params params = {
             .aimed = set == COST_AIMED,
             .count = request->rays,
-            .camera = measure->usual.camera[0] ? measure->usual.camera : NULL,
+            .camera = camera_of_text(measure->usual.camera),
             .width = measure->report->width,
             .height = measure->report->height,
             .time_s = measure->usual.picture.time_s,

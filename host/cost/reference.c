@@ -48,7 +48,7 @@ static void kept_name(const struct measure *measure, const whit_renderer_params 
     snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %u %u %u %.17g %s", KEPT_VERSION,
              WHIT_VERSION, measure->report->scene_hash, params->width, params->height,
              params->samples, params->depth, params->light_samples, params->time_s,
-             params->camera ? params->camera : "");
+             measure->usual.camera);
     snprintf(name, KEPT_NAME, "reference-%016" PRIx64, cost_hash(key));
 }
 

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/whit_base.h"
+#include "whit/whit_base.h"
 
 /* `spec[i]` is the value of constant i. *out is malloc()ed, free() it; *out_words counts words.
    Operations keep their order and their NoContraction, so results keep their bits. */

@@ -9,6 +9,7 @@
 
 #include "base/affine.h"
 #include "oracle/rational.h"
+#include "whit/whit_hard.h"
 
 /* ---- Meshes (hard_mesh.c) ---- */
 
@@ -131,20 +132,8 @@ void hard_topology_finish(struct hard_topology *topology);
 
 /* ---- The judge (hard_judge.c) ---- */
 
-struct hard_tally {
-    uint64_t rays, hits;  /* hits: exactly */
-    uint64_t misses;      /* of rays that hit, exactly */
-    uint64_t leaks;       /* of misses: rays that start inside a closed surface; of other rays those
-                             that no outline and no open edge excuses */
-    uint64_t false_hits;  /* of rays that miss, exactly */
-    uint64_t other_ids;   /* another primitive than exactly */
-    uint64_t wrong_keys;  /* the right primitive, but t is not the exact one's rounding */
-    uint64_t wrong;       /* of misses, false hits and wrong ids: no error bound excuses them */
-    uint64_t double_hits; /* a second primitive at the same place, where exactly there is none */
-    uint64_t self_hits;   /* on the primitive that the ray started on; of HARD_MUST_MISS any hit */
-    double ulp_max; /* error of t where the primitive is right, in floats between it and the exact
-                        one's rounding; not of hits nearer than 16 roundings of the origin */
-};
+/* Adds counts of other rays. */
+void hard_add_tally(whit_tally *sum, const whit_tally *more);
 
 struct hard_judgement {
     const struct hard_scene *hard;
@@ -165,7 +154,7 @@ WHIT_CHECK whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t n
                                        const struct hard_ray *rays, uint64_t count,
                                        uint32_t thread_count, struct gpu_hit *hits);
 WHIT_CHECK whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
-                                  struct hard_tally *tally);
+                                  whit_tally *tally);
 /* Floats between the two. */
 double hard_ulps_between(float a, float b);
 /* Whether the ray goes further than its origin's coordinates are rounded by. */
@@ -176,6 +165,6 @@ uint64_t hard_count_differing(const struct gpu_hit *a, const struct gpu_hit *b, 
 uint64_t hard_hash(uint64_t value, const struct rational_hit *exact, uint64_t count);
 
 /* Whether all promises of the level `numerics` are kept; `promised`: no leaks is one of them. */
-bool hard_promise_kept(uint32_t numerics, bool promised, const struct hard_tally *tally);
+bool hard_promise_kept(uint32_t numerics, bool promised, const whit_tally *tally);
 
 #endif

@@ -261,7 +261,7 @@ static bool is_double(const struct hard_judgement *j, struct rational *rational,
 }
 
 static void judge_ray(const struct hard_judgement *j, struct rational *rational, uint64_t i,
-                      struct hard_tally *tally, uint32_t *status)
+                      whit_tally *tally, uint32_t *status)
 {
     const struct rational_hit *exact = &j->exact[i];
     const struct gpu_hit *hit = &j->hits[i];
@@ -291,7 +291,7 @@ static void judge_ray(const struct hard_judgement *j, struct rational *rational,
 
 struct judging {
     const struct hard_judgement *judgement;
-    struct hard_tally *tallies; /* of each chunk */
+    whit_tally *tallies; /* of each chunk */
     uint32_t *status;
     uint32_t *failed;
 };
@@ -307,7 +307,7 @@ static void judge_chunk(void *context, uint32_t chunk)
     rational_destroy(rational);
 }
 
-static void add_tally(struct hard_tally *sum, const struct hard_tally *more)
+void hard_add_tally(whit_tally *sum, const whit_tally *more)
 {
     sum->rays += more->rays;
     sum->hits += more->hits;
@@ -323,7 +323,7 @@ static void add_tally(struct hard_tally *sum, const struct hard_tally *more)
 }
 
 whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
-                       struct hard_tally *tally)
+                       whit_tally *tally)
 {
     const struct log *log = &judgement->hard->scene->log;
     uint32_t chunks = chunks_of(judgement->count);
@@ -334,13 +334,13 @@ whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_c
         .failed = array_alloc_zeroed(chunks, sizeof *judging.failed),
     };
     whit_result result = WHIT_OK;
-    *tally = (struct hard_tally){0};
+    *tally = (whit_tally){0};
     if (!judging.tallies || !judging.status || !judging.failed)
         result = WHIT_ERROR_MEMORY;
     else
         threads_for(thread_count, chunks, judge_chunk, &judging);
     for (uint32_t i = 0; result == WHIT_OK && i < chunks; ++i) {
-        add_tally(tally, &judging.tallies[i]);
+        hard_add_tally(tally, &judging.tallies[i]);
         if (judging.failed[i])
             result = WHIT_ERROR_MEMORY;
         else if (judging.status[i])
@@ -372,7 +372,7 @@ uint64_t hard_hash(uint64_t value, const struct rational_hit *exact, uint64_t co
     return value;
 }
 
-bool hard_promise_kept(uint32_t numerics, bool promised, const struct hard_tally *tally)
+bool hard_promise_kept(uint32_t numerics, bool promised, const whit_tally *tally)
 {
     if (numerics == NUMERICS_FAST)
         return true;

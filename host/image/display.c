@@ -3,12 +3,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/color.h"
+
 void display_encoder_init(struct display_encoder *encoder)
 {
     encoder->from[0] = 0.0f;
     for (int code = 1; code < 256; ++code) {
         double srgb = (code - 0.5) / 255.0;
-        double linear = srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+        double linear = linear_from_srgb(srgb);
         float rounded = (float)linear;
         encoder->from[code] = (double)rounded < linear ? nextafterf(rounded, 2.0f) : rounded;
     }

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
-
-static const double PI = 3.14159265358979323846;
+#include "base/vec.h"
 
 /* ---- Colours ---- */
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/color.h"
 #include "base/file.h"
 #include "image/formats.h"
 
@@ -61,15 +62,13 @@ whit_result image_init_loaded(const struct image_source *source, struct image *i
     return result;
 }
 
-/* IEC 61966-2-1. */
 float image_srgb_from_linear(float linear)
 {
     if (!(linear > 0.0f))
         return 0.0f;
     if (linear >= 1.0f)
         return 1.0f;
-    double value = linear;
-    return (float)(value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1.0 / 2.4) - 0.055);
+    return (float)srgb_from_linear((double)linear);
 }
 
 float image_linear_from_srgb(float srgb)
@@ -78,8 +77,7 @@ float image_linear_from_srgb(float srgb)
         return 0.0f;
     if (srgb >= 1.0f)
         return 1.0f;
-    double value = srgb;
-    return (float)(value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4));
+    return (float)linear_from_srgb((double)srgb);
 }
 
 static enum format format_of_path(const char *path)

@@ -3,14 +3,15 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "load/scene_reader.h"
 
 void reader_quaternion(const double degrees[3], double out[4])
 {
     double s[3], c[3];
     for (int i = 0; i < 3; ++i) {
-        s[i] = sin(degrees[i] * 3.14159265358979323846 / 360.0);
-        c[i] = cos(degrees[i] * 3.14159265358979323846 / 360.0);
+        s[i] = sin(degrees[i] * PI / 360.0);
+        c[i] = cos(degrees[i] * PI / 360.0);
     }
     out[0] = s[0] * c[1] * c[2] - c[0] * s[1] * s[2];
     out[1] = c[0] * s[1] * c[2] + s[0] * c[1] * s[2];

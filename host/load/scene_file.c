@@ -6,18 +6,11 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "base/vec.h"
 #include "load/scene_reader.h"
 
 #define FILE_BYTES_MAX ((uint64_t)64 << 20)
-#define RADIANS        (3.14159265358979323846 / 180.0)
-
-static double distance(const double a[3], const double b[3])
-{
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum);
-}
+#define RADIANS        (PI / 180.0)
 
 /* What moves hangs on a node of its own; what stands still needs none. */
 static bool moving_node(struct reader *reader, const struct place *place, const json_t *object,
@@ -110,7 +103,7 @@ static bool read_light_place(struct reader *reader, const struct place *place, c
         for (int i = 0; i < 3; ++i)
             out->direction[i] = target[i] - out->position[i];
     }
-    double length = distance(out->direction, (const double[3]){0, 0, 0});
+    double length = double3_distance(out->direction, (const double[3]){0, 0, 0});
     if (!(length > 0.0))
         return reader_fail(reader, place, "the light's direction has no length");
     for (int i = 0; i < 3; ++i)
@@ -244,7 +237,7 @@ static bool read_camera(struct reader *reader, const struct place *place, const 
         !reader_float(reader, place, object, "aspect", 0.01, 100.0, &camera.aspect) ||
         !read_camera_kind(reader, place, object, &camera))
         return false;
-    if (!(distance(camera.eye, camera.target) > 0.0))
+    if (!(double3_distance(camera.eye, camera.target) > 0.0))
         return reader_fail(reader, place, "`eye` and `target` are the same point");
     camera.fov_y = (float)(fov * RADIANS);
     if (!moving_node(reader, place, object, name, &camera.node))

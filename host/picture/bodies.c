@@ -159,12 +159,6 @@ struct surfaces {
     uint32_t count, capacity;
 };
 
-static double distance(const double a[3], const double b[3])
-{
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return sqrt(double3_dot(d, d));
-}
-
 /* The nearest point of a segment to p. */
 static double segment_distance(const double a[3], const double b[3], const double p[3])
 {
@@ -173,7 +167,7 @@ static double segment_distance(const double a[3], const double b[3], const doubl
     double length2 = double3_dot(ab, ab);
     double t = length2 > 0.0 ? fmin(fmax(double3_dot(ap, ab) / length2, 0.0), 1.0) : 0.0;
     const double at[3] = {a[0] + t * ab[0], a[1] + t * ab[1], a[2] + t * ab[2]};
-    return distance(at, p);
+    return double3_distance(at, p);
 }
 
 /* To its edges, or to its plane where p is above it. */
@@ -205,14 +199,14 @@ static double sphere_to_triangle(const struct surface *sphere, const struct surf
     const double *c = sphere->corners[0];
     double farthest = 0.0;
     for (int i = 0; i < 3; ++i)
-        farthest = fmax(farthest, distance(triangle->corners[i], c));
+        farthest = fmax(farthest, double3_distance(triangle->corners[i], c));
     return fmax(triangle_distance(triangle->corners, c) - sphere->radius,
                 sphere->radius - farthest);
 }
 
 static double sphere_to_sphere(const struct surface *a, const struct surface *b)
 {
-    double d = distance(a->corners[0], b->corners[0]);
+    double d = double3_distance(a->corners[0], b->corners[0]);
     return fmax(d - a->radius - b->radius, fabs(a->radius - b->radius) - d);
 }
 

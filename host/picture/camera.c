@@ -1,15 +1,12 @@
-/* From a camera of the scene, or ten numbers, to the vectors that camera rays are made of. */
+/* From a camera of the scene, or the caller's own, to the vectors that camera rays are made of. */
 #include "picture/camera.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vec.h"
 #include "picture/sequence.h"
-
-static const double PI = 3.14159265358979323846;
 
 static void subtract(const double a[3], const double b[3], double out[3])
 {
@@ -29,57 +26,41 @@ static bool normalize(double v[3])
     return true;
 }
 
-static bool parse_numbers(const char *text, double *numbers, int count)
+static bool is_index(const char *text, uint32_t count, uint32_t *index)
 {
-    for (int i = 0; i < count; ++i) {
-        char *end;
-        errno = 0;
-        numbers[i] = strtod(text, &end);
-        if (end == text || errno == ERANGE || !isfinite(numbers[i]))
-            return false;
-        if (*end != (i + 1 < count ? ',' : '\0'))
-            return false;
-        text = end + 1;
-    }
-    return true;
+    char *end;
+    unsigned long number = strtoul(text, &end, 10);
+    *index = (uint32_t)number;
+    return end != text && *end == '\0' && number < count;
 }
 
 static whit_result find_camera(const struct log *log, const struct scene_pose *pose,
-                               const char *selector, struct scene_camera *out)
+                               const whit_camera *wanted, struct scene_camera *out)
 {
-    if (!selector) {
-        if (pose->camera_count == 0)
-            return WHIT_ERROR_USAGE;
-        *out = pose->cameras[0];
+    uint32_t index = 0;
+    if (wanted->own) {
+        *out = (struct scene_camera){.kind = SCENE_CAMERA_PERSPECTIVE,
+                                     .node = SCENE_NONE,
+                                     .fov_y = (float)(wanted->fov_y_degrees * PI / 180.0)};
+        memcpy(out->eye, wanted->eye, sizeof out->eye);
+        memcpy(out->target, wanted->target, sizeof out->target);
+        memcpy(out->up, wanted->up, sizeof out->up);
         return WHIT_OK;
     }
-    for (uint32_t i = 0; i < pose->camera_count; ++i) {
-        if (pose->cameras[i].name && strcmp(pose->cameras[i].name, selector) == 0) {
+    for (uint32_t i = 0; wanted->name && i < pose->camera_count; ++i) {
+        if (pose->cameras[i].name && strcmp(pose->cameras[i].name, wanted->name) == 0) {
             *out = pose->cameras[i];
             return WHIT_OK;
         }
     }
-    double numbers[10];
-    if (parse_numbers(selector, numbers, 10)) {
-        *out = (struct scene_camera){.kind = SCENE_CAMERA_PERSPECTIVE,
-                                     .node = SCENE_NONE,
-                                     .fov_y = (float)(numbers[9] * PI / 180.0)};
-        memcpy(out->eye, numbers, sizeof out->eye);
-        memcpy(out->target, numbers + 3, sizeof out->target);
-        memcpy(out->up, numbers + 6, sizeof out->up);
-        return WHIT_OK;
+    if (wanted->name ? !is_index(wanted->name, pose->camera_count, &index)
+                     : pose->camera_count == 0) {
+        log_error(log, "camera \"%s\": the scene has %u cameras, and none of that name",
+                  wanted->name ? wanted->name : "", pose->camera_count);
+        return WHIT_ERROR_USAGE;
     }
-    char *end;
-    unsigned long index = strtoul(selector, &end, 10);
-    if (end != selector && *end == '\0' && index < pose->camera_count) {
-        *out = pose->cameras[index];
-        return WHIT_OK;
-    }
-    log_error(log,
-              "camera \"%s\": not a camera of the scene (it has %u), nor "
-              "eye,target,up,fov as ten numbers",
-              selector, pose->camera_count);
-    return WHIT_ERROR_USAGE;
+    *out = pose->cameras[index];
+    return WHIT_OK;
 }
 
 static void scale_to_float(const double v[3], double scale, float out[3])
@@ -117,10 +98,10 @@ static double length3(const float v[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-static whit_result refuse(const struct log *log, const char *selector,
-                          const struct scene_camera *camera, const char *reason)
+static whit_result refuse(const struct log *log, const struct scene_camera *camera,
+                          const char *reason)
 {
-    const char *name = selector ? selector : camera->name ? camera->name : "";
+    const char *name = camera->name ? camera->name : "by numbers";
     log_error(log, "camera \"%s\": %s", name, reason);
     return WHIT_ERROR_USAGE;
 }
@@ -161,22 +142,23 @@ static double focus_distance(const struct scene_camera *camera)
                : sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
 }
 
-whit_result camera_frame(const struct log *log, const struct scene_pose *pose, const char *selector,
-                         uint32_t width, uint32_t height, struct gpu_frame *frame, uint32_t *kind)
+whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
+                         const whit_camera *wanted, uint32_t width, uint32_t height,
+                         struct gpu_frame *frame, uint32_t *kind)
 {
     struct scene_camera camera;
-    whit_result result = find_camera(log, pose, selector, &camera);
+    whit_result result = find_camera(log, pose, wanted, &camera);
     if (result != WHIT_OK)
         return result;
     double forward[3], right[3], up[3], half = half_height(&camera);
     if (!make_basis(&camera, forward, right, up))
-        return refuse(log, selector, &camera, "eye and target are the same point or not finite");
+        return refuse(log, &camera, "eye and target are the same point or not finite");
     if (!(half > 0.0) || !isfinite(half))
-        return refuse(log, selector, &camera, "the field of view is not between 0 and 180 degrees");
+        return refuse(log, &camera, "the field of view is not between 0 and 180 degrees");
     *kind = kind_code(&camera);
     double focus = focus_distance(&camera);
     if (*kind == CAMERA_LENS && !(isfinite(focus) && isfinite(camera.lens_radius)))
-        return refuse(log, selector, &camera, "the lens or its focus is not finite");
+        return refuse(log, &camera, "the lens or its focus is not finite");
     double aspect = *kind == CAMERA_PANORAMA ? 1.0 : (double)width / (double)height;
     scale_to_float(camera.eye, 1.0, frame->eye);
     scale_to_float(forward, 1.0, frame->forward);
@@ -318,7 +300,7 @@ void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32
 }
 
 whit_result camera_all_rays(const struct log *log, const struct scene_pose *pose,
-                            const char *camera, uint32_t width, uint32_t height,
+                            const whit_camera *camera, uint32_t width, uint32_t height,
                             struct gpu_ray *rays)
 {
     struct gpu_frame frame = {0};

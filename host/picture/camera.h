@@ -7,10 +7,12 @@
 #include "abi/spec.h"
 #include "base/log.h"
 #include "scene/scene.h"
+#include "whit/whit_types.h"
 
-/* The camera of params->camera in `pose`, and its CAMERA_*. */
+/* The camera `wanted` in `pose`, and its CAMERA_*. WHIT_ERROR_USAGE, logged, where there is no such
+   camera, or it sees nothing. */
 WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
-                                    const char *selector, uint32_t width, uint32_t height,
+                                    const whit_camera *wanted, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
 
 /* bind/camera.glsl's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a
@@ -27,10 +29,10 @@ void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2
 /* Sample `index` into chunk->sample_index, sample_xy, lens_xy and light_index. */
 void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk);
 
-/* The first sample's camera ray of every pixel of a picture, row by row; `camera` as in params.
-   Those of the kernels, bit for bit. */
+/* The first sample's camera ray of every pixel of a picture, row by row: those of the
+   kernels, bit for bit. */
 WHIT_CHECK whit_result camera_all_rays(const struct log *log, const struct scene_pose *pose,
-                                       const char *camera, uint32_t width, uint32_t height,
+                                       const whit_camera *camera, uint32_t width, uint32_t height,
                                        struct gpu_ray *rays);
 
 #endif

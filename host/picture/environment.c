@@ -5,9 +5,9 @@
 
 #include "base/array.h"
 #include "base/threads.h"
+#include "base/vec.h"
 #include "picture/environment.h"
 
-static const double PI = 3.14159265358979323846;
 enum { ENVIRONMENT_SIDE_MAX = 2048 };
 
 struct resample {

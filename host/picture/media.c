@@ -223,8 +223,8 @@ whit_result media_frame(const struct log *log, const struct accel *accel,
 }
 
 whit_result media_view(const struct log *log, struct accel *accel, const struct scene_pose *pose,
-                       const char *camera, uint32_t width, uint32_t height, struct gpu_frame *frame,
-                       uint32_t *kind)
+                       const whit_camera *camera, uint32_t width, uint32_t height,
+                       struct gpu_frame *frame, uint32_t *kind)
 {
     struct bodies bodies = {0};
     *frame = (struct gpu_frame){0};

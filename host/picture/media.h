@@ -5,6 +5,7 @@
 #include "abi/shade.h"
 #include "accel/accel.h"
 #include "picture/bodies.h"
+#include "whit/whit_types.h"
 
 /* Fills in the media that the camera of *frame is in, whether media meet, and `contact`, for a pose
    that `accel` has; `bodies` keeps what was found for the next call. WHIT_ERROR_USAGE for more
@@ -21,7 +22,8 @@ bool media_touch(const struct scene *scene, const struct bodies *bodies,
 /* Fills in the camera of *frame, the media that it is in, whether media meet, and `contact`; the
    rest is 0. `kind` gets CAMERA_*. `accel` has the pose. */
 WHIT_CHECK whit_result media_view(const struct log *log, struct accel *accel,
-                                  const struct scene_pose *pose, const char *camera, uint32_t width,
-                                  uint32_t height, struct gpu_frame *frame, uint32_t *kind);
+                                  const struct scene_pose *pose, const whit_camera *camera,
+                                  uint32_t width, uint32_t height, struct gpu_frame *frame,
+                                  uint32_t *kind);
 
 #endif

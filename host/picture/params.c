@@ -1,5 +1,16 @@
 #include "picture/params.h"
 
+#include "abi/bvh.h"
+#include "abi/spec.h"
+
+_Static_assert((uint32_t)WHIT_NUMERICS_WATERTIGHT == NUMERICS_WATERTIGHT &&
+                   (uint32_t)WHIT_NUMERICS_FAST == NUMERICS_FAST &&
+                   (uint32_t)WHIT_NUMERICS_EXACT == NUMERICS_EXACT &&
+                   (uint32_t)WHIT_TRAVERSAL_DISTANCE == ORDER_DISTANCE &&
+                   (uint32_t)WHIT_TRAVERSAL_SIGN == ORDER_SIGN &&
+                   (uint32_t)WHIT_TRAVERSAL_BASIC == ORDER_BASIC,
+               "kernels take these as they are");
+
 enum { DEPTH_LARGEST = 255 }; /* bounces of a ray have 8 bits */
 enum { LIGHT_SAMPLES_MAX = 64 };
 
@@ -8,7 +19,7 @@ static bool is_power_of_4(uint32_t n)
     return (n & (n - 1)) == 0 && (n & 0x55555555u) != 0;
 }
 
-whit_result params_check(const struct log *log, struct render_params *params)
+whit_result params_check(const struct log *log, whit_renderer_params *params)
 {
     if (params->width == 0 && params->height == 0) {
         params->width = 640;

@@ -1,7 +1,6 @@
 /* Where the ray tree of a pixel starts: the kernels' cameras and patterns of samples, in double. */
+#include "base/vec.h"
 #include "reference/inside.h"
-
-#define PI 3.14159265358979323846
 
 static struct dvec3 in_panorama(const struct gpu_frame *frame, double x, double y)
 {

@@ -139,7 +139,7 @@ static bool take_candidate(struct search *s, const struct candidate *m, uint32_t
     if (!is_reached(s, m, record, instance) || !is_solid(s, m, record, instance))
         return false;
     if (s->mode == MODE_SHADOW && (record->flags & TRIANGLE_FILTER) &&
-        !s->reference->params.picture.opaque_shadows) {
+        s->reference->params.picture.shadows != WHIT_SHADOWS_OPAQUE) {
         add_filter(s, m, record, instance);
         return false;
     }

@@ -1,9 +1,8 @@
 /* Where light comes from: lights, flat emitters by exact integrals, the sky. */
 #include <float.h>
 
+#include "base/vec.h"
 #include "reference/inside.h"
-
-#define PI 3.14159265358979323846
 
 static struct dvec3 three(const double v[3])
 {

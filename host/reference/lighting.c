@@ -60,6 +60,14 @@ static struct dvec3 share_of(const struct reference *reference, const struct rec
     return d3(share[0], share[1], share[2]);
 }
 
+static whit_probe_end end_of_share(struct dvec3 share)
+{
+    bool all = share.x >= 1.0 && share.y >= 1.0 && share.z >= 1.0;
+    return all                       ? WHIT_PROBE_REACHED
+           : d3_largest(share) > 0.0 ? WHIT_PROBE_FILTERED
+                                     : WHIT_PROBE_ABSORBED;
+}
+
 static void record_shadow(struct tracer *tracer, const struct receiver *at,
                           const struct shadow_ray *ray, const struct shadow *shadow,
                           struct dvec3 share, uint32_t light, uint32_t point)
@@ -67,14 +75,13 @@ static void record_shadow(struct tracer *tracer, const struct receiver *at,
     const struct hit *blocker = &shadow->blocker;
     struct reference_ray node = {
         .kind = REFERENCE_SHADOW,
-        .end = shadow->blocked         ? REFERENCE_END_BLOCKED
-               : d3_largest(share) > 0 ? REFERENCE_END_LIGHT
-                                       : REFERENCE_END_ABSORBED,
+        .end = shadow->blocked ? WHIT_PROBE_BLOCKED : end_of_share(share),
         .parent = at->ray->node,
         .bounces = ray_bounces(at->ray->steps),
         .origin = {ray->origin.x, ray->origin.y, ray->origin.z},
         .dir = {ray->dir.x, ray->dir.y, ray->dir.z},
         .t = shadow->blocked ? blocker->t : ray->distance,
+        .t_max = ray->distance,
         .instance = blocker->instance,
         .primitive = blocker->primitive,
         .material = REFERENCE_NONE,
@@ -95,7 +102,7 @@ static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at
                                 uint32_t point)
 {
     const struct reference *reference = tracer->reference;
-    if (reference->params.picture.no_shadows)
+    if (reference->params.picture.shadows == WHIT_SHADOWS_NONE)
         return d3_all(1.0);
     const struct surface *s = at->s;
     bool above = dvec3_dot(turn->to_light, s->ng) > 0.0;
@@ -187,9 +194,9 @@ struct dvec3 lighting_local(struct tracer *tracer, const struct surface *s, cons
                           .absorption = media_absorption(reference, media),
                           .instance = hit->instance,
                           .primitive = hit->primitive};
-    if (reference->params.picture.no_shadows)
+    if (reference->params.picture.shadows == WHIT_SHADOWS_NONE)
         at.lift = d3_all(0.0);
-    if (reference->params.picture.opaque_shadows)
+    if (reference->params.picture.shadows == WHIT_SHADOWS_OPAQUE)
         at.absorption = d3_all(0.0);
     at.lifted = !d3_is_zero(at.lift);
     *open = d3_all(0.0);

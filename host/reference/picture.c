@@ -4,13 +4,14 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/color.h"
 #include "base/threads.h"
 #include "reference/inside.h"
 
 enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
 
 static whit_result check_params(const struct log *log, const struct scene *scene,
-                                struct render_params *params)
+                                whit_renderer_params *params)
 {
     if (params->adaptive != 0.0 || params->effects_removed) {
         log_error(log, "a reference picture has all effects, and as many samples in every pixel");
@@ -22,11 +23,6 @@ static whit_result check_params(const struct log *log, const struct scene *scene
         return WHIT_ERROR_USAGE;
     }
     return params_check(log, params);
-}
-
-static double linear_of(double srgb)
-{
-    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
 }
 
 static bool has_alpha(const struct scene_texture *t)
@@ -54,27 +50,25 @@ static bool fill_tables(struct reference *r)
     for (uint32_t i = 0; i < scene->texture_count; ++i)
         r->alphas[i] = has_alpha(&scene->textures[i]);
     for (int i = 0; i < 256; ++i)
-        r->linear[i] = linear_of(i / 255.0);
+        r->linear[i] = linear_from_srgb(i / 255.0);
     return environment_resample(&scene->environment, &r->sky_size, &r->sky);
 }
 
 static whit_result create_parts(struct reference *r)
 {
-    struct render_params *params = &r->params.picture;
+    whit_renderer_params *params = &r->params.picture;
     whit_result result = scene_pose_init(r->scene, params->time_s, &r->pose);
     if (result == WHIT_OK)
         result = accel_pose(r->accel, &r->pose);
     if (result == WHIT_OK)
-        result = media_view(&r->log, r->accel, &r->pose, params->camera, params->width,
+        result = media_view(&r->log, r->accel, &r->pose, &params->camera, params->width,
                             params->height, &r->frame, &r->camera);
     if (result == WHIT_OK && !fill_tables(r)) {
         log_error(&r->log, "out of memory for the reference");
         result = WHIT_ERROR_MEMORY;
     }
     r->light_samples = params->light_samples ? params->light_samples : LIGHT_SAMPLES_DEFAULT;
-    r->bailout = params->bailout == 0.0  ? WHIT_BAILOUT_DEFAULT
-                 : params->bailout < 0.0 ? DBL_MIN
-                                         : params->bailout;
+    r->bailout = params->bailout > 0.0 ? params->bailout : DBL_MIN;
     return result;
 }
 
@@ -127,7 +121,7 @@ static bool stopped(const struct reference *r)
 
 static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x, uint32_t y)
 {
-    const struct render_params *params = &job->reference->params.picture;
+    const whit_renderer_params *params = &job->reference->params.picture;
     size_t pixel = (size_t)y * params->width + x;
     struct dvec3 sum = d3_all(0.0),
                  partial[SEQUENCE_BITS + 1]; /* of 2^i samples; see resolve.comp */
@@ -193,7 +187,7 @@ static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_
                               struct reference_stats *stats)
 {
     const struct reference *r = job->reference;
-    const struct render_params *params = &r->params.picture;
+    const whit_renderer_params *params = &r->params.picture;
     whit_result result = WHIT_OK;
     for (uint32_t y = 0; result == WHIT_OK && y < params->height; y += band_rows) {
         uint32_t rows = params->height - y < band_rows ? params->height - y : band_rows;
@@ -217,7 +211,7 @@ static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_
 whit_result reference_render(const struct reference *r, struct image *color, struct image *ids,
                              struct reference_stats *stats)
 {
-    const struct render_params *params = &r->params.picture;
+    const whit_renderer_params *params = &r->params.picture;
     struct reference_stats ignored;
     double start_ms = clock_ms();
     uint32_t threads = r->params.thread_count ? r->params.thread_count : threads_available();
@@ -249,7 +243,7 @@ whit_result reference_render(const struct reference *r, struct image *color, str
 whit_result reference_ray_tree(const struct reference *r, uint32_t x, uint32_t y, uint32_t sample,
                                struct reference_ray **rays, uint32_t *count)
 {
-    const struct render_params *params = &r->params.picture;
+    const whit_renderer_params *params = &r->params.picture;
     struct tracer tracer = {.reference = r, .sample = sample, .records = true};
     struct hit first;
     *rays = NULL;

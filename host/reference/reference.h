@@ -31,12 +31,13 @@
 #include "picture/media.h"
 #include "picture/params.h"
 #include "picture/sequence.h"
+#include "whit/whit_probe.h"
 
 struct reference_params {
-    /* As for a renderer: of the view, samples, depth, bailout, no_shadows, light_samples, schlick,
-       opaque_shadows, cancel and progress are obeyed. `progress` is called from the calling thread.
+    /* As for a renderer: of the view, samples, depth, bailout, shadows, light_samples, schlick,
+       cancel and progress are obeyed. `progress` is called from the calling thread.
      */
-    struct render_params picture;
+    whit_renderer_params picture;
     uint32_t thread_count; /* 0: one a core; the picture has the same bytes for any count */
     bool whole_stops;      /* filters of shadow rays in whole 1/64 stops, as kernels add them */
 };
@@ -76,28 +77,17 @@ enum reference_kind {
     REFERENCE_STRAIGHT, /* through a blended surface or a shadow catcher */
 };
 
-enum reference_end {
-    REFERENCE_END_MISS,     /* left the scene: sees the sky */
-    REFERENCE_END_SURFACE,  /* met a surface, whose rays follow */
-    REFERENCE_END_OPAQUE,   /* met a surface that calls for no further ray */
-    REFERENCE_END_UNSEEN,   /* passed a surface between two places of the same medium */
-    REFERENCE_END_LIGHT,    /* of shadow rays: came to the light; `weight` of it passed */
-    REFERENCE_END_BLOCKED,  /* of shadow rays: met something opaque */
-    REFERENCE_END_ABSORBED, /* nothing is left of it (of a shadow ray: of the light) */
-    REFERENCE_END_DEPTH,    /* not traced, for the limit of bounces */
-    REFERENCE_END_BAILOUT,  /* not traced, for what little it can add */
-};
-
 #define REFERENCE_NONE UINT32_MAX
 
 struct reference_ray {
-    uint32_t kind;   /* enum reference_kind */
-    uint32_t end;    /* enum reference_end */
+    uint32_t kind; /* enum reference_kind */
+    whit_probe_end end;
     uint32_t parent; /* index in the list, smaller than its own; REFERENCE_NONE: the camera */
     uint32_t bounces;
     double origin[3], dir[3]; /* unit */
     double t;                 /* of what it met; of shadow rays at the latest that of the light;
                                  infinity: nothing */
+    double t_max;             /* of shadow rays, their light; else infinity */
     uint32_t instance, primitive, material; /* of what it met, or REFERENCE_NONE */
     uint32_t medium;                        /* material that it travels in; REFERENCE_NONE: air */
     uint32_t light;     /* of shadow rays: number in the scene; else REFERENCE_NONE */

@@ -1,7 +1,7 @@
 /* From a hit to what shading needs: point, normals, texture coordinates, material. */
+#include "base/vec.h"
 #include "reference/inside.h"
 
-#define PI   3.14159265358979323846
 /* By how much rays start off a surface, relative to the coordinates that the point is computed
    from: more than its rounding error. */
 #define ROOM 0x1p-45

@@ -27,13 +27,14 @@ uint32_t tree_record(struct tracer *tracer, const struct reference_ray *ray)
 }
 
 /* As far as is known when a ray sets out. */
-static uint32_t record_ray(struct tracer *tracer, const struct ray *ray, enum reference_end end)
+static uint32_t record_ray(struct tracer *tracer, const struct ray *ray, whit_probe_end end)
 {
     struct reference_ray node = {.kind = ray->kind,
                                  .end = end,
                                  .parent = ray->node,
                                  .bounces = ray_bounces(ray->steps),
                                  .t = INFINITY,
+                                 .t_max = INFINITY,
                                  .instance = REFERENCE_NONE,
                                  .primitive = REFERENCE_NONE,
                                  .material = REFERENCE_NONE,
@@ -58,7 +59,7 @@ static void record_candidate(struct tracer *tracer, const struct ray *ray, const
     store(s->ns, node->normal);
 }
 
-static void record_end(struct tracer *tracer, const struct ray *ray, enum reference_end end,
+static void record_end(struct tracer *tracer, const struct ray *ray, whit_probe_end end,
                        struct dvec3 radiance)
 {
     if (ray->node == REFERENCE_NONE)
@@ -79,7 +80,7 @@ static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
     if (deep || small) {
         tracer->stats.cut_depth += deep;
         tracer->stats.cut_bailout += !deep;
-        record_ray(tracer, ray, deep ? REFERENCE_END_DEPTH : REFERENCE_END_BAILOUT);
+        record_ray(tracer, ray, deep ? WHIT_PROBE_DEPTH : WHIT_PROBE_BAILOUT);
         return true;
     }
     if (ray->kind < RAY_KIND_COUNT)
@@ -173,7 +174,7 @@ static struct dvec3 shade_hit(struct tracer *tracer, struct ray *ray, const stru
     struct crossing c = media_cross(tracer, ray, hit, &s, inside);
     if (!c.seen) {
         record_candidate(tracer, ray, hit, &s);
-        record_end(tracer, ray, REFERENCE_END_UNSEEN, d3_all(0.0));
+        record_end(tracer, ray, WHIT_PROBE_DIVIDED, d3_all(0.0));
         push_through(tracer, ray, &c);
         return d3_all(0.0);
     }
@@ -190,25 +191,25 @@ static struct dvec3 shade_hit(struct tracer *tracer, struct ray *ray, const stru
     if (s.material->shadow_catcher)
         ray->weight = d3_times(ray->weight, lighting_caught(light, open));
     bool goes_on = push_children(tracer, ray, &s, &o, &c, hit);
-    record_end(tracer, ray, goes_on ? REFERENCE_END_SURFACE : REFERENCE_END_OPAQUE, radiance);
+    record_end(tracer, ray, goes_on ? WHIT_PROBE_DIVIDED : WHIT_PROBE_OPAQUE, radiance);
     return radiance;
 }
 
 static struct dvec3 follow(struct tracer *tracer, struct ray *ray, const struct hit *hit)
 {
     const struct reference *reference = tracer->reference;
-    ray->node = record_ray(tracer, ray, REFERENCE_END_MISS);
+    ray->node = record_ray(tracer, ray, WHIT_PROBE_MISSED);
     ray->weight = d3_times(ray->weight, media_transmittance(reference, &ray->media, hit->t));
     bool met = hit->primitive != HIT_NONE;
     struct dvec3 radiance = d3_all(0.0);
     if (d3_largest(ray->weight) < DBL_MIN)
-        record_end(tracer, ray, REFERENCE_END_ABSORBED, radiance);
+        record_end(tracer, ray, WHIT_PROBE_ABSORBED, radiance);
     else if (met)
         radiance = shade_hit(tracer, ray, hit);
     else
         radiance = d3_times(light_sky(reference, ray->dir), ray->weight);
     if (!met && !(d3_largest(ray->weight) < DBL_MIN))
-        record_end(tracer, ray, REFERENCE_END_MISS, radiance);
+        record_end(tracer, ray, WHIT_PROBE_MISSED, radiance);
     return radiance;
 }
 

@@ -42,7 +42,7 @@ whit_result costs_add(struct target *target, const struct gpu_chunk *chunk)
 {
     struct renderer *renderer = target->renderer;
     struct gpu_cost costs[RENDER_BLOCK_PIXELS][RAY_KIND_COUNT];
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     whit_result result = WHIT_OK;
     for (uint32_t b = 0; params->count && result == WHIT_OK && b < chunk->block_count; ++b) {
         uint32_t block = chunk->first_block + b;
@@ -62,7 +62,7 @@ whit_result costs_add(struct target *target, const struct gpu_chunk *chunk)
 
 whit_result renderer_read_costs(struct renderer *renderer, uint32_t kind, struct image *out)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     if (!renderer->rendered || !params->count || kind >= RAY_KIND_COUNT) {
         log_error(&renderer->log, "%s",
                   !params->count        ? "costs were not asked for when the renderer was made"

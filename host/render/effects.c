@@ -71,7 +71,7 @@ bool render_effect_can_remove(enum scene_effect effect)
            (effect != SCENE_EFFECT_SPHERES && render_effect_can_add(effect));
 }
 
-void effects_choose(const struct render_params *params, struct scene_effects *effects)
+void effects_choose(const whit_renderer_params *params, struct scene_effects *effects)
 {
     uint64_t added = params->effects_added;
     for (int i = NEED_COUNT - 1; i >= 0; --i) {
@@ -87,9 +87,9 @@ void effects_choose(const struct render_params *params, struct scene_effects *ef
         if (params->effects_removed >> i & 1)
             effects->called[i] = false;
     }
-    if (params->no_shadows)
+    if (params->shadows == WHIT_SHADOWS_NONE)
         effects->called[SCENE_EFFECT_SHADOWS] = false;
-    if (params->opaque_shadows)
+    if (params->shadows == WHIT_SHADOWS_OPAQUE)
         effects->called[SCENE_EFFECT_TINTED_SHADOWS] = false;
     for (int i = 0; i < NEED_COUNT; ++i) {
         if (!effects->called[needs[i].needs])

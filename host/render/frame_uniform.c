@@ -10,7 +10,7 @@ whit_result frame_fill(struct renderer *renderer)
     const struct scene_environment *environment = &renderer->scene->environment;
     uint32_t kind;
     whit_result result =
-        camera_frame(&renderer->log, &renderer->pose, renderer->params.camera,
+        camera_frame(&renderer->log, &renderer->pose, &renderer->params.camera,
                      renderer->params.width, renderer->params.height, frame, &kind);
     if (result != WHIT_OK)
         return result;
@@ -42,9 +42,7 @@ whit_result frame_fill(struct renderer *renderer)
     }
     frame->depth = renderer->params.depth;
     double bailout = renderer->params.bailout;
-    frame->bailout = bailout == 0.0  ? (float)WHIT_BAILOUT_DEFAULT
-                     : bailout < 0.0 ? FLT_MIN
-                                     : (float)bailout;
+    frame->bailout = bailout > 0.0 ? (float)bailout : FLT_MIN;
     return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);
 }
 

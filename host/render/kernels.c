@@ -43,7 +43,7 @@ static whit_result list_stages(struct renderer *renderer, whit_kernel *kernels, 
 }
 
 whit_result render_list_kernels(const struct log *log, struct device *device, struct accel *accel,
-                                const struct render_params *params, whit_kernel *kernels,
+                                const whit_renderer_params *params, whit_kernel *kernels,
                                 uint32_t *count)
 {
     struct renderer renderer = {0};

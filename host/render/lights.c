@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "render/renderer.h"
 
 enum { ROW_BYTES = 16, SAMPLES_DEFAULT = 16 };
-static const double PI = 3.14159265358979323846;
 
 static uint32_t light_code(enum scene_light_kind kind)
 {

@@ -107,12 +107,12 @@ void material_shares_clear(struct target *target)
 }
 
 /* Into a list that is sorted, largest first, and drops its last. */
-static void insert_share(struct render_stats *stats, struct render_share share)
+static void insert_share(whit_stats *stats, whit_share share)
 {
     uint32_t at = stats->share_count;
-    if (at == RENDER_SHARES && stats->shares[at - 1].share >= share.share)
+    if (at == WHIT_SHARES && stats->shares[at - 1].share >= share.share)
         return;
-    if (at < RENDER_SHARES)
+    if (at < WHIT_SHARES)
         ++stats->share_count;
     else
         --at;
@@ -121,7 +121,7 @@ static void insert_share(struct render_stats *stats, struct render_share share)
     stats->shares[at] = share;
 }
 
-void material_shares_get(const struct target *target, struct render_stats *stats)
+void material_shares_get(const struct target *target, whit_stats *stats)
 {
     uint32_t material_count = target->renderer->scene->material_count;
     const uint64_t *counts = target->stages.material_hits;
@@ -133,9 +133,9 @@ void material_shares_get(const struct target *target, struct render_stats *stats
         for (uint32_t i = 0; i < material_count; ++i) {
             uint64_t own = counts[k * material_count + i];
             if (own)
-                insert_share(stats, (struct render_share){.stage = RENDER_STAGE_SHADE + k,
-                                                          .material = i,
-                                                          .share = (double)own / (double)all});
+                insert_share(stats, (whit_share){.stage = RENDER_STAGE_SHADE + k,
+                                                 .material = i,
+                                                 .share = (double)own / (double)all});
         }
     }
 }

@@ -10,7 +10,7 @@ uint32_t pixels_blocks_across(uint32_t pixels)
     return (pixels + 7) / 8;
 }
 
-uint32_t pixels_levels(const struct render_params *params)
+uint32_t pixels_levels(const whit_renderer_params *params)
 {
     uint32_t max = params->adaptive > 0.0 ? ADAPTIVE_MAX : params->samples, levels = 0;
     while (max >> (levels + 1))

@@ -39,7 +39,7 @@ static uint32_t slot_of_pixel(uint32_t x, uint32_t y)
 static whit_result trace_pixel(struct target *target, struct probe_report *report)
 {
     struct renderer *renderer = target->renderer;
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     uint32_t block_y = report->y / 8, rows = params->height - block_y * 8;
     struct gpu_chunk chunk = {.first_block =
                                   block_y * pixels_blocks_across(params->width) + report->x / 8,
@@ -280,7 +280,7 @@ static whit_result order_rays(const struct renderer *renderer, const struct gpu_
 
 static whit_result check(const struct renderer *renderer, uint32_t x, uint32_t y)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     if (x < params->width && y < params->height) {
         if (!renderer->between_times)
             return WHIT_OK;
@@ -296,7 +296,7 @@ static whit_result check(const struct renderer *renderer, uint32_t x, uint32_t y
 whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, uint32_t max,
                            struct probe_report *out)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     struct gpu_probe_ray *records = NULL;
     *out = (struct probe_report){.x = x,
                                  .y = y,

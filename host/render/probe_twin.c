@@ -90,8 +90,8 @@ static void ask_twin(struct asking *a)
 {
     struct probe_ray *ray = a->ray;
     const struct gpu_probe_ray *traced = &ray->traced;
-    const struct render_params *params = &a->renderer->params;
-    const struct traverse_params walk = {.order = params->order,
+    const whit_renderer_params *params = &a->renderer->params;
+    const struct traverse_params walk = {.order = (uint32_t)params->traversal,
                                          .numerics = params->numerics,
                                          .skip_instance = traced->skip_instance,
                                          .skip_primitive = traced->skip_primitive};

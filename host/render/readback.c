@@ -122,7 +122,7 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
                                  struct gpu_ray **rays, uint64_t *count)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     uint32_t width = params->width, height = params->height;
     for (uint32_t by = 2; (uint64_t)width * height > max && width * height > 1; ++by) {
         width = (params->width + by - 1) / by;
@@ -133,7 +133,7 @@ whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
     if (!*rays)
         return render_no_memory(renderer, "camera rays");
     whit_result result =
-        camera_all_rays(&renderer->log, &renderer->pose, params->camera, width, height, *rays);
+        camera_all_rays(&renderer->log, &renderer->pose, &params->camera, width, height, *rays);
     if (result != WHIT_OK) {
         free(*rays);
         *rays = NULL;

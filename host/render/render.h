@@ -13,13 +13,14 @@
 #include "picture/params.h"
 #include "scene/scene.h"
 #include "twin/counters.h"
+#include "whit/whit_renderer.h"
 
 /* Whether effects_added and effects_removed may name an effect. What geometry or the camera is made
    of cannot be taken out (spheres, instances, kinds of cameras); a lens can: a pinhole is left. */
 bool render_effect_can_add(enum scene_effect effect);
 bool render_effect_can_remove(enum scene_effect effect);
 
-/* Rows of render_stats.stages. */
+/* Rows of whit_stats.stages. */
 enum {
     RENDER_STAGE_CAMERA,
     RENDER_STAGE_CLOSEST,
@@ -30,41 +31,7 @@ enum {
     RENDER_STAGE_SHADOW,   /* of light 0, and so on; where more than LIGHT_LISTS: of all */
     RENDER_STAGE_COUNT = RENDER_STAGE_SHADOW + LIGHT_LISTS
 };
-struct render_stage {
-    char name[24];
-    uint64_t items; /* rays; hits where they are shaded; sums where they are resolved */
-    double ms;      /* < 0: not known; from those items that were timed: */
-    uint64_t timed_items;
-    double timed_ms;
-};
-
-/* How many of the hits that a shading kernel worked on wear one material. */
-enum { RENDER_SHARES = 24 };
-struct render_share {
-    uint32_t stage; /* RENDER_STAGE_SHADE and behind */
-    uint32_t material;
-    double share; /* 0..1 */
-};
-
-struct render_stats {
-    double upload_ms, compile_ms, render_ms, render_device_ms;
-    uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
-    uint64_t rays_cut_depth, rays_cut_bailout;
-    double weight_cut_depth, weight_cut_bailout; /* largest sum of one pixel */
-    double bailout_bound;                        /* < 0: not known */
-    uint64_t pixels_by_samples[7];
-    uint32_t kernel_instructions, largest_instructions; /* of all kernels; of the largest */
-    bool general;
-    uint64_t device_bytes;
-    uint32_t dispatches, tiles, tile_size;
-    uint32_t deferred; /* NUMERICS_EXACT: pixels of dispatches, each a ray with its shadow rays,
-                       that floats left open */
-    bool texel_loads, packets;
-    struct cost_sum costs[RAY_KIND_COUNT]; /* with params.count */
-    struct render_stage stages[RENDER_STAGE_COUNT];
-    struct render_share shares[RENDER_SHARES]; /* largest first; the rest is left out */
-    uint32_t share_count;
-};
+_Static_assert(RENDER_STAGE_COUNT == WHIT_STAGES, "whit_stats has a row for each");
 
 struct renderer;
 
@@ -72,14 +39,14 @@ struct renderer;
    params->time_s. WHIT_ERROR_USAGE for a camera that does not exist, sizes out of range, or a
    scene whose pictures were dropped. */
 WHIT_CHECK whit_result renderer_create(const struct log *log, struct device *device,
-                                       struct accel *accel, const struct render_params *params,
+                                       struct accel *accel, const whit_renderer_params *params,
                                        struct renderer **out);
 void renderer_destroy(struct renderer *renderer);
 WHIT_CHECK whit_result renderer_render(struct renderer *renderer);
 /* Linear RGBA floats, or instance and primitive of the first sample (HIT_NONE: miss). */
 WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
-void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats);
+void renderer_get_stats(const struct renderer *renderer, whit_stats *stats);
 
 /* The same of the picture that was set last, or of a smaller one of at most `max` pixels whose
    sides are that of it over a whole number. *rays: free(). */
@@ -87,25 +54,18 @@ WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uin
                                             struct gpu_ray **rays, uint64_t *count);
 
 /* Whether a renderer that is made with these params has one kernel where others have several: what
-   RENDER_CLASSES_AUTO comes to. */
-bool render_few_kernels(const struct render_params *params);
+   WHIT_CLASSES_AUTO comes to. */
+bool render_few_kernels(const whit_renderer_params *params);
 
 /* Whether kernels are made with an effect. */
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect);
-/* What is left of the kernel for this renderer, and of the same with every effect. */
-struct render_kernel_info {
-    uint32_t instructions, general_instructions; /* of all kernels that draw together */
-    uint32_t largest_instructions;               /* of the largest of the scene's own */
-    uint32_t bindings, general_bindings;         /* counts */
-};
 /* WHIT_ERROR_DEVICE when the kernel cannot be specialized. */
-WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer,
-                                           struct render_kernel_info *info);
+WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer, whit_kernel_info *info);
 
 /* Makes the kernels of a picture one after the other, and nothing else: no memory of the device is
    taken. `kernels`: WHIT_KERNELS_MAX. */
 WHIT_CHECK whit_result render_list_kernels(const struct log *log, struct device *device,
-                                           struct accel *accel, const struct render_params *params,
+                                           struct accel *accel, const whit_renderer_params *params,
                                            whit_kernel *kernels, uint32_t *count);
 
 /* With params.count: the costs of rays of `kind` (RAY_*) of each pixel's first sample, as 8 integer
@@ -119,11 +79,11 @@ WHIT_CHECK whit_result renderer_set_time(struct renderer *renderer, double time_
 
 /* Takes over width, height, camera, time_s, samples, adaptive, light_samples, bailout and depth of
    `params`, and nothing else; buffers that fit stay, and so do kernels but for a camera of another
-   kind, adaptive on or off, depth to or from 0, and without trees. params->camera is borrowed until
-   the next call. The picture is that of a renderer made with these, byte for byte. After an error
-   there is nothing to render before a call that succeeds. */
+   kind, adaptive on or off, depth to or from 0, and without trees. The name of its camera
+   is borrowed until the next call. The picture is that of a renderer made with these, byte for
+   byte. After an error there is nothing to render before a call that succeeds. */
 WHIT_CHECK whit_result renderer_set_view(struct renderer *renderer,
-                                         const struct render_params *params);
+                                         const whit_renderer_params *params);
 
 /* A batch of rays in chunks that fit the device. `costs`: one a ray, or NULL. */
 WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays,

@@ -28,7 +28,7 @@ static whit_result create_parts(struct renderer *renderer)
     renderer->picture.stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
-    renderer->picture.stats.texel_loads = renderer->scene_buffers.texel_loads;
+    renderer->picture.stats.load_path = renderer->scene_buffers.texel_loads ? "texel" : "storage";
     renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
 }
@@ -50,7 +50,7 @@ whit_result renderer_compile(struct renderer *renderer)
 }
 
 whit_result renderer_init(struct renderer *renderer, const struct log *log, struct device *device,
-                          struct accel *accel, const struct render_params *params)
+                          struct accel *accel, const whit_renderer_params *params)
 {
     renderer->picture.renderer = renderer->probe.renderer = renderer;
     renderer->probe.probed = true;
@@ -81,7 +81,7 @@ whit_result renderer_init(struct renderer *renderer, const struct log *log, stru
 }
 
 whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
-                            const struct render_params *params, struct renderer **out)
+                            const whit_renderer_params *params, struct renderer **out)
 {
     *out = NULL;
     struct renderer *renderer = calloc(1, sizeof *renderer);

@@ -93,6 +93,12 @@ struct stage_times {
     double ms[RENDER_STAGE_COUNT];
 };
 
+/* What went through a stage in the tiles of the picture that were timed. */
+struct stage_sample {
+    uint64_t items;
+    double ms;
+};
+
 struct stages {
     struct stage_set set;
     struct stage_times times;
@@ -137,7 +143,8 @@ struct target {
     struct renderer *renderer;
     struct pixel_buffers buffers;
     struct stages stages;
-    struct render_stats stats;
+    whit_stats stats;
+    struct stage_sample timed[RENDER_STAGE_COUNT];
     bool probed;            /* rays are recorded, those of listed pixels alone (probe.c) */
     struct buffer *records; /* of a probe: gpu_probe, and gpu_probe_ray */
 };
@@ -147,7 +154,7 @@ struct renderer {
     struct device *device;
     struct accel *accel;
     const struct scene *scene;
-    struct render_params params;
+    whit_renderer_params params;
     struct scene_pose pose;
     struct scene_effects effects; /* that kernels are made for: see effects_choose */
     struct scene_buffers scene_buffers;
@@ -184,7 +191,7 @@ bool renderer_bounces(const struct renderer *renderer);
  */
 WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const struct log *log,
                                      struct device *device, struct accel *accel,
-                                     const struct render_params *params);
+                                     const whit_renderer_params *params);
 void renderer_finish(struct renderer *renderer);
 /* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
@@ -196,7 +203,7 @@ void target_finish(struct target *target);
 /* Before pictures of another size or depth: its pixels, and what is bound to them. */
 void target_drop_pixels(struct target *target);
 /* Partial sums that the most samples of a pixel leave at once. */
-uint32_t pixels_levels(const struct render_params *params);
+uint32_t pixels_levels(const whit_renderer_params *params);
 /* Blocks of 8 x 8 that cover `pixels` in a row or column. */
 uint32_t pixels_blocks_across(uint32_t pixels);
 
@@ -253,7 +260,7 @@ uint32_t lights_samples(const struct renderer *renderer);
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 /* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */
-void effects_choose(const struct render_params *params, struct scene_effects *effects);
+void effects_choose(const whit_renderer_params *params, struct scene_effects *effects);
 /* Sets the constants that effects switch. */
 void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec);
 
@@ -348,7 +355,7 @@ WHIT_CHECK whit_result material_shares_add(struct target *target,
 /* Before another picture. */
 void material_shares_clear(struct target *target);
 /* stats->shares. */
-void material_shares_get(const struct target *target, struct render_stats *stats);
+void material_shares_get(const struct target *target, whit_stats *stats);
 
 /* stage_times.c: target->stats.stages, and rays_shadow with it. */
 void stage_times_begin(struct target *target);
@@ -362,7 +369,7 @@ void stage_times_take(struct target *target);
 WHIT_CHECK whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk,
                                        uint32_t generations, uint32_t deferred);
 /* Fills in names, and the times of all items. */
-void stage_times_scale(const struct renderer *renderer, struct render_stats *stats);
+void stage_times_scale(const struct renderer *renderer, whit_stats *stats);
 
 /* beside.c: renderer->picture.stages are the best kernels that there are without waiting for them:
    at first the general one, while a thread compiles the specialised one, and from some later call
@@ -390,7 +397,7 @@ WHIT_CHECK whit_result readback_non_finite(const struct target *target, uint32_t
                                            uint32_t *count);
 
 /* stats.c: forgets the last picture, and keeps what was measured before it. */
-void stats_clear(struct render_stats *stats);
+void stats_clear(struct target *target);
 
 /* adaptive_samples.c: everything around the passes of an adaptive picture, which tiles.c makes. */
 /* Gives every pixel of `color` that differs from one of its 8 neighbours by more than `contrast`,

@@ -2,9 +2,9 @@
 #include "render/renderer.h"
 
 /* Parameters that other kernels, or other uploads, would be needed for stay as they are. */
-static struct render_params merge(const struct render_params *own, const struct render_params *from)
+static whit_renderer_params merge(const whit_renderer_params *own, const whit_renderer_params *from)
 {
-    struct render_params params = *own;
+    whit_renderer_params params = *own;
     params.width = from->width;
     params.height = from->height;
     params.camera = from->camera;
@@ -18,7 +18,7 @@ static struct render_params merge(const struct render_params *own, const struct 
     return params;
 }
 
-static bool same_buffers(const struct render_params *a, const struct render_params *b)
+static bool same_buffers(const whit_renderer_params *a, const whit_renderer_params *b)
 {
     return a->width == b->width && a->height == b->height && a->depth == b->depth &&
            a->light_samples == b->light_samples && (a->adaptive > 0.0) == (b->adaptive > 0.0);
@@ -26,7 +26,7 @@ static bool same_buffers(const struct render_params *a, const struct render_para
 
 static whit_result replace_pixels(struct renderer *renderer)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     target_drop_pixels(&renderer->picture);
     target_drop_pixels(&renderer->probe);
     whit_result result = pixels_create(&renderer->picture, params->height, params->tile_size);
@@ -36,9 +36,9 @@ static whit_result replace_pixels(struct renderer *renderer)
     return result;
 }
 
-whit_result renderer_set_view(struct renderer *renderer, const struct render_params *params)
+whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_params *params)
 {
-    struct render_params wanted = merge(&renderer->params, params);
+    whit_renderer_params wanted = merge(&renderer->params, params);
     whit_result result = params_check(&renderer->log, &wanted);
     if (result != WHIT_OK)
         return result;

@@ -59,10 +59,9 @@ void stage_times_take(struct target *target)
 
 static void add_items(struct target *target, uint32_t row, uint64_t items)
 {
-    struct render_stage *stage = &target->stats.stages[row];
-    stage->items += items;
+    target->stats.stages[row].rays += items;
     if (target->stages.times.on)
-        stage->timed_items += items;
+        target->timed[row].items += items;
 }
 
 static uint64_t items_of(const struct gpu_generation *generation, uint32_t list)
@@ -110,17 +109,18 @@ whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk
         result = material_shares_add(target, all, generations, (uint32_t)pixels);
     free(all);
     for (uint32_t row = 0; times->on && row < RENDER_STAGE_COUNT; ++row)
-        target->stats.stages[row].timed_ms += times->ms[row];
+        target->timed[row].ms += times->ms[row];
     return result;
 }
 
-void stage_times_scale(const struct renderer *renderer, struct render_stats *stats)
+void stage_times_scale(const struct renderer *renderer, whit_stats *stats)
 {
     static const char *const names[] = {"camera",      "closest", "shade",
                                         "shade glass", "resolve", "deferred"};
     bool several = renderer->frame.light_count > LIGHT_LISTS;
     for (uint32_t row = 0; row < RENDER_STAGE_COUNT; ++row) {
-        struct render_stage *stage = &stats->stages[row];
+        const struct stage_sample *timed = &renderer->picture.timed[row];
+        whit_stage *stage = &stats->stages[row];
         if (row < RENDER_STAGE_SHADOW)
             snprintf(stage->name, sizeof stage->name, "%s", names[row]);
         else if (several)
@@ -128,8 +128,6 @@ void stage_times_scale(const struct renderer *renderer, struct render_stats *sta
         else
             snprintf(stage->name, sizeof stage->name, "shadows of light %u",
                      row - RENDER_STAGE_SHADOW);
-        stage->ms = stage->timed_items
-                        ? stage->timed_ms * (double)stage->items / (double)stage->timed_items
-                        : -1.0;
+        stage->ms = timed->items ? timed->ms * (double)stage->rays / (double)timed->items : -1.0;
     }
 }

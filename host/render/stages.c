@@ -132,15 +132,13 @@ whit_result stages_take(struct target *target, struct stage_set *set)
     stage_set_finish(&target->stages.set);
     target->stages.set = *set;
     *set = (struct stage_set){0};
-    target->stats.kernel_instructions = target->stats.largest_instructions = 0;
+    target->stats.kernel_instructions = 0;
     for (int i = 0; i < STAGE_COUNT; ++i) {
         const struct pass *pass = &target->stages.set.passes[i];
         struct pipeline_info info = {0};
         if (pass->pipeline)
             pipeline_get_info(pass->pipeline, &info);
         target->stats.kernel_instructions += info.instructions;
-        if (info.instructions > target->stats.largest_instructions)
-            target->stats.largest_instructions = info.instructions;
     }
     return stages_bind(target);
 }
@@ -182,14 +180,14 @@ static bool count_set(const struct stages_job *job, struct pipeline_info *sum, u
     return true;
 }
 
-whit_result renderer_get_kernel(const struct renderer *renderer, struct render_kernel_info *info)
+whit_result renderer_get_kernel(const struct renderer *renderer, whit_kernel_info *info)
 {
     const struct target *target = &renderer->picture;
     struct gpu_spec own = variant_spec(target), general = variant_general_spec(target);
     struct stages_job job;
     struct pipeline_info own_info, general_info;
     uint32_t largest, general_largest;
-    *info = (struct render_kernel_info){0};
+    *info = (whit_kernel_info){0};
     bool few = variant_few_kernels(target);
     stages_job_init(target, &own, true, few, &job);
     bool counted = count_set(&job, &own_info, &largest);
@@ -198,7 +196,7 @@ whit_result renderer_get_kernel(const struct renderer *renderer, struct render_k
         log_error(&renderer->log, "the kernels cannot be specialized");
         return WHIT_ERROR_DEVICE;
     }
-    *info = (struct render_kernel_info){
+    *info = (whit_kernel_info){
         .instructions = own_info.instructions,
         .largest_instructions = largest,
         .general_instructions = general_info.instructions,
@@ -381,7 +379,7 @@ static whit_result trace_generations(struct tile_run *run, uint32_t first, uint3
 
 static whit_result take_tally(struct target *target)
 {
-    struct render_stats *stats = &target->stats;
+    whit_stats *stats = &target->stats;
     struct gpu_tally tally;
     whit_result result = buffer_read(target->buffers.queues.generations, 0, &tally, sizeof tally);
     if (result != WHIT_OK)

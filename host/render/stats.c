@@ -1,22 +1,29 @@
 /* The statistics of a picture. */
+#include <string.h>
+
 #include "render/renderer.h"
 
-void stats_clear(struct render_stats *stats)
+void stats_clear(struct target *target)
 {
-    *stats = (struct render_stats){.upload_ms = stats->upload_ms,
-                                   .compile_ms = stats->compile_ms,
-                                   .device_bytes = stats->device_bytes,
-                                   .kernel_instructions = stats->kernel_instructions,
-                                   .largest_instructions = stats->largest_instructions,
-                                   .general = stats->general,
-                                   .texel_loads = stats->texel_loads};
+    const whit_stats before = target->stats;
+    target->stats = (whit_stats){.upload_ms = before.upload_ms,
+                                 .compile_ms = before.compile_ms,
+                                 .device_bytes = before.device_bytes,
+                                 .kernel_instructions = before.kernel_instructions,
+                                 .general = before.general,
+                                 .load_path = before.load_path};
+    memset(target->timed, 0, sizeof target->timed);
 }
 
-void renderer_get_stats(const struct renderer *renderer, struct render_stats *stats)
+void renderer_get_stats(const struct renderer *renderer, whit_stats *stats)
 {
     *stats = renderer->picture.stats;
     stats->packets = renderer->packets && renderer->packet_stack_size <= PACKET_STACK_MAX;
     stage_times_scale(renderer, stats);
     material_shares_get(&renderer->picture, stats);
     stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
+    uint64_t rays =
+        stats->rays_primary + stats->rays_shadow + stats->rays_reflected + stats->rays_refracted;
+    if (stats->render_ms > 0.0)
+        stats->mrays_per_s = (double)rays / stats->render_ms * 1e-3;
 }

@@ -86,7 +86,7 @@ static void report_progress(const struct renderer *renderer, const struct progre
 
 whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     if (params->cancel && *params->cancel)
         return WHIT_ERROR_CANCELLED;
     if (params->time_limit_s > 0.0 &&
@@ -223,7 +223,7 @@ static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk
 static whit_result render_band(struct renderer *renderer, uint32_t band_y,
                                struct progress *progress)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     uint32_t left = params->height - band_y;
     uint32_t rows =
         left < renderer->picture.buffers.band_rows ? left : renderer->picture.buffers.band_rows;
@@ -253,7 +253,7 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
 static whit_result render_pass(struct renderer *renderer, uint32_t samples,
                                struct progress *progress)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     whit_result result = WHIT_OK;
     progress->samples = samples;
     progress->work_done = 0;
@@ -271,7 +271,7 @@ static whit_result render_pass(struct renderer *renderer, uint32_t samples,
    do. Only pictures as a whole tell who differs, so passes are over all bands. */
 static whit_result render_adaptive(struct renderer *renderer, struct progress *progress)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     size_t pixels = (size_t)params->width * params->height;
     progress->levels = array_alloc(pixels, sizeof *progress->levels);
     if (!progress->levels)
@@ -299,7 +299,7 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
 
 static whit_result render_picture(struct renderer *renderer, struct progress *progress)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     uint64_t pixels = (uint64_t)params->width * params->height;
     renderer->picture.stats.rays_primary = pixels * params->samples;
     if (params->adaptive > 0.0)
@@ -313,7 +313,7 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
 
 whit_result renderer_render(struct renderer *renderer)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     renderer->rendered = false;
     if (renderer->between_times) {
         log_error(&renderer->log,
@@ -330,7 +330,7 @@ whit_result renderer_render(struct renderer *renderer)
         result = image_init(&renderer->color, params->width, params->height, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
-    stats_clear(&renderer->picture.stats);
+    stats_clear(&renderer->picture);
     material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
     struct progress progress = {

@@ -167,7 +167,7 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     }
     renderer->trace.device_ms = 0.0;
     renderer->trace.together = 0;
-    bool many = count >= TRACE_BEAMS_MIN || renderer->params.packets == RENDER_PACKETS_ON;
+    bool many = count >= TRACE_BEAMS_MIN || renderer->params.packets == WHIT_PACKETS_ON;
     bool beams = many && variant_has_beams(renderer);
     whit_result result = prepare(renderer, any, beams);
     if (result == WHIT_OK)

@@ -31,11 +31,11 @@ static bool fits_storage(const struct renderer *renderer)
 static bool choose_texel_loads(const struct renderer *renderer)
 {
     switch (renderer->params.load_path) {
-    case RENDER_LOAD_STORAGE:
+    case WHIT_LOAD_STORAGE:
         return false;
-    case RENDER_LOAD_TEXEL:
+    case WHIT_LOAD_TEXEL:
         return true;
-    case RENDER_LOAD_AUTO:
+    case WHIT_LOAD_AUTO:
         break;
     }
     return device_get_info(renderer->device)->kind == DEVICE_CPU || !fits_storage(renderer);
@@ -322,11 +322,11 @@ enum { PACKETS_HALVINGS = 8 };
 /* They are for lavapipe: eight lanes, and shuffles that are single instructions. */
 bool upload_can_widen(const struct renderer *renderer)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     return renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
            device_get_info(renderer->device)->subgroup_size == 8 && !params->count &&
-           params->order == ORDER_DISTANCE && params->numerics != NUMERICS_FAST &&
-           params->packets != RENDER_PACKETS_OFF;
+           params->traversal == WHIT_TRAVERSAL_DISTANCE && params->numerics != WHIT_NUMERICS_FAST &&
+           params->packets != WHIT_PACKETS_OFF;
 }
 
 whit_result upload_wide(struct renderer *renderer)
@@ -342,7 +342,7 @@ whit_result upload_wide(struct renderer *renderer)
    as in instances packets lose what they gain outside. */
 static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
-    const struct render_params *params = &renderer->params;
+    const whit_renderer_params *params = &renderer->params;
     const struct accel *accel = renderer->accel;
     double samples = params->adaptive > 0.0 ? 4.0 : (double)params->samples;
     double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
@@ -361,7 +361,7 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
 static bool choose_packets(struct renderer *renderer)
 {
     renderer->packet_rays = choose_packet_rays(renderer);
-    if (renderer->params.packets == RENDER_PACKETS_ON && renderer->packet_rays == 1)
+    if (renderer->params.packets == WHIT_PACKETS_ON && renderer->packet_rays == 1)
         renderer->packet_rays = packet_choices[0].rays;
     return upload_can_widen(renderer) && renderer->packet_rays > 1;
 }

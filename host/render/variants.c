@@ -72,7 +72,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_INSTANCED = !accel->single_identity && !accel->flat;
     spec.SPEC_FLAT = accel->flat;
     spec.SPEC_CLIPPED = accel->clipped;
-    spec.SPEC_ORDER = renderer->params.order;
+    spec.SPEC_ORDER = (uint32_t)renderer->params.traversal;
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_PROBE = target->probed;
@@ -148,7 +148,7 @@ struct gpu_spec variant_spec(const struct target *target)
 struct gpu_spec variant_general_spec(const struct target *target)
 {
     struct scene_effects effects = target->renderer->effects;
-    const struct render_params all = {.all_effects = true};
+    const whit_renderer_params all = {.all_effects = true};
     effects_choose(&all, &effects);
     struct gpu_spec spec = make_spec(target, &effects, true);
     spec.SPEC_LISTED = 1;
@@ -162,7 +162,7 @@ struct gpu_spec variant_async_spec(const struct target *target)
     static const enum scene_effect held[] = {SCENE_EFFECT_SMOOTH_NORMALS,
                                              SCENE_EFFECT_VERTEX_COLORS, SCENE_EFFECT_MEDIA};
     struct scene_effects effects = renderer->effects;
-    struct render_params all = renderer->params;
+    whit_renderer_params all = renderer->params;
     all.all_effects = true;
     for (size_t i = 0; i < sizeof held / sizeof *held; ++i) {
         if (!effects.called[held[i]])
@@ -308,11 +308,11 @@ whit_result variant_job_run(struct device *device, const struct variant_job *job
    longer to make where the driver has them in its cache, 300 to 500 where not. */
 enum { RAYS_FOR_MANY = 150000 };
 
-bool render_few_kernels(const struct render_params *params)
+bool render_few_kernels(const whit_renderer_params *params)
 {
     double samples = params->adaptive > 0.0 ? 4.0 : fmax((double)params->samples, 1.0);
-    if (params->classes != RENDER_CLASSES_AUTO)
-        return params->classes == RENDER_CLASSES_ONE;
+    if (params->classes != WHIT_CLASSES_AUTO)
+        return params->classes == WHIT_CLASSES_ONE;
     return !params->many_pictures && !params->compile_async &&
            (double)params->width * params->height * samples < RAYS_FOR_MANY;
 }

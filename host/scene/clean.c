@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/text.h"
+#include "base/vec.h"
 #include "scene/freeze.h"
 
 #define LARGEST_COORDINATE 1e18f
@@ -147,11 +148,6 @@ static void set_bounds(struct scene_mesh *mesh)
     }
 }
 
-static double length_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* As long as the triangle's area, doubled. */
 static void face_normal(const struct scene_mesh *mesh, uint32_t triangle, double n[3])
 {
@@ -183,7 +179,7 @@ static void average_faces(const struct scene_mesh *mesh, const bool *bad, double
 
 static void mend_normal(float *normal, const double sum[3])
 {
-    double length = length_of(sum);
+    double length = double3_length(sum);
     bool usable = length > 0.0 && isfinite(length);
     for (int k = 0; k < 3; ++k)
         normal[k] = usable ? (float)(sum[k] / length) : k == 2 ? 1.0f : 0.0f;
@@ -193,7 +189,7 @@ static void mend_normal(float *normal, const double sum[3])
 static bool normalize(float *normal)
 {
     double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
-    double length = length_of(n);
+    double length = double3_length(n);
     if (!(length > 0.0) || !isfinite(length))
         return false;
     if (fabs(length - 1.0) > 1e-4) {
@@ -280,7 +276,7 @@ static bool says_the_face(const float *normal, const double face[3])
     const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
     const double across[3] = {n[1] * face[2] - n[2] * face[1], n[2] * face[0] - n[0] * face[2],
                               n[0] * face[1] - n[1] * face[0]};
-    return length_of(across) <= NORMAL_SLACK * length_of(face);
+    return double3_length(across) <= NORMAL_SLACK * double3_length(face);
 }
 
 /* Normals that say what the faces say are none: then nothing has to interpolate them. */

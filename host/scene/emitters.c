@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "scene/freeze.h"
 
 #define SAMPLES_MAX   16
@@ -158,8 +159,8 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     for (int i = 0; i < 3; ++i) {
         light.direction[i] = twice_area > 0.0 ? side * normal[i] / twice_area : -(double)(i == 1);
         light.position[i] += lift * light.direction[i];
-        light.color[i] = (float)((double)material->emission[i] / luminance(material->emission) *
-                                 power / 3.14159265358979323846);
+        light.color[i] =
+            (float)((double)material->emission[i] / luminance(material->emission) * power / PI);
     }
     return scene_add_light(scene, light) != SCENE_NONE;
 }
@@ -251,14 +252,6 @@ static void flat_corner(const struct flat *flat, int k, double out[3])
         out[i] = flat->corner[i] + (k ? flat->sides[k - 1][i] : 0.0);
 }
 
-static double distance_between(const double a[3], const double b[3])
-{
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum);
-}
-
 /* Whether triangle `b`, its corners taken from `turn` on, is `a` turned by half about the middle of
    the side that faces corner `k` of `a`: corner k is then that of a parallelogram. */
 static bool is_other_half(const struct flat *a, int k, const struct flat *b, int turn)
@@ -270,9 +263,9 @@ static bool is_other_half(const struct flat *a, int k, const struct flat *b, int
     }
     for (int i = 0; i < 3; ++i)
         far[i] = at[1][i] + at[2][i] - at[0][i];
-    double slack = CORNER_SLACK * distance_between(at[1], at[2]);
-    return distance_between(other[0], far) <= slack && distance_between(other[1], at[2]) <= slack &&
-           distance_between(other[2], at[1]) <= slack;
+    double slack = CORNER_SLACK * double3_distance(at[1], at[2]);
+    return double3_distance(other[0], far) <= slack && double3_distance(other[1], at[2]) <= slack &&
+           double3_distance(other[2], at[1]) <= slack;
 }
 
 /* Makes `a` the parallelogram of both, if that is what they are. */
@@ -345,7 +338,7 @@ static bool power_suffices(const struct emitter_list *list, const struct scene_p
     double diagonal2 = 0.0;
     for (int i = 0; i < 3; ++i)
         diagonal2 += (pose->hi[i] - pose->lo[i]) * (pose->hi[i] - pose->lo[i]);
-    return list->power >= POWER_MIN * 3.14159265358979323846 * diagonal2 / 4.0;
+    return list->power >= POWER_MIN * PI * diagonal2 / 4.0;
 }
 
 whit_result freeze_sample_emitters(struct scene *scene, const struct scene_pose *pose,

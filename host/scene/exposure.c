@@ -17,8 +17,6 @@
 #define MIN        0.02
 #define MAX        2.0
 
-static const double PI = 3.14159265358979323846;
-
 struct probe_list {
     double values[PROBES];
     uint32_t count;

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/text.h"
+#include "base/vec.h"
 
 /* The same limit as in shaders/bind/light.glsl, which cuts off arriving light beyond it. */
 #define LIGHT_MAX 1e24f
@@ -313,18 +314,13 @@ static void set_emitter_direction(struct scene_light *light)
     }
 }
 
-static double length_of(const double d[3])
-{
-    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
-
 static bool usable_light(const struct scene_light *light)
 {
     bool finite = true;
     for (int i = 0; i < 3; ++i)
         finite = finite && isfinite(light->position[i]) && isfinite(light->direction[i]) &&
                  isfinite(light->color[i]);
-    double area = length_of(light->direction);
+    double area = double3_length(light->direction);
     return finite && (!scene_light_is_flat(light) || (area > 0.0 && isfinite(area)));
 }
 
@@ -333,7 +329,7 @@ static uint32_t mend_light(struct scene_light *light)
 {
     uint32_t count = 0;
     double *d = light->direction;
-    double length = length_of(d);
+    double length = double3_length(d);
     for (int i = 0; i < 3; ++i) {
         d[i] = length > 0.0 && isfinite(length) ? d[i] / length : -(double)(i == 1);
         count += mend(&light->color[i], 0.0f, LIGHT_MAX, 0.0f);

@@ -3,8 +3,7 @@
 #include <math.h>
 
 #include "base/array.h"
-
-#define PI 3.14159265358979323846
+#include "base/vec.h"
 
 bool shape_positive(double value)
 {

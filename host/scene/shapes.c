@@ -8,7 +8,6 @@
 #include "base/vec.h"
 #include "scene/shaper.h"
 
-#define PI        3.14159265358979323846
 #define STEPS_MAX 8192u
 
 whit_result shape_box(const double size[3], struct scene_mesh *out)

@@ -2,10 +2,10 @@
    triangles, many of them long, thin or diagonal. */
 #include <math.h>
 
+#include "base/vec.h"
 #include "scene/shaper.h"
 #include "scene/shapes.h"
 
-#define PI     3.14159265358979323846
 #define PITCH  4.0 /* of the bays */
 #define NAVE   5.0 /* from the axis to the columns */
 #define WALL   9.0 /* from the axis to the outer walls */

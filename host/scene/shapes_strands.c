@@ -4,7 +4,6 @@
 #include "scene/shaper.h"
 #include "scene/shapes.h"
 
-#define PI 3.14159265358979323846
 enum { STRANDS_MAX = 4000000 };
 
 /* M. O'Neill, PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 static bool is_plain(const char *word)
 {

@@ -32,7 +32,8 @@ enum setting_change {
     SETTING_COST,  /* time and memory alone: ids and pixels are the same bytes */
     SETTING_LIGHT, /* colours, and not what camera rays meet */
     SETTING_HITS,  /* what rays meet */
-    SETTING_PLACE, /* what is looked at */
+    SETTING_PLACE, /* what is looked at, in which size and at which time */
+    SETTING_PAINT, /* what of it is painted: colours, or costs */
 };
 
 /* What has to be made anew for another value. */
@@ -67,6 +68,9 @@ struct setting {
     const char *json; /* its key; NULL: `name` with _ for - */
     bool always;      /* recipes and JSON name it though it is at its default */
     bool trusted;     /* says what files may reach: no file of settings may */
+    bool of_machine;  /* says where a picture is made: no recipe does */
+    /* Whether a value other than the default says something of this picture; NULL: always. */
+    bool (*tells)(const void *record, bool recipe);
     /* Used by the viewer. */
     const char *title;                      /* in the panel of settings; NULL: not there */
     const struct setting_value *steps;      /* of keys and panel; NULL: `values`, or numbers */

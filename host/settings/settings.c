@@ -94,8 +94,7 @@ bool settings_check(struct settings *settings, char why[SETTING_WHY_BYTES])
 whit_renderer_params settings_picture(const struct settings *settings)
 {
     whit_renderer_params params = settings->picture;
-    params.camera = settings->camera[0] ? settings->camera : NULL;
-    params.effects = settings->effects[0] ? settings->effects : NULL;
+    params.camera = camera_of_text(settings->camera);
     params.count = params.count || settings->paint != PAINT_COLOR;
     if (settings->paint != PAINT_COLOR) /* costs are those of a fixed pattern */
         params.adaptive = 0.0;
@@ -148,8 +147,7 @@ static bool is_of_kernel(const struct setting *row)
 
 static bool is_of_camera(const struct setting *row)
 {
-    return strcmp(row->name, "camera") == 0 || strcmp(row->name, "time") == 0 ||
-           strcmp(row->name, "size") == 0;
+    return row->change == SETTING_PLACE;
 }
 
 static bool is_light(const struct setting *row)
@@ -219,13 +217,8 @@ static bool is_written(const struct setting *row, const struct settings *setting
     if (row->change == SETTING_RUN || (row->trusted && which == SETTINGS_STATE))
         return false;
     if (which == SETTINGS_RECIPE && row->change == SETTING_COST)
-        return costs && row->need != SETTING_NEEDS_VIEW && strcmp(row->name, "device") != 0;
-    /* Costs are those of a fixed pattern; effects that are added change nothing. */
-    if (costs && row->kind == SETTING_OWN && strcmp(row->name, "aa") == 0)
-        return settings->picture.adaptive <= 0.0;
-    if (which == SETTINGS_RECIPE && strcmp(row->name, "effects") == 0)
-        return strchr(settings->effects, '-') != NULL;
-    return true;
+        return costs && row->need != SETTING_NEEDS_VIEW && !row->of_machine;
+    return !row->tells || row->tells(settings, which == SETTINGS_RECIPE);
 }
 
 /* Whether a row is to be written, and what its option takes. */

@@ -28,10 +28,9 @@ struct settings {
     whit_load_params load;                                 /* without pointers */
     char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]; /* folders; "" behind the last */
     whit_accel_params trees;
-    whit_renderer_params picture;     /* without pointers: see settings_picture */
-    char camera[SETTING_TEXT_BYTES];  /* "": the scene's first */
-    char effects[SETTING_TEXT_BYTES]; /* "": auto */
-    uint32_t frame;                   /* in place of a time, with `fps`: see settings_check */
+    whit_renderer_params picture;    /* without camera and pointers: see settings_picture */
+    char camera[SETTING_TEXT_BYTES]; /* "": the scene's first */
+    uint32_t frame;                  /* in place of a time, with `fps`: see settings_check */
     double fps;
 
     uint32_t paint;              /* enum settings_paint */
@@ -124,7 +123,12 @@ size_t settings_write_render(const struct settings *settings, enum settings_word
 /* builder.c: a builder as --build names it. False: why not. */
 bool builder_read(const char *text, whit_accel_params *trees, char why[SETTING_WHY_BYTES]);
 void builder_write(const whit_accel_params *trees, char *text, size_t text_bytes);
-/* effects.c: whether --effects may say it. */
-bool effects_check(const char *text, char why[SETTING_WHY_BYTES]);
+/* effects.c: effects as --effects names them. False: why not, and nothing is changed. */
+bool effects_read(const char *text, whit_renderer_params *picture, char why[SETTING_WHY_BYTES]);
+void effects_write(const whit_renderer_params *picture, char text[SETTING_VALUE_BYTES]);
+/* Switches effect `index` on or off, which the scene calls for or not. */
+void effects_set(whit_renderer_params *picture, uint32_t index, bool called, bool on);
+/* camera.c: a camera as --camera names it; its name is borrowed. "": the scene's first. */
+whit_camera camera_of_text(const char *text);
 
 #endif

@@ -114,22 +114,29 @@ static bool write_scale(const void *record, char text[SETTING_VALUE_BYTES])
     return true;
 }
 
+/* Costs are those of a fixed pattern of samples. */
+static bool aa_tells(const void *record, bool recipe)
+{
+    const struct settings *settings = record;
+    (void)recipe;
+    return settings->paint == PAINT_COLOR || settings->picture.adaptive <= 0.0;
+}
+
+/* Kernels with more in them draw the same picture. */
+static bool effects_tell(const void *record, bool recipe)
+{
+    return !recipe || ((const struct settings *)record)->picture.effects_removed != 0;
+}
+
 static bool read_effects(const struct setting *row, const char *text, void *record, char *why)
 {
-    char *out = ((struct settings *)record)->effects;
     (void)row;
-    if (!effects_check(text, why))
-        return false;
-    if (strlen(text) >= SETTING_TEXT_BYTES)
-        return setting_refuse(why, ": %d bytes are the most", SETTING_TEXT_BYTES - 1);
-    strcpy(out, strcmp(text, "auto") == 0 ? "" : text);
-    return true;
+    return effects_read(text, &((struct settings *)record)->picture, why);
 }
 
 static bool write_effects(const void *record, char text[SETTING_VALUE_BYTES])
 {
-    const char *effects = ((const struct settings *)record)->effects;
-    strcpy(text, effects[0] ? effects : "auto");
+    effects_write(&((const struct settings *)record)->picture, text);
     return true;
 }
 
@@ -158,8 +165,8 @@ const struct setting settings_table[] = {
      "samples a pixel; adaptive: 4, where neighbours differ by\n"
      "more than X 16, and then 64",
      AT_OWN(aa), .values = values_samples, .commands = IN_PICTURES | IN_SCENE,
-     .change = SETTING_LIGHT, .always = true, .title = "anti-aliasing", .steps = steps_aa,
-     .key = 'A'},
+     .change = SETTING_LIGHT, .always = true, .tells = aa_tells, .title = "anti-aliasing",
+     .steps = steps_aa, .key = 'A'},
     {"depth", 0, "N", "most bounces; 0: only what is seen directly", AT(COUNT, picture.depth),
      .max = DEPTH_MAX, .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .always = true,
      .title = "bounces", .step = 1.0, .shown_max = 32.0, .key = '=', .key_back = '-'},
@@ -190,7 +197,7 @@ const struct setting settings_table[] = {
      "picture is the same; or more and less by name: less\n"
      "changes it. Names and prices: `whit scene --effects`",
      AT_OWN(effects), .values = values_effects, .commands = IN_PICTURES, .change = SETTING_LIGHT,
-     .need = SETTING_NEEDS_KERNEL},
+     .need = SETTING_NEEDS_KERNEL, .tells = effects_tell},
 
     {"budget-ms", 0, "T",
      "choose the best of these settings that take at most T ms, by\n"
@@ -203,12 +210,12 @@ const struct setting settings_table[] = {
      "what traversals cost instead of colours: a heat map\n"
      "(.png) or the numbers (.exr, .pfm)",
      AT(CHOICE, paint), .values = values_view, .commands = IN_RENDER | IN_VIEW,
-     .change = SETTING_PLACE, .title = "view", .key = 'V'},
+     .change = SETTING_PAINT, .title = "view", .key = 'V'},
     {"view-rays", 0, NULL, "of which rays, or of all", AT(CHOICE, paint_rays),
-     .values = values_rays, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PLACE,
+     .values = values_rays, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PAINT,
      .title = "rays of costs"},
     {"view-scale", 0, "auto|X", "the number of the brightest colour", AT_OWN(scale), .min = 1e-9,
-     .max = 1e12, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PLACE},
+     .max = 1e12, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PAINT},
 
     {"build", 0, "BUILDER[+opt]",
      "how trees are built: binned[:K] with 2 to 256 bins,\n"
@@ -257,7 +264,7 @@ const struct setting settings_table[] = {
      "files of the scene may name files below FOLDER too, not\n"
      "only below the scene's own; may be given again",
      "", .kind = SETTING_FOLDERS, .offset = offsetof(struct settings, allowed),
-     .commands = IN_SCENES, .change = SETTING_PLACE, .need = SETTING_NEEDS_SCENE, .trusted = true},
+     .commands = IN_SCENES, .change = SETTING_HITS, .need = SETTING_NEEDS_SCENE, .trusted = true},
     {"memory-limit", 0, "SIZE",
      "refuse a scene that takes more on host and device, in bytes\n"
      "or with K, M, G",
@@ -274,7 +281,8 @@ const struct setting settings_table[] = {
      AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE, .trusted = true},
 
     {"device", 0, "auto|N|NAME", "Vulkan device; see `whit devices`", "auto", AT(TEXT, device),
-     .commands = IN_SCENES | IN_BENCH, .change = SETTING_COST, .need = SETTING_NEEDS_KERNEL},
+     .commands = IN_SCENES | IN_BENCH, .change = SETTING_COST, .need = SETTING_NEEDS_KERNEL,
+     .of_machine = true},
     {"no-cache", 0, NULL, "keep nothing for the next run, and use nothing that was kept",
      AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH},
     {"fps-goal", 0, "F",

@@ -3,7 +3,7 @@
 #ifndef SETTINGS_VALUES_H
 #define SETTINGS_VALUES_H
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 /* One value; a list ends with a word that is NULL. Lists of a bool have 0 and 1. */
 struct setting_value {

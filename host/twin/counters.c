@@ -5,7 +5,7 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-void cost_merge(struct cost_sum *sum, const struct cost_sum *part)
+void cost_merge(whit_cost *sum, const whit_cost *part)
 {
     sum->rays += part->rays;
     sum->inner_nodes += part->inner_nodes;
@@ -23,9 +23,9 @@ void cost_merge(struct cost_sum *sum, const struct cost_sum *part)
     sum->max_triangles = larger(sum->max_triangles, part->max_triangles);
 }
 
-void cost_add(struct cost_sum *sum, const struct gpu_cost *cost)
+void cost_add(whit_cost *sum, const struct gpu_cost *cost)
 {
-    const struct cost_sum record = {
+    const whit_cost record = {
         .rays = cost->rays,
         .inner_nodes = cost->inner_nodes,
         .leaves = cost->leaves,

@@ -55,7 +55,7 @@ static double epo_sphere_area(const float center[3], float radius, const struct 
         }
         inside += in;
     }
-    return 4.0 * M_PI * r * r * inside / POINTS;
+    return 4.0 * PI * r * r * inside / POINTS;
 }
 
 static double epo_area(const struct gpu_triangle *record, const struct bvh_box *box)

@@ -5,6 +5,7 @@
 #include "base/array.h"
 #include "base/random.h"
 #include "base/threads.h"
+#include "base/vec.h"
 #include "twin/report.h"
 #include "twin/traverse.h"
 
@@ -29,15 +30,15 @@ static double shared_area(const struct gpu_bvh_node *a, const struct gpu_bvh_nod
     return some ? bvh_half_area(&shared) : 0.0;
 }
 
-static void add_leaf(struct accel_report *report, uint32_t count, uint32_t depth)
+static void add_leaf(whit_accel_report *report, uint32_t count, uint32_t depth)
 {
-    uint32_t bin = depth < REPORT_DEPTH_BINS ? depth : REPORT_DEPTH_BINS - 1;
+    uint32_t bin = depth < WHIT_DEPTH_BINS ? depth : WHIT_DEPTH_BINS - 1;
     ++report->leaves_at_depth[bin];
     ++report->leaves_of_size[count];
 }
 
 static void add_nodes(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t depth,
-                      struct tally *tally, struct accel_report *report)
+                      struct tally *tally, whit_accel_report *report)
 {
     const struct gpu_bvh_node *at = &nodes[node], *children = &nodes[at->first];
     uint32_t count = bvh_count(at);
@@ -69,7 +70,7 @@ static struct gpu_ray random_line(const struct bvh_box *box, uint64_t *random)
     double choice = splitmix64_unit(random) * (faces[0] + faces[1] + faces[2]);
     int axis = choice < faces[0] ? 0 : choice < faces[0] + faces[1] ? 1 : 2;
     double up = splitmix64_unit(random) < 0.5 ? 1.0 : -1.0;
-    double square = splitmix64_unit(random), angle = 2.0 * M_PI * splitmix64_unit(random);
+    double square = splitmix64_unit(random), angle = 2.0 * PI * splitmix64_unit(random);
     double dir[3], at[3];
     dir[axis] = up * sqrt(1.0 - square);
     dir[(axis + 1) % 3] = sqrt(square) * cos(angle);
@@ -138,7 +139,7 @@ static void measure_task(void *context, uint32_t index)
 }
 
 static whit_result add_measured(const struct measuring *measuring, uint32_t task_count,
-                                struct accel_report *report)
+                                whit_accel_report *report)
 {
     uint64_t pairs = 0, triangles = 0;
     uint32_t status = 0;
@@ -159,7 +160,7 @@ static whit_result add_measured(const struct measuring *measuring, uint32_t task
 }
 
 static whit_result measure(const struct accel *accel, const double *area_ends, uint32_t mesh_count,
-                           uint32_t ray_count, struct accel_report *report)
+                           uint32_t ray_count, whit_accel_report *report)
 {
     uint32_t task_count = ray_count / RAYS_A_TASK + (ray_count % RAYS_A_TASK != 0);
     struct measuring measuring = {
@@ -189,7 +190,7 @@ struct totals {
 };
 
 static whit_result add_mesh(const struct accel *accel, uint32_t index, struct totals *totals,
-                            struct accel_report *report)
+                            whit_accel_report *report)
 {
     const struct accel_mesh *mesh = &accel->meshes[index];
     struct tally tally = {0};
@@ -209,12 +210,12 @@ static whit_result add_mesh(const struct accel *accel, uint32_t index, struct to
     return WHIT_OK;
 }
 
-whit_result accel_report(const struct accel *accel, uint32_t ray_count, struct accel_report *report)
+whit_result accel_report(const struct accel *accel, uint32_t ray_count, whit_accel_report *report)
 {
     uint32_t mesh_count = accel->flat ? 1 : accel->mesh_count;
     float cost = accel->params.mesh.traversal_cost;
     struct totals totals = {0};
-    *report = (struct accel_report){0};
+    *report = (whit_accel_report){0};
     double *area_ends = array_alloc(mesh_count, sizeof *area_ends);
     if (!area_ends) {
         log_error(&accel->log, "%s: out of memory for a report on its trees", accel->scene->name);

@@ -2,33 +2,17 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/vec.h"
+#include "settings/settings.h"
+
 static const double FOV_DEFAULT = 45.0;
-static const double PI = 3.14159265358979323846;
 static const double STEEPEST = 0.998; /* cosine between a look and up */
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double length(const double a[3])
-{
-    return sqrt(dot(a, a));
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static bool normalize(double a[3])
 {
-    double l = length(a);
+    double l = double3_length(a);
     for (int i = 0; i < 3; ++i)
         a[i] /= l;
     return l > 0.0 && isfinite(l);
@@ -37,8 +21,8 @@ static bool normalize(double a[3])
 /* Around a unit axis (Rodrigues' formula). */
 static void rotate(double v[3], const double axis[3], double angle)
 {
-    double c = cos(angle), s = sin(angle), along = dot(axis, v), side[3];
-    cross(axis, v, side);
+    double c = cos(angle), s = sin(angle), along = double3_dot(axis, v), side[3];
+    double3_cross(axis, v, side);
     for (int i = 0; i < 3; ++i)
         v[i] = v[i] * c + side[i] * s + axis[i] * along * (1.0 - c);
 }
@@ -53,16 +37,16 @@ static struct frame frame_of(const struct view_camera *camera)
     struct frame f;
     for (int i = 0; i < 3; ++i)
         f.forward[i] = camera->target[i] - camera->eye[i];
-    f.distance = length(f.forward);
+    f.distance = double3_length(f.forward);
     normalize(f.forward);
-    cross(f.forward, camera->up, f.right);
+    double3_cross(f.forward, camera->up, f.right);
     if (!normalize(f.right)) {
         double other[3] = {0.0, 0.0, 0.0};
         other[fabs(f.forward[0]) < 0.5 ? 0 : 2] = 1.0;
-        cross(f.forward, other, f.right);
+        double3_cross(f.forward, other, f.right);
         normalize(f.right);
     }
-    cross(f.right, f.forward, f.up);
+    double3_cross(f.right, f.forward, f.up);
     return f;
 }
 
@@ -73,13 +57,14 @@ static void turn(const struct view_camera *camera, double look[3], double right,
     memcpy(axis, camera->up, sizeof axis);
     normalize(axis);
     rotate(look, axis, -right);
-    cross(look, axis, side);
+    double3_cross(look, axis, side);
     if (!normalize(side))
         return;
     memcpy(tilted, look, sizeof tilted);
     rotate(tilted, side, up);
-    double steep = dot(tilted, axis) / length(tilted);
-    if (fabs(steep) < STEEPEST || fabs(steep) < fabs(dot(look, axis) / length(look)))
+    double steep = double3_dot(tilted, axis) / double3_length(tilted);
+    if (fabs(steep) < STEEPEST ||
+        fabs(steep) < fabs(double3_dot(look, axis) / double3_length(look)))
         memcpy(look, tilted, sizeof tilted);
 }
 
@@ -184,22 +169,18 @@ void camera_to_text(const struct view_camera *camera, char *text, size_t text_by
 
 bool camera_from_text(const char *text, struct view_camera *camera)
 {
-    double n[10];
-    for (int i = 0; i < 10; ++i) {
-        char *end;
-        n[i] = strtod(text, &end);
-        if (end == text || *end != (i < 9 ? ',' : '\0') || !isfinite(n[i]))
-            return false;
-        text = end + 1;
-    }
-    memcpy(camera->eye, n, sizeof camera->eye);
-    memcpy(camera->target, n + 3, sizeof camera->target);
-    memcpy(camera->up, n + 6, sizeof camera->up);
-    camera->fov_y_degrees = n[9];
-    double side[3];
-    const double look[3] = {n[3] - n[0], n[4] - n[1], n[5] - n[2]};
-    cross(look, camera->up, side);
-    return length(side) > 0.0 && n[9] > 0.0 && n[9] < 180.0;
+    const whit_camera read = camera_of_text(text);
+    if (!read.own)
+        return false;
+    memcpy(camera->eye, read.eye, sizeof camera->eye);
+    memcpy(camera->target, read.target, sizeof camera->target);
+    memcpy(camera->up, read.up, sizeof camera->up);
+    camera->fov_y_degrees = read.fov_y_degrees;
+    double side[3], look[3];
+    for (int i = 0; i < 3; ++i)
+        look[i] = read.target[i] - read.eye[i];
+    double3_cross(look, camera->up, side);
+    return double3_length(side) > 0.0 && read.fov_y_degrees > 0.0 && read.fov_y_degrees < 180.0;
 }
 
 bool camera_project(const struct view_camera *camera, const double a[3], const double b[3],
@@ -213,9 +194,9 @@ bool camera_project(const struct view_camera *camera, const double a[3], const d
         double d[3];
         for (int i = 0; i < 3; ++i)
             d[i] = (e ? b : a)[i] - camera->eye[i];
-        ends[e][0] = dot(d, f.right);
-        ends[e][1] = dot(d, f.up);
-        ends[e][2] = dot(d, f.forward);
+        ends[e][0] = double3_dot(d, f.right);
+        ends[e][1] = double3_dot(d, f.up);
+        ends[e][2] = double3_dot(d, f.forward);
     }
     if (ends[0][2] < near && ends[1][2] < near)
         return false;

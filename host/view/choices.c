@@ -136,7 +136,7 @@ uint32_t choice_changes(const struct settings *a, const struct settings *b,
         if (!is_told(row) || setting_same(row, a, b) || count == CHOICE_CHANGES_MAX)
             continue;
         change->name = row->title ? row->title : row->name;
-        change->painted = row->change == SETTING_PLACE;
+        change->painted = row->change == SETTING_PAINT;
         choice_say(a, row, change->a, CHOICE_WORDS);
         choice_say(b, row, change->b, CHOICE_WORDS);
         ++count;

@@ -177,7 +177,9 @@ static void switch_effects(struct view *view)
 
 static void say_effects(const struct view *view, char *text, size_t bytes)
 {
-    snprintf(text, bytes, "%.40s", view->settings.effects[0] ? view->settings.effects : "auto");
+    char effects[SETTING_VALUE_BYTES];
+    effects_write(&view->settings.picture, effects);
+    snprintf(text, bytes, "%.40s", effects);
 }
 
 /* ---- Cameras ---- */

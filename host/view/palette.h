@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 enum { PALETTE_COLORS = 256 };
 /* 0xAABBGGRR, from 0 to the scale; [PALETTE_COLORS]: of what is not a number. */

@@ -188,11 +188,7 @@ void panels_switch_effects(struct view *view)
 
 static void switch_effect(struct view *view, uint32_t index, bool called, bool on)
 {
-    struct settings *settings = &view->settings;
-    if (!effect_switch_text(settings->effects, index, called, on, settings->effects)) {
-        view_say(view, "too many effects are switched");
-        return;
-    }
+    effects_set(&view->settings.picture, index, called, on);
     bool together = view->panels.pending && view->status.drawing;
     view->panels.pending = together ? -1 : (int)index + 1;
 }
@@ -265,7 +261,9 @@ static void draw_effects(struct view *view)
     if (view->frame.number == 0)
         return;
     if (ui_panel_begin("Effects", 0.0f, 0.0f, UI_PANEL_HOLD)) {
-        ui_text("--effects %s", view->settings.effects[0] ? view->settings.effects : "auto");
+        char effects[SETTING_VALUE_BYTES];
+        effects_write(&view->settings.picture, effects);
+        ui_text("--effects %s", effects);
         int columns = say_reasons() ? 3 : 2;
         if (ui_table_begin("effects", columns)) {
             ui_table_header(titles, columns);

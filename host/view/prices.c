@@ -8,7 +8,7 @@
 #include "base/platform.h"
 #include "base/threads.h"
 
-enum { REFERENCE_SAMPLES = 16 };
+enum { REFERENCE_SAMPLES = 16, EFFECT_PIXELS_MAX = 128 * 96, EFFECT_ROUNDS = 9 };
 
 struct prices {
     pthread_mutex_t lock;
@@ -70,34 +70,65 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
     return cost_measure(&request, report);
 }
 
-static void note_effect(void *user, uint32_t effect, const struct effect_price *price)
+static void note_effect(void *user, uint32_t index, const struct cost_effect *effect)
 {
     struct prices *prices = user;
+    if (!effect->priced || index >= EFFECTS_MAX)
+        return;
     pthread_mutex_lock(&prices->lock);
-    prices->effects[effect] = *price;
+    prices->effects[index] =
+        (struct effect_price){.known = true,
+                              .before_ms = effect->price.usual_ms[effect->clock].median,
+                              .after_ms = effect->price.setting_ms[effect->clock].median,
+                              .other_colors = effect->error.differing_pixels,
+                              .pixels = effect->error.pixel_count};
     pthread_mutex_unlock(&prices->lock);
 }
 
-static void tell_effect(void *user, double done, const char *what)
+static whit_result begin_effect(void *user, double done, const char *name)
 {
-    tell(user, done, 0.0, what);
+    struct prices *prices = user;
+    tell(user, done, 0.0, name);
+    return prices->cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
+/* The settings' picture, as much smaller as its time wants it. */
+static whit_renderer_params small_picture(const struct prices *prices)
+{
+    whit_renderer_params params = settings_picture(&prices->settings);
+    uint32_t width = params.width, height = params.height;
+    for (uint32_t by = 2; (uint64_t)params.width * params.height > EFFECT_PIXELS_MAX; ++by) {
+        params.width = (width + by - 1) / by;
+        params.height = (height + by - 1) / by;
+    }
+    params.samples = 1;
+    params.adaptive = 0.0;
+    params.count = false;
+    params.cancel = &prices->cancel;
+    return params;
+}
+
+/* Of those that are in the kernel: the others change nothing. */
 static whit_result measure_effects(struct prices *prices, const whit_log *log, whit_device *device,
                                    whit_accel *accel)
 {
-    const struct effect_work work = {
-        .settings = &prices->settings,
-        .scene = prices->scene->scene,
-        .device = device,
-        .accel = accel,
-        .cancel = &prices->cancel,
-        .log = log,
-        .found = note_effect,
-        .say = tell_effect,
-        .user = prices,
-    };
-    return effect_prices_measure(&work);
+    const whit_renderer_params params = small_picture(prices);
+    struct cost_effects effects = {.scene = prices->scene->scene,
+                                   .device = device,
+                                   .accel = accel,
+                                   .params = &params,
+                                   .rounds = EFFECT_ROUNDS,
+                                   .log = log,
+                                   .begin = begin_effect,
+                                   .found = note_effect,
+                                   .user = prices};
+    whit_result result = whit_renderer_create(device, accel, &params, &effects.usual);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(effects.usual);
+    if (result == WHIT_OK)
+        result = cost_effects_measure(&effects);
+    whit_renderer_destroy(effects.usual);
+    return result;
 }
 
 static void run(void *context)

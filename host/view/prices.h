@@ -4,10 +4,17 @@
 #define VIEW_PRICES_H
 
 #include "cost/cost.h"
-#include "view/effect_prices.h"
 #include "view/session.h"
 
 struct prices;
+
+enum { EFFECTS_MAX = 64 };
+/* What switching one effect changes: the pictures before and after it. */
+struct effect_price {
+    bool known, added;
+    double before_ms, after_ms;
+    uint64_t other_colors, pixels;
+};
 
 struct prices_params {
     const struct settings *settings;

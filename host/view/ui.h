@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/whit_base.h"
+#include "whit/whit_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -9,7 +9,7 @@ quietly() {
 }
 check "it installs" quietly "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix"
 cd "$OUT/prefix" || exit 1
-for file in bin/whit $(cd "$SOURCE/host" && ls api/whit*.h base/whit_base.h | sed 's,.*/,include/whit/,') \
+for file in bin/whit $(cd "$SOURCE/host" && ls whit/*.h | sed 's,^,include/,') \
     share/doc/whit/LICENSE share/doc/whit/CHANGELOG.md share/doc/whit/docs/cli.md; do
     check "$file is installed" test -s "$file"
 done

@@ -62,7 +62,7 @@ static bool by_medians(const struct accel *accel)
 
 whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
 {
-    const struct render_params *params = &renderer->renderer->params;
+    const whit_renderer_params *params = &renderer->renderer->params;
     bool slow = (is_wrong("slow") && params->depth >= 16) ||
                 (is_wrong("triangle") && by_medians(renderer->accel));
     double samples = (double)params->width * params->height * params->samples;

@@ -86,8 +86,8 @@ static bool trace(const struct bench *bench, struct accel *accel, uint32_t order
                   struct answer *out)
 {
     uint32_t size = bench->options->size ? bench->options->size : 8;
-    const struct render_params params = {
-        .width = size, .height = (size * 3 + 3) / 4, .depth = 5, .order = order};
+    const whit_renderer_params params = {
+        .width = size, .height = (size * 3 + 3) / 4, .depth = 5, .traversal = order};
     struct renderer *renderer = NULL;
     uint64_t n = bench->options->rays;
     image_finish(&out->color);

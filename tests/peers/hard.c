@@ -43,7 +43,7 @@ struct bench {
     uint64_t differing[EXACT + 1]; /* hits of the device and of the twin */
     uint64_t count;                /* rays in memory */
     const struct embree *asked;
-    struct hard_tally tallies[TRACERS];
+    whit_tally tallies[TRACERS];
 };
 
 static void embree_chunk(void *user, uint32_t chunk)
@@ -63,7 +63,7 @@ static uint32_t chunks_of(uint64_t count)
 /* Embree's ids are those of geometries, which are instances, and of triangles. */
 static void count_embree(struct bench *bench, int tracer)
 {
-    struct hard_tally *tally = &bench->tallies[tracer];
+    whit_tally *tally = &bench->tallies[tracer];
     bench->asked = bench->embree[tracer - EMBREE];
     threads_for(THREADS, chunks_of(bench->count), embree_chunk, bench);
     for (uint64_t i = 0; i < bench->count; ++i) {
@@ -84,7 +84,7 @@ static bool count_level(struct bench *bench, int tracer)
                                              .hits = bench->hits,
                                              .numerics = levels[tracer],
                                              .count = bench->count};
-    struct hard_tally *sum = &bench->tallies[tracer], tally;
+    whit_tally *sum = &bench->tallies[tracer], tally;
     for (uint64_t i = 0; i < bench->count; ++i)
         bench->device_rays[i] = bench->rays[i].ray;
     if (renderer_trace(bench->renderers[tracer], bench->device_rays, bench->count, false,
@@ -129,7 +129,7 @@ static int print_rows(const struct bench *bench, double offset)
 {
     int failed = 0;
     for (int tracer = FAST; tracer < TRACERS; ++tracer) {
-        const struct hard_tally *t = &bench->tallies[tracer];
+        const whit_tally *t = &bench->tallies[tracer];
         char wrong[24] = "-", differing[24] = "-";
         if (t->rays == 0) {
             printf("%-8g%-16s%12s\n", offset, names[tracer], "not installed");
@@ -163,7 +163,7 @@ static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t 
     for (int i = 0; i < 2; ++i)
         bench->embree[i] = embree_create(bench->hard.scene, &bench->hard.pose, i == 1);
     for (int tracer = FAST; tracer <= EXACT && !failed; ++tracer) {
-        const struct render_params params = {
+        const whit_renderer_params params = {
             .width = 16, .height = 16, .numerics = levels[tracer], .trace_rays = PIECE};
         failed = renderer_create(&errors, bench->device, bench->hard.accel, &params,
                                  &bench->renderers[tracer]) != WHIT_OK;

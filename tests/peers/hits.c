@@ -293,7 +293,7 @@ struct bench {
 static bool bench_open(struct bench *bench, const struct options *options)
 {
     const struct device_params device_params = {.selector = options->device};
-    const struct render_params render_params = {.width = 16, .height = 16};
+    const whit_renderer_params render_params = {.width = 16, .height = 16};
     bool ready = load_scene(&peers_log, options->path, NULL, &bench->scene) == WHIT_OK;
     if (ready && bench->scene->sphere_total > 0) {
         fprintf(stderr, "%s: spheres are not held against Embree's\n", options->path);

@@ -235,11 +235,20 @@ static void check_rays(const struct subject *subject, const char *effect, uint64
     check(all == 0 || is_called(subject->scene, effect), what);
 }
 
+static uint64_t effect_bit(const char *name)
+{
+    uint32_t index = 0;
+    while (strcmp(whit_effect_name(index), name) != 0)
+        ++index;
+    return UINT64_C(1) << index;
+}
+
 static void check_all_effects(const struct subject *subject, const struct drawn *first,
-                              whit_renderer_params params, const char *effects)
+                              whit_renderer_params params, uint64_t removed)
 {
     struct drawn other;
-    params.effects = effects;
+    params.all_effects = true;
+    params.effects_removed = removed;
     stack_floor = STACK_OF_ALL;
     if (draw(subject, &params, &other)) {
         const whit_stats *own = &first->stats, *all = &other.stats;
@@ -261,9 +270,11 @@ static void check_all_effects(const struct subject *subject, const struct drawn 
 
 static void check_storage(const struct subject *subject, const struct drawn *first, bool full)
 {
-    const char *effects = full ? "auto" : "auto,-shadows,-reflection,-refraction";
-    const whit_renderer_params texel = {.load_path = WHIT_LOAD_TEXEL, .effects = effects},
-                               storage = {.load_path = WHIT_LOAD_STORAGE, .effects = effects};
+    uint64_t removed =
+        full ? 0 : effect_bit("shadows") | effect_bit("reflection") | effect_bit("refraction");
+    const whit_renderer_params texel = {.load_path = WHIT_LOAD_TEXEL, .effects_removed = removed},
+                               storage = {.load_path = WHIT_LOAD_STORAGE,
+                                          .effects_removed = removed};
     struct drawn small;
     if (full)
         check_same(subject, first, &storage, "--load-path storage");
@@ -331,7 +342,7 @@ static void check_usual(const struct subject *subject, const char *what)
             check_threads(subject, &first);
             check_ways(subject, &first);
             check_storage(subject, &first, strcmp(what, "full") == 0);
-            check_all_effects(subject, &first, usual, "all");
+            check_all_effects(subject, &first, usual, 0);
         }
     }
     drawn_finish(&first);
@@ -339,12 +350,12 @@ static void check_usual(const struct subject *subject, const char *what)
 
 static void check_level(const struct subject *subject, whit_numerics level, bool refraction)
 {
-    const whit_renderer_params params = {.packets = WHIT_PACKETS_ON,
-                                         .numerics = level,
-                                         .effects = refraction ? "auto" : "auto,-refraction"};
+    uint64_t removed = refraction ? 0 : effect_bit("refraction");
+    const whit_renderer_params params = {
+        .packets = WHIT_PACKETS_ON, .numerics = level, .effects_removed = removed};
     struct drawn first;
     if (draw(subject, &params, &first))
-        check_all_effects(subject, &first, params, refraction ? "all" : "all,-refraction");
+        check_all_effects(subject, &first, params, removed);
     drawn_finish(&first);
 }
 

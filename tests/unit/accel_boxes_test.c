@@ -4,11 +4,11 @@
 #include "accel/boxes.h"
 
 struct seen {
-    struct accel_box boxes[4096];
+    whit_box boxes[4096];
     uint32_t count, max;
 };
 
-static bool keep_box(void *user, const struct accel_box *box)
+static bool keep_box(void *user, const whit_box *box)
 {
     struct seen *seen = user;
     assert_in_range(seen->count, 0, 4095);
@@ -51,7 +51,7 @@ static void check_covered(const struct world *w, const struct seen *seen, uint32
             p[k] = (double)mesh->positions[3 * v + (uint32_t)k];
         affine_point(&w->pose.instances[instance], p, p);
         for (uint32_t b = 0; b < seen->count && !inside; ++b) {
-            const struct accel_box *box = &seen->boxes[b];
+            const whit_box *box = &seen->boxes[b];
             inside = box->instance == instance || box->instance == HIT_NONE;
             for (int k = 0; k < 3 && inside; ++k) {
                 double along = 0.0, length = 0.0;
@@ -75,7 +75,7 @@ static void mesh_trees_level_by_level(void **state)
     for (uint32_t level = 0; level < 6; ++level) {
         const struct seen *seen = see(&w, false, level, UINT32_MAX);
         for (uint32_t i = 0; i < seen->count; ++i) {
-            const struct accel_box *box = &seen->boxes[i];
+            const whit_box *box = &seen->boxes[i];
             assert_true(box->level == level || (box->leaf && box->level < level));
         }
         for (uint32_t i = 0; i < 5; ++i)

@@ -42,7 +42,7 @@ static void shots_free(struct shots *shots)
     free(shots);
 }
 
-static struct hard_tally shots_judge(const struct shots *shots, uint32_t numerics)
+static whit_tally shots_judge(const struct shots *shots, uint32_t numerics)
 {
     const struct hard_judgement judgement = {.hard = &shots->hard,
                                              .topology = &shots->topology,
@@ -51,13 +51,13 @@ static struct hard_tally shots_judge(const struct shots *shots, uint32_t numeric
                                              .hits = shots->hits,
                                              .numerics = numerics,
                                              .count = RAYS};
-    struct hard_tally tally;
+    whit_tally tally;
     assert_int_equal(hard_judge(&judgement, THREADS, &tally), WHIT_OK);
     assert_int_equal(tally.rays, RAYS);
     return tally;
 }
 
-static struct hard_tally shots_trace(struct shots *shots, uint32_t numerics)
+static whit_tally shots_trace(struct shots *shots, uint32_t numerics)
 {
     assert_int_equal(
         hard_trace_twin(&shots->hard, numerics, shots->rays, RAYS, THREADS, shots->hits), WHIT_OK);
@@ -104,7 +104,7 @@ static void cases_are_what_they_say(void **state)
         hash = hard_hash(hash, shots->exact, RAYS);
         check_case(&cases[i], shots);
         for (uint32_t numerics = 0; numerics < 3; ++numerics) {
-            struct hard_tally tally = shots_trace(shots, numerics);
+            whit_tally tally = shots_trace(shots, numerics);
             leaks[numerics] += cases[i].not_promised ? 0 : tally.leaks;
             wrong[numerics] += tally.wrong;
             assert_true(hard_promise_kept(numerics, !cases[i].not_promised, &tally));
@@ -129,12 +129,12 @@ static void the_judge_sees(void **state)
     (void)state;
     struct shots *shots = shots_make(&sphere, 1);
     for (uint32_t numerics = 0; numerics < 3; numerics += NUMERICS_EXACT) {
-        struct hard_tally before = shots_trace(shots, numerics);
+        whit_tally before = shots_trace(shots, numerics);
         assert_true(hard_promise_kept(numerics, true, &before));
         assert_int_equal(before.leaks, 0);
         struct gpu_hit kept = shots->hits[7];
         shots->hits[7] = miss;
-        struct hard_tally after = shots_judge(shots, numerics);
+        whit_tally after = shots_judge(shots, numerics);
         assert_int_equal(after.misses, 1);
         assert_int_equal(after.leaks, 1);
         assert_false(hard_promise_kept(numerics, true, &after));
@@ -189,7 +189,7 @@ static void rays_in_a_plane_are_no_leaks(void **state)
         *exact = own ? *exact : (struct rational_hit){INFINITY, HIT_NONE, HIT_NONE, 0};
         shots->hits[i] = miss;
     }
-    struct hard_tally tally = shots_judge(shots, NUMERICS_WATERTIGHT);
+    whit_tally tally = shots_judge(shots, NUMERICS_WATERTIGHT);
     print_message("  %u rays go through the triangle that they start on; leaks %u\n", far,
                   (uint32_t)tally.leaks);
     assert_true(far > 10);
@@ -209,7 +209,7 @@ static void self_hits_are_seen(void **state)
         shots->hits[i] = miss;
     assert_int_equal(shots_judge(shots, NUMERICS_EXACT).self_hits, 0);
     shots->hits[5] = (struct gpu_hit){.t = 1.0f, .primitive = 2, .instance = 0};
-    struct hard_tally tally = shots_judge(shots, NUMERICS_EXACT);
+    whit_tally tally = shots_judge(shots, NUMERICS_EXACT);
     assert_int_equal(tally.self_hits, 1);
     assert_int_equal(tally.false_hits, 1);
     assert_false(hard_promise_kept(NUMERICS_EXACT, true, &tally));

@@ -5,9 +5,9 @@
 
 #define assert_near(value, expected, by) assert_true(fabs((value) - (expected)) <= (by))
 
-static struct accel_report report_of(const struct world *world, uint32_t rays)
+static whit_accel_report report_of(const struct world *world, uint32_t rays)
 {
-    struct accel_report report;
+    whit_accel_report report;
     memset(&report, 0, sizeof report);
     assert_int_equal(accel_report(world->accel, rays, &report), WHIT_OK);
     return report;
@@ -159,7 +159,7 @@ static void overlap_by_hand(void **state)
     assert_int_equal(accel_mesh_epo(world.accel, 0, &epo), WHIT_OK);
     assert_near(epo.surface, 4.0, 1e-12);
     assert_near(epo.overlap, 1.0, 1e-12);
-    struct accel_report report = report_of(&world, 0);
+    whit_accel_report report = report_of(&world, 0);
     assert_near(report.epo, 0.25, 1e-12);
     /* Half areas: of the root 3 x 2, of the children 2 x 2 each, of what they share 1 x 2. */
     assert_near(report.overlap, 2.0 / 6.0, 1e-12);
@@ -180,13 +180,13 @@ static void report_agrees_with_the_tree(void **state)
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
         struct world world = world_of_soup(soup_sphere(60, 60), builds[i]);
         const struct accel *accel = world.accel;
-        struct accel_report report = report_of(&world, 0);
+        whit_accel_report report = report_of(&world, 0);
         uint64_t leaves = 0, triangles = 0, deepest = 0, at_depth = 0;
-        for (uint32_t k = 0; k < REPORT_LEAF_BINS; ++k) {
+        for (uint32_t k = 0; k < WHIT_LEAF_BINS; ++k) {
             leaves += report.leaves_of_size[k];
             triangles += k * report.leaves_of_size[k];
         }
-        for (uint32_t k = 0; k < REPORT_DEPTH_BINS; ++k) {
+        for (uint32_t k = 0; k < WHIT_DEPTH_BINS; ++k) {
             at_depth += report.leaves_at_depth[k];
             deepest = report.leaves_at_depth[k] ? k : deepest;
         }
@@ -202,7 +202,7 @@ static void report_agrees_with_the_tree(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    struct accel_report reports[2];
+    whit_accel_report reports[2];
     for (uint32_t i = 0; i < 2; ++i) {
         struct world world =
             world_of_soup(soup_crossing(3000, 3), (struct bvh_params){.thread_count = i ? 5 : 1});
@@ -238,7 +238,7 @@ static void nothing_hit_is_visited_as_predicted(void **state)
     (void)state;
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
         struct world world = world_of_soup(soup_apart(12, 0.6), builds[i]);
-        struct accel_report report = report_of(&world, 40000);
+        whit_accel_report report = report_of(&world, 40000);
         assert_int_equal(world.scene->triangle_total, 12 * 12 * 12);
         assert_int_equal(report.measured_rays, 40000);
         assert_near(report.measured_inner_nodes / report.predicted_inner_nodes, 1.0, 0.02);
@@ -252,7 +252,7 @@ static void hits_save_visits(void **state)
 {
     (void)state;
     struct world world = world_of_soup(soup_sphere(80, 80), builds[0]);
-    struct accel_report report = report_of(&world, 20000);
+    whit_accel_report report = report_of(&world, 20000);
     assert_true(report.measured_inner_nodes < 0.9 * report.predicted_inner_nodes);
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
     world_finish(&world);
@@ -276,7 +276,7 @@ static void meshes_are_weighed_by_area(void **state)
     }
     struct world world = world_of(scene, (struct accel_params){.mesh = builds[0]});
     const struct accel *accel = world.accel;
-    struct accel_report report = report_of(&world, 20000);
+    whit_accel_report report = report_of(&world, 20000);
     assert_true(accel->mesh_count >= 3); /* the one without triangles may be gone */
     uint64_t leaves = 0;
     double area = 0.0, cost = 0.0;
@@ -290,7 +290,7 @@ static void meshes_are_weighed_by_area(void **state)
         area += weight;
         cost += weight * m->sah_cost;
     }
-    for (uint32_t i = 0; i < REPORT_DEPTH_BINS; ++i)
+    for (uint32_t i = 0; i < WHIT_DEPTH_BINS; ++i)
         leaves -= report.leaves_at_depth[i];
     assert_int_equal(leaves, 0);
     assert_near(report.sah_cost, cost / area, 1e-5 * cost / area);
@@ -303,7 +303,7 @@ static void nothing_has_a_report(void **state)
 {
     (void)state;
     struct world world = world_of_soup(soup_make("nothing", 0), builds[0]);
-    struct accel_report report;
+    whit_accel_report report;
     memset(&report, 1, sizeof report);
     assert_int_equal(accel_report(world.accel, 20000, &report), WHIT_OK);
     assert_near(report.sah_cost, 0.0, 0.0);

@@ -46,7 +46,7 @@ static void draws_pictures_and_ray_trees(void **state)
     whit_renderer_params params = whit_renderer_defaults();
     params.width = WIDTH;
     params.height = HEIGHT;
-    params.effects = "all";
+    params.all_effects = true;
     params.progress = note_progress;
     params.progress_user = &last;
     whit_reference *reference = NULL;
@@ -55,17 +55,17 @@ static void draws_pictures_and_ray_trees(void **state)
     assert_int_equal(whit_reference_render(reference, &color, &ids), WHIT_OK);
     assert_true(last == 1.0);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
-        whit_tree_ray *rays = NULL;
+        whit_probe_ray *rays = NULL;
         uint32_t count = 0;
         double sum = 0.0;
         assert_int_equal(whit_reference_rays(reference, i % WIDTH, i / WIDTH, 0, &rays, &count),
                          WHIT_OK);
         assert_true(count > 0);
         for (uint32_t k = 0; k < count; ++k)
-            sum += rays[k].radiance[1];
+            sum += rays[k].kind == WHIT_RAY_SHADOW ? 0.0 : (double)rays[k].added[1];
         assert_true(fabs(sum - (double)whit_image_floats(color)[4 * i + 1]) <= 1e-6 * sum);
-        assert_int_equal(rays[0].instance, whit_image_words(ids)[2 * i]);
-        assert_int_equal(rays[0].primitive, whit_image_words(ids)[2 * i + 1]);
+        assert_int_equal(rays[0].device.instance, whit_image_words(ids)[2 * i]);
+        assert_int_equal(rays[0].device.primitive, whit_image_words(ids)[2 * i + 1]);
         whit_memory_destroy(rays);
     }
     whit_image_destroy(color);
@@ -79,7 +79,7 @@ static void refuses_what_it_cannot_draw(void **state)
     (void)state;
     struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
     const whit_renderer_params refused[] = {
-        {.adaptive = 0.1}, {.effects = "-shadows"}, {.effects = "nonsense"}, {.camera = "nobody"}};
+        {.adaptive = 0.1}, {.effects_removed = 1}, {.camera = {.name = "nobody"}}};
     whit_reference *reference = NULL;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
         assert_int_equal(whit_reference_create(o.accel, &refused[i], 0, &reference),

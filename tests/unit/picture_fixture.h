@@ -105,7 +105,7 @@ static inline void use_texture(struct scene_material *m, enum scene_slot slot, u
 
 /* ---- Pixels ---- */
 
-static const struct render_params picture_params = {.width = 33, .height = 33, .depth = 8};
+static const whit_renderer_params picture_params = {.width = 33, .height = 33, .depth = 8};
 
 static inline const float *middle(const struct image *image)
 {

@@ -91,10 +91,10 @@ struct unlike {
 
 static inline struct unlike trace_beside_twin(const struct fixture *f, bool any,
                                               const struct gpu_ray *rays, uint32_t count,
-                                              struct gpu_hit *hits, struct cost_sum *sum)
+                                              struct gpu_hit *hits, whit_cost *sum)
 {
-    const struct render_params *params = &f->renderer->params;
-    const struct traverse_params twin = {.order = params->order,
+    const whit_renderer_params *params = &f->renderer->params;
+    const struct traverse_params twin = {.order = (uint32_t)params->traversal,
                                          .numerics = params->numerics,
                                          .any = any,
                                          .skip_instance = HIT_NONE,

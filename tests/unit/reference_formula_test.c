@@ -21,7 +21,7 @@ static struct drawn open_with(struct scene *scene, const struct accel_params *tr
     return d;
 }
 
-static struct drawn open_reference(struct scene *scene, const struct render_params *picture)
+static struct drawn open_reference(struct scene *scene, const whit_renderer_params *picture)
 {
     const struct reference_params params = {.picture = *picture};
     return open_with(scene, NULL, &params);
@@ -41,7 +41,7 @@ static struct image draw(const struct drawn *d)
     return image;
 }
 
-static const struct render_params one_pixel = {.width = 1, .height = 1, .depth = 8};
+static const whit_renderer_params one_pixel = {.width = 1, .height = 1, .depth = 8};
 
 static const struct reference_ray *find_ray(const struct rays *rays, enum reference_kind kind,
                                             uint32_t parent)
@@ -77,7 +77,7 @@ static double facing_angle(const struct reference_ray *ray)
 
 static void check_glass(double angle, double ior, bool schlick)
 {
-    struct render_params params = one_pixel;
+    whit_renderer_params params = one_pixel;
     params.schlick = schlick;
     struct drawn d = open_reference(facing_scene(angle, clear_glass((float)ior, 0)), &params);
     struct rays rays = reference_rays(d.reference, 0, 0, 0);
@@ -172,8 +172,7 @@ static void check_furnace(const struct drawn *d, uint32_t x, uint32_t y)
     struct rays rays = reference_rays(d->reference, x, y, 0);
     double sum = 0.0;
     for (uint32_t i = 0; i < rays.count; ++i) {
-        bool cut =
-            rays.all[i].end == REFERENCE_END_DEPTH || rays.all[i].end == REFERENCE_END_BAILOUT;
+        bool cut = rays.all[i].end == WHIT_PROBE_DEPTH || rays.all[i].end == WHIT_PROBE_BAILOUT;
         sum += rays.all[i].radiance[0] + (cut ? rays.all[i].weight[0] : 0.0);
     }
     assert_close(sum, 1.0, 1e-11);
@@ -191,7 +190,7 @@ static void nothing_is_lost_in_a_furnace(void **state)
     struct scene_material sheet = clear_glass(1.5f, 0);
     sheet.thin_walled = true;
     add_object(scene, mesh_box(5, 1, 0.1), sheet, 0, 1, 2);
-    const struct render_params params = {.width = 24, .height = 24, .depth = 20, .bailout = 1e-4};
+    const whit_renderer_params params = {.width = 24, .height = 24, .depth = 20, .bailout = 1e-4};
     struct drawn d = open_reference(scene, &params);
     for (uint32_t i = 0; i < 24 * 24; ++i)
         check_furnace(&d, i % 24, i / 24);
@@ -309,7 +308,7 @@ static struct scene *crowded_scene(void)
 static void threads_draw_the_same_bytes(void **state)
 {
     (void)state;
-    const struct render_params picture = {.width = 37, .height = 41, .depth = 6, .samples = 4};
+    const whit_renderer_params picture = {.width = 37, .height = 41, .depth = 6, .samples = 4};
     struct drawn d = open_reference(crowded_scene(), &picture);
     struct image first = draw(&d);
     for (uint32_t threads = 1; threads < 4; ++threads) {
@@ -330,8 +329,8 @@ static void check_tree(const struct reference_ray *rays, uint32_t count, double 
                          rays[i].dir[2] * rays[i].dir[2],
                      1.0, 1e-12);
         assert_int_equal(rays[i].light != REFERENCE_NONE, rays[i].kind == REFERENCE_SHADOW);
-        bool met = rays[i].end == REFERENCE_END_SURFACE || rays[i].end == REFERENCE_END_OPAQUE ||
-                   rays[i].end == REFERENCE_END_BLOCKED || rays[i].end == REFERENCE_END_UNSEEN;
+        bool met = rays[i].end == WHIT_PROBE_DIVIDED || rays[i].end == WHIT_PROBE_OPAQUE ||
+                   rays[i].end == WHIT_PROBE_BLOCKED;
         assert_int_equal(rays[i].instance != REFERENCE_NONE, met);
         assert_int_equal(rays[i].material != REFERENCE_NONE, met);
         for (int c = 0; c < 3; ++c)
@@ -342,7 +341,7 @@ static void check_tree(const struct reference_ray *rays, uint32_t count, double 
 static void ray_trees_add_up_to_pixels(void **state)
 {
     (void)state;
-    const struct render_params picture = {.width = 16, .height = 16, .depth = 5};
+    const whit_renderer_params picture = {.width = 16, .height = 16, .depth = 5};
     struct drawn d = open_reference(crowded_scene(), &picture);
     struct image image = draw(&d);
     uint32_t kinds = 0, ends = 0;
@@ -359,10 +358,10 @@ static void ray_trees_add_up_to_pixels(void **state)
         free(rays.all);
     }
     assert_int_equal(kinds, 15);
-    assert_int_equal(ends & (1u << REFERENCE_END_MISS | 1u << REFERENCE_END_SURFACE |
-                             1u << REFERENCE_END_OPAQUE | 1u << REFERENCE_END_LIGHT |
-                             1u << REFERENCE_END_BLOCKED | 1u << REFERENCE_END_DEPTH |
-                             1u << REFERENCE_END_BAILOUT),
+    assert_int_equal(ends & (1u << WHIT_PROBE_MISSED | 1u << WHIT_PROBE_DIVIDED |
+                             1u << WHIT_PROBE_OPAQUE | 1u << WHIT_PROBE_REACHED |
+                             1u << WHIT_PROBE_BLOCKED | 1u << WHIT_PROBE_DEPTH |
+                             1u << WHIT_PROBE_BAILOUT),
                      ends);
     image_finish(&image);
     close_reference(&d);
@@ -386,13 +385,13 @@ static void cameras_are_those_of_kernels(void **state)
         scene->cameras[0].height = 5.0f;
         scene->cameras[0].lens_radius = cameras[i].lens;
         add_object(scene, mesh_plane(10), material_plain("floor"), 0, 0, 0);
-        const struct render_params picture = {.width = 13, .height = 9, .depth = 8, .samples = 4};
+        const whit_renderer_params picture = {.width = 13, .height = 9, .depth = 8, .samples = 4};
         struct drawn d = open_reference(scene, &picture);
         struct gpu_frame frame;
         struct scene_pose pose;
         uint32_t kind;
         assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
-        assert_int_equal(media_view(&fixture_log, d.accel, &pose, NULL, 13, 9, &frame, &kind),
+        assert_int_equal(media_view(&fixture_log, d.accel, &pose, &(whit_camera){.name = NULL}, 13, 9, &frame, &kind),
                          WHIT_OK);
         for (uint32_t k = 0; k < 13 * 9 * 4; ++k) {
             struct gpu_chunk chunk = {0};
@@ -446,7 +445,7 @@ static void emitters_do_not_light_themselves(void **state)
     (void)state;
     const struct accel_params flat = {.flatten = true};
     const struct reference_params params = {
-        .picture = {.width = 9, .height = 9, .no_shadows = true}};
+        .picture = {.width = 9, .height = 9, .shadows = WHIT_SHADOWS_NONE}};
     const double heights[] = {1.99, 0.7, -3.3, 1001.3};
     for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
         struct drawn d = open_with(glowing_panel(heights[i]), &flat, &params);
@@ -461,10 +460,11 @@ static void what_it_cannot_draw_is_refused(void **state)
 {
     (void)state;
     static const struct log silent = {0};
-    static const struct reference_params wrong[] = {{.picture = {.adaptive = 0.1}},
-                                                    {.picture = {.samples = 3}},
-                                                    {.picture = {.camera = "no such camera"}},
-                                                    {.picture = {.effects_removed = 1}}};
+    static const struct reference_params wrong[] = {
+        {.picture = {.adaptive = 0.1}},
+        {.picture = {.samples = 3}},
+        {.picture = {.camera = {.name = "no such camera"}}},
+        {.picture = {.effects_removed = 1}}};
     struct drawn d = open_reference(floor_scene(8), &one_pixel);
     struct reference *none = NULL;
     struct reference_ray *rays = NULL;

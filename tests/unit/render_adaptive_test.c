@@ -32,10 +32,10 @@ static bool differs(const float *pixels, int x, int y, float contrast)
 struct expected {
     float pixels[PIXELS][4];
     uint64_t by_samples[4], primary;
-    struct render_stats min, max;
+    whit_stats min, max;
 };
 
-static void add_rays(struct render_stats *sum, const struct render_stats *rays)
+static void add_rays(whit_stats *sum, const whit_stats *rays)
 {
     sum->rays_shadow += rays->rays_shadow;
     sum->rays_reflected += rays->rays_reflected;
@@ -88,10 +88,10 @@ static void check(struct fixture *f, const struct picture *first, const struct e
 }
 
 /* Pictures of 4, 16 and 64 samples, then adaptive ones in tiles and bands of several sizes. */
-static void check_scene(struct scene *scene, const struct accel_params *accel, const char *camera,
-                        const double *contrasts, int contrast_count)
+static void check_scene(struct scene *scene, const struct accel_params *accel,
+                        const whit_camera *camera, const double *contrasts, int contrast_count)
 {
-    struct render_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = camera};
+    whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = *camera};
     static struct expected e;
     struct picture plain[3];
     struct fixture f = fixture_open(scene, accel, &params);
@@ -128,14 +128,14 @@ static const double contrasts[] = {0.05, 1.0};
 static void pixels_are_those_of_plain_pictures(void **state)
 {
     (void)state;
-    check_scene(glass_scene(), NULL, glass_camera, contrasts, 2);
+    check_scene(glass_scene(), NULL, &glass_camera, contrasts, 2);
 }
 
 static void so_they_are_without_trees(void **state)
 {
     (void)state;
     const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
-    check_scene(glass_scene_of(1, 3), &no_trees, glass_camera, contrasts, 1);
+    check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, contrasts, 1);
 }
 
 static void lens_and_plain_scenes_too(void **state)
@@ -144,7 +144,7 @@ static void lens_and_plain_scenes_too(void **state)
     struct scene *scene = terrain_scene();
     scene_put_camera(scene, (double[]){0, 4, 9}, (double[]){0, 0, 0}, 0.7);
     scene->cameras[0].lens_radius = 0.4f;
-    check_scene(scene, NULL, NULL, contrasts, 1);
+    check_scene(scene, NULL, &(whit_camera){.name = NULL}, contrasts, 1);
 }
 
 static void marks_come_in_pairs(void **state)
@@ -178,10 +178,10 @@ static void watch(void *user, double done)
 static void progress_goes_on_to_the_end(void **state)
 {
     (void)state;
-    struct render_params params = {.width = WIDTH,
+    whit_renderer_params params = {.width = WIDTH,
                                    .height = HEIGHT,
                                    .depth = 3,
-                                   .camera = glass_camera,
+                                   .camera = GLASS_CAMERA,
                                    .adaptive = 0.05,
                                    .progress = watch,
                                    .tile_size = 16};
@@ -207,7 +207,7 @@ static void progress_goes_on_to_the_end(void **state)
 static void nonsense_is_refused(void **state)
 {
     (void)state;
-    const struct render_params wrong[] = {
+    const whit_renderer_params wrong[] = {
         {.adaptive = -0.5}, {.adaptive = 1.5}, {.adaptive = NAN}, {.adaptive = 0.1, .count = true}};
     struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
     fixture_refuses(&f, wrong, sizeof wrong / sizeof *wrong);

@@ -3,8 +3,8 @@
 #include "ray_fixture.h"
 #include "render_scenes.h"
 
-static const struct render_params animate_params = {
-    .width = 40, .height = 32, .depth = 4, .packets = RENDER_PACKETS_ON};
+static const whit_renderer_params animate_params = {
+    .width = 40, .height = 32, .depth = 4, .packets = WHIT_PACKETS_ON};
 
 /* ---- Scenes ---- */
 
@@ -90,7 +90,7 @@ static struct picture take_anew(const struct fixture *f, bool flatten, double ti
 {
     const struct accel_params flat = {.flatten = flatten, .stack_floor = 32};
     struct fixture anew = {.device = f->device};
-    struct render_params params = animate_params;
+    whit_renderer_params params = animate_params;
     params.time_s = time_s;
     assert_int_equal(accel_create(&fixture_log, f->scene, &flat, &anew.accel), WHIT_OK);
     fixture_renew(&anew, &params);

@@ -54,9 +54,9 @@ void __wrap_thread_join(struct thread *thread)
     __real_thread_join(thread);
 }
 
-static struct render_stats stats_of(const struct renderer *renderer)
+static whit_stats stats_of(const struct renderer *renderer)
 {
-    struct render_stats stats;
+    whit_stats stats;
     renderer_get_stats(renderer, &stats);
     return stats;
 }
@@ -103,9 +103,9 @@ static const uint64_t removed =
     UINT64_C(1) << SCENE_EFFECT_CULLING | UINT64_C(1) << SCENE_EFFECT_CATCHERS |
     UINT64_C(1) << SCENE_EFFECT_TINTED_SHADOWS;
 
-static struct render_params beside_params(const char *camera)
+static whit_renderer_params beside_params(whit_camera camera)
 {
-    return (struct render_params){.width = 50,
+    return (whit_renderer_params){.width = 50,
                                   .height = 30,
                                   .depth = 4,
                                   .camera = camera,
@@ -117,19 +117,19 @@ static void both_kernels_draw_the_same(void **state)
 {
     (void)state;
     static struct scene *(*const make[])(void) = {glass_scene, flat_scene, ring_scene};
-    static const char *const cameras[] = {glass_camera, "0,6,9,0,0,0,0,1,0,40",
-                                          "0,6,14,0,0,0,0,1,0,40"};
+    static const whit_camera cameras[] = {GLASS_CAMERA, CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40),
+                                          CAMERA_AT(0, 6, 14, 0, 0, 0, 0, 1, 0, 40)};
     for (int i = 0; i < 3; ++i) {
         /* Packets and classes are chosen by whether kernels are for many pictures. */
-        struct render_params params = beside_params(cameras[i]);
-        params.packets = RENDER_PACKETS_OFF;
-        params.classes = RENDER_CLASSES_MANY;
+        whit_renderer_params params = beside_params(cameras[i]);
+        params.packets = WHIT_PACKETS_OFF;
+        params.classes = WHIT_CLASSES_MANY;
         params.effects_removed = i == 0 ? 0 : removed;
         struct fixture f = fixture_open(make[i](), NULL, &params);
-        struct render_stats begun = stats_of(f.renderer);
+        whit_stats begun = stats_of(f.renderer);
         assert_true(begun.general);
         struct image first = render_general(&f), second = render_specialised(&f);
-        struct render_stats done = stats_of(f.renderer);
+        whit_stats done = stats_of(f.renderer);
         assert_null(f.renderer->async.job);
         assert_true(done.kernel_instructions < begun.kernel_instructions);
         params.compile_async = false;
@@ -150,8 +150,8 @@ static void both_kernels_draw_the_same(void **state)
 static void removed_effects_stay_removed(void **state)
 {
     (void)state;
-    struct render_params params = beside_params(glass_camera);
-    params.no_shadows = true;
+    whit_renderer_params params = beside_params(glass_camera);
+    params.shadows = WHIT_SHADOWS_NONE;
     params.effects_removed |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image first = render_general(&f), second = render_specialised(&f);
@@ -167,7 +167,7 @@ static void removed_effects_stay_removed(void **state)
 static void all_effects_need_no_thread(void **state)
 {
     (void)state;
-    struct render_params params = beside_params(NULL);
+    whit_renderer_params params = beside_params((whit_camera){.name = NULL});
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     params.all_effects = true;
     fixture_renew(&f, &params);
@@ -183,7 +183,8 @@ static void anything_may_come_in_between(void **state)
 {
     (void)state;
     bool cancel = false;
-    struct render_params params = beside_params("0,6,9,0,0,0,0,1,0,40");
+    whit_renderer_params params =
+        beside_params((whit_camera)CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40));
     params.cancel = &cancel;
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     /* Destroyed without a picture: before the thread begins, while it is at work, when it has

@@ -59,7 +59,7 @@ static void rays_equal_those_of_trees(void **state)
     (void)state;
     struct scene *(*const make[])(void) = {terrain_scene, plain_scene, ring_scene};
     for (int i = 0; i < 3; ++i) {
-        const struct render_params params = {.width = 16, .height = 16, .count = true};
+        const whit_renderer_params params = {.width = 16, .height = 16, .count = true};
         struct fixture f = fixture_open(make[i](), &no_trees, &params);
         const struct accel_mesh *mesh = &f.accel->meshes[0];
         check_boxes(f.accel, 0, f.accel->instance_node_count);
@@ -163,7 +163,7 @@ static void max_are_drawn_and_more_are_refused(void **state)
 }
 
 static void check_picture(struct scene *scene, struct scene *again,
-                          const struct render_params *params)
+                          const whit_renderer_params *params)
 {
     struct picture with = picture_of(scene, NULL, params);
     struct picture without = picture_of(again, &no_trees, params);
@@ -173,7 +173,7 @@ static void check_picture(struct scene *scene, struct scene *again,
                   (unsigned long long)without.stats.rays_reflected,
                   (unsigned long long)without.stats.rays_refracted, without.stats.dispatches);
     for (uint32_t k = 0; params->count && k < RAY_KIND_COUNT; ++k) {
-        const struct cost_sum *a = &with.stats.costs[k], *b = &without.stats.costs[k];
+        const whit_cost *a = &with.stats.costs[k], *b = &without.stats.costs[k];
         assert_true(a->rays == b->rays && a->triangles < b->triangles);
     }
     picture_finish(&with);
@@ -186,9 +186,9 @@ static void pictures_equal_those_of_trees(void **state)
 {
     (void)state;
     static const char *const names[] = {"layers", "glass-of-water", "whitted", "room"};
-    const struct render_params counted = {
-        .width = 19, .height = 11, .depth = 5, .samples = 4, .camera = glass_camera, .count = true};
-    const struct render_params params = {.width = 12, .height = 9, .depth = 6, .light_samples = 4};
+    const whit_renderer_params counted = {
+        .width = 19, .height = 11, .depth = 5, .samples = 4, .camera = GLASS_CAMERA, .count = true};
+    const whit_renderer_params params = {.width = 12, .height = 9, .depth = 6, .light_samples = 4};
     check_picture(glass_scene(), glass_scene(), &counted);
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
         check_picture(file_scene(names[i]), file_scene(names[i]), &params);
@@ -209,7 +209,7 @@ static void many_shadows_are_refused(void **state)
                                                 .edge_u = {1, 0, 0},
                                                 .edge_v = {0, 0, 1}});
     struct fixture f = fixture_open(scene, &no_trees, NULL);
-    const struct render_params params = {.width = 8, .height = 8, .light_samples = 64};
+    const whit_renderer_params params = {.width = 8, .height = 8, .light_samples = 64};
     renderer_destroy(f.renderer);
     assert_int_equal(renderer_create(&log, f.device, f.accel, &params, &f.renderer), WHIT_OK);
     bool limited = device_get_info(f.device)->loop_limited;

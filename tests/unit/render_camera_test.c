@@ -57,7 +57,7 @@ static struct image lens_picture(double z, float lens_radius, uint32_t samples, 
     scene->cameras[0].lens_radius = lens_radius;
     scene->cameras[0].focus_distance = 5.0f;
     add_marker(scene, size * z, 0, 0, -z);
-    const struct render_params params = {.width = 75, .height = 75, .samples = samples};
+    const whit_renderer_params params = {.width = 75, .height = 75, .samples = samples};
     return color_of(scene, NULL, &params);
 }
 
@@ -218,7 +218,7 @@ static void markers_are_where_they_should(void **state)
                                      sin(latitude) * above[i]);
         struct scene *scene = panorama_scene(eye, target);
         add_marker(scene, 0.5, at[0], at[1], at[2]); /* less than 3 degrees: no seam in between */
-        const struct render_params params = {.width = WIDTH, .height = HEIGHT, .samples = 4};
+        const whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .samples = 4};
         struct image image = color_of(scene, NULL, &params);
         if (places[p][0] > 170.0) /* across the seam the picture goes on */
             swap_halves(&image);
@@ -242,7 +242,7 @@ static void panorama_sees_all_around(void **state)
         uint32_t index = scene_put_material(scene, unlit((float)(1 << face), 1, 1));
         scene->meshes[0].materials[2 * face] = scene->meshes[0].materials[2 * face + 1] = index;
     }
-    const struct render_params params = {.width = 128, .height = 64};
+    const whit_renderer_params params = {.width = 128, .height = 64};
     struct image image = color_of(scene, NULL, &params);
     double shares[6] = {0}, all = 0.0;
     for (uint32_t y = 0; y < 64; ++y) {
@@ -269,9 +269,12 @@ static void view_along_up_has_a_picture(void **state)
     scene_put_sun(scene, 0, -1, 0, 1.0f);
     scene->cameras[0].up[1] = 1.0; /* as it came from a file: along the view */
     scene->cameras[0].up[2] = 0.0;
-    struct render_params params = picture_params;
-    const char *views[] = {NULL, "0,5,0,0,0,0,0,1,0,40", "0,5,0,0,0,0,0,-7,0,40",
-                           "0,5,0,0,0,0,0,0,0,40", "0,5,0,0,0,0,1e-30,1e30,0,40"};
+    whit_renderer_params params = picture_params;
+    const whit_camera views[] = {{.name = NULL},
+                                 CAMERA_AT(0, 5, 0, 0, 0, 0, 0, 1, 0, 40),
+                                 CAMERA_AT(0, 5, 0, 0, 0, 0, 0, -7, 0, 40),
+                                 CAMERA_AT(0, 5, 0, 0, 0, 0, 0, 0, 0, 40),
+                                 CAMERA_AT(0, 5, 0, 0, 0, 0, 1e-30, 1e30, 0, 40)};
     struct fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof views / sizeof *views; ++i) {
         params.camera = views[i];
@@ -297,12 +300,11 @@ static void angles_of_view_are_kept(void **state)
     (void)state;
     const double angles[] = {1e-3, 0.01, 1.0, 90.0, 179.0, 179.9};
     for (size_t i = 0; i < sizeof angles / sizeof *angles; ++i) {
-        char view[64];
-        snprintf(view, sizeof view, "0,0,0,0,0,-1,0,1,0,%.17g", angles[i]);
         struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
         set_rgb(scene->environment.zenith, 1, 1, 1);
         add_marker(scene, 0.5, 0, 0, -1e5);
-        const struct render_params params = {.width = 9, .height = 101, .camera = view};
+        const whit_renderer_params params = {
+            .width = 9, .height = 101, .camera = CAMERA_AT(0, 0, 0, 0, 0, -1, 0, 1, 0, angles[i])};
         struct fixture f = fixture_open(scene, NULL, &params);
         struct image image = render(&f);
         assert_finite(&image);
@@ -331,7 +333,7 @@ static void rays_along_edges_hit(void **state)
     scene->cameras[0].height = 2.0f;
     /* Its diagonals go through pixel middles. */
     add_object(scene, mesh_box(4, 4, 1), unlit(1, 1, 1), 0, 0, 0);
-    const struct render_params params = {.width = SIDE, .height = SIDE};
+    const whit_renderer_params params = {.width = SIDE, .height = SIDE};
     struct image image = color_of(scene, NULL, &params);
     assert_range(&image, 1, 1);
     image_finish(&image);
@@ -358,7 +360,7 @@ static void sizes_may_be_odd(void **state)
     const uint32_t sizes[][2] = {{1, 1}, {1, 4096}, {4096, 1}, {37, 23}, {8, 9}, {65, 1}};
     struct scene *scene = dark_scene((double[]){2, 6, 8}, (double[]){0, 0, 0});
     add_object(scene, mesh_terrain(10.0, 2.0, 40, 3), material_plain("ground"), 0, 0, 0);
-    struct render_params params = {.width = 1, .height = 1};
+    whit_renderer_params params = {.width = 1, .height = 1};
     struct fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
         params.width = sizes[i][0];
@@ -395,7 +397,7 @@ static void near_and_far_share_a_picture(void **state)
     /* Faces towards the eye at z = -1e-6 and -1e6; the near one left of x = 0. */
     add_object(scene, mesh_box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
     add_object(scene, mesh_box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
-    const struct render_params params = {.width = 40, .height = 20, .samples = 4};
+    const whit_renderer_params params = {.width = 40, .height = 20, .samples = 4};
     struct image image = color_of(scene, NULL, &params);
     for (uint32_t p = 0; p < 40 * 20; ++p)
         assert_near(image.pixels[4 * p], p % 40 < 20 ? 0.25 : 0.75, 0.0);

@@ -9,17 +9,17 @@ static const char *const order_names[ORDERS] = {"distance", "sign", "basic"};
 
 static struct fixture open_counting(struct scene *scene, uint32_t order)
 {
-    const struct render_params params = {
-        .width = 16, .height = 16, .depth = 4, .order = order, .count = true};
+    const whit_renderer_params params = {
+        .width = 16, .height = 16, .depth = 4, .traversal = order, .count = true};
     return fixture_open(scene, NULL, &params);
 }
 
 /* Device and C agree on every hit and every cost. The sum over all rays. */
-static struct cost_sum check_costs(const struct fixture *f, bool any)
+static whit_cost check_costs(const struct fixture *f, bool any)
 {
     struct gpu_ray rays[RAYS];
     struct gpu_hit hits[RAYS];
-    struct cost_sum sum = {0};
+    whit_cost sum = {0};
     aim_at_bounds(f, rays, RAYS, 77);
     struct unlike unlike = trace_beside_twin(f, any, rays, RAYS, hits, &sum);
     assert_int_equal(unlike.hits, 0);
@@ -29,11 +29,11 @@ static struct cost_sum check_costs(const struct fixture *f, bool any)
 
 static void check_scene(struct scene *(*make)(void), bool instanced)
 {
-    struct cost_sum all[ORDERS];
+    whit_cost all[ORDERS];
     for (uint32_t order = 0; order < ORDERS; ++order) {
         struct fixture f = open_counting(make(), order);
         assert_int_equal(f.accel->single_identity, !instanced);
-        struct cost_sum c = all[order] = check_costs(&f, false), any = check_costs(&f, true);
+        whit_cost c = all[order] = check_costs(&f, false), any = check_costs(&f, true);
         print_message("  %-8s %u rays: %u pairs (any: %u), %u leaves, %u instances, %u triangles; "
                       "stack %u, depth %u\n",
                       order_names[order], (uint32_t)c.rays, (uint32_t)c.inner_nodes,
@@ -69,9 +69,9 @@ static void clipped_trees_cost_the_same(void **state)
     (void)state;
     struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
     for (int i = 0; i < 2; ++i) {
-        const struct render_params params = {.width = 16, .height = 16, .count = true};
+        const whit_renderer_params params = {.width = 16, .height = 16, .count = true};
         struct fixture f = fixture_open(make[i](), NULL, &params);
-        struct cost_sum plain = check_costs(&f, false);
+        whit_cost plain = check_costs(&f, false);
         f.accel->clipped = true;
         fixture_renew(&f, &params);
         assert_true(check_costs(&f, false).inner_nodes > plain.inner_nodes);
@@ -84,8 +84,8 @@ static void flat_trees_cost_the_same(void **state)
 {
     (void)state;
     const struct accel_params flat = {.flatten = true};
-    const struct render_params params = {
-        .width = 16, .height = 16, .order = ORDER_SIGN, .count = true};
+    const whit_renderer_params params = {
+        .width = 16, .height = 16, .traversal = ORDER_SIGN, .count = true};
     struct fixture f = fixture_open(ring_scene(), &flat, &params);
     assert_true(f.accel->flat);
     for (int any = 0; any < 2; ++any)
@@ -144,7 +144,7 @@ static struct accel *caterpillar_accel(struct scene **scene, uint32_t depth)
 
 /* A chain of `depth`, of which the renderer is told `stated`. */
 static whit_result trace_caterpillar(uint32_t depth, uint32_t stated,
-                                     const struct render_params *params, struct gpu_hit hits[2],
+                                     const whit_renderer_params *params, struct gpu_hit hits[2],
                                      struct gpu_cost costs[2])
 {
     struct fixture f = {.device = fixture_device()};
@@ -165,8 +165,8 @@ static void deep_trees_are_walked(void **state)
     const uint32_t depths[] = {31, 32, 33, 63, 64, 65, 128, 200};
     for (uint32_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         uint32_t depth = depths[d];
-        const struct render_params params = {
-            .width = 8, .height = 8, .order = d % ORDERS, .count = d % 2};
+        const whit_renderer_params params = {
+            .width = 8, .height = 8, .traversal = d % ORDERS, .count = d % 2};
         struct gpu_hit hits[2];
         struct gpu_cost costs[2];
         assert_int_equal(trace_caterpillar(depth, depth, &params, hits, costs), WHIT_OK);
@@ -184,8 +184,8 @@ static void understated_depth_is_reported(void **state)
 {
     (void)state;
     for (uint32_t order = 0; order < ORDERS; ++order) {
-        const struct render_params params = {
-            .width = 8, .height = 8, .order = order, .count = order == ORDER_SIGN};
+        const whit_renderer_params params = {
+            .width = 8, .height = 8, .traversal = order, .count = order == ORDER_SIGN};
         struct gpu_hit hits[2];
         struct gpu_cost costs[2];
         assert_int_equal(trace_caterpillar(65, 32, &params, hits, costs), WHIT_ERROR_STATUS);
@@ -279,8 +279,8 @@ static void check_primary(const struct fixture *f, const struct counted *counted
         struct gpu_hit hit;
         struct gpu_cost cost = {0};
         camera_ray(&f->renderer->frame, kind, i % ids->width, i / ids->width, &first, &ray);
-        traverse_float(f->accel, f->renderer->params.order, &ray, false, HIT_NONE, HIT_NONE, &hit,
-                       &cost, &status);
+        traverse_float(f->accel, (uint32_t)f->renderer->params.traversal, &ray, false, HIT_NONE,
+                       HIT_NONE, &hit, &cost, &status);
         bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
         ids_bad += hit.primitive != ids->words[2 * i + 1] || hit.instance != ids->words[2 * i];
     }
@@ -291,9 +291,9 @@ static void check_primary(const struct fixture *f, const struct counted *counted
 
 static void check_sums(const struct counted *counted)
 {
-    const struct render_stats *stats = &counted->picture.stats;
+    const whit_stats *stats = &counted->picture.stats;
     for (uint32_t k = 0; k < RAY_KIND_COUNT; ++k) {
-        struct cost_sum sum = {0};
+        whit_cost sum = {0};
         for (uint32_t i = 0; i < counted->costs[k].width * counted->costs[k].height; ++i)
             cost_add(&sum, &costs_of(counted, k)[i]);
         assert_memory_equal(&sum, &stats->costs[k], sizeof sum);
@@ -310,11 +310,11 @@ static void pictures_cost_the_same(void **state)
 {
     (void)state;
     for (uint32_t order = 0; order < ORDERS; ++order) {
-        struct render_params params = {.width = 45,
+        whit_renderer_params params = {.width = 45,
                                        .height = 30,
                                        .depth = 5,
-                                       .camera = glass_camera,
-                                       .order = order,
+                                       .camera = GLASS_CAMERA,
+                                       .traversal = order,
                                        .tile_size = 16,
                                        .count = true};
         struct fixture f = fixture_open(glass_scene(), NULL, &params);
@@ -362,7 +362,7 @@ static void camera_rays_are_those_of_c(void **state)
     };
     for (uint32_t kind = 0; kind < 4; ++kind) {
         for (uint32_t samples = 1; samples <= 64; samples *= kind == CAMERA_LENS ? 4 : 64) {
-            struct render_params params = {
+            whit_renderer_params params = {
                 .width = 90, .height = 70, .samples = samples, .count = true};
             struct fixture f =
                 fixture_open(seen_by(terrain_scene(), &cameras[kind]), NULL, &params);
@@ -379,11 +379,11 @@ static void camera_rays_are_those_of_c(void **state)
 static void samples_add_up(void **state)
 {
     (void)state;
-    struct render_params params = {
-        .width = 40, .height = 24, .depth = 5, .camera = glass_camera, .samples = 4, .count = true};
+    whit_renderer_params params = {
+        .width = 40, .height = 24, .depth = 5, .camera = GLASS_CAMERA, .samples = 4, .count = true};
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct counted counted = render_counted(&f);
-    const struct render_stats first = counted.picture.stats;
+    const whit_stats first = counted.picture.stats;
     for (uint32_t i = 0; i < 40 * 24; ++i)
         assert_int_equal(costs_of(&counted, RAY_PRIMARY)[i].rays, 1);
     assert_int_equal(first.costs[RAY_PRIMARY].rays, 4 * 40 * 24);

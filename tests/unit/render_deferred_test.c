@@ -6,13 +6,13 @@
 
 enum { SIDE = 96, RAYS = 20000 };
 
-static struct render_params exact_params(bool count)
+static whit_renderer_params exact_params(bool count)
 {
-    return (struct render_params){.width = SIDE,
+    return (whit_renderer_params){.width = SIDE,
                                   .height = SIDE,
                                   .depth = 4,
                                   .samples = 1,
-                                  .camera = glass_camera,
+                                  .camera = GLASS_CAMERA,
                                   .numerics = NUMERICS_EXACT,
                                   .count = count};
 }
@@ -22,7 +22,7 @@ static struct render_params exact_params(bool count)
 static void batches_are_those_of_looks_in_place(void **state)
 {
     (void)state;
-    const struct render_params counted = exact_params(true), deferred = exact_params(false);
+    const whit_renderer_params counted = exact_params(true), deferred = exact_params(false);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
     assert_true(rays && hits);
@@ -51,10 +51,10 @@ static void batches_are_those_of_looks_in_place(void **state)
 
 /* ---- Pictures ---- */
 
-static void check_picture(const char *name, struct scene *scene, const char *camera,
+static void check_picture(const char *name, struct scene *scene, whit_camera camera,
                           uint32_t deferred_min)
 {
-    struct render_params counted = exact_params(true), deferred = exact_params(false);
+    whit_renderer_params counted = exact_params(true), deferred = exact_params(false);
     counted.camera = deferred.camera = camera;
     struct fixture f = fixture_open(scene, NULL, &counted);
     struct picture in_place = render_picture(&f);
@@ -74,7 +74,8 @@ static void check_picture(const char *name, struct scene *scene, const char *cam
 static void pictures_are_those_of_looks_in_place(void **state)
 {
     (void)state;
-    check_picture("ground", glass_scene_of(20, 12), "3,1000,3,3,0,3,0,0,-1,1", 100);
+    check_picture("ground", glass_scene_of(20, 12),
+                  (whit_camera)CAMERA_AT(3, 1000, 3, 3, 0, 3, 0, 0, -1, 1), 100);
     check_picture("glass", glass_scene(), glass_camera, 1);
 }
 

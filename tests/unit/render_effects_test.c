@@ -4,7 +4,7 @@
 #include "render/renderer.h"
 #include "render_scenes.h"
 
-static const struct render_params small = {.width = 24, .height = 18, .depth = 5};
+static const whit_renderer_params small = {.width = 24, .height = 18, .depth = 5};
 
 /* ---- Scenes ---- */
 
@@ -158,9 +158,9 @@ static uint64_t bit(enum scene_effect effect)
 }
 
 /* The picture for the scene and the one with every effect. */
-static struct render_stats assert_auto_is_all(struct scene *(*make)(void))
+static whit_stats assert_auto_is_all(struct scene *(*make)(void))
 {
-    struct render_params all = small;
+    whit_renderer_params all = small;
     all.all_effects = true;
     struct picture a = picture_of(make(), NULL, &small), b = picture_of(make(), NULL, &all);
     assert_same_picture("with every effect", &a, &b);
@@ -174,10 +174,10 @@ static struct render_stats assert_auto_is_all(struct scene *(*make)(void))
 static void kernels_for_a_scene_draw_the_same(void **state)
 {
     (void)state;
-    struct render_stats plain = assert_auto_is_all(plain_scene);
+    whit_stats plain = assert_auto_is_all(plain_scene);
     assert_int_equal(plain.rays_reflected + plain.rays_refracted, 0);
     assert_true(plain.rays_shadow > 0);
-    struct render_stats rich = assert_auto_is_all(rich_scene);
+    whit_stats rich = assert_auto_is_all(rich_scene);
     assert_true(rich.rays_reflected > 0 && rich.rays_refracted > 0);
     assert_true(plain.kernel_instructions < rich.kernel_instructions);
 }
@@ -328,7 +328,7 @@ static void effects_left_out_are_gone(void **state)
                    {{true, true, false}, true},
                    {{false, false, true}, true}};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
-        struct render_params params = small;
+        whit_renderer_params params = small;
         params.all_effects = kernels[i].all;
         for (int k = 0; k < 3; ++k)
             params.effects_removed |= kernels[i].without[k] ? bit(effects[k]) : 0;
@@ -349,7 +349,7 @@ static void effects_added_do_not_matter(void **state)
                                               SCENE_EFFECT_CULLING,     SCENE_EFFECT_SPHERES};
     struct picture plain = picture_of(plain_scene(), NULL, &small);
     for (size_t i = 0; i < sizeof added / sizeof *added; ++i) {
-        struct render_params more = small;
+        whit_renderer_params more = small;
         more.effects_added = bit(added[i]);
         struct picture picture = picture_of(plain_scene(), NULL, &more);
         print_message("  with %-16s %+6d instructions\n", scene_effect_name(added[i]),
@@ -364,9 +364,9 @@ static void effects_added_do_not_matter(void **state)
 
 /* ---- Kernels ---- */
 
-static struct render_kernel_info kernel_of(struct scene *scene, const struct render_params *params)
+static whit_kernel_info kernel_of(struct scene *scene, const whit_renderer_params *params)
 {
-    struct render_kernel_info info;
+    whit_kernel_info info;
     struct fixture f = fixture_open(scene, NULL, params);
     assert_int_equal(renderer_get_kernel(f.renderer, &info), WHIT_OK);
     fixture_close(&f);
@@ -386,7 +386,7 @@ static void every_effect_has_its_code(void **state)
     uint32_t whole = kernel_of(rich_scene(), &small).instructions, missing = 0;
     print_message("  %-20s %6u instructions\n", "all of the rich scene", whole);
     for (int i = 0; i < SCENE_EFFECT_COUNT; ++i) {
-        struct render_params params = small;
+        whit_renderer_params params = small;
         if (!effects.called[i] || !render_effect_can_remove((enum scene_effect)i))
             continue;
         params.effects_removed = bit((enum scene_effect)i);
@@ -474,9 +474,9 @@ static struct scene *quarters_scene(void)
 }
 
 /* What the rays of each pixel's one sample cost tells which it has. */
-static void check_who_refracts(enum render_classes classes)
+static void check_who_refracts(whit_classes classes)
 {
-    struct render_params params = small;
+    whit_renderer_params params = small;
     params.count = true;
     params.classes = classes;
     struct fixture f = fixture_open(quarters_scene(), NULL, &params);
@@ -506,8 +506,8 @@ static void check_who_refracts(enum render_classes classes)
 static void only_pixels_that_see_glass_refract(void **state)
 {
     (void)state;
-    check_who_refracts(RENDER_CLASSES_ONE);
-    check_who_refracts(RENDER_CLASSES_MANY);
+    check_who_refracts(WHIT_CLASSES_ONE);
+    check_who_refracts(WHIT_CLASSES_MANY);
 }
 
 /* Glass that stands below the view until second 1. */
@@ -524,7 +524,7 @@ static struct scene *rising_glass_scene(void)
 static void what_comes_into_view_is_right_at_once(void **state)
 {
     (void)state;
-    struct render_params later = small;
+    whit_renderer_params later = small;
     later.time_s = 1.0;
     struct picture expected = picture_of(rising_glass_scene(), NULL, &later);
     assert_true(expected.stats.rays_refracted > 0);

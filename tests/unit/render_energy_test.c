@@ -15,10 +15,10 @@ static struct scene *furnace(struct scene_mesh mesh, struct scene_material m)
 /* Under a white sky a pixel is white but for the rays that were cut. */
 static void check_furnace(const char *name, struct scene *scene)
 {
-    const struct render_params params = {.width = 32, .height = 32, .depth = 5, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 32, .height = 32, .depth = 5};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct picture picture = render_picture(&f);
-    const struct render_stats *stats = &picture.stats;
+    const whit_stats *stats = &picture.stats;
     double highest = 0, worst = 0, cut = 0;
     for (size_t i = 0; i < 32 * 32; ++i) {
         float cuts[2];
@@ -76,8 +76,7 @@ static void facing_mirrors_end(void **state)
         for (int i = 0; i < 2; ++i)
             add_object(scene, mesh_box(6, 6, 1), shining, 0, 0, i ? 2.5 : -2.5);
         scene_put_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
-        const struct render_params params = {
-            .width = 15, .height = 15, .depth = depths[d], .bailout = -1.0};
+        const whit_renderer_params params = {.width = 15, .height = 15, .depth = depths[d]};
         struct fixture f = fixture_open(scene, NULL, &params);
         struct image image = render(&f);
         assert_near(middle(&image)[0], 0.01 * (depths[d] + 1), 1e-5);
@@ -127,13 +126,14 @@ static void bailout_keeps_its_bound(void **state)
     for (int which = 0; which < 2; ++which) {
         struct image full = {0};
         for (int i = 0; i < 4; ++i) {
-            const struct render_params params = {.width = 40,
+            const whit_renderer_params params = {.width = 40,
                                                  .height = 40,
                                                  .depth = 6,
                                                  .bailout = bailouts[i],
-                                                 .camera = which ? NULL : glass_camera};
+                                                 .camera = which ? (whit_camera){.name = NULL}
+                                                                 : glass_camera};
             struct picture picture = picture_of(weak_scene(which), NULL, &params);
-            const struct render_stats *stats = &picture.stats;
+            const whit_stats *stats = &picture.stats;
             if (i == 0) {
                 assert_true(stats->rays_cut_bailout == 0 && stats->bailout_bound == 0);
                 full = picture.color;

@@ -72,7 +72,7 @@ struct fixture {
 };
 
 /* Another renderer in place of the one that there is. */
-static inline void fixture_renew(struct fixture *f, const struct render_params *params)
+static inline void fixture_renew(struct fixture *f, const whit_renderer_params *params)
 {
     renderer_destroy(f->renderer);
     assert_int_equal(renderer_create(&fixture_log, f->device, f->accel, params, &f->renderer),
@@ -81,7 +81,7 @@ static inline void fixture_renew(struct fixture *f, const struct render_params *
 
 static inline struct fixture fixture_open(struct scene *scene,
                                           const struct accel_params *accel_params,
-                                          const struct render_params *render_params)
+                                          const whit_renderer_params *render_params)
 {
     struct fixture f = {.scene = scene};
     assert_int_equal(scene_freeze(scene), WHIT_OK);
@@ -90,7 +90,7 @@ static inline struct fixture fixture_open(struct scene *scene,
         WHIT_OK);
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
     f.device = fixture_device();
-    const struct render_params small = {.width = 16, .height = 16, .depth = 4};
+    const whit_renderer_params small = {.width = 16, .height = 16, .depth = 4};
     fixture_renew(&f, render_params ? render_params : &small);
     return f;
 }
@@ -104,7 +104,7 @@ static inline void fixture_close(struct fixture *f)
 }
 
 /* Every params of `wrong` is refused for a renderer of what `f` has. */
-static inline void fixture_refuses(const struct fixture *f, const struct render_params *wrong,
+static inline void fixture_refuses(const struct fixture *f, const whit_renderer_params *wrong,
                                    size_t count)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -120,7 +120,7 @@ static inline void fixture_refuses(const struct fixture *f, const struct render_
 
 struct picture {
     struct image color, ids;
-    struct render_stats stats;
+    whit_stats stats;
 };
 
 static inline struct image render(const struct fixture *f)
@@ -147,7 +147,7 @@ static inline void picture_finish(struct picture *picture)
 
 /* What a scene looks like, which is freed. */
 static inline struct image color_of(struct scene *scene, const struct accel_params *accel,
-                                    const struct render_params *params)
+                                    const whit_renderer_params *params)
 {
     struct fixture f = fixture_open(scene, accel, params);
     struct image image = render(&f);
@@ -156,7 +156,7 @@ static inline struct image color_of(struct scene *scene, const struct accel_para
 }
 
 static inline struct picture picture_of(struct scene *scene, const struct accel_params *accel,
-                                        const struct render_params *params)
+                                        const whit_renderer_params *params)
 {
     struct fixture f = fixture_open(scene, accel, params);
     struct picture picture = render_picture(&f);

@@ -62,8 +62,8 @@ static double form_factor(const struct scene_light *light, const double p[3])
    distance, and by as much as a row of it where the horizon cuts the emitter. */
 static void check_form_factor(struct scene_light light, uint32_t samples, double tolerance)
 {
-    struct render_params params = {
-        .width = SIDE, .height = SIDE, .no_shadows = true, .light_samples = samples};
+    whit_renderer_params params = {
+        .width = SIDE, .height = SIDE, .shadows = WHIT_SHADOWS_NONE, .light_samples = samples};
     struct scene *scene = floor_scene(eye_height);
     const struct scene_light copy = light;
     scene_put_light(scene, light);
@@ -110,10 +110,11 @@ static void half_a_cover_takes_half(void **state)
                             (double[]){0.2, 0, -0.3}, 3.0f)
                   : emitter(SCENE_LIGHT_RECTANGLE, (double[]){-0.2, 2, -0.2}, (double[]){0.4, 0, 0},
                             (double[]){0, 0, 0.4}, 3.0f);
-        const struct render_params params = {.width = 1,
+        const whit_renderer_params params = {.width = 1,
                                              .height = 1,
                                              .light_samples = samples[i / 2],
-                                             .camera = "-3,0.5,0,0,0,0,0,1,0,0.01"};
+                                             .camera =
+                                                 CAMERA_AT(-3, 0.5, 0, 0, 0, 0, 0, 1, 0, 0.01)};
         double whole = 3.0 * form_factor(&light, (double[]){0, 0, 0});
         struct scene *scene = floor_scene(eye_height);
         add_object(scene, mesh_plane(4), material_plain("plate"), 2.0, 1.0, 0);
@@ -137,11 +138,12 @@ static void pixel_samples_smooth_shadows(void **state)
         add_object(scene, mesh_plane(6), material_plain("plate"), 3.0, 1.5, 0);
         scene_put_light(scene, emitter(SCENE_LIGHT_RECTANGLE, (double[]){-1, 3, -1},
                                        (double[]){2, 0, 0}, (double[]){0, 0, 2}, 3.0f));
-        struct render_params params = {.width = 200,
+        whit_renderer_params params = {.width = 200,
                                        .height = 1,
                                        .samples = i ? 16 : 1,
                                        .light_samples = 4,
-                                       .camera = "-0.5,1.4,0,-0.5,0,0,0,0,-1,0.2"};
+                                       .camera =
+                                           CAMERA_AT(-0.5, 1.4, 0, -0.5, 0, 0, 0, 0, -1, 0.2)};
         struct image image = color_of(scene, NULL, &params);
         largest[i] = 0.0;
         for (uint32_t x = 1; x < image.width; ++x)
@@ -168,7 +170,7 @@ static void spots_fall_off_between_their_cones(void **state)
                                 .cos_outer = (float)cos(outer)};
     set_rgb(light.color, 5, 5, 5);
     scene_put_light(scene, light);
-    struct render_params params = {.width = 33, .height = 33};
+    whit_renderer_params params = {.width = 33, .height = 33};
     struct image image = color_of(scene, NULL, &params);
     uint32_t full = 0, soft = 0, dark = 0;
     for (uint32_t y = 0; y < 33; ++y) {
@@ -200,7 +202,7 @@ static void ranges_end_lights(void **state)
     struct scene *scene = floor_scene(eye_height);
     scene_put_lamp(scene, 0, 1, 0, 2.0f);
     scene->lights[0].range = 1.5f;
-    struct render_params params = {.width = 33, .height = 33};
+    whit_renderer_params params = {.width = 33, .height = 33};
     struct image image = color_of(scene, NULL, &params);
     for (uint32_t i = 0; i < 33 * 33; ++i) {
         double p[3];
@@ -231,7 +233,7 @@ static void odd_lights_give_finite_pictures(void **state)
                                            (double[]){2, 0, 0}, (double[]){1, 0, 0}, 1.0f));
         else if (i > 0)
             scene_put_lamp(scene, 0, i == 1 ? 0.0 : 1e-6, 0, strength);
-        struct render_params params = {.width = 33, .height = 33};
+        whit_renderer_params params = {.width = 33, .height = 33};
         struct image image = color_of(scene, NULL, &params);
         assert_range(&image, 0, FLT_MAX);
         assert_true(i != 2 || red_sum(&image) == 0.0);
@@ -247,7 +249,7 @@ static void lamps_next_to_a_surface_are_on_one_side(void **state)
     enum { ACROSS = 33 };
     const double heights[] = {1e-6, 1e-3, 0.0, -1e-6};
     for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
-        const struct render_params params = {.width = ACROSS, .height = ACROSS};
+        const whit_renderer_params params = {.width = ACROSS, .height = ACROSS};
         struct scene *scene = floor_scene(eye_height);
         double worst = 0.0;
         scene_put_lamp(scene, 0, heights[i], 0, 1.0f);
@@ -275,7 +277,8 @@ static void emitters_do_not_light_themselves(void **state)
 {
     (void)state;
     const double heights[] = {1.99, 1001.3};
-    const struct render_params params = {.width = SIDE, .height = SIDE, .no_shadows = true};
+    const whit_renderer_params params = {
+        .width = SIDE, .height = SIDE, .shadows = WHIT_SHADOWS_NONE};
     for (size_t i = 0; i < 2 * sizeof heights / sizeof *heights; ++i) {
         const struct accel_params trees = {.flatten = i % 2};
         struct image image = color_of(glowing_panel(heights[i / 2]), &trees, &params);
@@ -349,17 +352,17 @@ static void packets_to_a_light_shade_as_rays_do(void **state)
                                                cases[i].clipped ? BVH_SPATIAL : BVH_BINNED,
                                            .flatten = true,
                                            .stack_floor = 32};
-        struct render_params params = {.width = 128,
+        whit_renderer_params params = {.width = 128,
                                        .height = 96,
                                        .depth = 1,
                                        .light_samples = 4,
-                                       .packets = RENDER_PACKETS_OFF,
+                                       .packets = WHIT_PACKETS_OFF,
                                        .numerics =
                                            cases[i].exact ? NUMERICS_EXACT : NUMERICS_WATERTIGHT};
         struct fixture f =
             fixture_open(rings_under(light, cases[i].moved, cases[i].slope), &accel, &params);
         struct image alone = render(&f);
-        params.packets = RENDER_PACKETS_ON;
+        params.packets = WHIT_PACKETS_ON;
         fixture_renew(&f, &params);
         struct image together = render(&f);
         print_message("  light %zu: sum %g\n", i, red_sum(&alone));

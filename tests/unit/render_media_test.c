@@ -46,8 +46,7 @@ static void pass_layers(const double *z, const double *n, int count, double slop
 static void check_layers(const struct layer *layers, int layer_count, const double *z,
                          const double *n, int count)
 {
-    const struct render_params params = {
-        .width = 24, .height = 24, .depth = (uint32_t)count, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 24, .height = 24, .depth = (uint32_t)count};
     struct image image = color_of(layer_scene(layers, layer_count), NULL, &params);
     double worst = 0.0, worst_share = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
@@ -105,7 +104,7 @@ static void lone_bodies_need_less(void **state)
     for (int count = 0; count < 3; ++count) {
         struct image images[2];
         for (int all = 0; all < 2; ++all) {
-            const struct render_params params = {
+            const whit_renderer_params params = {
                 .width = 16, .height = 16, .depth = 6, .all_effects = all};
             struct fixture f = fixture_open(layer_scene(layers, count), NULL, &params);
             struct gpu_spec spec = variant_spec(&f.renderer->picture);
@@ -136,7 +135,8 @@ static struct scene *shell_scene(int count)
 static void list_holds_eight_media(void **state)
 {
     (void)state;
-    const struct render_params params = {.width = 8, .height = 8, .depth = 20};
+    const whit_renderer_params params = {
+        .width = 8, .height = 8, .depth = 20, .bailout = WHIT_BAILOUT_DEFAULT};
     struct image image = color_of(shell_scene(8), NULL, &params);
     assert_true(middle(&image)[0] > 0.9f && middle(&image)[0] < 1.0001f);
     image_finish(&image);
@@ -147,7 +147,7 @@ static void ninth_medium_is_an_error(void **state)
     (void)state;
     const int counts[] = {9, 16};
     for (int i = 0; i < 2; ++i) {
-        const struct render_params params = {.width = 8, .height = 8, .depth = 20};
+        const whit_renderer_params params = {.width = 8, .height = 8, .depth = 20};
         struct fixture f = fixture_open(shell_scene(counts[i]), NULL, &params);
         assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_STATUS);
         fixture_close(&f);
@@ -174,7 +174,7 @@ static void open_meshes_stay_finite(void **state)
         set_rgb(m.absorption, 0.1f, 0.2f, 0.0f);
         add_object(scene, mesh, m, 0.5 * i - 0.5, 0, 0);
     }
-    const struct render_params params = {.width = 40, .height = 40, .depth = 8, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 40, .height = 40, .depth = 8};
     struct fixture f = fixture_open(scene, NULL, &params);
     assert_int_equal(f.renderer->frame.nested, 1);
     struct image image = render(&f);
@@ -238,7 +238,7 @@ static void snells_window_is_where_it_should_be(void **state)
     scene->cameras[0].fov_y = 2.0f;
     set_sky(scene, 1, 1, 0);
     add_object(scene, mesh_box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
-    const struct render_params params = {.width = 101, .height = 101, .depth = 1, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 101, .height = 101, .depth = 1};
     struct image image = color_of(scene, NULL, &params);
     double critical = tan(asin(1.0 / (double)1.33f)), pixel = 2.0 * tan(1.0) / 101;
     int lit = 0, close = 0;
@@ -320,8 +320,7 @@ static void edges_are_crossed_once(void **state)
         set_rgb(m.absorption, 1, 0.5f, 0);
         add_object(scene, octahedron ? octahedron_mesh() : mesh_box(2, 2, 4), m, 0, 0,
                    octahedron - 1);
-        const struct render_params params = {
-            .width = SIDE, .height = SIDE, .depth = 6, .bailout = -1.0};
+        const whit_renderer_params params = {.width = SIDE, .height = SIDE, .depth = 6};
         struct image image = color_of(scene, NULL, &params);
         uint32_t through = 0;
         for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
@@ -366,8 +365,7 @@ static struct image liquid_picture(double overlap, uint32_t glass_priority, doub
     add_object(scene, lathe(glass, 6, 48), clear_glass(1.5f, glass_priority), 0, 0, 0);
     add_object(scene, lathe(liquid, 4, 48), clear_glass((float)ior, 0), 0, 0, 0);
     add_coordinate_wall(scene, -3, 4);
-    const struct render_params params = {
-        .width = LIQUID_SIDE, .height = LIQUID_SIDE, .depth = 12, .bailout = -1.0};
+    const whit_renderer_params params = {.width = LIQUID_SIDE, .height = LIQUID_SIDE, .depth = 12};
     return color_of(scene, NULL, &params);
 }
 

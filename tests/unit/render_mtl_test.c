@@ -147,7 +147,7 @@ static void set_floats(float *out, const double *rgb)
     set_rgb(out, (float)rgb[0], (float)rgb[1], (float)rgb[2]);
 }
 
-static struct image render_strips(const struct render_params *params)
+static struct image render_strips(const whit_renderer_params *params)
 {
     struct scene *scene = load_strips();
     scene->has_environment = true;
@@ -183,8 +183,7 @@ static void check_strips(const struct image *image, bool schlick)
     assert_int_equal(bad, 0);
 }
 
-static const struct render_params strip_params = {
-    .width = STRIPS, .height = 1, .depth = 8, .bailout = -1.0};
+static const whit_renderer_params strip_params = {.width = STRIPS, .height = 1, .depth = 8};
 
 static void classes_mean_what_the_format_says(void **state)
 {
@@ -198,7 +197,7 @@ static void classes_mean_what_the_format_says(void **state)
 static void schlick_takes_the_place_of_fresnel(void **state)
 {
     (void)state;
-    struct render_params params = strip_params;
+    whit_renderer_params params = strip_params;
     params.schlick = true;
     struct image image = render_strips(&params);
     params.all_effects = true;

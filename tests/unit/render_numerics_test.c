@@ -34,7 +34,7 @@ static void check_levels(struct scene *scene, const struct accel_params *accel_p
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
-    struct render_params params = {.width = 16, .height = 16, .count = true};
+    whit_renderer_params params = {.width = 16, .height = 16, .count = true};
     struct fixture f = fixture_open(scene, accel_params, &params);
     aim_rays(&f, rays, RAYS, 7);
     for (uint32_t level = 0; level < LEVELS; ++level) {
@@ -99,7 +99,7 @@ static void only_fast_leaks(void **state)
     (void)state;
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_sphere(2.0, 80, 40), NULL);
-    struct render_params params = {.width = 16, .height = 16, .packets = RENDER_PACKETS_ON};
+    whit_renderer_params params = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
@@ -136,8 +136,7 @@ static void only_fast_leaks(void **state)
 static void pictures_agree(void **state)
 {
     (void)state;
-    struct render_params params = {
-        .width = 96, .height = 64, .depth = 6, .camera = glass_camera, .bailout = -1.0};
+    whit_renderer_params params = {.width = 96, .height = 64, .depth = 6, .camera = GLASS_CAMERA};
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image pictures[LEVELS];
     for (uint32_t level = 0; level < LEVELS; ++level) {
@@ -169,12 +168,11 @@ static void trees_do_not_matter(void **state)
 {
     (void)state;
     const struct accel_params none = {.mesh = {.builder = BVH_NONE}, .stack_floor = 32};
-    const struct render_params params = {.packets = RENDER_PACKETS_ON,
+    const whit_renderer_params params = {.packets = WHIT_PACKETS_ON,
                                          .width = 24,
                                          .height = 16,
                                          .depth = 6,
-                                         .camera = glass_camera,
-                                         .bailout = -1.0,
+                                         .camera = GLASS_CAMERA,
                                          .numerics = NUMERICS_EXACT};
     struct picture with = picture_of(glass_scene(), NULL, &params);
     struct picture without = picture_of(glass_scene(), &none, &params);

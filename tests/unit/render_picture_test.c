@@ -15,7 +15,7 @@ static void glass_slab_passes_and_absorbs(void **state)
     glass.fresnel = true;
     add_object(scene, mesh_box(8, 8, thickness), glass, 0, 0, 0);
     add_object(scene, mesh_box(9, 9, 0.1), unlit(1, 1, 1), 0, 0, -4);
-    struct render_params params = picture_params;
+    whit_renderer_params params = picture_params;
     params.depth = 12;
     struct image image = color_of(scene, NULL, &params);
     /* A slab with inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), a = exp(-sigma d), wall 1
@@ -81,8 +81,8 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     m.textures[slot].texture = add_texel(scene, texel);
     add_object(scene, mesh_box(4, 4, 0.5), m, 0, 0, 0);
     scene_put_sun(scene, 0, -1, 0, 0.0f); /* no light of whit's own */
-    struct render_params params = picture_params;
-    params.bailout = -1.0;
+    whit_renderer_params params = picture_params;
+    params.bailout = 0.0;
     struct image image = color_of(scene, NULL, &params);
     float seen = middle(&image)[1];
     image_finish(&image);
@@ -130,7 +130,7 @@ static struct scene *plain_scene(void)
 static void tiles_do_not_matter(void **state)
 {
     (void)state;
-    struct render_params params = {
+    whit_renderer_params params = {
         .width = 75, .height = 51, .depth = 6, .samples = 4, .tile_size = 16};
     struct picture small = picture_of(mixed_scene(), NULL, &params);
     assert_true(small.stats.tiles > 1);
@@ -177,7 +177,7 @@ static void packets_are_chosen_where_they_pay(void **state)
         {4, 16, false, false, true, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        const struct render_params params = {.width = cases[i].side,
+        const whit_renderer_params params = {.width = cases[i].side,
                                              .height = cases[i].side,
                                              .depth = 1,
                                              .compile_async = cases[i].beside,
@@ -204,11 +204,10 @@ static void cut_loops_are_reported(void **state)
 {
     (void)state;
     for (int i = 0; i < 4; ++i) {
-        const struct render_params params = {.width = 8,
+        const whit_renderer_params params = {.width = 8,
                                              .height = 8,
                                              .depth = 0,
-                                             .packets =
-                                                 i & 1 ? RENDER_PACKETS_ON : RENDER_PACKETS_OFF};
+                                             .packets = i & 1 ? WHIT_PACKETS_ON : WHIT_PACKETS_OFF};
         const struct accel_params accel = {.flatten = (i & 2) != 0};
         struct fixture f = fixture_open(panes_scene(70000), &accel, &params);
         whit_result result = renderer_render(f.renderer);
@@ -244,7 +243,7 @@ static struct scene *lamps_scene(int lamps)
 static void many_lights_are_drawn(void **state)
 {
     (void)state;
-    const struct render_params params = {.width = 8, .height = 8, .depth = 0};
+    const whit_renderer_params params = {.width = 8, .height = 8, .depth = 0};
     struct picture picture = picture_of(lamps_scene(4000), NULL, &params);
     assert_true(picture.stats.rays_shadow > 4000);
     picture_finish(&picture);
@@ -255,7 +254,7 @@ static void many_lights_defer_no_one(void **state)
 {
     (void)state;
     bool cancel = false;
-    struct render_params params = {.width = 8, .height = 8, .depth = 0, .cancel = &cancel};
+    whit_renderer_params params = {.width = 8, .height = 8, .depth = 0, .cancel = &cancel};
     for (int lights = 4; lights <= 4000; lights += 3996) {
         struct fixture f = fixture_open(lamps_scene(lights), NULL, &params);
         struct progress progress = {.share = 1.0, .work_total = 1};
@@ -288,12 +287,8 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
     glass.fresnel = true;
     glass.ior = 1.5f;
     add_object(scene, mesh_icosphere(1, 2), glass, 0, 0, 0);
-    const struct render_params params = {.width = 64,
-                                         .height = 64,
-                                         .depth = 13,
-                                         .bailout = -1.0,
-                                         .tile_size = tile_size,
-                                         .count = count};
+    const whit_renderer_params params = {
+        .width = 64, .height = 64, .depth = 13, .tile_size = tile_size, .count = count};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct glass_picture glass_picture = {.picture = render_picture(&f)};
     if (count)
@@ -309,11 +304,11 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
 static void check_shares(const struct accel_params *accel)
 {
     enum { WIDTH = 64, HEIGHT = 32 };
-    const struct render_params params = {
-        .width = WIDTH, .height = HEIGHT, .tile_size = 32, .classes = RENDER_CLASSES_MANY};
+    const whit_renderer_params params = {
+        .width = WIDTH, .height = HEIGHT, .tile_size = 32, .classes = WHIT_CLASSES_MANY};
     struct fixture f = fixture_open(mixed_scene(), accel, &params);
     struct picture picture = render_picture(&f);
-    const struct render_stats *stats = &picture.stats;
+    const whit_stats *stats = &picture.stats;
     uint32_t worn[2][8] = {{0}}, all[2] = {0}, known = 0;
     assert_int_equal(stats->tiles, 2);
     assert_true(f.scene->material_count <= 8);
@@ -327,7 +322,7 @@ static void check_shares(const struct accel_params *accel)
         ++all[glass];
     }
     for (uint32_t i = 0; i < stats->share_count; ++i) {
-        const struct render_share *share = &stats->shares[i];
+        const whit_share *share = &stats->shares[i];
         bool glass = share->stage == RENDER_STAGE_SHADE_GLASS;
         print_message("  %s: %.3f\n", f.scene->materials[share->material].name, share->share);
         assert_true(fabs(share->share - (double)worn[glass][share->material] / all[glass]) < 1e-9);
@@ -353,7 +348,7 @@ static void shares_are_those_of_hits(void **state)
 static void shares_are_the_same_by_one_segment_and_by_two(void **state)
 {
     (void)state;
-    struct render_params params = {
+    whit_renderer_params params = {
         .width = 64, .height = 32, .tile_size = 32, .depth = 4, .segments = 1};
     struct picture one = picture_of(mixed_scene(), NULL, &params);
     params.segments = 2;
@@ -362,7 +357,7 @@ static void shares_are_the_same_by_one_segment_and_by_two(void **state)
     assert_true(one.stats.rays_refracted > 0 && one.stats.share_count > 1);
     assert_int_equal(one.stats.share_count, two.stats.share_count);
     for (uint32_t i = 0; i < one.stats.share_count; ++i) {
-        const struct render_share *a = &one.stats.shares[i], *b = &two.stats.shares[i];
+        const whit_share *a = &one.stats.shares[i], *b = &two.stats.shares[i];
         print_message("  material %u: %.6f, %.6f\n", a->material, a->share, b->share);
         assert_int_equal(a->material, b->material);
         assert_true(a->share == b->share);
@@ -379,7 +374,7 @@ static void full_queues_end_in_smaller_tiles(void **state)
         struct glass_picture large = glass_picture(64, count), small = glass_picture(16, count);
         assert_true(large.was_full && !small.was_full);
         assert_same_picture("smaller tiles", &large.picture, &small.picture);
-        const struct cost_sum *sum = &large.picture.stats.costs[RAY_REFRACTED];
+        const whit_cost *sum = &large.picture.stats.costs[RAY_REFRACTED];
         assert_memory_equal(sum, &small.picture.stats.costs[RAY_REFRACTED], sizeof *sum);
         assert_true((sum->rays > 0) == (count > 0));
         if (count)
@@ -395,7 +390,7 @@ static void cancel_and_time_limit_stop(void **state)
 {
     (void)state;
     bool cancel = true;
-    struct render_params params = {.width = 64, .height = 64, .cancel = &cancel};
+    whit_renderer_params params = {.width = 64, .height = 64, .cancel = &cancel};
     struct fixture f = fixture_open(plain_scene(), NULL, &params);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
     struct image image = {0};
@@ -430,17 +425,17 @@ static void nonsense_is_refused(void **state)
 {
     (void)state;
     struct fixture f = fixture_open(plain_scene(), NULL, NULL);
-    const struct render_params bad[] = {
+    const whit_renderer_params bad[] = {
         {.width = 0, .height = 4},
         {.width = 70000, .height = 4},
         {.samples = 3},
         {.tile_size = 8},
         {.depth = 1000},
-        {.camera = "nobody"},
-        {.camera = "0,0,0,0,0,0,0,1,0,40"},
-        {.camera = "0,0,1,0,0,0,0,1,0,180"},
-        {.camera = "0,0,1,0,0,0,0,1,0"},
-        {.camera = "nan,0,1,0,0,0,0,1,0,40"},
+        {.camera = {.name = "nobody"}},
+        {.camera = CAMERA_AT(0, 0, 0, 0, 0, 0, 0, 1, 0, 40)},
+        {.camera = CAMERA_AT(0, 0, 1, 0, 0, 0, 0, 1, 0, 180)},
+        {.camera = {.name = "0,0,1,0,0,0,0,1,0"}},
+        {.camera = {.name = "nan,0,1,0,0,0,0,1,0,40"}},
     };
     fixture_refuses(&f, bad, sizeof bad / sizeof *bad);
     fixture_close(&f);

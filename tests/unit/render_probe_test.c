@@ -160,7 +160,7 @@ static struct sums probe_picture(struct fixture *f)
 {
     struct sums sums = {0};
     struct picture before = render_picture(f);
-    const struct render_stats *stats = &before.stats;
+    const whit_stats *stats = &before.stats;
     uint32_t width = before.color.width, pixels = width * before.color.height;
     for (uint32_t i = 0; i < pixels; ++i) {
         struct probe_report report = probe(f, i % width, i / width, 0);
@@ -180,7 +180,7 @@ static struct sums probe_picture(struct fixture *f)
         assert_int_equal(sums.cut_bailout, stats->rays_cut_bailout);
     }
     /* The picture and its figures are what they were. */
-    struct render_stats later;
+    whit_stats later;
     struct image after = {0};
     renderer_get_stats(f->renderer, &later);
     assert_int_equal(later.dispatches, stats->dispatches);
@@ -200,8 +200,8 @@ static struct sums probe_picture(struct fixture *f)
     return sums;
 }
 
-static const struct render_params small = {
-    .width = SIDE, .height = SIDE, .camera = glass_camera, .depth = 5, .bailout = 0.05};
+static const whit_renderer_params small = {
+    .width = SIDE, .height = SIDE, .camera = GLASS_CAMERA, .depth = 5, .bailout = 0.05};
 
 static void assert_all_kinds(const struct sums *sums)
 {
@@ -267,7 +267,7 @@ static struct scene *sieve_scene(void)
     return scene;
 }
 
-static const struct render_params sieve_params = {
+static const whit_renderer_params sieve_params = {
     .width = SIDE, .height = 6, .depth = 3, .bailout = 0.05, .light_samples = 4};
 
 static void surfaces_let_rays_pass(void **state)
@@ -275,7 +275,7 @@ static void surfaces_let_rays_pass(void **state)
     (void)state;
     static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
     for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
-        struct render_params params = sieve_params;
+        whit_renderer_params params = sieve_params;
         params.numerics = levels[i];
         struct fixture f = fixture_open(sieve_scene(), NULL, &params);
         struct sums sums = probe_picture(&f);
@@ -291,7 +291,7 @@ static void trees_do_not_matter(void **state)
 {
     (void)state;
     static const struct accel_params trees[] = {{.mesh.builder = BVH_NONE}, {.flatten = true}};
-    struct render_params params = sieve_params;
+    whit_renderer_params params = sieve_params;
     params.effects_removed = UINT64_C(1) << SCENE_EFFECT_REFRACTION |
                              UINT64_C(1) << SCENE_EFFECT_TEXTURES |
                              UINT64_C(1) << SCENE_EFFECT_AREA_LIGHTS;
@@ -311,7 +311,7 @@ static void scenes_of_all_kinds(void **state)
     (void)state;
     static const char *const names[] = {"default", "glass-of-water", "layers"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
-        struct render_params params = {.width = 6, .height = 5, .depth = 6, .light_samples = 1};
+        whit_renderer_params params = {.width = 6, .height = 5, .depth = 6, .light_samples = 1};
         struct fixture f = fixture_open(file_scene(names[i]), NULL, &params);
         print_message("  %s\n", names[i]);
         struct sums sums = probe_picture(&f);
@@ -326,13 +326,13 @@ static void scenes_of_all_kinds(void **state)
 static void another_time_and_size(void **state)
 {
     (void)state;
-    const struct render_params params = {.width = SIDE, .height = 6, .depth = 3};
+    const whit_renderer_params params = {.width = SIDE, .height = 6, .depth = 3};
     struct fixture f = fixture_open(file_scene("spin"), NULL, &params);
     struct sums before = probe_picture(&f);
     assert_int_equal(renderer_set_time(f.renderer, 0.7), WHIT_OK);
     struct sums after = probe_picture(&f);
     assert_true(before.rays > 0 && after.rays > 0 && before.rays != after.rays);
-    struct render_params other = params;
+    whit_renderer_params other = params;
     other.width = 12;
     other.height = 9; /* two rows of blocks */
     other.depth = 4;
@@ -346,7 +346,7 @@ static void another_time_and_size(void **state)
 static void color_is_of_all_samples(void **state)
 {
     (void)state;
-    struct render_params params = small;
+    whit_renderer_params params = small;
     params.samples = 4;
     params.width = params.height = 4;
     struct fixture f = fixture_open(glass_scene(), NULL, &params);

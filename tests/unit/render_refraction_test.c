@@ -29,7 +29,7 @@ static void slab_keeps_directions(void **state)
     struct scene *scene = lens_scene((double[]){0, 0, 5});
     set_height_sky(scene);
     add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
-    const struct render_params params = {.width = 24, .height = 24, .depth = 8, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 24, .height = 24, .depth = 8};
     struct image image = color_of(scene, NULL, &params);
     double worst = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
@@ -51,7 +51,7 @@ static void slab_moves_rays_aside(void **state)
     struct scene *scene = lens_scene((double[]){0, 0, 5});
     add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
     add_coordinate_wall(scene, -2, 8);
-    const struct render_params params = {.width = 24, .height = 24, .depth = 2, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 24, .height = 24, .depth = 2};
     struct image image = color_of(scene, NULL, &params);
     double worst = 0.0, worst_light = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
@@ -119,8 +119,7 @@ static void ball_bends_rays_to_its_focus(void **state)
         struct scene *scene = lens_scene((double[]){0, 0, 5});
         add_object(scene, mesh_balls((double[]){0, 0, 0, 1}, 1), clear_glass(1.5f, 0), 0, 0, 0);
         add_coordinate_wall(scene, -walls[w], 4);
-        const struct render_params params = {
-            .width = 32, .height = 32, .depth = 2, .bailout = -1.0};
+        const whit_renderer_params params = {.width = 32, .height = 32, .depth = 2};
         struct image image = color_of(scene, NULL, &params);
         double worst = 0;
         uint32_t through = 0;
@@ -174,7 +173,7 @@ static void leave_mirrors(double turn)
         add_object(scene, mesh_box(1, 13, 13), mirror(1, 1, 1), at[0], at[1], at[2]);
         memcpy(scene->nodes[scene->node_count - 1].rotation, q, sizeof q);
     }
-    const struct render_params params = {.width = 1, .height = 1, .depth = 255, .bailout = -1.0};
+    const whit_renderer_params params = {.width = 1, .height = 1, .depth = 255};
     struct picture picture = picture_of(scene, NULL, &params);
     const float *color = picture.color.pixels;
     double off = (double)color[0] / (double)color[2] - out[1] / way;
@@ -207,7 +206,7 @@ static void beer_from_nothing_to_infinity(void **state)
         struct scene_material m = clear_glass(1.0f, 0);
         set_rgb(m.absorption, 0, absorptions[i], 1.0f);
         add_object(scene, mesh_box(20, 20, 1), m, 0, 0, 0);
-        const struct render_params params = {.width = 1, .height = 1, .depth = 4, .bailout = -1.0};
+        const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
         struct image image = color_of(scene, NULL, &params);
         const float *color = image.pixels;
         assert_true(color[0] == 1.0f);
@@ -244,7 +243,7 @@ static void endless_media_are_dark(void **state)
     }
     cube.triangle_count = kept;
     add_object(scene, cube, m, 0, 0, 0);
-    const struct render_params params = {.width = 1, .height = 1, .depth = 4};
+    const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
     struct fixture f = fixture_open(scene, NULL, &params);
     struct image image = render(&f);
     assert_true(f.renderer->frame.eye_media0 != 0);
@@ -272,8 +271,7 @@ static void paths_are_reversible(void **state)
             add_object(scene, mesh_box(80, 40, 80), clear_glass(1.5f, 0), 0, -20, 0);
             add_object(scene, mesh_box(1, 1, 1), unlit(1, 1, 1), way ? -slopes[i] * 3 : tangent * 3,
                        way ? 3 : -3, 0);
-            const struct render_params params = {
-                .width = 1, .height = 1, .depth = 1, .bailout = -1.0};
+            const whit_renderer_params params = {.width = 1, .height = 1, .depth = 1};
             struct image image = color_of(scene, NULL, &params);
             share[way] = (double)image.pixels[0];
             image_finish(&image);

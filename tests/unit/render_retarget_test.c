@@ -3,17 +3,17 @@
 #include "render/renderer.h"
 #include "render_scenes.h"
 
-static const char *const aside = "3,2.5,4,0,0.6,0,0,1,0,35";
+#define ASIDE CAMERA_AT(3, 2.5, 4, 0, 0.6, 0, 0, 1, 0, 35)
 
 /* Every step changes something else: size, samples, camera, limits, and back. */
-static const struct render_params steps[] = {
+static const whit_renderer_params steps[] = {
     {.width = 20, .height = 16, .depth = 4},
     {.width = 12, .height = 20, .depth = 4},
-    {.width = 12, .height = 20, .depth = 4, .camera = aside},
-    {.width = 12, .height = 20, .depth = 4, .camera = aside, .samples = 4},
+    {.width = 12, .height = 20, .depth = 4, .camera = ASIDE},
+    {.width = 12, .height = 20, .depth = 4, .camera = ASIDE, .samples = 4},
     {.width = 31, .height = 17, .depth = 9, .samples = 1},
     {.width = 31, .height = 17, .depth = 0},
-    {.width = 31, .height = 17, .depth = 2, .light_samples = 4, .bailout = -1.0},
+    {.width = 31, .height = 17, .depth = 2, .light_samples = 4},
     {.width = 20, .height = 16, .depth = 4, .adaptive = 0.1},
     {.width = 16, .height = 16, .depth = 4, .adaptive = 0.1, .time_s = 0.7},
     {.width = 20, .height = 16, .depth = 4},
@@ -21,12 +21,11 @@ static const struct render_params steps[] = {
 enum { STEPS = sizeof steps / sizeof *steps };
 
 static void check_same(const struct fixture *f, const char *name,
-                       const struct render_params *params)
+                       const whit_renderer_params *params)
 {
     struct fixture fresh = {.device = f->device, .accel = f->accel};
-    struct render_params own = *params;
-    own.packets =
-        RENDER_PACKETS_OFF; /* else a matter of the size that the renderer was made with */
+    whit_renderer_params own = *params;
+    own.packets = WHIT_PACKETS_OFF; /* else a matter of the size that the renderer was made with */
     struct picture picture = render_picture(f);
     fixture_renew(&fresh, &own);
     struct picture expected = render_picture(&fresh);
@@ -62,8 +61,8 @@ static void views_are_those_of_new_renderers(void **state)
 static void media_touch_for_cameras_far_away(void **state)
 {
     (void)state;
-    struct render_params far_away = steps[0];
-    far_away.camera = "0.6,2.35,900,0.42,1.62,0,0,1,0,0.3";
+    whit_renderer_params far_away = steps[0];
+    far_away.camera = (whit_camera)CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3);
     struct fixture f = fixture_open(file_scene("whitted"), NULL, &steps[0]);
     assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     assert_int_equal(renderer_set_view(f.renderer, &far_away), WHIT_OK);
@@ -94,8 +93,8 @@ static void nonsense_is_refused(void **state)
 {
     (void)state;
     struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
-    struct render_params wrong = steps[0];
-    wrong.camera = "no such camera";
+    whit_renderer_params wrong = steps[0];
+    wrong.camera = (whit_camera){.name = "no such camera"};
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
     wrong = steps[0];
@@ -110,8 +109,8 @@ static void nonsense_is_refused(void **state)
 static void a_larger_view_keeps_the_kernels(void **state)
 {
     (void)state;
-    const struct render_params small = {.width = 20, .height = 16, .depth = 4};
-    const struct render_params large = {.width = 600, .height = 300, .depth = 4};
+    const whit_renderer_params small = {.width = 20, .height = 16, .depth = 4};
+    const whit_renderer_params large = {.width = 600, .height = 300, .depth = 4};
     struct fixture f = fixture_open(file_scene("whitted"), NULL, &small);
     assert_true(f.renderer->few_kernels && render_few_kernels(&small));
     assert_false(render_few_kernels(&large));

@@ -27,7 +27,7 @@ static int open_scene(void **state)
                                                 .edge_v = {0, 0, 1.3},
                                                 .color = {2.1f, 1.7f, 1.3f}});
     scene->cameras[0].lens_radius = 0.15f;
-    const struct render_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3};
+    const whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3};
     f = fixture_open(scene, NULL, &params);
     return 0;
 }
@@ -41,7 +41,7 @@ static int close_scene(void **state)
 
 static void draw(uint32_t first, uint32_t count, uint32_t tile_size, float *pixels)
 {
-    const struct render_params params = {.width = WIDTH,
+    const whit_renderer_params params = {.width = WIDTH,
                                          .height = HEIGHT,
                                          .depth = 3,
                                          .light_samples = 4,
@@ -118,7 +118,7 @@ static void full_queues_do_not_matter(void **state)
 static void large_pictures_have_room_for_sums(void **state)
 {
     (void)state;
-    const struct render_params params = {.width = 4096, .height = 2048, .samples = 4096};
+    const whit_renderer_params params = {.width = 4096, .height = 2048, .samples = 4096};
     const struct pixel_buffers *p = &f.renderer->picture.buffers;
     assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
     uint64_t limit = device_get_info(f.device)->max_storage_range_bytes;
@@ -131,7 +131,7 @@ static void large_pictures_have_room_for_sums(void **state)
 static void other_samples_are_refused(void **state)
 {
     (void)state;
-    static const struct render_params wrong[] = {{.samples = 2},
+    static const whit_renderer_params wrong[] = {{.samples = 2},
                                                  {.samples = 8},
                                                  {.samples = 3},
                                                  {.samples = 16384},
@@ -142,11 +142,11 @@ static void other_samples_are_refused(void **state)
                                                  {.samples = 4, .first_sample = 4096}};
     struct log silent = {.level = WHIT_LOG_ERROR};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-        struct render_params params = wrong[i];
+        whit_renderer_params params = wrong[i];
         assert_int_equal(params_check(&silent, &params), WHIT_ERROR_USAGE);
     }
     for (uint32_t n = 1; n <= WHIT_SAMPLES_MAX; n *= 4) {
-        struct render_params params = {.samples = n, .first_sample = WHIT_SAMPLES_MAX - n};
+        whit_renderer_params params = {.samples = n, .first_sample = WHIT_SAMPLES_MAX - n};
         assert_int_equal(params_check(&silent, &params), WHIT_OK);
     }
 }

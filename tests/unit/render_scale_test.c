@@ -49,7 +49,7 @@ static void scale_scene(struct scene *scene, double by)
 
 static void compare_sizes(bool lamp, const double *scales, size_t count)
 {
-    const struct render_params params = {.width = 48, .height = 36, .depth = 6};
+    const whit_renderer_params params = {.width = 48, .height = 36, .depth = 6};
     struct image first = color_of(still_life(lamp), NULL, &params);
     for (size_t i = 0; i < count; ++i) {
         struct scene *scene = still_life(lamp);

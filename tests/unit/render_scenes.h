@@ -69,6 +69,7 @@ static inline struct scene *glass_scene(void)
     return glass_scene_of(24, 12);
 }
 
-static const char glass_camera[] = "0,4,8,0,0.5,0,0,1,0,40";
+#define GLASS_CAMERA CAMERA_AT(0, 4, 8, 0, 0.5, 0, 0, 1, 0, 40)
+static const whit_camera glass_camera = GLASS_CAMERA;
 
 #endif

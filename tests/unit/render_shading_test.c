@@ -3,7 +3,7 @@
 #include "picture_fixture.h"
 
 enum { SIDE = 9 };
-static const struct render_params all_params = {
+static const whit_renderer_params all_params = {
     .width = SIDE, .height = SIDE, .depth = 3, .all_effects = true};
 
 /* A texture of one texel. */

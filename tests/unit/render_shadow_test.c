@@ -27,7 +27,7 @@ static struct scene *pane_scene(bool blends)
 
 static void check_pane(bool blends)
 {
-    const struct render_params params = {.width = 201, .height = 201, .depth = 2};
+    const whit_renderer_params params = {.width = 201, .height = 201, .depth = 2};
     struct image image = color_of(pane_scene(blends), NULL, &params);
     uint32_t clear = 0, dark = 0, changes = 0;
     for (uint32_t x = 0; x < image.width; ++x) {
@@ -70,7 +70,7 @@ static const float sigma[3] = {0.3f, 0.7f, 1.5f};
 struct block {
     const char *name;
     double height, y;
-    const char *camera;
+    const whit_camera *camera;
     double sun[3], lamp; /* direction of the one, height of the other; that which is not 0 */
     float strength;
     double light;  /* that reaches the floor where nothing absorbs */
@@ -97,22 +97,23 @@ static struct scene *block_scene(const struct block *block)
 static void bodies_absorb_along_the_way(void **state)
 {
     (void)state;
-    static const char beside[] = "3.9,0.3,0,0,0,0,0,1,0,0.01"; /* under the block */
-    static const char above[] = "0,8,0,0,0,0,0,0,-1,0.01";
+    /* The first is under the block. */
+    static const whit_camera beside = CAMERA_AT(3.9, 0.3, 0, 0, 0, 0, 0, 1, 0, 0.01),
+                             above = CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.01);
     const double slant = sqrt(1.25);
     const struct block blocks[] = {
-        {"sun", 1, 2, beside, {0, -1, 0}, 0, 2, 2, 1, 0},
-        {"slanting sun", 1, 2, beside, {1, -2, 0}, 0, 2, 2 / slant, slant, 0},
-        {"lamp", 1, 2, beside, {0}, 5, 50, 2, 1, 0},
-        {"lamp inside", 2, 2, beside, {0}, 2, 8, 2, 1, 0},
-        {"sun on the floor inside", 2, 0, above, {0, -1, 0}, 0, 2, 2, 1, 1},
-        {"lamp on the floor inside", 2, 0, above, {0}, 2, 8, 2, 1, 1},
-        {"lamp and floor inside", 2, 0, above, {0}, 0.5, 0.5f, 2, 0.5, 1},
+        {"sun", 1, 2, &beside, {0, -1, 0}, 0, 2, 2, 1, 0},
+        {"slanting sun", 1, 2, &beside, {1, -2, 0}, 0, 2, 2 / slant, slant, 0},
+        {"lamp", 1, 2, &beside, {0}, 5, 50, 2, 1, 0},
+        {"lamp inside", 2, 2, &beside, {0}, 2, 8, 2, 1, 0},
+        {"sun on the floor inside", 2, 0, &above, {0, -1, 0}, 0, 2, 2, 1, 1},
+        {"lamp on the floor inside", 2, 0, &above, {0}, 2, 8, 2, 1, 1},
+        {"lamp and floor inside", 2, 0, &above, {0}, 0.5, 0.5f, 2, 0.5, 1},
     };
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i) {
         const struct block *b = &blocks[i];
-        const struct render_params params = {
-            .width = 1, .height = 1, .depth = 4, .camera = b->camera};
+        const whit_renderer_params params = {
+            .width = 1, .height = 1, .depth = 4, .camera = *b->camera};
         struct image image = color_of(block_scene(b), NULL, &params);
         print_message("  %s\n", b->name);
         for (int c = 0; c < 3; ++c)
@@ -126,9 +127,9 @@ static void knobs_make_shadows_opaque(void **state)
 {
     (void)state;
     for (int all = 0; all < 2; ++all) {
-        struct render_params params = {.width = 201, .height = 1, .opaque_shadows = true};
+        whit_renderer_params params = {.width = 201, .height = 1, .shadows = WHIT_SHADOWS_OPAQUE};
         params.all_effects = all;
-        params.camera = "0,8,0,0,0,0,0,0,-1,0.17";
+        params.camera = (whit_camera)CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.17);
         for (int blends = 0; blends < 2; ++blends) {
             struct image image = color_of(pane_scene(blends), NULL, &params);
             uint32_t dark = 0;
@@ -155,7 +156,7 @@ static struct scene *ball_scene(uint32_t segments)
 
 static struct image ball_picture(uint32_t segments, bool without)
 {
-    struct render_params params = {.width = 120, .height = 120};
+    whit_renderer_params params = {.width = 120, .height = 120};
     if (without)
         params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
     return color_of(ball_scene(segments), NULL, &params);
@@ -236,7 +237,7 @@ static void flat_meshes_do_not_change(void **state)
     for (int normals = 0; normals < 2; ++normals) {
         struct image images[2];
         for (int i = 0; i < 2; ++i) {
-            struct render_params params = {
+            whit_renderer_params params = {
                 .width = 64, .height = 64, .depth = 4, .all_effects = true};
             if (i)
                 params.effects_removed = UINT64_C(1) << SCENE_EFFECT_TERMINATOR;
@@ -278,7 +279,7 @@ static void closed_rooms_stay_dark(void **state)
         add_object(scene, room, matte(1, 1, 1), 0, 0, 0);
         for (size_t i = 0; i < sizeof lamps / sizeof *lamps; ++i)
             scene_put_lamp(scene, lamps[i][0], lamps[i][1], lamps[i][2], 5.0f);
-        const struct render_params params = {.width = 100, .height = 100};
+        const whit_renderer_params params = {.width = 100, .height = 100};
         struct image image = color_of(scene, NULL, &params);
         assert_true(red_sum(&image) == 0.0);
         image_finish(&image);
@@ -315,8 +316,8 @@ static void catchers_show_shadows_alone(void **state)
 {
     (void)state;
     for (int all = 0; all < 2; ++all) {
-        struct render_params params = {.width = 201, .height = 1, .depth = 4, .bailout = -1.0};
-        params.camera = "0,8,0,0,0,0,0,0,-1,0.17";
+        whit_renderer_params params = {.width = 201, .height = 1, .depth = 4};
+        params.camera = (whit_camera)CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.17);
         params.all_effects = all;
         struct image image = color_of(catcher_scene(true), NULL, &params);
         uint32_t clear = 0, dark = 0, red = 0;
@@ -331,7 +332,7 @@ static void catchers_show_shadows_alone(void **state)
         assert_true(clear > 80 && dark > 30 && red > 30 && clear + dark + red >= 195);
         image_finish(&image);
     }
-    const struct render_params params = {.width = 1, .height = 1, .depth = 4};
+    const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
     struct image dark = color_of(catcher_scene(false), NULL, &params);
     assert_true(dark.pixels[0] == 0.5f);
     image_finish(&dark);
@@ -370,7 +371,7 @@ static void cut_walks_through_sheets_are_reported(void **state)
         set_rgb(scene->environment.horizon, 0.5f, 0.5f, 0.5f);
         set_rgb(scene->environment.ground, 0.5f, 0.5f, 0.5f);
         scene_put_sun(scene, 0, -1, 0, lit ? 0.5f : 0.0f);
-        const struct render_params params = {.width = 1, .height = 1, .depth = 2};
+        const whit_renderer_params params = {.width = 1, .height = 1, .depth = 2};
         struct fixture f = fixture_open(scene, NULL, &params);
         whit_result result = renderer_render(f.renderer);
         print_message("  %s: %s\n", lit ? "light" : "eye", whit_result_name(result));
@@ -410,7 +411,7 @@ static struct scene_mesh sheets_mesh(double offset, uint32_t ulps)
 static uint32_t lit_pixels(double offset, uint32_t ulps)
 {
     static const double n[3] = {0.6, -0.48, 0.64};
-    const struct render_params params = {.width = 33, .height = 33, .depth = 1};
+    const whit_renderer_params params = {.width = 33, .height = 33, .depth = 1};
     const double middle_of_floor[3] = {offset, offset, offset};
     double eye[3];
     for (int k = 0; k < 3; ++k)

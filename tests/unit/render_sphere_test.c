@@ -113,7 +113,7 @@ static struct scene *ball_scene(enum look look, bool fine, bool stretched)
     return scene;
 }
 
-static const struct render_params small = {.width = 64, .height = 48, .depth = 5};
+static const whit_renderer_params small = {.width = 64, .height = 48, .depth = 5};
 
 /* The triangles lie at most 1 - cos(pi / 256) = 8e-5 within the sphere, a hundredth of a pixel, so
    pixels whose middle is that near to an edge may differ: edges of the ball, its shadow and squares
@@ -185,7 +185,7 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
     scene_put(scene, mesh_plane(1.0), &(struct put){.material = &leaf, .matrix = &placed});
     scene_put_sun(scene, 0.6, -1, 0, 1.0f); /* the shadow is 0.6 aside */
     const struct accel_params flat = {.flatten = true};
-    struct render_params params = picture_params;
+    whit_renderer_params params = picture_params;
     params.all_effects = all;
     struct image image = color_of(scene, how & ONE_SIDED_FLAT ? &flat : NULL, &params);
     memcpy(seen, middle(&image), 3 * sizeof(float));

@@ -123,7 +123,7 @@ static void instances_equal_twin(void **state)
 
 static struct fixture open_at(struct scene *scene, uint32_t numerics)
 {
-    const struct render_params params = {.width = 16, .height = 16, .numerics = numerics};
+    const whit_renderer_params params = {.width = 16, .height = 16, .numerics = numerics};
     return fixture_open(scene, NULL, &params);
 }
 
@@ -176,7 +176,7 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
 static void check_packets(struct scene *scene, const struct accel_params *params, const char *label)
 {
     enum { MANY = 70000 }; /* the last packet is not full */
-    const struct render_params on = {.width = 16, .height = 16, .packets = RENDER_PACKETS_ON};
+    const whit_renderer_params on = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
     struct fixture f = fixture_open(scene, params, &on);
     struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
     struct gpu_hit *hits = array_alloc(MANY, sizeof *hits);

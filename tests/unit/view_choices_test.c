@@ -46,7 +46,9 @@ TEST(scenes_are_told_by_their_files)
 {
     struct choice_change changes[CHOICE_CHANGES_MAX];
     const struct settings a = {.scene = "some/where/a.json"};
-    struct settings b = {.scene = "b.obj", .effects = "-textures"};
+    struct settings b = {.scene = "b.obj"};
+    char why[SETTING_WHY_BYTES];
+    assert_true(effects_read("-textures", &b.picture, why));
     assert_int_equal(choice_changes(&a, &b, changes), 2);
     assert_string_equal(changes[0].name, "scene");
     assert_string_equal(changes[0].a, "a.json");

@@ -122,7 +122,7 @@ static whit_result create_renderers(struct bench *bench, struct bench_case *case
             .width = c->width,
             .height = c->height,
             .traversal = c->traversal,
-            .effects = c->effects,
+            .shadows = c->shadows,
             .count = counting,
             .cancel = &cli_cancel,
         };

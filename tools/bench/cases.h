@@ -8,7 +8,7 @@ struct bench_case {
     const char *label, *scene; /* by its name; neighbours with the same one share it */
     whit_accel_params accel_params;
     whit_traversal traversal;
-    const char *effects;         /* NULL: what the scene calls for */
+    whit_shadows shadows;
     uint32_t shrink;             /* its picture has 1/shrink of width and height; 0: all */
     double report_s, report_fps; /* what the report says; 0: nothing */
     struct bench_scene loaded;

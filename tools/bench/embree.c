@@ -27,7 +27,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 enum { CHUNK = 4096, STREAM = 256, THREADS_MAX = 64, LINE = 4200 };
 enum way { WAY_SINGLE, WAY_PACKETS, WAY_STREAM, WAYS };

@@ -22,25 +22,25 @@ static bool add_ray(struct own_rays *to, uint32_t light, const whit_ray *ray)
 }
 
 /* A shadow ray as long as the way to its light, the others without end. */
-static whit_ray ray_of(const struct frame *frame, const whit_tree_ray *from)
+static whit_ray ray_of(const struct frame *frame, const whit_probe_ray *from)
 {
-    bool shadow = from->kind == WHIT_TREE_SHADOW;
+    bool shadow = from->kind == WHIT_RAY_SHADOW;
     const double *lo = frame->loaded.info.lo, *hi = frame->loaded.info.hi;
     double size = fmax(hi[0] - lo[0], fmax(hi[1] - lo[1], hi[2] - lo[2])), length = size;
     if (shadow) {
         whit_light_info light;
         whit_scene_get_light(frame->loaded.scene, from->light, &light);
-        const double *p = light.position, *o = from->origin;
+        const double *p = light.position;
+        const float *o = from->ray.origin;
         length = light.kind[0] == 'd'
                      ? 2.0 * size
-                     : sqrt((p[0] - o[0]) * (p[0] - o[0]) + (p[1] - o[1]) * (p[1] - o[1]) +
-                            (p[2] - o[2]) * (p[2] - o[2]));
+                     : hypot(hypot(p[0] - (double)o[0], p[1] - (double)o[1]), p[2] - (double)o[2]);
     }
-    whit_ray ray = {.t_min = from->kind == WHIT_TREE_PRIMARY ? 0.0f : 1e-4f,
+    whit_ray ray = {.t_min = from->kind == WHIT_RAY_PRIMARY ? 0.0f : 1e-4f,
                     .t_max = shadow ? 1.0f - 1e-4f : INFINITY};
     for (int k = 0; k < 3; ++k) {
-        ray.origin[k] = (float)from->origin[k];
-        ray.dir[k] = (float)(from->dir[k] * length);
+        ray.origin[k] = from->ray.origin[k];
+        ray.dir[k] = (float)((double)from->ray.dir[k] * length);
     }
     return ray;
 }
@@ -48,17 +48,17 @@ static whit_ray ray_of(const struct frame *frame, const whit_tree_ray *from)
 static whit_result take_pixel(struct frame *frame, uint32_t x, uint32_t y, struct own_rays *closest,
                               struct own_rays *shadow)
 {
-    whit_tree_ray *rays;
+    whit_probe_ray *rays;
     uint32_t count;
     whit_result result = whit_reference_rays(frame->reference, x, y, 0, &rays, &count);
     if (result != WHIT_OK)
         return result;
     bool room = true;
     for (uint32_t i = 0; room && i < count; ++i) {
-        if (rays[i].end == WHIT_TREE_DEPTH || rays[i].end == WHIT_TREE_BAILOUT)
+        if (rays[i].end == WHIT_PROBE_DEPTH || rays[i].end == WHIT_PROBE_BAILOUT)
             continue;
         const whit_ray ray = ray_of(frame, &rays[i]);
-        bool is_shadow = rays[i].kind == WHIT_TREE_SHADOW;
+        bool is_shadow = rays[i].kind == WHIT_RAY_SHADOW;
         room = add_ray(is_shadow ? shadow : closest, is_shadow ? rays[i].light : 0, &ray);
     }
     whit_memory_destroy(rays);

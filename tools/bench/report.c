@@ -153,8 +153,8 @@ static void judge_orders(struct table *table, const struct bench_case *cases)
 static struct bench_case trees[] = {
     {BUILD("tree", .bins = 7), .scene = "cube", .report_fps = 120.0},
     {BUILD("no tree", .build = WHIT_BUILD_NONE), .scene = "cube", .report_fps = 40.0},
-    {BUILD("tree", .bins = 7), .scene = "34k", .effects = "-shadows"},
-    {BUILD("no tree", .build = WHIT_BUILD_NONE), .scene = "34k", .effects = "-shadows",
+    {BUILD("tree", .bins = 7), .scene = "34k", .shadows = WHIT_SHADOWS_NONE},
+    {BUILD("no tree", .build = WHIT_BUILD_NONE), .scene = "34k", .shadows = WHIT_SHADOWS_NONE,
      .shrink = 20},
 };
 static struct bench_case builds[] = {

@@ -64,7 +64,7 @@ static void print_row(const struct study *study, const struct study_row *row, in
     for (uint32_t i = 0; i < study->thread_count; ++i)
         printf("%8.2f ", row->build_ms[i].median);
     printf("%9u%6u%8.2f%8.3f%7.1f %%%8.2f%8.2f", row->info.node_count, row->info.depth,
-           report->sah_cost, report->epo, 100.0 * report->overlap, report->measured_visits,
+           report->sah_cost, report->epo, 100.0 * report->overlap, report->measured_inner_nodes,
            report->measured_triangles);
     for (uint32_t kind = 0; study->traced && kind < STUDY_KINDS; ++kind) {
         if (study->rays[kind].count)
@@ -122,8 +122,9 @@ static void print_details(const struct study *study, const struct study_row *row
     printf("  %-9sSAH %.3f, EPO %.4f, siblings share %.2f %%\n", "cost", report->sah_cost,
            report->epo, 100.0 * report->overlap);
     printf("  %-9s%.2f pairs and %.2f triangles a line by areas, %.2f and %.2f by %llu lines\n",
-           "visits", report->predicted_visits, report->predicted_triangles, report->measured_visits,
-           report->measured_triangles, (unsigned long long)report->measured_rays);
+           "visits", report->predicted_inner_nodes, report->predicted_triangles,
+           report->measured_inner_nodes, report->measured_triangles,
+           (unsigned long long)report->measured_rays);
     print_rates(study, row);
     if (study->validate)
         puts("  valid    yes");
@@ -227,9 +228,9 @@ static json_t *row_document(const struct study *study, const struct study_row *r
     document_number(object, "epo", report->epo);
     document_number(object, "overlap", report->overlap);
     document_put(object, "predicted",
-                 visits_document(report->predicted_visits, report->predicted_triangles));
+                 visits_document(report->predicted_inner_nodes, report->predicted_triangles));
     document_put(object, "measured",
-                 visits_document(report->measured_visits, report->measured_triangles));
+                 visits_document(report->measured_inner_nodes, report->measured_triangles));
     document_count(object, "measured_lines", report->measured_rays);
     document_put(object, "mrays_per_s", rates_document(study, row));
     document_put(object, "valid", study->validate ? json_true() : json_null());

@@ -5,8 +5,7 @@
 
 #include "app/bvh/study.h"
 #include "base/random.h"
-
-static const double PI = 3.14159265358979323846;
+#include "base/vec.h"
 
 struct vector {
     double x, y, z;

@@ -51,8 +51,8 @@ static void print_row(const struct cost_report *a, const struct cost_row *x,
     printf("  %-20s %9.3g %9.3g", verdict_of(a, x, b, y), x->error.rmse, y->error.rmse);
     if (x->hits[COST_AIMED].traced && y->hits[COST_AIMED].traced)
         snprintf(wrong, sizeof wrong, "%llu %llu",
-                 (unsigned long long)x->hits[COST_AIMED].judged.wrong,
-                 (unsigned long long)y->hits[COST_AIMED].judged.wrong);
+                 (unsigned long long)x->hits[COST_AIMED].judged.tally.wrong,
+                 (unsigned long long)y->hits[COST_AIMED].judged.tally.wrong);
     printf("  %s\n", wrong);
 }
 

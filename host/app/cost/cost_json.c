@@ -62,12 +62,12 @@ static json_t *hits_document(const struct cost_hits *hits)
         return json_null();
     json_t *out = document_object();
     document_flag(out, "unanswered", hits->unanswered);
-    document_count(out, "rays", judged->rays);
-    document_count(out, "wrong", judged->wrong);
-    document_count(out, "leaks", judged->leaks);
-    document_count(out, "misses", judged->misses);
-    document_count(out, "false_hits", judged->false_hits);
-    document_count(out, "other_ids", judged->other_ids);
+    document_count(out, "rays", judged->tally.rays);
+    document_count(out, "wrong", judged->tally.wrong);
+    document_count(out, "leaks", judged->tally.leaks);
+    document_count(out, "misses", judged->tally.misses);
+    document_count(out, "false_hits", judged->tally.false_hits);
+    document_count(out, "other_ids", judged->tally.other_ids);
     document_count(out, "non_finite", judged->non_finite);
     document_count(out, "ulp_rays", judged->ulp_rays);
     document_number(out, "ulp_median", judged->ulp_median);
@@ -259,12 +259,12 @@ static void read_hits(const json_t *object, struct cost_hits *hits)
 {
     hits->traced = json_is_object(object);
     hits->unanswered = json_is_true(json_object_get(object, "unanswered"));
-    hits->judged.rays = whole(object, "rays");
-    hits->judged.wrong = whole(object, "wrong");
-    hits->judged.leaks = whole(object, "leaks");
-    hits->judged.misses = whole(object, "misses");
-    hits->judged.false_hits = whole(object, "false_hits");
-    hits->judged.other_ids = whole(object, "other_ids");
+    hits->judged.tally.rays = whole(object, "rays");
+    hits->judged.tally.wrong = whole(object, "wrong");
+    hits->judged.tally.leaks = whole(object, "leaks");
+    hits->judged.tally.misses = whole(object, "misses");
+    hits->judged.tally.false_hits = whole(object, "false_hits");
+    hits->judged.tally.other_ids = whole(object, "other_ids");
     hits->ms = number(object, "ms", -1.0);
 }
 

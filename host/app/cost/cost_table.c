@@ -87,8 +87,9 @@ void cost_hit_cells(const struct cost_row *row, enum cost_set set, struct cost_c
 {
     const struct cost_hits *hits = &row->hits[set];
     const whit_judgement *judged = &hits->judged;
-    const uint64_t counts[] = {judged->rays,   judged->wrong,      judged->leaks,
-                               judged->misses, judged->false_hits, judged->other_ids};
+    const uint64_t counts[] = {judged->tally.rays,       judged->tally.wrong,
+                               judged->tally.leaks,      judged->tally.misses,
+                               judged->tally.false_hits, judged->tally.other_ids};
     const double ulps[] = {judged->ulp_median, judged->ulp_999, judged->ulp_max};
     memset(cells, 0, sizeof *cells);
     put(cells->text[0], "%s", row->knob);
@@ -420,12 +421,12 @@ static void put_csv_hits(FILE *to, const struct cost_hits *hits)
 {
     const whit_judgement *judged = &hits->judged;
     bool known = hits->traced && !hits->unanswered;
-    put_count(to, known, judged->rays);
-    put_count(to, known, judged->wrong);
-    put_count(to, known, judged->leaks);
-    put_count(to, known, judged->misses);
-    put_count(to, known, judged->false_hits);
-    put_count(to, known, judged->other_ids);
+    put_count(to, known, judged->tally.rays);
+    put_count(to, known, judged->tally.wrong);
+    put_count(to, known, judged->tally.leaks);
+    put_count(to, known, judged->tally.misses);
+    put_count(to, known, judged->tally.false_hits);
+    put_count(to, known, judged->tally.other_ids);
     put_count(to, known, judged->non_finite);
     put_number(to, known, judged->ulp_median);
     put_number(to, known, judged->ulp_999);

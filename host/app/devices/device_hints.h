@@ -2,7 +2,7 @@
 #ifndef APP_DEVICES_DEVICE_HINTS_H
 #define APP_DEVICES_DEVICE_HINTS_H
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 enum { DEVICE_HINTS_MAX = 4, DEVICE_HINT_BYTES = 320 };
 

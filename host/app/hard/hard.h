@@ -10,9 +10,9 @@ struct hard {
     struct job job;
     whit_hard_params params;
     whit_hard_view_params view;
-    const char *json_path, *output; /* NULL: none */
-    uint32_t drawn;                 /* a picture instead of the table */
-    uint32_t level;                 /* whit_numerics; HARD_ALL: the table has all */
+    const char *camera, *json_path, *output; /* NULL: none */
+    uint32_t drawn;                          /* a picture instead of the table */
+    uint32_t level;                          /* whit_numerics; HARD_ALL: the table has all */
     bool quick;
     whit_hard_report *report;
     struct cli_progress progress;

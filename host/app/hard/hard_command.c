@@ -22,8 +22,7 @@ static const struct setting options[] = {
     {"output", 'o', "FILE", "of the picture: .png .exr .pfm", SETTING_AT_NAME(struct hard, output)},
     {"size", 0, "WxH", "of the picture (640x480)",
      SETTING_AT_SIZE(struct hard, view.width, view.height)},
-    {"camera", 0, "NAME|N|numbers", "as for `whit render`",
-     SETTING_AT_NAME(struct hard, view.camera)},
+    {"camera", 0, "NAME|N|numbers", "as for `whit render`", SETTING_AT_NAME(struct hard, camera)},
     {0},
 };
 
@@ -123,7 +122,7 @@ static bool check_view(struct cli_reader *reader, const struct hard *hard)
     if ((hard->drawn != 0) != (hard->output != NULL))
         return cli_misuse(reader, "--view leaks and -o FILE go together");
     if (!hard->drawn &&
-        (hard->view.width || hard->view.camera || settings_given(&hard->job.settings, "time")))
+        (hard->view.width || hard->camera || settings_given(&hard->job.settings, "time")))
         return cli_misuse(reader, "--size, --camera and --time are of --view leaks");
     if (hard->drawn && (hard->json_path || hard->params.rays || hard->quick || hard->params.filter))
         return cli_misuse(reader, "--view leaks makes a picture, and no table");
@@ -162,6 +161,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return reader.status;
     if (hard.quick)
         hard.params.rays = RAYS_QUICK;
+    hard.view.camera = camera_of_text(hard.camera ? hard.camera : "");
     if (hard.level != HARD_ALL)
         hard.params.levels = 1u << hard.level;
     job_start(&hard.job);

@@ -60,9 +60,10 @@ static void print_row(const whit_hard_row *row, const whit_hard_row *before, str
         before && strcmp(before->name, row->name) == 0 && strcmp(before->place, row->place) == 0;
     printf("%-*s%-*s%-12s", widths.name, again ? "" : row->name, widths.place,
            again ? "" : row->place, value_word(values_numerics, (int)row->numerics));
-    printf("%9llu%8llu%7llu%8llu%8llu%7llu%8llu%6llu%10.3g", whole(row->rays), whole(row->misses),
-           whole(row->leaks), whole(row->false_hits), whole(row->other_ids), whole(row->wrong),
-           whole(row->double_hits), whole(row->self_hits), row->ulp_max);
+    printf("%9llu%8llu%7llu%8llu%8llu%7llu%8llu%6llu%10.3g", whole(row->tally.rays),
+           whole(row->tally.misses), whole(row->tally.leaks), whole(row->tally.false_hits),
+           whole(row->tally.other_ids), whole(row->tally.wrong), whole(row->tally.double_hits),
+           whole(row->tally.self_hits), row->tally.ulp_max);
     if (row->device_ms >= 0.0)
         printf("%11.2f", row->device_ms);
     else
@@ -78,22 +79,23 @@ static void print_sum(const whit_hard_report *report, whit_numerics numerics, st
         const whit_hard_row *row = &report->rows[i];
         if (row->numerics != numerics)
             continue;
-        sum.rays += row->rays;
-        sum.misses += row->misses;
-        sum.leaks += row->promised ? row->leaks : 0;
-        sum.false_hits += row->false_hits;
-        sum.other_ids += row->other_ids;
-        sum.wrong += row->wrong;
-        sum.double_hits += row->double_hits;
-        sum.self_hits += row->self_hits;
-        sum.ulp_max = row->ulp_max > sum.ulp_max ? row->ulp_max : sum.ulp_max;
+        sum.tally.rays += row->tally.rays;
+        sum.tally.misses += row->tally.misses;
+        sum.tally.leaks += row->promised ? row->tally.leaks : 0;
+        sum.tally.false_hits += row->tally.false_hits;
+        sum.tally.other_ids += row->tally.other_ids;
+        sum.tally.wrong += row->tally.wrong;
+        sum.tally.double_hits += row->tally.double_hits;
+        sum.tally.self_hits += row->tally.self_hits;
+        sum.tally.ulp_max =
+            row->tally.ulp_max > sum.tally.ulp_max ? row->tally.ulp_max : sum.tally.ulp_max;
         sum.device_ms += row->device_ms > 0.0 ? row->device_ms : 0.0;
         sum.twin_ms += row->twin_ms;
         sum.differing += row->differing;
         sum.kept &= row->kept;
         sum.unanswered |= row->unanswered;
     }
-    if (sum.rays)
+    if (sum.tally.rays)
         print_row(&sum, NULL, widths);
 }
 
@@ -138,18 +140,18 @@ static json_t *row_document(const whit_hard_row *row)
     document_text(out, "case", row->name);
     document_text(out, "place", row->place);
     document_text(out, "numerics", value_word(values_numerics, (int)row->numerics));
-    document_count(out, "rays", row->rays);
-    document_count(out, "hits", row->hits);
-    document_count(out, "misses", row->misses);
-    document_count(out, "leaks", row->leaks);
-    document_count(out, "false_hits", row->false_hits);
-    document_count(out, "other_ids", row->other_ids);
-    document_count(out, "wrong_keys", row->wrong_keys);
-    document_count(out, "wrong", row->wrong);
-    document_count(out, "double_hits", row->double_hits);
-    document_count(out, "self_hits", row->self_hits);
+    document_count(out, "rays", row->tally.rays);
+    document_count(out, "hits", row->tally.hits);
+    document_count(out, "misses", row->tally.misses);
+    document_count(out, "leaks", row->tally.leaks);
+    document_count(out, "false_hits", row->tally.false_hits);
+    document_count(out, "other_ids", row->tally.other_ids);
+    document_count(out, "wrong_keys", row->tally.wrong_keys);
+    document_count(out, "wrong", row->tally.wrong);
+    document_count(out, "double_hits", row->tally.double_hits);
+    document_count(out, "self_hits", row->tally.self_hits);
     document_count(out, "differing", row->differing);
-    document_number(out, "ulp_max", row->ulp_max);
+    document_number(out, "ulp_max", row->tally.ulp_max);
     document_ms(out, "device_ms", row->device_ms);
     document_ms(out, "twin_ms", row->twin_ms);
     document_flag(out, "unanswered", row->unanswered);

@@ -6,7 +6,7 @@
 #include "app/commands.h"
 #include "base/text.h"
 
-enum { CAMERA_NUMBERS = 10, CAMERA_NAMES_MAX = 4096 };
+enum { CAMERA_NAMES_MAX = 4096 };
 
 static const struct setting options[] = {
     {"output", 'o', "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)",
@@ -50,25 +50,13 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
     return false;
 }
 
-static bool read_ten_numbers(const char *text, double numbers[CAMERA_NUMBERS])
+static whit_result check_own_camera(const char *text, const whit_camera *camera)
 {
-    for (int i = 0; i < CAMERA_NUMBERS; ++i) {
-        char *end;
-        numbers[i] = strtod(text, &end);
-        if (end == text || !isfinite(numbers[i]) || *end != (i + 1 < CAMERA_NUMBERS ? ',' : 0))
-            return false;
-        text = end + 1;
-    }
-    return true;
-}
-
-static whit_result check_numbers(const char *text, const double n[CAMERA_NUMBERS])
-{
-    if (n[0] == n[3] && n[1] == n[4] && n[2] == n[5]) {
+    if (memcmp(camera->eye, camera->target, sizeof camera->eye) == 0) {
         cli_error("--camera `%s`: eye and target are the same point", text);
         return WHIT_ERROR_USAGE;
     }
-    if (!(n[9] > 0.0 && n[9] < 180.0)) {
+    if (!(camera->fov_y_degrees > 0.0 && camera->fov_y_degrees < 180.0)) {
         cli_error("--camera `%s`: the angle must be between 0 and 180 degrees", text);
         return WHIT_ERROR_USAGE;
     }
@@ -112,19 +100,19 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
 /* Before trees are built. */
 static whit_result check_camera(const struct job *job, const char *wanted)
 {
-    double numbers[CAMERA_NUMBERS];
+    const whit_camera camera = camera_of_text(wanted);
     whit_scene_info scene;
     whit_scene_get_info(job->scene, &scene);
     if (!wanted[0] || is_index(wanted, scene.camera_count))
         return WHIT_OK;
     for (uint32_t i = 0; i < scene.camera_count; ++i) {
-        whit_camera_info camera;
-        whit_scene_get_camera(job->scene, i, &camera);
-        if (strcmp(camera.name, wanted) == 0)
+        whit_camera_info info;
+        whit_scene_get_camera(job->scene, i, &info);
+        if (strcmp(info.name, wanted) == 0)
             return WHIT_OK;
     }
-    if (read_ten_numbers(wanted, numbers))
-        return check_numbers(wanted, numbers);
+    if (camera.own)
+        return check_own_camera(wanted, &camera);
     return refuse_camera(job, wanted, scene.camera_count);
 }
 

@@ -3,27 +3,16 @@
 #define APP_SCENE_RECEIPT_H
 
 #include "app/commands.h"
-#include "base/sample.h"
-
-/* What the receipt says of one effect. */
-struct receipt_row {
-    const char *name, *reason; /* "" when not called for */
-    bool called, compiled;
-    bool priced; /* what follows was measured */
-    /* Per pair of runs: the time of a frame with the effect less that of one without it. */
-    struct sample_runs cost;
-    /* What the picture has by it: pixels with any difference, largest one of a channel. */
-    uint64_t pixels;
-    double largest;
-};
+#include "cost/cost.h"
 
 enum { RECEIPT_ROWS_MAX = 64 };
 struct receipt {
     const struct job *job;
+    struct cli_progress progress;
     whit_kernel_info kernel;
-    struct sample_runs frame;
+    struct sample_median frame_ms; /* of the picture as it is, by the clock that counts */
     uint32_t row_count;
-    struct receipt_row rows[RECEIPT_ROWS_MAX];
+    struct cost_effect rows[RECEIPT_ROWS_MAX]; /* by the index of whit_effect_name */
 };
 
 /* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that

@@ -16,67 +16,85 @@ static void print_head(const struct receipt *receipt)
     printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
            receipt->kernel.general_instructions, receipt->kernel.bindings,
            receipt->kernel.general_bindings);
-    const struct sample_summary frame = sample_of(&receipt->frame);
-    printf("  frame     %.2f ms (%.2f to %.2f)\n\n", frame.median, frame.low, frame.high);
+    printf("  frame     %.2f ms (%.2f to %.2f)\n\n", receipt->frame_ms.median,
+           receipt->frame_ms.low, receipt->frame_ms.high);
 }
 
-static void print_price(const struct receipt_row *row)
+/* The time of a frame with the effect less that of one without it. */
+static struct sample_median cost_of(const struct cost_effect *row)
+{
+    struct sample_median cost = row->price.difference[row->clock];
+    if (row->compiled) /* the picture without it is the other one */
+        cost = (struct sample_median){.median = -cost.median,
+                                      .low = -cost.high,
+                                      .high = -cost.low,
+                                      .coverage = cost.coverage,
+                                      .count = cost.count};
+    return cost;
+}
+
+static void print_price(const struct cost_effect *row)
 {
     char loss[64] = "";
+    unsigned long long pixels = row->error.differing_pixels;
     if (!row->priced) {
         printf("%9s %19s  %-32s", "-", "", row->compiled ? "not to be left out" : "");
         return;
     }
-    if (row->compiled && row->pixels)
-        snprintf(loss, sizeof loss, "%llu pixel%s, by up to %.3g", (unsigned long long)row->pixels,
-                 row->pixels == 1 ? "" : "s", row->largest);
+    if (row->compiled && pixels)
+        snprintf(loss, sizeof loss, "%llu pixel%s, by up to %.3g", pixels, pixels == 1 ? "" : "s",
+                 row->error.largest);
     else if (row->compiled)
         snprintf(loss, sizeof loss, "nothing in this picture");
-    else if (row->pixels)
+    else if (pixels)
         snprintf(loss, sizeof loss, "NOT THE SAME PICTURE");
-    const struct sample_summary cost = sample_of(&row->cost);
+    const struct sample_median cost = cost_of(row);
     printf("%+9.2f %+9.2f %+9.2f  %-32s", cost.median, cost.low, cost.high, loss);
 }
 
 int receipt_print_text(const struct receipt *receipt)
 {
     print_head(receipt);
-    printf("  %-19s%-9s%8s %19s  %-32s%s\n", "effect", "compiled", "ms here", "quartiles",
+    printf("  %-19s%-9s%8s %19s  %-32s%s\n", "effect", "compiled", "ms here", "interval",
            "the picture without it loses", "where it comes from");
     for (uint32_t i = 0; i < receipt->row_count; ++i) {
-        const struct receipt_row *row = &receipt->rows[i];
-        printf("  %-19s%-8s", row->name, row->compiled ? "yes" : "-");
+        const struct cost_effect *row = &receipt->rows[i];
+        whit_effect_info effect;
+        whit_scene_get_effect(receipt->job->scene, i, &effect);
+        printf("  %-19s%-8s", effect.name, row->compiled ? "yes" : "-");
         print_price(row);
-        puts(cli_shown(row->reason));
+        puts(cli_shown(effect.reason));
     }
-    puts("\n  ms of one frame, with the effect less without it, measured in turns; of what is not"
-         "\n  compiled: what it would cost if it were on.");
+    puts("\n  ms of one frame, with the effect less without it, measured in turns, and the interval"
+         "\n  that holds the median 19 times of 20; of what is not compiled: what it would cost if"
+         "\n  it were on.");
     return cli_finish_stdout(EXIT_FINE);
 }
 
-static json_t *times_document(const struct sample_runs *times)
+static json_t *times_document(const struct sample_median *times, uint32_t rounds)
 {
-    const struct sample_summary ms = sample_of(times);
     json_t *object = document_object();
-    document_ms(object, "median", ms.median);
-    document_ms(object, "low", ms.low);
-    document_ms(object, "high", ms.high);
-    document_count(object, "rounds", times->count);
+    document_ms(object, "median", times->median);
+    document_ms(object, "low", times->low);
+    document_ms(object, "high", times->high);
+    document_count(object, "rounds", rounds);
     return object;
 }
 
-static json_t *row_document(const struct receipt_row *row)
+static json_t *row_document(const whit_effect_info *effect, const struct cost_effect *row)
 {
     json_t *object = document_object(), *difference = NULL;
-    document_text(object, "name", row->name);
-    document_flag(object, "called", row->called);
+    const struct sample_median cost = cost_of(row);
+    document_text(object, "name", effect->name);
+    document_flag(object, "called", effect->called);
     document_flag(object, "compiled", row->compiled);
-    document_text(object, "reason", row->reason);
-    document_put(object, "cost_ms", row->priced ? times_document(&row->cost) : json_null());
+    document_text(object, "reason", effect->reason);
+    document_put(object, "cost_ms",
+                 row->priced ? times_document(&cost, row->price.rounds) : json_null());
     if (row->priced) {
         difference = document_object();
-        document_count(difference, "pixels", row->pixels);
-        document_number(difference, "largest", row->largest);
+        document_count(difference, "pixels", row->error.differing_pixels);
+        document_number(difference, "largest", row->error.largest);
     }
     document_put(object, "difference", difference ? difference : json_null());
     return object;
@@ -104,9 +122,12 @@ int receipt_print_json(const struct receipt *receipt)
     document_count(kernel, "bindings", receipt->kernel.bindings);
     document_count(kernel, "general_bindings", receipt->kernel.general_bindings);
     document_put(root, "kernel", kernel);
-    document_put(root, "frame_ms", times_document(&receipt->frame));
-    for (uint32_t i = 0; i < receipt->row_count; ++i)
-        document_append(effects, row_document(&receipt->rows[i]));
+    document_put(root, "frame_ms", times_document(&receipt->frame_ms, COST_ROUNDS_MIN));
+    for (uint32_t i = 0; i < receipt->row_count; ++i) {
+        whit_effect_info effect;
+        whit_scene_get_effect(receipt->job->scene, i, &effect);
+        document_append(effects, row_document(&effect, &receipt->rows[i]));
+    }
     document_put(root, "effects", effects);
     return cli_print_json(root);
 }

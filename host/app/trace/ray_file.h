@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "api/whit.h"
+#include "whit/whit.h"
 
 struct ray_file {
     const char *path; /* borrowed */

@@ -26,25 +26,33 @@ typedef struct whit_hard_params {
     void *progress_user;
 } whit_hard_params;
 
-/* One level at one case. Every count is of `rays`. */
+/* How hits compare with what exact arithmetic says. Every count is of `rays`. */
+typedef struct whit_tally {
+    uint64_t rays;
+    uint64_t hits;        /* exactly */
+    uint64_t misses;      /* of rays that hit, exactly */
+    uint64_t leaks;       /* misses of rays that start inside a closed surface; of others, those
+                             that pass neither an outline nor an open edge */
+    uint64_t false_hits;  /* of rays that miss, exactly */
+    uint64_t other_ids;   /* another primitive than exactly */
+    uint64_t wrong_keys;  /* the right one, but t is not the exact t's rounding */
+    uint64_t wrong;       /* of misses, false hits and other ids: no bound of float errors excuses
+                             them; at WHIT_NUMERICS_EXACT all */
+    uint64_t double_hits; /* a second primitive at the same place, where exactly there is none */
+    uint64_t self_hits;   /* on the surface that the ray started from */
+    double ulp_max;       /* error of t where the primitive is right, in floats between it and the
+                             exact one's rounding; not of hits nearer than 16 roundings of the
+                             origin */
+} whit_tally;
+
+/* One level at one case. */
 typedef struct whit_hard_row {
     const char *name;  /* "sphere from inside" */
     const char *place; /* "1e5", "as vertices, x1e-6" */
     whit_numerics numerics;
-    uint64_t rays;
-    uint64_t hits;       /* exactly */
-    uint64_t misses;     /* of rays that hit, exactly */
-    uint64_t leaks;      /* misses of rays that start inside a closed surface; of others, those that
-                            pass neither an outline nor an open edge */
-    uint64_t false_hits; /* of rays that miss, exactly */
-    uint64_t other_ids;  /* another primitive than exactly */
-    uint64_t wrong_keys; /* the right one, but t is not the exact t's rounding */
-    uint64_t wrong; /* of misses, false hits and wrong ids: no bound of float errors excuses them */
-    uint64_t double_hits; /* a second primitive at the same place, where exactly there is none */
-    uint64_t self_hits;   /* on the surface that the ray started from */
-    uint64_t differing;   /* rays whose hits on the device and of the twin differ by a bit */
-    double ulp_max;       /* error of t, in floats between it and the exact one's rounding */
-    double device_ms, twin_ms; /* of `rays`; device: < 0 where not measured */
+    whit_tally tally;
+    uint64_t differing;        /* rays whose hits on the device and of the twin differ by a bit */
+    double device_ms, twin_ms; /* of all rays; device: < 0 where not measured */
     bool unanswered; /* the device said that its hits are not to be trusted, as where a driver ends
                         long loops: the twin's are judged */
     bool promised;   /* that there are no leaks: false for cracks that are there */
@@ -63,7 +71,9 @@ typedef struct whit_hard_report {
 } whit_hard_report;
 
 /* `scene` NULL: the built-in cases. `device` NULL: the twin's hits are judged. WHIT_OK also where
-   promises are broken: see `broken`. */
+   promises are broken: see `broken`. WHIT_ERROR_USAGE for params out of range or a filter that no
+   case answers, WHIT_ERROR_INPUT and WHIT_ERROR_DEVICE as of accels and renderers,
+   WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
                                      const whit_hard_params *params, const whit_log *log,
                                      whit_hard_report **out);
@@ -71,7 +81,7 @@ void whit_hard_report_destroy(whit_hard_report *report);
 
 typedef struct whit_hard_view_params {
     uint32_t width, height; /* 0: 640 x 480 */
-    const char *camera;     /* as in whit_renderer_params */
+    whit_camera camera;
     double time_s;
     whit_numerics numerics;
     whit_instances instances;
@@ -80,7 +90,9 @@ typedef struct whit_hard_view_params {
 /* What camera rays hit, as grey lit from the eye; red where that is wrong: a leak, or beyond the
    bounds of the level's errors; yellow where it is another primitive than exactly, or none, within
    them. Cut-outs count as solid. `scene` NULL: the sphere of the built-in cases. `wrong_pixels`
-   and `other_pixels` count the two. Other arguments as for whit_hard_run. */
+   and `other_pixels` count the two. Other arguments as for whit_hard_run. WHIT_ERROR_USAGE for a
+   size or camera that there is none of, WHIT_ERROR_INPUT and WHIT_ERROR_DEVICE as of accels and
+   renderers, WHIT_ERROR_STATUS where hits are not to be trusted. */
 WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
                                       const whit_hard_view_params *params, const whit_log *log,
                                       uint64_t *wrong_pixels, uint64_t *other_pixels,
@@ -93,14 +105,16 @@ WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *sce
    and around its bounds). Both are the same on every machine. `scene` is borrowed. */
 typedef struct whit_judge whit_judge;
 typedef struct whit_judge_params {
-    bool aimed;         /* else from the camera */
-    uint32_t count;     /* about as many; 0: 20000. Of a scene without triangles none are aimed. */
-    const char *camera; /* as in whit_renderer_params */
+    bool aimed;     /* else from the camera */
+    uint32_t count; /* about as many; 0: 20000. Of a scene without triangles none are aimed. */
+    whit_camera camera;
     uint32_t width, height; /* the camera's picture, for its shape; 0: 640 x 480 */
     double time_s;
     whit_instances instances; /* whose triangles: hits that are judged are of such trees */
     uint32_t threads;         /* 0: one a core */
 } whit_judge_params;
+/* WHIT_ERROR_USAGE for too many rays or a camera that there is none of, WHIT_ERROR_INPUT as of
+   accels. */
 WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
                                          const whit_log *log, whit_judge **out);
 void whit_judge_destroy(whit_judge *judge);
@@ -108,18 +122,15 @@ const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count);
 
 /* How hits compare with the exact ones, over all of a judge's rays. */
 typedef struct whit_judgement {
-    uint64_t rays, hits; /* hits: exactly */
-    uint64_t misses, false_hits, other_ids;
-    uint64_t leaks; /* of misses, as in whit_hard_row */
-    uint64_t wrong; /* of misses, false hits and other ids: no bound of float errors excuses them;
-                       of `exact` all */
+    whit_tally tally;
     uint64_t non_finite; /* hits with a t, u or v that is no number */
     /* |dt| / t where the primitive is right, in floats between t and the exact one's rounding; not
        of hits nearer than 2^-20 of the origin's coordinates. */
     uint64_t ulp_rays;
     double ulp_median, ulp_999, ulp_max; /* ulp_999: of 99.9 % of them it is at most this */
 } whit_judgement;
-/* `hits`: one for each of the rays, in their order, found at `numerics`. */
+/* `hits`: one for each of the rays, in their order, found at `numerics`. WHIT_ERROR_STATUS where
+   the judge's own traversals are not to be trusted. */
 WHIT_CHECK whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics,
                                        const whit_hit *hits, whit_judgement *out);
 

@@ -19,7 +19,8 @@ typedef struct whit_device_info {
     char why_not[128]; /* when not usable */
 } whit_device_info;
 
-/* *infos is one block for whit_memory_destroy. */
+/* *infos is one block for whit_memory_destroy. WHIT_ERROR_NO_DEVICE where there is no Vulkan, or no
+   device; WHIT_ERROR_DEVICE where a call of Vulkan fails. */
 WHIT_CHECK whit_result whit_device_list(const whit_log *log, whit_device_info **infos,
                                         uint32_t *count);
 
@@ -28,6 +29,8 @@ typedef struct whit_device_params {
     bool validation;      /* Vulkan validation layers, with their messages in the log */
 } whit_device_params;
 
+/* WHIT_ERROR_NO_DEVICE where no device answers the selector, or the one that does cannot be used;
+   WHIT_ERROR_DEVICE where a call of Vulkan fails, or validation layers are missing. */
 WHIT_CHECK whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
                                           whit_device **out);
 /* The same in a thread of its own, while the caller does something else, such as loading a scene.

@@ -34,6 +34,8 @@ typedef struct whit_accel_params {
     bool validate; /* check the tree after the build (always in debug builds) */
 } whit_accel_params;
 
+/* WHIT_ERROR_USAGE for params out of range, or WHIT_BUILD_NONE of too much; WHIT_ERROR_INPUT for
+   more than trees can hold; WHIT_ERROR_STATUS where `validate` finds a violation. */
 WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
                                          whit_accel **out);
 void whit_accel_destroy(whit_accel *accel);
@@ -53,19 +55,23 @@ void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
 WHIT_CHECK whit_result whit_accel_validate(const whit_accel *accel);
 
 enum { WHIT_DEPTH_BINS = 130, WHIT_LEAF_BINS = 16 };
-/* What trees are like: of all mesh trees together, a mesh with several instances once. */
+/* Figures of all mesh trees together; a mesh with several instances counts once. Means over meshes
+   are weighted by the area of their boxes, for that is how often a random line meets them. */
 typedef struct whit_accel_report {
-    uint64_t leaves_at_depth[WHIT_DEPTH_BINS]; /* the root is depth 0 */
+    uint64_t leaves_at_depth[WHIT_DEPTH_BINS]; /* the root is depth 0; the last: and below */
     uint64_t leaves_of_size[WHIT_LEAF_BINS];   /* triangles in a leaf */
-    double sah_cost;                           /* mean over meshes, weighted by area */
-    double epo;              /* end-point overlap (Aila, Karras and Laine 2013, section 3) */
-    double overlap;          /* area shared by siblings, relative to the area of their parents */
-    double predicted_visits; /* of a random line that meets the root: pairs, by areas */
-    double predicted_triangles;
-    double measured_visits; /* the same of random rays on the CPU */
-    double measured_triangles;
+    double sah_cost; /* predicted_inner_nodes times the traversal cost, and predicted_triangles */
+    double epo;      /* end-point overlap (Aila, Karras and Laine 2013, section 3), relative to the
+                        area of all triangles */
+    double overlap;  /* area shared by siblings, relative to the area of their parents */
+    /* Counts for a random line that meets a root box: predicted by ratios of areas, as if nothing
+       stopped it; measured on the CPU by closest-hit traversal, which does not look behind a hit.
+     */
+    double predicted_inner_nodes, predicted_triangles;
+    double measured_inner_nodes, measured_triangles;
     uint64_t measured_rays;
 } whit_accel_report;
+/* WHIT_ERROR_STATUS where a traversal says that its hits are not to be trusted. */
 WHIT_CHECK whit_result whit_accel_get_report(const whit_accel *accel, whit_accel_report *report);
 
 /* A box of a tree's node, in world space: parallel to the axes of its own space, not always to the
@@ -78,8 +84,8 @@ typedef struct whit_box {
 } whit_box;
 /* The nodes at `level`, and the leaves above it, of the tree over instances, or of the mesh trees
    of every instance, at `time_s`, which the accel must stand at. At most `max` of them; *boxes is
-   one block for
-   whit_memory_destroy. *total: how many there are. */
+   one block for whit_memory_destroy. *total: how many there are. WHIT_ERROR_INPUT where the scene
+   has no finite pose at that time. */
 WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
                                         uint32_t level, uint64_t max, whit_box **boxes,
                                         uint64_t *total);

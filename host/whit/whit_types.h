@@ -25,6 +25,14 @@ typedef struct whit_device whit_device;     /* one Vulkan device */
 typedef struct whit_renderer whit_renderer; /* an accel on a device, with settings */
 typedef struct whit_image whit_image;       /* pixels in host memory */
 
+/* Which camera a picture is seen by. Zeroed: the first of the scene. */
+typedef struct whit_camera {
+    const char *name; /* of a camera of the scene, or its number where none has that name */
+    bool own;         /* a pinhole at `eye` in place of the scene's cameras; `name` is not read */
+    double eye[3], target[3], up[3]; /* world space */
+    double fov_y_degrees;            /* vertical, between 0 and 180 */
+} whit_camera;
+
 /* Whether there is one tree over the triangles of all instances, each vertex placed in the world in
    double and rounded once, in place of trees of meshes and one over their instances. */
 typedef enum whit_instances {

@@ -24,18 +24,22 @@ typedef struct whit_text {
     const char *key, *value;
 } whit_text;
 /* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` is the recipe kept
-   inside the picture. */
+   inside the picture. WHIT_ERROR_USAGE for a format that cannot hold the image, WHIT_ERROR_OUTPUT
+   where the file cannot be written. */
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
-/* Loads a picture. `params` (may be NULL): only those about foreign files are used. */
+/* Loads a picture. `params` (may be NULL): only those about foreign files are used.
+   WHIT_ERROR_INPUT for a file that is missing, damaged or no picture; WHIT_ERROR_USAGE as of
+   whit_scene_load. */
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_image **out);
 /* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4.
- */
+   WHIT_ERROR_USAGE for other channels or sizes. */
 WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
                                          const float *pixels, whit_image **out);
-/* The picture whose .png holds these RGBA bytes; alpha is left out. */
+/* The picture whose .png holds these RGBA bytes; alpha is left out. WHIT_ERROR_USAGE for no size.
+ */
 WHIT_CHECK whit_result whit_image_create_display(uint32_t width, uint32_t height,
                                                  const uint8_t *rgba, whit_image **out);
 void whit_image_destroy(whit_image *image);
@@ -56,10 +60,12 @@ typedef struct whit_heat_params {
 /* The 99.5th percentile, rounded up to a number that reads well; of the largest value where that
    is 0; 1 where all are. */
 double whit_image_heat_scale(const whit_image *values);
+/* WHIT_ERROR_USAGE for an image that has not one channel of floats, or three that are signed. */
 WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
                                        whit_image **out);
 
-/* The bytes of a PNG, as whit_image_save writes it, for whit_memory_destroy. */
+/* The bytes of a PNG, as whit_image_save writes it, for whit_memory_destroy. WHIT_ERROR_USAGE for
+   integers. */
 WHIT_CHECK whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,
                                              uint32_t text_count, const whit_log *log,
                                              uint8_t **data, size_t *size_bytes);

@@ -42,23 +42,23 @@ typedef enum whit_load_path {
 /* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
-    const char *camera;     /* name or index of a camera of the scene, or
-                               "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov_degrees"; NULL: the first */
+    whit_camera camera;     /* its name is borrowed by renderers */
     double time_s;          /* of the animation */
     uint32_t samples;       /* a pixel: a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
-    uint32_t depth;         /* most bounces; 0: what the camera ray sees, with its shadows */
-    double bailout;         /* rays that can add less than this to a pixel are not traced;
-                               0: all are */
+    uint32_t first_sample; /* of the sequence, a multiple of `samples`; ids are of sample 0 alone */
+    uint32_t depth;        /* most bounces; 0: what the camera ray sees, with its shadows */
+    double bailout;        /* rays that can add less than this to a pixel are not traced;
+                              0: all are */
     whit_shadows shadows;
     double adaptive;        /* pixels that differ from a neighbour by more than this get 16 samples
                                instead of 4, and then 64; `samples` is not read; 0: off */
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     double exposure_ev;     /* what is displayed (.png, FLIP, bytes) is times 2^this */
-    /* "auto" or NULL: what the scene calls for; "all": everything; "+NAME,-NAME,...": what it calls
-       for with some effects (whit_effect_name) more, or less; "all,-NAME,...": all but some. Less
-       changes the picture. */
-    const char *effects;
+    /* Kernels have what the scene calls for. With all_effects they have everything, which changes
+       no picture; without effects_removed it does. Bits 1 << the index of whit_effect_name. */
+    bool all_effects;
+    uint64_t effects_added, effects_removed;
     /* Draw with the general kernel, which is compiled first when no cache has it, while a thread
        compiles that of the scene; the pictures are the same. Errors of that thread are logged from
        it. */
@@ -81,6 +81,8 @@ typedef struct whit_renderer_params {
     whit_classes classes;
     uint32_t segments;
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
+    uint32_t trace_rays; /* most rays that whit_trace will be given, so that buffers need not be
+                            larger; 0: any number */
 } whit_renderer_params;
 
 /* 640 x 480, one sample, 16 of an area light, depth 8, bailout WHIT_BAILOUT_DEFAULT, the rest zero.
@@ -91,31 +93,38 @@ whit_renderer_params whit_renderer_defaults(void);
    and _MANY too where the params are refused. */
 whit_classes whit_classes_of(const whit_renderer_params *params);
 
-/* `device` may be NULL: then only whit_trace on the CPU works. */
+/* `device` may be NULL: then only whit_trace on the CPU works. WHIT_ERROR_USAGE for params out of
+   range, a camera that there is none of, or a scene whose pictures were dropped; WHIT_ERROR_INPUT
+   for a scene that has no finite pose at that time; WHIT_ERROR_STATUS for a camera in too many
+   media; WHIT_ERROR_DEVICE, also where a kernel cannot be made. */
 WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
                                             const whit_renderer_params *params,
                                             whit_renderer **out);
 void whit_renderer_destroy(whit_renderer *renderer);
 
 /* Renders the whole picture. WHIT_ERROR_STATUS when a kernel reported that it must not be trusted
-   (logged in words). May be called again: the same bytes. */
+   (logged in words); WHIT_ERROR_USAGE without a device; WHIT_ERROR_DEVICE, WHIT_ERROR_TIME_LIMIT,
+   WHIT_ERROR_CANCELLED. May be called again: the same bytes. */
 WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 
 /* Goes to another time of the animation: moves instances, lights and camera, keeps mesh trees and
-   pipelines. The picture is that of a renderer made at that time, byte for byte. */
+   pipelines. The picture is that of a renderer made at that time, byte for byte. WHIT_ERROR_USAGE
+   for a time that is not finite, WHIT_ERROR_INPUT for one without a finite pose;
+   WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   samples, adaptive, light_samples, bailout, depth and exposure_ev, and nothing else. `camera` is
+   samples, adaptive, light_samples, bailout, depth and exposure_ev, and nothing else. Its camera is
    borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
-   After an error there is nothing to render before a call that succeeds. */
+   After an error there is nothing to render before a call that succeeds: WHIT_ERROR_USAGE and
+   others as of whit_renderer_create. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 
 /* Effects by index, in the order of whit_scene_get_effect; NULL past the last. */
 const char *whit_effect_name(uint32_t index);
-/* Whether whit_renderer_params.effects may say "+NAME" and "-NAME" of it: what geometry or camera
-   decide cannot be switched. */
+/* Whether whit_renderer_params.effects_added and effects_removed may have it: what geometry or
+   camera decide cannot be switched; a lens can be left out. */
 bool whit_effect_can_add(uint32_t index);
 bool whit_effect_can_remove(uint32_t index);
 /* Whether the kernel of a renderer has an effect in it. */
@@ -144,6 +153,7 @@ typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
 } whit_aov;
+/* WHIT_ERROR_USAGE where nothing was rendered, WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 /* From here on an image of colours is displayed as a picture with these params is, which those of
    renderers and references are from the beginning. */
@@ -178,7 +188,8 @@ typedef enum whit_view {
     WHIT_VIEW_STACK,     /* most refs on the node stack */
 } whit_view;
 /* One number a pixel, as floats of one channel: what the rays of `kind` of its first sample cost
-   (WHIT_RAY_KINDS: of all kinds). With params.count. */
+   (WHIT_RAY_KINDS: of all kinds). WHIT_ERROR_USAGE without params.count, or where nothing was
+   rendered. */
 WHIT_CHECK whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view,
                                                 whit_ray_kind kind, whit_image **out);
 
@@ -253,7 +264,9 @@ typedef enum whit_trace_on {
 
 /* `cost`: what all rays together cost, or NULL (on the device it needs params.count).
    Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays
-   that are not finite miss. Cut-outs count as solid. */
+   that are not finite miss. Cut-outs count as solid. WHIT_ERROR_STATUS where the hits are not to be
+   trusted, WHIT_ERROR_USAGE for what the renderer was not made for, WHIT_ERROR_CANCELLED;
+   WHIT_ERROR_DEVICE on the device. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits, whit_cost *cost);
 /* Device time of the traversals of the last whit_trace on the device, without transfers; < 0: not
@@ -262,7 +275,8 @@ double whit_trace_device_ms(const whit_renderer *renderer);
 
 /* What camera rays of the picture that was set last cost, without counting in its kernel: the twin
    traces those of at most `pixels` pixels, all or a smaller picture of the view, up to what they
-   meet first. On the calling thread, some microseconds a ray. */
+   meet first. On the calling thread, some microseconds a ray. WHIT_ERROR_USAGE without a device,
+   WHIT_ERROR_STATUS and WHIT_ERROR_CANCELLED as whit_trace. */
 WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
                                                   whit_cost *cost);
 

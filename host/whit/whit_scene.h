@@ -25,7 +25,9 @@ typedef struct whit_load_params {
     whit_refused *refused; /* filled in, on failure too; NULL: not wanted */
 } whit_load_params;
 
-/* .json scene files and .obj .gltf .glb .ply .stl models. */
+/* .json scene files and .obj .gltf .glb .ply .stl models. WHIT_ERROR_INPUT for a file that is
+   missing, damaged or refused, or takes more memory than params allow; WHIT_ERROR_USAGE where
+   `require_sandbox` cannot be kept; WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_scene **out);
 void whit_scene_destroy(whit_scene *scene);
@@ -112,7 +114,8 @@ typedef struct whit_triangle {
     float vertices[9];
     uint32_t instance, primitive;
 } whit_triangle;
-/* fn returns false to stop (then the result is WHIT_ERROR_CANCELLED). */
+/* fn returns false to stop (then the result is WHIT_ERROR_CANCELLED). WHIT_ERROR_INPUT where the
+   scene has no finite pose at that time. */
 WHIT_CHECK whit_result whit_scene_triangles(const whit_scene *scene, double time_s,
                                             bool (*fn)(void *user, const whit_triangle *triangle),
                                             void *user);

@@ -11,12 +11,14 @@ extern "C" {
 /* A file under construction, hidden beside `path`: commit renames it over `path`, abandon removes
    it. Exactly one of the two ends it. */
 typedef struct whit_file whit_file;
+/* WHIT_ERROR_OUTPUT where the file cannot be written. */
 WHIT_CHECK whit_result whit_file_begin(const char *path, const whit_log *log, whit_file **out);
 WHIT_CHECK whit_result whit_file_append(whit_file *file, const void *data, size_t size_bytes);
 WHIT_CHECK whit_result whit_file_commit(whit_file *file);
 void whit_file_abandon(whit_file *file);
 
-/* Writes a whole file beside `path` and renames it. */
+/* Writes a whole file beside `path` and renames it. WHIT_ERROR_OUTPUT where it cannot be written.
+ */
 WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_t size_bytes,
                                        const whit_log *log);
 /* Removes unfinished output; safe in a signal handler. */

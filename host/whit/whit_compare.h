@@ -32,13 +32,13 @@ typedef struct whit_compare_params {
     double pixels_per_degree; /* of who looks at the pictures, 1 to 1000;
                                  0: WHIT_FLIP_PIXELS_PER_DEGREE */
 } whit_compare_params;
-/* WHIT_ERROR_INPUT when sizes or kinds differ. `flip_map`: NULL, or gets FLIP of each pixel as one
-   channel (NULL without FLIP). */
+/* WHIT_ERROR_INPUT when sizes or kinds differ, WHIT_ERROR_USAGE for params out of range.
+   `flip_map`: NULL, or gets FLIP of each pixel as one channel (NULL without FLIP). */
 WHIT_CHECK whit_result whit_image_compare(const whit_image *a, const whit_image *b,
                                           const whit_compare_params *params, const whit_log *log,
                                           whit_difference *out, whit_image **flip_map);
 /* b - a, linear RGB, for whit_image_heat with is_signed, or to be saved as it is: NAN where either
-   is not finite. */
+   is not finite. WHIT_ERROR_INPUT when sizes or kinds differ. */
 WHIT_CHECK whit_result whit_image_subtract(const whit_image *a, const whit_image *b,
                                            const whit_log *log, whit_image **out);
 

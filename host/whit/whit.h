@@ -7,7 +7,8 @@
    In every params struct, 0 means the default, and NULL params mean all defaults; params are read
    during the call only. On failure an out parameter is NULL or untouched, the reason went to the
    log callback as one line (where the call or a handle has one), and the result says which kind it
-   was.
+   was. Each function names the results that it may give beside WHIT_OK and WHIT_ERROR_MEMORY, which
+   any of them may.
 
    Threads: different handles may be used from different threads; one handle from one at a time. A
    `cancel` flag may be set from anywhere, a signal handler included. */

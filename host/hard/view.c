@@ -2,12 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "api/handles.h"
 #include "base/array.h"
-#include "hard/hard.h"
+#include "base/vec.h"
+#include "hard/run.h"
 #include "picture/camera.h"
-
-enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SIDE = 16 };
 
 static const float red[3] = {1.0f, 0.0f, 0.0f}, yellow[3] = {1.0f, 0.7f, 0.0f};
 
@@ -24,13 +22,12 @@ struct view {
     uint64_t wrong, other;
 };
 
-static whit_result open_scene(struct view *view, const whit_scene *scene)
+static whit_result open_scene(struct view *view, const struct scene *scene, bool flatten)
 {
     uint32_t count;
     if (!scene)
         return hard_scene_init(&view->log, hard_cases(&count), &view->hard);
-    return hard_scene_borrow(&view->log, scene->scene, view->params->time_s,
-                             api_one_tree(scene, view->params->instances), &view->hard);
+    return hard_scene_borrow(&view->log, scene, view->params->time_s, flatten, &view->hard);
 }
 
 /* The built-in sphere is seen from outside here. */
@@ -46,32 +43,24 @@ static whit_result prepare(struct view *view)
         log_error(&view->log, "out of memory for %u x %u rays", view->width, view->height);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = camera_all_rays(&view->log, &view->hard.pose, view->params->camera,
+    whit_result result = camera_all_rays(&view->log, &view->hard.pose, &view->params->camera,
                                          view->width, view->height, view->plain);
     for (size_t i = 0; result == WHIT_OK && i < count; ++i)
         view->rays[i] = (struct hard_ray){view->plain[i], HIT_NONE, HIT_NONE};
     return result == WHIT_OK ? hard_topology_init(view->hard.scene, &view->topology) : result;
 }
 
-static whit_result trace(struct view *view, struct device *device)
+static whit_result trace(struct view *view, const struct hard_device *device)
 {
-    const struct render_params params = {.width = RENDERER_SIDE,
-                                         .height = RENDERER_SIDE,
-                                         .time_s = view->params->time_s,
-                                         .numerics = (uint32_t)view->params->numerics};
     uint64_t count = (uint64_t)view->width * view->height;
-    struct renderer *renderer = NULL;
-    whit_result result =
-        hard_trace_exact(&view->hard, view->rays, count, view->params->threads, view->exact);
-    if (result == WHIT_OK && !device)
-        return hard_trace_twin(&view->hard, params.numerics, view->rays, count,
-                               view->params->threads, view->hits);
-    if (result == WHIT_OK)
-        result = renderer_create(&view->log, device, view->hard.accel, &params, &renderer);
-    if (result == WHIT_OK)
-        result = renderer_trace(renderer, view->plain, count, false, view->hits, NULL);
-    renderer_destroy(renderer);
-    return result;
+    uint32_t numerics = (uint32_t)view->params->numerics, threads = view->params->threads;
+    double ms;
+    whit_result result = hard_trace_exact(&view->hard, view->rays, count, threads, view->exact);
+    if (result != WHIT_OK)
+        return result;
+    return device ? device->trace(device, &view->log, view->hard.accel, view->params->time_s,
+                                  numerics, view->plain, count, view->hits, &ms)
+                  : hard_trace_twin(&view->hard, numerics, view->rays, count, threads, view->hits);
 }
 
 /* |cosine| between ray and normal, on a dark ground. */
@@ -87,12 +76,12 @@ static float headlight(const struct gpu_ray *ray, const struct gpu_hit *hit)
     return (float)(0.05 + 0.6 * fabs(double3_dot(dir, n)));
 }
 
-static whit_result paint(struct view *view, struct image *image)
+static whit_result paint(struct view *view, float *pixels)
 {
     whit_result result = WHIT_OK;
     size_t count = (size_t)view->width * view->height;
     for (size_t i = 0; result == WHIT_OK && i < count; ++i) {
-        float *to = &image->pixels[3 * i];
+        float *to = &pixels[3 * i];
         const struct gpu_hit *hit = &view->hits[i];
         const struct rational_hit *exact = &view->exact[i];
         to[0] = to[1] = to[2] = headlight(&view->plain[i], hit);
@@ -105,7 +94,7 @@ static whit_result paint(struct view *view, struct image *image)
                                                  .hits = hit,
                                                  .numerics = (uint32_t)view->params->numerics,
                                                  .count = 1};
-        struct hard_tally tally;
+        whit_tally tally;
         result = hard_judge(&judgement, 1, &tally);
         bool wrong = result == WHIT_OK && tally.leaks + tally.wrong > 0;
         const float *color = wrong ? red : yellow;
@@ -127,39 +116,21 @@ static void finish(struct view *view)
     free(view->hits);
 }
 
-whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
-                           const whit_hard_view_params *params, const whit_log *log,
-                           uint64_t *wrong_pixels, uint64_t *other_pixels, whit_image **out)
+whit_result hard_view(const struct hard_device *device, const struct scene *scene, bool flatten,
+                      const whit_hard_view_params *params, const struct log *log, float *pixels,
+                      uint64_t *wrong, uint64_t *other)
 {
-    const whit_hard_view_params defaults = {0};
-    struct view view = {.params = params ? params : &defaults, .log = log_from_public(log)};
-    *out = NULL;
-    view.width = view.params->width ? view.params->width : WIDTH_DEFAULT;
-    view.height = view.params->height ? view.params->height : HEIGHT_DEFAULT;
-    if (view.width > SIDE_MAX || view.height > SIDE_MAX) {
-        log_error(&view.log, "%u x %u: at most %d on a side", view.width, view.height, SIDE_MAX);
-        return WHIT_ERROR_USAGE;
-    }
-    whit_image *image = calloc(1, sizeof *image);
-    whit_result result =
-        image ? image_init(&image->image, view.width, view.height, 3, false) : WHIT_ERROR_MEMORY;
-    if (result != WHIT_OK)
-        log_error(&view.log, "out of memory");
-    if (result == WHIT_OK)
-        result = open_scene(&view, scene);
+    struct view view = {
+        .params = params, .log = *log, .width = params->width, .height = params->height};
+    whit_result result = open_scene(&view, scene, flatten);
     if (result == WHIT_OK)
         result = prepare(&view);
     if (result == WHIT_OK)
-        result = trace(&view, device ? device->device : NULL);
+        result = trace(&view, device);
     if (result == WHIT_OK)
-        result = paint(&view, &image->image);
+        result = paint(&view, pixels);
     finish(&view);
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    *wrong_pixels = view.wrong;
-    *other_pixels = view.other;
-    *out = image;
-    return WHIT_OK;
+    *wrong = view.wrong;
+    *other = view.other;
+    return result;
 }
