@@ -242,20 +242,20 @@ static void creation_finish(struct creation *creation)
     free(creation->spans);
 }
 
-/* What a ray does at most: a turn for each record, two more for each leaf and three for each
+/* What a ray does at most: an iteration for each record, two more for each leaf and three for each
  * instance. */
 static whit_result bare_check(struct accel *accel)
 {
     const struct scene *scene = accel->scene;
-    uint64_t primitives = scene->triangle_total + scene->sphere_total, turns = 0;
+    uint64_t primitives = scene->triangle_total + scene->sphere_total, iterations = 0;
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         uint32_t count = scene_mesh_primitives(&scene->meshes[scene->instances[i].mesh]);
-        turns += count + 2 * ((uint64_t)count / BVH_LEAF_MAX + 1) + 3;
+        iterations += count + 2 * ((uint64_t)count / BVH_LEAF_MAX + 1) + 3;
     }
     if (accel->params.flatten)
-        turns = primitives + 2 * (primitives / BVH_LEAF_MAX + 1);
-    accel->iterations = (uint32_t)turns;
-    if (primitives <= ACCEL_BARE_MAX && turns <= ACCEL_ITERATIONS_MAX)
+        iterations = primitives + 2 * (primitives / BVH_LEAF_MAX + 1);
+    accel->iterations = (uint32_t)iterations;
+    if (primitives <= ACCEL_BARE_MAX && iterations <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
     log_error(&accel->log,
               "%s: without trees every ray tests every primitive, and %llu over all instances are "

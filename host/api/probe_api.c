@@ -96,8 +96,8 @@ static whit_probe_ray ray_of(const struct scene *scene, const struct probe_repor
         .inside = (traced->kind & PROBE_INSIDE) != 0,
         .medium = traced->medium ? traced->medium - 1 : WHIT_NONE,
         .ior = traced->medium ? scene->materials[traced->medium - 1].ior : 1.0f,
-        .light = shadow ? traced->turn / report->light_samples : WHIT_NONE,
-        .light_sample = shadow ? traced->turn % report->light_samples : WHIT_NONE,
+        .light = shadow ? traced->light_sample / report->light_samples : WHIT_NONE,
+        .light_sample = shadow ? traced->light_sample % report->light_samples : WHIT_NONE,
     };
     copy(ray.ray.origin, traced->origin);
     copy(ray.ray.dir, traced->dir);

@@ -223,7 +223,7 @@ struct light_sample_info {
 
 /* Point `index` of a light, as seen from p. False: nothing arrives. */
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
-              struct dvec3 p, struct light_sample_info *turn);
+              struct dvec3 p, struct light_sample_info *from);
 /* Area over pi and samples. */
 double light_area_share(const struct reference *reference, const struct scene_light *light);
 double light_form_factor(const struct scene_light *light, struct dvec3 p, struct dvec3 n);

@@ -45,24 +45,24 @@ static struct dvec3 at_most(struct dvec3 light)
 }
 
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
-              struct dvec3 p, struct light_sample_info *turn)
+              struct dvec3 p, struct light_sample_info *from)
 {
     bool flat = scene_light_is_flat(light);
-    *turn = (struct light_sample_info){.arriving = d3_load(light->color)};
+    *from = (struct light_sample_info){.arriving = d3_load(light->color)};
     struct dvec3 direction = d3_unit_or(three(light->direction), d3_all(0.0));
     if (light->kind == SCENE_LIGHT_DIRECTIONAL) {
-        turn->to_light = d3_scale(direction, -1.0);
-        turn->distance = INFINITY;
+        from->to_light = d3_scale(direction, -1.0);
+        from->distance = INFINITY;
         return true;
     }
     struct dvec3 from = flat ? emitter_point(tracer, light, index) : three(light->position);
     struct dvec3 way = dvec3_sub(from, p);
-    turn->distance = d3_length(way);
-    if (!(turn->distance > 0.0))
+    from->distance = d3_length(way);
+    if (!(from->distance > 0.0))
         return false;
-    turn->to_light = d3_scale(way, 1.0 / turn->distance);
-    double square = fmax(turn->distance * turn->distance, (double)FLT_MIN);
-    double cos_away = -dvec3_dot(turn->to_light, direction), share = 1.0;
+    from->to_light = d3_scale(way, 1.0 / from->distance);
+    double square = fmax(from->distance * from->distance, (double)FLT_MIN);
+    double cos_away = -dvec3_dot(from->to_light, direction), share = 1.0;
     double cos_emitter = light->two_sided ? fabs(cos_away) : fmax(cos_away, 0.0);
     if (light->falloff || flat || light->kind == SCENE_LIGHT_AREA_SAMPLE)
         share /= square;
@@ -71,15 +71,15 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
         share *= cos_emitter;
     if (flat) {
-        turn->strength = fmin(cos_emitter / square, LIGHT_MAX);
-        share = light_area_share(tracer->reference, light) * turn->strength;
+        from->strength = fmin(cos_emitter / square, LIGHT_MAX);
+        share = light_area_share(tracer->reference, light) * from->strength;
     }
-    turn->arriving = at_most(d3_scale(turn->arriving, share));
-    if (light->range > 0.0f && turn->distance > (double)light->range)
+    from->arriving = at_most(d3_scale(from->arriving, share));
+    if (light->range > 0.0f && from->distance > (double)light->range)
         return false;
     if (flat) /* what lies in one plane with it casts no shadow of its light */
-        turn->distance *= 1.0 - 1.0 / 4096.0;
-    return d3_largest(turn->arriving) > 0.0;
+        from->distance *= 1.0 - 1.0 / 4096.0;
+    return d3_largest(from->arriving) > 0.0;
 }
 
 /* ---- Form factors ---- */

@@ -98,21 +98,21 @@ static void record_shadow(struct tracer *tracer, const struct receiver *at,
 /* How much of a light passes. What is lifted off its triangle may be met by light from below the
    triangle's plane, which must then pass beside the triangle. */
 static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at,
-                                const struct light_sample_info *turn, uint32_t light,
+                                const struct light_sample_info *from, uint32_t light,
                                 uint32_t point)
 {
     const struct reference *reference = tracer->reference;
     if (reference->params.picture.shadows == WHIT_SHADOWS_NONE)
         return d3_all(1.0);
     const struct surface *s = at->s;
-    bool above = dvec3_dot(turn->to_light, s->ng) > 0.0;
+    bool above = dvec3_dot(from->to_light, s->ng) > 0.0;
     struct shadow_ray ray = {.origin = d3_along(d3_add(s->p, at->lift), s->ng, s->room),
-                             .dir = turn->to_light,
-                             .distance = turn->distance,
+                             .dir = from->to_light,
+                             .distance = from->distance,
                              .skip_instance = at->instance,
                              .skip_primitive = above ? at->primitive : HIT_NONE};
     if (at->lifted && isfinite(ray.distance)) {
-        struct dvec3 way = dvec3_sub(d3_along(s->p, turn->to_light, turn->distance), ray.origin);
+        struct dvec3 way = dvec3_sub(d3_along(s->p, from->to_light, from->distance), ray.origin);
         ray.distance = d3_length(way);
         ray.dir = d3_unit_or(way, ray.dir);
     }
@@ -138,27 +138,27 @@ static void add_point(struct tracer *tracer, const struct receiver *at, const st
 {
     const struct scene_light *light = &tracer->reference->pose.lights[index];
     const struct surface *s = at->s;
-    struct light_sample_info turn;
-    if (!light_at(tracer, light, point, s->p, &turn))
+    struct light_sample_info from;
+    if (!light_at(tracer, light, point, s->p, &from))
         return;
-    double cos_light = dvec3_dot(turn.to_light, s->ns);
+    double cos_light = dvec3_dot(from.to_light, s->ns);
     if (!(cos_light > 0.0))
         return;
-    bool wanted = at->lifted || dvec3_dot(turn.to_light, s->ng) > 0.0;
+    bool wanted = at->lifted || dvec3_dot(from.to_light, s->ng) > 0.0;
     struct dvec3 highlight =
-        optics_highlight(o, s->ns, turn.to_light, d3_scale(at->ray->dir, -1.0));
+        optics_highlight(o, s->ns, from.to_light, d3_scale(at->ray->dir, -1.0));
     struct dvec3 reflected = d3_along(highlight, o->diffuse, cos_light);
     wanted = wanted && !(reflected.x + reflected.y + reflected.z <= 0.0);
     struct dvec3 share = d3_all(0.0);
     if (wanted)
-        share = light_share(tracer, at, &turn, index, point);
+        share = light_share(tracer, at, &from, index, point);
     if (scene_light_is_flat(light)) {
-        double weight = cos_light * turn.strength;
+        double weight = cos_light * from.strength;
         lit->weight += weight;
         lit->visible = d3_along(lit->visible, share, weight);
-        lit->highlight = d3_along(lit->highlight, d3_times(highlight, share), turn.strength);
+        lit->highlight = d3_along(lit->highlight, d3_times(highlight, share), from.strength);
     } else if (wanted) {
-        struct dvec3 arriving = d3_times(reflected, turn.arriving);
+        struct dvec3 arriving = d3_times(reflected, from.arriving);
         lit->open = d3_add(lit->open, arriving);
         lit->sum = d3_add(lit->sum, d3_times(arriving, share));
     }

@@ -80,12 +80,12 @@ static int compare_records(const void *a, const void *b)
         bool reflected = (r->kind & PROBE_KIND_MASK) == RAY_REFLECTED;
         uint64_t which = is_shadow(r) ? 0 : r->kind & PROBE_STRAIGHT ? 2 : reflected ? 3 : 1;
         uint64_t parent = r->parent == PROBE_RAYS_MAX ? 0 : (uint64_t)r->parent + 1;
-        keys[i] = parent << 40 | which << 36 | (which ? 0 : r->turn);
+        keys[i] = parent << 40 | which << 36 | (which ? 0 : r->light_sample);
     }
     return (keys[0] > keys[1]) - (keys[0] < keys[1]);
 }
 
-/* Names parents by their place in place of their id, which traced rays have as their turn. */
+/* Names parents by their place in place of their id, which traced rays have as their light_sample. */
 static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t *places)
 {
     for (uint32_t i = 0; i < count; ++i) {
@@ -94,9 +94,9 @@ static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t 
             r->parent = places[r->parent];
         if (is_shadow(r))
             continue;
-        if (r->turn != HIT_NONE)
-            places[r->turn] = i;
-        r->turn = 0;
+        if (r->light_sample != HIT_NONE)
+            places[r->light_sample] = i;
+        r->light_sample = 0;
     }
 }
 

@@ -69,7 +69,7 @@ static uint32_t pop_ref(struct walk *walk, uint32_t base, uint32_t *top)
     return walk->stack[*top];
 }
 
-static uint32_t step_pair(struct walk *walk, const struct ray_setup *ray, float near_scale,
+static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, float near_scale,
                           uint32_t pair, uint32_t base, uint32_t *top)
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
@@ -320,7 +320,7 @@ static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32
     uint32_t top = base, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_pair(walk, ray, 1.0f, ref, base, &top);
+            ref = step_siblings(walk, ray, 1.0f, ref, base, &top);
         while (is_leaf(ref)) {
             bool done = test_record(walk, ray, ref & BVH_FIRST_MASK, instance);
             ref += 1u - REF_ONE_PRIMITIVE;
@@ -379,7 +379,7 @@ static void traverse_instances(struct walk *walk, uint32_t root)
     uint32_t top = 0, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_pair(walk, &world, SLAB_NEAR_SCALE, ref, 0, &top);
+            ref = step_siblings(walk, &world, SLAB_NEAR_SCALE, ref, 0, &top);
         if (is_leaf(ref)) {
             uint32_t index = ref & BVH_FIRST_MASK;
             const struct gpu_instance *instance = &walk->accel->instances[index];

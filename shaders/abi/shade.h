@@ -93,7 +93,7 @@ GPU_ASSERT_AT(gpu_texture, offset, 16)
 #define LIGHT_SPOT        2u
 #define LIGHT_AREA_SAMPLE 3u /* Lambertian emitter around `direction` */
 /* Flat emitters of radiance `color`: corner `position`, edges `edge_u` and `edge_v`, unit normal
-   `direction`. They take as many turns of the loop over lights as the frame has light_samples. */
+   `direction`. They take as many iterations of the loop over lights as the frame has light_samples. */
 #define LIGHT_RECTANGLE 4u
 #define LIGHT_TRIANGLE  5u
 #define LIGHT_FLAT_BITS (1u << LIGHT_RECTANGLE | 1u << LIGHT_TRIANGLE)
@@ -242,7 +242,7 @@ struct gpu_probe_ray {
     gpu_uint primitive, instance; /* HIT_NONE: none, or (blocked without trees) not known */
     gpu_uint skip_primitive, skip_instance;
     gpu_uint medium; /* material + 1 of what it goes through; 0: air */
-    gpu_uint turn;   /* shadow rays: light * light_samples + sample */
+    gpu_uint light_sample; /* shadow rays: light * light_samples + sample */
 };
 GPU_ASSERT_SIZE(gpu_probe_ray, 128)
 GPU_ASSERT_AT(gpu_probe_ray, point, 64)

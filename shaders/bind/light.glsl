@@ -36,7 +36,7 @@ vec3 environment_radiance(vec3 dir)
 
 const float LIGHT_MAX = 1e24; // so that sums of what arrives cannot overflow
 
-// One turn of the loop over lights: a light, or one point of a flat emitter.
+// One iteration of the loop over lights: a light, or one point of a flat emitter.
 struct LightSample {
     vec3 to_light; // unit
     float distance;
@@ -70,7 +70,7 @@ vec3 emitter_point(gpu_light light, uint index)
     return light.position + light.edge_u * u + light.edge_v * v;
 }
 
-// The point that turn `index` of a light comes from. A directional light has none: its result means nothing.
+// The point that sample `index` of a light comes from. A directional light has none: its result means nothing.
 vec3 light_point(gpu_light light, uint index)
 {
     return is_flat(light) ? emitter_point(light, index) : light.position;
@@ -91,51 +91,51 @@ float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
     return front ? max(factor, 0.0) : light.two_sided != 0u ? max(-factor, 0.0) : 0.0;
 }
 
-// Turn `index` of a light towards `p`. False: nothing arrives.
-bool light_at(gpu_light light, uint index, vec3 p, out LightSample turn)
+// Sample `index` of a light towards `p`. False: nothing arrives.
+bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
 {
     bool flat_emitter = is_flat(light);
-    turn.arriving = light.color;
-    turn.strength = 0.0;
+    from.arriving = light.color;
+    from.strength = 0.0;
     if (((SPEC_LIGHTS >> light.kind) & 1u) == 0u)
         return false;
     if ((SPEC_LIGHTS & (1u << LIGHT_DIRECTIONAL)) != 0u && light.kind == LIGHT_DIRECTIONAL) {
-        turn.to_light = -light.direction;
-        turn.distance = uintBitsToFloat(0x7f7fffffu);
+        from.to_light = -light.direction;
+        from.distance = uintBitsToFloat(0x7f7fffffu);
         return true;
     }
     vec3 way = light_point(light, index) - p;
     float largest = max(abs(way.x), max(abs(way.y), abs(way.z)));
     if (!(largest > 0.0)) {
-        turn.to_light = vec3(0.0);
-        turn.distance = 0.0;
+        from.to_light = vec3(0.0);
+        from.distance = 0.0;
         return false;
     }
-    turn.distance = length(way / largest) * largest;
-    turn.to_light = way / turn.distance;
-    float square = max(turn.distance * turn.distance, 1.17549435e-38);
+    from.distance = length(way / largest) * largest;
+    from.to_light = way / from.distance;
+    float square = max(from.distance * from.distance, 1.17549435e-38);
     if (light.falloff != 0u)
-        turn.arriving /= square;
-    float cos_away = -dot(turn.to_light, light.direction);
+        from.arriving /= square;
+    float cos_away = -dot(from.to_light, light.direction);
     float cos_emitter = light.two_sided != 0u ? abs(cos_away) : max(cos_away, 0.0);
     if ((SPEC_LIGHTS & (1u << LIGHT_SPOT)) != 0u && light.kind == LIGHT_SPOT) {
         float part = (cos_away - light.cos_outer) / max(light.cos_inner - light.cos_outer, 1e-6);
         float soft = clamp(part, 0.0, 1.0);
-        turn.arriving *= soft * soft;
+        from.arriving *= soft * soft;
     }
     if ((SPEC_LIGHTS & (1u << LIGHT_AREA_SAMPLE)) != 0u && light.kind == LIGHT_AREA_SAMPLE)
-        turn.arriving *= cos_emitter;
+        from.arriving *= cos_emitter;
     if (flat_emitter) {
-        turn.strength = min(cos_emitter / square, LIGHT_MAX);
-        turn.arriving = light.color * (light.area_share * turn.strength);
+        from.strength = min(cos_emitter / square, LIGHT_MAX);
+        from.arriving = light.color * (light.area_share * from.strength);
     }
-    turn.arriving = min(turn.arriving, vec3(LIGHT_MAX));
-    if (turn.distance > light.range)
+    from.arriving = min(from.arriving, vec3(LIGHT_MAX));
+    if (from.distance > light.range)
         return false;
     // What lies in one plane with an emitter, as a ceiling may, casts no shadow of its light.
     if (flat_emitter)
-        turn.distance *= 1.0 - 1.0 / 4096.0;
-    return max(turn.arriving.r, max(turn.arriving.g, turn.arriving.b)) > 0.0;
+        from.distance *= 1.0 - 1.0 / 4096.0;
+    return max(from.arriving.r, max(from.arriving.g, from.arriving.b)) > 0.0;
 }
 
 #endif

@@ -19,7 +19,7 @@ bool is_recorded(uint id)
 }
 
 gpu_probe_ray make_probe_ray(uint kind, uint end, uint parent, vec3 origin, vec3 dir, float t_max,
-                             vec3 weight, uvec2 skip, uint turn)
+                             vec3 weight, uvec2 skip, uint light_sample)
 {
     gpu_probe_ray ray;
     ray.origin = origin;
@@ -41,7 +41,7 @@ gpu_probe_ray make_probe_ray(uint kind, uint end, uint parent, vec3 origin, vec3
     ray.skip_primitive = skip.y;
     ray.skip_instance = skip.x;
     ray.medium = 0u;
-    ray.turn = turn;
+    ray.light_sample = light_sample;
     return ray;
 }
 
@@ -112,13 +112,13 @@ void probe_cut_ray(uint id, uint kind, uint end, vec3 dir, vec3 weight)
                                uvec2(HIT_NONE), HIT_NONE));
 }
 
-void probe_shadow_ray(uint id, uint turn, vec3 origin, vec3 dir, float distance, uvec2 skip,
+void probe_shadow_ray(uint id, uint light_sample, vec3 origin, vec3 dir, float distance, uvec2 skip,
                       Hit blocker, vec3 share)
 {
     uint end = blocker.primitive != HIT_NONE ? PROBE_BLOCKED : PROBE_REACHED;
     vec3 weight = is_recorded(id) ? probe_rays[id].added : vec3(0.0); // of its surface
     gpu_probe_ray ray = with_hit(
-        make_probe_ray(RAY_SHADOW, end, id, origin, dir, distance, weight, skip, turn), blocker);
+        make_probe_ray(RAY_SHADOW, end, id, origin, dir, distance, weight, skip, light_sample), blocker);
     ray.added = share;
     probe_other(ray);
 }

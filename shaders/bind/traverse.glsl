@@ -182,7 +182,7 @@ bool second_first(RaySetup ray, uint bits)
 
 // One step down: both children of `pair` are tested, the first to visit is returned, the other
 // pushed. With SPEC_CLIPPED boxes of mesh trees are wider by the ray's margin.
-uint step_pair(RaySetup ray, float t_min, float near_scale, uint pair, inout NodeStack stack,
+uint step_siblings(RaySetup ray, float t_min, float near_scale, uint pair, inout NodeStack stack,
                inout Hit hit)
 {
     uvec4 a0 = fetch_node_row(pair * 2u);
@@ -478,7 +478,7 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
     do {
         do {
             if (is_inner(ref) && has_room(stack))
-                ref = step_pair(ray, t_min, 1.0, ref, stack, hit);
+                ref = step_siblings(ray, t_min, 1.0, ref, stack, hit);
         } while (is_inner(ref) && has_room(stack));
         do {
             if (is_leaf(ref)) {
@@ -547,7 +547,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     do {
         do {
             if (is_inner(ref) && has_room(stack) && !inside)
-                ref = step_pair(ray, t_min, SLAB_NEAR_SCALE, ref, stack, hit);
+                ref = step_siblings(ray, t_min, SLAB_NEAR_SCALE, ref, stack, hit);
         } while (is_inner(ref) && has_room(stack) && !inside);
         if (is_leaf(ref)) {
             uint instance = ref & BVH_FIRST_MASK;

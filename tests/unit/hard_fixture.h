@@ -27,7 +27,7 @@ enum { LEVELS = sizeof levels / sizeof *levels };
 /* It promises no closed surfaces. */
 static const struct level fast_level = {"fast", NUMERICS_FAST, false, false};
 
-/* Where a ray enters and leaves a box, as a tree's walk asks (step_pair in traverse.c). */
+/* Where a ray enters and leaves a box, as a tree's walk asks (step_siblings in traverse.c). */
 static inline bool level_enters(const struct level *level, const struct ray_setup *ray,
                                 const float lo[3], const float hi[3], float t_min, float t_max,
                                 float *t_near, float *t_far)
