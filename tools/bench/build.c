@@ -62,9 +62,8 @@ void __wrap_free(void *memory)
 
 /* ---- Builds ---- */
 
-enum {
-    LARGE = 200000
-}; /* triangles: above it there is no room for all trees, to be drawn in turns */
+/* Triangles above which there is no room for all trees, to be drawn in turns. */
+enum { LARGE = 200000 };
 
 static const struct builder {
     const char *name;
@@ -107,22 +106,19 @@ static whit_result build_here(struct building *b, uint32_t index, double *ms)
 {
     struct bench_case *c = &b->cases[index];
     c->accel_params.threads = b->threads;
-    whit_accel_destroy(c->accel);
+    whit_accel_destroy(c->accel); /* which is not to be counted */
     c->accel = NULL;
     bytes_now = bytes_peak = 0;
     is_counting = true;
-    whit_result result = whit_accel_create(c->loaded.scene, &c->accel_params, &c->accel);
+    whit_result result = case_build(c);
     is_counting = false;
     b->bytes[index] = (double)bytes_peak;
-    if (result != WHIT_OK)
-        return result;
-    whit_accel_get_info(c->accel, &c->accel_info);
     *ms = c->accel_info.build_ms;
     if (c->loaded.info.triangle_count > LARGE) {
         whit_accel_destroy(c->accel);
         c->accel = NULL;
     }
-    return WHIT_OK;
+    return result;
 }
 
 /* Round 0 warms up. */
@@ -171,7 +167,7 @@ static void put_row(struct table *table, const struct building *b, uint32_t inde
 /* A quick run keeps a few of the builders. */
 static void choose(struct building *b, const char *name, const struct bench_scene *loaded)
 {
-    bool quick = b->bench->ask.quick, has_embree = peer_is_here();
+    bool quick = b->bench->ask.quick, has_embree = !peer_why_not(&loaded->info);
     for (uint32_t i = 0; i < BUILDERS; ++i) {
         const struct builder *builder = &builders[i];
         if ((quick && !builder->in_quick) || (builder->quality && !has_embree))
@@ -191,7 +187,7 @@ static whit_result measure(struct building *b, struct table *table)
     const struct bench_scene *loaded = &b->cases[0].loaded;
     whit_result result = WHIT_OK;
     if (b->count == b->own_count) {
-        table_leave_out(table, "Embree", peer_why_not);
+        table_leave_out(table, "Embree", peer_why_not(&loaded->info));
     } else {
         result = peer_begin(&b->peer, b->bench, loaded->scene, "triangles");
         table_say(table, "Beside Embree %s.", b->peer.version);

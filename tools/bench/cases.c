@@ -81,19 +81,25 @@ struct turns {
     struct bench_case *cases;
 };
 
+whit_result case_build(struct bench_case *c)
+{
+    whit_accel_destroy(c->accel);
+    c->accel = NULL;
+    whit_result result = whit_accel_create(c->loaded.scene, &c->accel_params, &c->accel);
+    if (result == WHIT_OK)
+        whit_accel_get_info(c->accel, &c->accel_info);
+    return result;
+}
+
 static whit_result build_once(void *user, uint32_t index, uint32_t run)
 {
     const struct turns *turns = user;
     struct bench_case *c = &turns->cases[index];
+    whit_result result = case_build(c);
     (void)run;
-    whit_accel_destroy(c->accel);
-    c->accel = NULL;
-    whit_result result = whit_accel_create(c->loaded.scene, &c->accel_params, &c->accel);
-    if (result != WHIT_OK)
-        return result;
-    whit_accel_get_info(c->accel, &c->accel_info);
-    sample_add(&c->build, c->accel_info.build_ms);
-    return bench_step(turns->bench);
+    if (result == WHIT_OK)
+        sample_add(&c->build, c->accel_info.build_ms);
+    return result == WHIT_OK ? bench_step(turns->bench) : result;
 }
 
 /* The first run warms up. */

@@ -22,6 +22,8 @@ struct bench_case {
 
 WHIT_CHECK whit_result cases_load(const struct bench *bench, struct bench_case *cases,
                                   uint32_t count);
+/* Its trees, once, in place of those that it has. */
+WHIT_CHECK whit_result case_build(struct bench_case *c);
 /* Builds each case's trees as often as the bench has runs, in turns; the last ones stay. */
 WHIT_CHECK whit_result cases_build(struct bench *bench, struct bench_case *cases, uint32_t count);
 /* Renders each case's picture, once before the clock counts and then as often, in turns; and once

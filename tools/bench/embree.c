@@ -152,7 +152,8 @@ static void build_anew(const struct peer *peer, const char *quality, int threads
     rtcSetDeviceMemoryMonitorFunction(device, on_memory, &memory);
     RTCScene scene =
         make_scene(peer, device, is_high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
-    int64_t before = memory.peak = memory.now;
+    int64_t before = memory.now;
+    memory.peak = before;
     double wall = clock_of(CLOCK_MONOTONIC);
     rtcCommitScene(scene);
     printf("built %.6f %lld\n", clock_of(CLOCK_MONOTONIC) - wall,

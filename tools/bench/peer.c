@@ -9,10 +9,6 @@
 
 #include "app/scene/listing.h"
 
-const char peer_why_not[] =
-    "`whit-embree` is not beside whit-bench; the build makes it where Embree "
-    "3 is installed (Debian: libembree-dev)";
-
 static bool find_program(char *path, size_t bytes)
 {
     char program[2048];
@@ -24,10 +20,13 @@ static bool find_program(char *path, size_t bytes)
     return slash && access(path, X_OK) == 0;
 }
 
-bool peer_is_here(void)
+const char *peer_why_not(const whit_scene_info *scene)
 {
     char path[BENCH_PATH];
-    return find_program(path, sizeof path);
+    if (!find_program(path, sizeof path))
+        return "`whit-embree` is not beside whit-bench; the build makes it where Embree 3 is "
+               "installed (Debian: libembree-dev)";
+    return scene && scene->sphere_count ? "its side has triangles alone, not spheres" : NULL;
 }
 
 /* Waits for its end, which may be on its way already. */

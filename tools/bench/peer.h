@@ -11,15 +11,14 @@ struct peer {
     char program[BENCH_PATH], version[32];
 };
 
-/* Whether there is one beside this program. */
-bool peer_is_here(void);
+/* Why it is left out: it is not beside this program, or the scene (may be NULL) is none for it.
+   NULL: it is here. */
+const char *peer_why_not(const whit_scene_info *scene);
 /* Writes the triangles of a scene, as it works on them, and as whit names them, into a file of the
    bench's folder, and starts it on these. End it in any case, also a zeroed one. */
 WHIT_CHECK whit_result peer_begin(struct peer *peer, const struct bench *bench,
                                   const whit_scene *scene, const char *triangles);
 void peer_end(struct peer *peer);
-/* Why it is left out where it is not here. */
-extern const char peer_why_not[];
 /* `rays NAME closest` (or any), and `hits NAME`: names in the folder. */
 WHIT_CHECK whit_result peer_rays(struct peer *peer, const char *name, bool any);
 WHIT_CHECK whit_result peer_hits(struct peer *peer, const char *name);

@@ -143,12 +143,11 @@ static whit_result prepare(struct model *model, const char *path)
 
 static whit_result begin_peer(struct model *model, char file[96])
 {
-    if (!peer_is_here())
+    const char *why_not = peer_why_not(&model->loaded.info);
+    if (why_not && !peer_why_not(NULL)) /* else it was said once for all models */
+        table_leave_out(model->table, "Embree", why_not);
+    if (why_not)
         return WHIT_OK;
-    if (model->loaded.info.sphere_count) {
-        table_leave_out(model->table, "Embree", "its side has triangles alone, not spheres");
-        return WHIT_OK;
-    }
     snprintf(file, 96, "%s.triangles", model->name);
     model->has_peer = true;
     whit_result result = peer_begin(&model->peer, model->bench, model->loaded.scene, file);
@@ -253,8 +252,8 @@ whit_result bench_rays(struct bench *bench)
     uint32_t models = ask->name_count ? ask->name_count : 3;
     table_begin(&table, bench, "rays", heads, true, models * RAYS_KINDS * 2 * (ask->runs + 1));
     say_how(&table);
-    if (!peer_is_here())
-        table_leave_out(&table, "Embree", peer_why_not);
+    if (peer_why_not(NULL))
+        table_leave_out(&table, "Embree", peer_why_not(NULL));
     for (uint32_t i = 0; result == WHIT_OK && i < ask->name_count; ++i)
         result = run_model(&table, ask->names[i]);
     if (result == WHIT_OK && ask->name_count == 0)

@@ -136,20 +136,10 @@ static size_t count_letters(const char *text)
     return count;
 }
 
-static void print_spaces(size_t count)
-{
-    for (size_t i = 0; i < count; ++i)
-        putchar(' ');
-}
-
 static void print_padded(const char *text, size_t width, bool right, bool ends)
 {
-    size_t pad = width - count_letters(text);
-    putchar(' ');
-    print_spaces(right ? pad : 0);
-    fputs(text, stdout);
-    print_spaces(right ? 0 : pad);
-    fputs(ends ? "" : " |", stdout);
+    int pad = (int)(width - count_letters(text));
+    printf(" %*s%s%*s%s", right ? pad : 0, "", text, right ? 0 : pad, "", ends ? "" : " |");
 }
 
 static void print_rule(const struct table *table, const size_t *widths)

@@ -63,6 +63,12 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return reader.status;
     if (request.which == BENCH_COUNT)
         return list_benches();
+#ifndef WHIT_VIEWER
+    if (request.which == BENCH_VIEW) {
+        cli_error("there is no viewer to measure: this whit was built without it (WHIT_VIEWER)");
+        return EXIT_USAGE;
+    }
+#endif
     cache_prepare(request.settings.no_cache); /* in the environment, which whit-bench inherits */
     return run_bench(argc, argv);
 }
