@@ -17,6 +17,7 @@ struct bench {
     char folder[BENCH_PATH]; /* for files: --keep, or it is removed at the end */
     struct cli_progress progress;
     uint32_t step, step_count; /* of the table at hand */
+    bool has_head;             /* what is above the first table is printed */
     json_t *tables;
 };
 

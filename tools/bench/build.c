@@ -186,6 +186,10 @@ static whit_result measure(struct building *b, struct table *table)
 {
     const struct bench_scene *loaded = &b->cases[0].loaded;
     whit_result result = WHIT_OK;
+    table_say(table,
+              "One tree over all triangles; peak: the most memory that its build held at one "
+              "time, bytes a triangle. Frames are drawn of up to %d triangles.",
+              LARGE);
     if (b->count == b->own_count) {
         table_leave_out(table, "Embree", peer_why_not(&loaded->info));
     } else {
@@ -245,12 +249,6 @@ whit_result bench_build(struct bench *bench)
     char path[BENCH_PATH];
     uint32_t count = bench->ask.name_count ? bench->ask.name_count : 3;
     whit_result result = WHIT_OK;
-    printf("## Builders\n\n%s, %s.\nOne tree over all triangles, by one thread and by all; peak: "
-           "the most memory that a build held\nat one time, bytes a triangle. Frames: %u x %u "
-           "pixels, one sample, no bounces, with shadows,\nof up to %d triangles. %u runs in "
-           "turns; ± is half the width of the middle half.\n",
-           cli_shown(bench->device_info.name), cli_shown(bench->device_info.driver),
-           bench->ask.width, bench->ask.height, LARGE, bench->ask.runs);
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
         if (bench->ask.name_count)
             snprintf(path, sizeof path, "%s", bench->ask.names[i]);

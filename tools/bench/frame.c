@@ -191,24 +191,17 @@ static whit_result run_frame(const struct peers *peers, struct table *table, con
 
 static void say_how(struct table *table)
 {
-    const struct bench *bench = table->bench;
-    const struct bench_request *ask = &bench->ask;
-    const whit_device_info *device = &bench->device_info;
-    table_say(table,
-              "%s, %s; %u x %u pixels, POV-Ray's %u x %u; runs in turns: %u; medians, with half "
-              "the width of the middle half.",
-              cli_shown(device->name), cli_shown(device->driver), ask->width, ask->height,
-              ask->width * 3 / 4, ask->height, ask->runs);
+    const struct bench_request *ask = &table->bench->ask;
     table_say(table,
               "ms: %s a process of its own, less that of a picture 32 wide, caches filled; figure: "
               "times the time of what is beside it. Reference: the same picture in double.",
-              bench->is_cpu ? "processor time of all threads of"
-                            : "time by the clock, as this device is no CPU, of");
-    table_say(table,
-              "Depth 8, bailout 1/1024, 16 points of an area light, one sample; beside POV-Ray "
-              "depth 10 (wine: 2) and bailout 0.0005.");
-    if (ask->quick)
-        table_say(table, "Quick run: small pictures, not for figures to be quoted.");
+              table->bench->is_cpu ? "processor time of all threads of"
+                                   : "time by the clock, as this device is no CPU, of");
+    table_say(
+        table,
+        "Depth 8, bailout 1/1024, 16 points of an area light, one sample; beside POV-Ray %u x "
+        "%u pixels, depth 10 (wine: 2) and bailout 0.0005.",
+        ask->width * 3 / 4, ask->height);
 }
 
 /* One of POV-Ray's, a scene of whit's by its name, or a file. Sets `path`, "" for the former. */

@@ -208,26 +208,17 @@ static whit_result run_usual(struct table *table)
 
 static void say_how(struct table *table)
 {
-    const struct bench *bench = table->bench;
-    const whit_device_info *device = &bench->device_info;
-    table_say(table,
-              "%s, %s; %u x %u camera rays, runs in turns: %u; medians, with half the width of the "
-              "middle half.",
-              cli_shown(device->name), cli_shown(device->driver), bench->ask.width,
-              bench->ask.height, bench->ask.runs);
     table_say(
         table,
-        bench->is_cpu
+        table->bench->is_cpu
             ? "ns: processor time of all threads a ray, from rays in device memory to hits in "
               "device memory. Figure: times the speed of Embree's single rays."
             : "ns: device time a ray, and time by the clock of Embree on all cores. Figure: "
               "times the speed of Embree's single rays.");
     table_say(table,
-              "Level `watertight` beside Embree ROBUST, on the same files: in tiles of 8x8, then "
-              "`shuffled`. Shadow rays start at the light; Embree has them from the end where it "
-              "is quicker.");
-    if (bench->ask.quick)
-        table_say(table, "Quick run: few rays, not for figures to be quoted.");
+              "One camera ray a pixel. Level `watertight` beside Embree ROBUST, on the same files: "
+              "in tiles of 8x8, then `shuffled`. Shadow rays start at the light; Embree has them "
+              "from the end where it is quicker.");
 }
 
 static whit_result look_for(const char *path)

@@ -240,25 +240,13 @@ static whit_result run_section(struct bench *bench, const struct section *sectio
     }
     if (result == WHIT_OK)
         section->judge(&table, cases);
+    table_say(&table, "The report's figures are from another machine: only ratios compare.");
     cases_finish(cases, count);
     return table_end(&table, section->title, result);
 }
 
 whit_result bench_report(struct bench *bench)
 {
-    const whit_device_info *device = &bench->device_info;
-    printf(
-        "## The report's tables\n\n"
-        "%s, %s.\n"
-        "%u x %u pixels, one sample, no bounces, with shadows; fps is 1000 over the median of\n"
-        "renders in ms; ± is half the width of the middle half. %u runs of each case, in turns.\n"
-        "The report's figures are from another machine: only ratios compare.\n",
-        cli_shown(device->name), cli_shown(device->driver), bench->ask.width, bench->ask.height,
-        bench->ask.runs);
-    if (bench->ask.quick)
-        printf("\n**Quick run: small pictures, few runs and counters on: not for figures to be "
-               "quoted.**\n");
-    fflush(stdout);
     trees[3].shrink = bench->ask.quick ? 4 : trees[3].shrink;
     whit_result result = WHIT_OK;
     for (int i = 0; result == WHIT_OK && i < SECTIONS; ++i)

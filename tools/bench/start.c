@@ -132,14 +132,8 @@ whit_result bench_start(struct bench *bench)
     struct table table;
     struct starting s = {.bench = bench, .table = &table};
     table_begin(&table, bench, "start", heads, true, STARTS);
-    table_say(&table,
-              "%s, %s; whole processes with empty caches but where they are filled, in turns: %u; "
-              "medians, with half the width of the middle half. Figure: times the time of the "
-              "other whit.",
-              cli_shown(bench->device_info.name), cli_shown(bench->device_info.driver),
-              bench->ask.runs);
-    if (bench->ask.quick)
-        table_say(&table, "Quick run: pictures of 32x24, not for figures to be quoted.");
+    table_say(&table, "Whole processes with empty caches but where they are filled. Figure: times "
+                      "the time of the other whit.");
     find_second(&s);
     whit_result result = peers_find_against(&s.peers, &table);
     for (size_t i = 0; result == WHIT_OK && i < STARTS; ++i)

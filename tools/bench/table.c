@@ -4,6 +4,21 @@
 #include <stdarg.h>
 #include <string.h>
 
+static void print_head(const struct bench *bench)
+{
+    const struct bench_request *ask = &bench->ask;
+    const struct bench_kind *kind = &bench_kinds[ask->which];
+    printf(
+        "## whit bench %s\n\n%s, %s.\n%u x %u pixels%s; %u runs of each case, in turns: medians, "
+        "± half the width of the middle half.\n",
+        kind->name, cli_shown(bench->device_info.name), cli_shown(bench->device_info.driver),
+        ask->width, ask->height, kind->is_single ? ", one sample, no bounces, with shadows" : "",
+        ask->runs);
+    if (ask->quick)
+        printf("\n**Quick run: small pictures and few runs, not for figures to be quoted.**\n");
+    fflush(stdout);
+}
+
 void table_begin(struct table *table, struct bench *bench, const char *name,
                  const char *const *heads, bool has_goals, uint32_t steps)
 {
@@ -15,6 +30,9 @@ void table_begin(struct table *table, struct bench *bench, const char *name,
                             .left_out = document_array(),
                             .has_goals = has_goals,
                             .column_count = TABLE_COLUMNS_MAX};
+    if (!bench->has_head)
+        print_head(bench);
+    bench->has_head = true;
     document_text(table->object, "table", name);
     table_row(table);
     for (; *heads; ++heads)

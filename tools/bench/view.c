@@ -156,11 +156,11 @@ static void say_circumstances(struct table *table)
     double load[1] = {0.0};
     (void)getloadavg(load, 1);
     table_say(table,
-              "%u x %u, default %u x %u. Whole: ms of render by timestamps, %u pictures of all "
-              "samples; present is apart. Moving: the camera is dragged, an event every %d ms; "
+              "default: %u x %u. Whole: ms of render by timestamps, all samples; present is apart. "
+              "Moving: the camera is dragged, an event every %d ms; "
               "pictures are smaller where that is needed for 30 a second. Wait: from the last "
               "input that a picture shows until it was presented (median, 95 of 100).",
-              ask->width, ask->height, 2 * ask->width, ask->height * 3 / 2, ask->runs, STEP_MS);
+              2 * ask->width, ask->height * 3 / 2, STEP_MS);
     table_say(table,
               "First picture: from the command on, caches filled; a smaller one than it becomes. "
               "Over %.0f ms: from one new picture to the next, while moving.",
