@@ -77,11 +77,6 @@ static whit_result read_json(struct gltf *gltf)
     size_t size;
     json_error_t error;
     const char *path = gltf->request->path;
-    whit_result result = file_read(&gltf->scene->log, &gltf->scene->roots, path, GLTF_LIMIT,
-                                   &gltf->file, &gltf->file_bytes);
-    if (result != WHIT_OK)
-        return result;
-    gltf->scene->file_bytes += gltf->file_bytes;
     if (!split(gltf, &json, &size))
         return WHIT_ERROR_INPUT;
     gltf->root = json_loadb((const char *)json, size, 0, &error);
@@ -229,16 +224,16 @@ static void finish(struct gltf *gltf)
     free(gltf->ignored);
     table_finish(&gltf->ignored_names);
     json_decref(gltf->root);
-    free(gltf->file);
 }
 
-whit_result gltf_load(struct scene *scene, const struct model_request *request)
+whit_result gltf_load_bytes(struct scene *scene, const struct model_request *request,
+                            const uint8_t *data, size_t size_bytes)
 {
     static whit_result (*const steps[])(struct gltf *) = {
         gltf_plan_nodes,  gltf_load_buffers, gltf_load_materials,
         gltf_load_meshes, gltf_add_nodes,    gltf_add_animations,
     };
-    struct gltf gltf = {.scene = scene, .request = request};
+    struct gltf gltf = {.scene = scene, .request = request, .file = data, .file_bytes = size_bytes};
     whit_result result = read_json(&gltf);
     if (result == WHIT_OK &&
         (!check_version(&gltf) || !check_extensions(&gltf) || !check_arrays(&gltf)))
@@ -250,5 +245,19 @@ whit_result gltf_load(struct scene *scene, const struct model_request *request)
     if (result == WHIT_OK)
         note_unused(&gltf);
     finish(&gltf);
+    return result;
+}
+
+whit_result gltf_load(struct scene *scene, const struct model_request *request)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    whit_result result =
+        file_read(&scene->log, &scene->roots, request->path, GLTF_LIMIT, &data, &size);
+    if (result != WHIT_OK)
+        return result;
+    scene->file_bytes += size;
+    result = gltf_load_bytes(scene, request, data, size);
+    free(data);
     return result;
 }

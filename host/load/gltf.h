@@ -23,7 +23,7 @@ struct gltf_ignored {
 struct gltf {
     struct scene *scene;
     const struct model_request *request;
-    uint8_t *file;
+    const uint8_t *file;
     size_t file_bytes;
     json_t *root;
     struct gltf_bytes chunk; /* of a GLB */

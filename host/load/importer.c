@@ -100,6 +100,11 @@ bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block 
     if (header.size_bytes != size_bytes || header.part_count > room / sizeof(struct import_record))
         return false;
     block->counts = header.counts;
+    if (header.part_count == 0 && room) {
+        block->glb = data + sizeof header;
+        block->glb_bytes = room;
+        return true;
+    }
     block->parts = array_alloc_zeroed(header.part_count, sizeof *block->parts);
     if (!block->parts) {
         snprintf(reason, reason_bytes, "out of memory");

@@ -8,7 +8,17 @@
 #include "base/log.h"
 #include "load/load.h"
 
-enum import_kind { IMPORT_OBJ, IMPORT_GLTF, IMPORT_PLY, IMPORT_STL };
+/* From IMPORT_FBX on files come back as a whole, as a GLB. */
+enum import_kind {
+    IMPORT_OBJ,
+    IMPORT_GLTF,
+    IMPORT_PLY,
+    IMPORT_STL,
+    IMPORT_FBX,
+    IMPORT_DAE,
+    IMPORT_3MF,
+    IMPORT_OFF
+};
 
 /* A file the importer may open: it sees these and nothing of the file system. */
 struct import_file {
@@ -43,12 +53,15 @@ struct import_part {
    such a model comes back without parts. `face` is its index in its mesh. */
 struct import_counts {
     uint64_t points, lines, bad_faces, face, corners;
+    uint32_t skins, animations, lights, cameras; /* of a GLB */
 };
 
 struct import_block {
     struct child_reply reply;
     struct import_part *parts;
     uint32_t part_count;
+    const uint8_t *glb; /* in the reply; NULL: there are parts instead */
+    size_t glb_bytes;
     struct import_counts counts;
 };
 
@@ -69,6 +82,7 @@ WHIT_CHECK bool importer_parse(const uint8_t *data, size_t size_bytes, struct im
 #define IMPORT_MAGIC       0x4b4c4257u /* "WBLK" */
 #define IMPORT_ERROR_MAGIC 0x52524557u /* "WERR": text up to the end follows the magic */
 
+/* A header, then a GLB up to the end, where there are no parts and no corners. */
 struct import_header {
     uint32_t magic, part_count;
     uint64_t size_bytes;

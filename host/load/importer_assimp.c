@@ -1,6 +1,7 @@
 /* The child's side of the importer: assimp's scene, flattened into the block of importer.h. */
 #include "load/importer.h"
 
+#include <assimp/cexport.h>
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -13,6 +14,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/table.h"
+#include "load/importer_glb.h"
 #include "load/part.h"
 
 /* --- the only files that assimp sees ------------------------------------------------------- */
@@ -345,34 +347,76 @@ static bool has_long_face(const struct aiScene *scene, struct import_counts *cou
     return false;
 }
 
+static const struct aiScene *import(struct library *library)
+{
+    const struct import_request *request = library->request;
+    struct aiFileIO io = {
+        .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)library};
+    for (uint32_t i = 0; i < request->file_count; i++) {
+        const char *name = request->files[i].name;
+        if (!table_add(&library->names, name, strlen(name), i)) {
+            library->lacks_memory = true;
+            return NULL;
+        }
+    }
+    const struct aiScene *scene = aiImportFileEx(request->files[0].name, 0, &io);
+    table_finish(&library->names);
+    return scene;
+}
+
+/* Triangles, and no more of the file; *scene is NULL where it has been released. */
+static int write_triangles(const struct aiScene **scene, const struct import_request *request,
+                           struct import_counts *counts, void *to, child_write write)
+{
+    struct flat flat = {.counts = *counts};
+    int code = 1;
+    *scene = aiApplyPostProcessing(*scene, aiProcess_Triangulate);
+    if (!*scene || !flatten(&flat, *scene, request->kind))
+        code = CHILD_EXIT_MEMORY; /* nothing else stops either step */
+    else if (write_block(&flat, to, write))
+        code = 0;
+    flat_finish(&flat);
+    return code;
+}
+
+/* The header alone, where the model is refused, or before a GLB. */
+static bool write_header(const struct import_counts *counts, size_t glb_bytes, void *to,
+                         child_write write)
+{
+    const struct import_header header = {
+        .magic = IMPORT_MAGIC, .size_bytes = sizeof header + glb_bytes, .counts = *counts};
+    return write(to, &header, sizeof header);
+}
+
+static int write_glb(const struct aiScene *scene, const struct import_request *request,
+                     struct import_counts *counts, void *to, child_write write)
+{
+    const struct aiExportDataBlob *blob =
+        importer_glb((struct aiScene *)(uintptr_t)scene, request, counts);
+    if (!blob)
+        return write_error(aiGetErrorString(), to, write);
+    bool ok = write_header(counts, blob->size, to, write) && write(to, blob->data, blob->size);
+    aiReleaseExportBlob(blob);
+    return ok ? 0 : 1;
+}
+
 int importer_assimp_run(void *user, void *to, child_write write)
 {
     const struct import_request *request = user;
     struct library library = {.request = request};
-    struct aiFileIO io = {
-        .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)&library};
-    for (uint32_t i = 0; i < request->file_count; i++) {
-        const char *name = request->files[i].name;
-        if (!table_add(&library.names, name, strlen(name), i))
-            return CHILD_EXIT_MEMORY;
-    }
-    const struct aiScene *scene = aiImportFileEx(request->files[0].name, 0, &io);
-    table_finish(&library.names);
+    struct import_counts counts = {0};
+    int code;
+    const struct aiScene *scene = import(&library);
     if (!scene)
         return library.lacks_memory ? CHILD_EXIT_MEMORY
                                     : write_error(aiGetErrorString(), to, write);
-    struct flat flat = {0};
-    bool refused = has_long_face(scene, &flat.counts);
-    if (!refused)
-        scene = aiApplyPostProcessing(scene, aiProcess_Triangulate);
-    if (!scene) /* released, for want of memory: nothing else stops this step */
-        return CHILD_EXIT_MEMORY;
-    int code = 1;
-    if (!refused && !flatten(&flat, scene, request->kind))
-        code = CHILD_EXIT_MEMORY;
-    else if (write_block(&flat, to, write))
-        code = 0;
-    flat_finish(&flat);
-    aiReleaseImport(scene);
+    if (has_long_face(scene, &counts))
+        code = write_header(&counts, 0, to, write) ? 0 : 1;
+    else if (request->kind >= IMPORT_FBX)
+        code = write_glb(scene, request, &counts, to, write);
+    else
+        code = write_triangles(&scene, request, &counts, to, write);
+    if (scene)
+        aiReleaseImport(scene);
     return code;
 }

@@ -7,16 +7,6 @@
 #include "base/file.h"
 #include "scene/afford.h"
 
-static bool is_model(const char *extension)
-{
-    static const char *const models[] = {"obj", "gltf", "glb", "ply", "stl"};
-    for (size_t i = 0; i < sizeof models / sizeof models[0]; ++i) {
-        if (strcmp(extension, models[i]) == 0)
-            return true;
-    }
-    return false;
-}
-
 /* Errors name what is loaded, also where they are about a file that it names. */
 struct named_log {
     const struct log *to;
@@ -44,11 +34,11 @@ static whit_result read_into(struct scene *scene, const char *path,
     path_extension(path, extension, sizeof extension);
     if (strcmp(extension, "json") == 0)
         return load_scene_file(scene, path, params);
-    if (is_model(extension))
+    if (load_is_model(path))
         return load_model(scene, path, SCENE_NONE, true, true, params);
     log_error(&scene->log,
-              "%s: the extension `.%s` is not known; whit reads .json scenes and .obj .gltf .glb "
-              ".ply .stl models",
+              "%s: the extension `.%s` is not known; whit reads .json scenes and " LOAD_MODELS
+              " models",
               path, extension);
     return WHIT_ERROR_INPUT;
 }

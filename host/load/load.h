@@ -34,9 +34,14 @@ static inline struct foreign_params load_foreign(const struct load_params *param
     return foreign;
 }
 
-/* Reads any supported file into a frozen scene: .json scene files, .obj .gltf .glb .ply .stl
-   models. On failure *out is NULL and one error naming the file and the reason (and the line, where
-   the format has lines) was logged. NULL params mean defaults. */
+#define LOAD_MODELS ".obj .gltf .glb .ply .stl .fbx .dae .3mf .off"
+
+/* Whether the path's extension is one of LOAD_MODELS. */
+bool load_is_model(const char *path);
+
+/* Reads any supported file into a frozen scene: .json scene files, and models by LOAD_MODELS. On
+   failure *out is NULL and one error naming the file and the reason (and the line, where the format
+   has lines) was logged. NULL params mean defaults. */
 WHIT_CHECK whit_result load_scene(const struct log *log, const char *path,
                                   const struct load_params *params, struct scene **out);
 

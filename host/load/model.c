@@ -31,7 +31,8 @@ static whit_result import(struct scene *scene, const struct model_request *reque
                           enum import_kind kind, const uint8_t *data, size_t size_bytes,
                           struct import_block *block)
 {
-    static const char *const names[] = {"model.obj", "model.gltf", "model.ply", "model.stl"};
+    static const char *const names[] = {"model.obj", "model.gltf", "model.ply", "model.stl",
+                                        "model.fbx", "model.dae",  "model.3mf", "model.off"};
     const struct import_file file = {names[kind], data, size_bytes};
     const struct import_request import = {kind, &file, 1};
     whit_result result = importer_run(&scene->log, request->path, &import, request->params, block);
@@ -39,7 +40,8 @@ static whit_result import(struct scene *scene, const struct model_request *reque
         return result;
     const struct import_counts *counts = &block->counts;
     model_note_counts(scene, request->path, counts);
-    if (block->part_count)
+    bool whole = kind >= IMPORT_FBX;
+    if (whole ? block->glb != NULL : block->part_count > 0)
         return WHIT_OK;
     if (counts->corners)
         log_long_face(&scene->log, request->path,
@@ -195,21 +197,99 @@ static whit_result load_plain(struct scene *scene, const struct model_request *r
     return result;
 }
 
+/* --- FBX, COLLADA, 3MF, OFF ----------------------------------------------------------------- */
+
+static void note_dropped(struct scene *scene, const char *path, const struct import_counts *counts)
+{
+    const char *name = path_name(path);
+    if (counts->skins)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "%s: skins are not animated: %u drawn in the bind pose", name, counts->skins);
+    if (counts->animations)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: %u animations are not played", name,
+                   counts->animations);
+    if (counts->lights || counts->cameras)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: %u lights and %u cameras are not read", name,
+                   counts->lights, counts->cameras);
+}
+
+static whit_result load_whole(struct scene *scene, const struct model_request *request,
+                              enum import_kind kind)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    struct import_block block = {0};
+    whit_result result =
+        file_read(&scene->log, &scene->roots, request->path, MODEL_LIMIT, &data, &size);
+    if (result != WHIT_OK)
+        return result;
+    scene->file_bytes += size;
+    result = import(scene, request, kind, data, size, &block);
+    free(data);
+    if (result == WHIT_OK)
+        note_dropped(scene, request->path, &block.counts);
+    if (result == WHIT_OK)
+        result = gltf_load_bytes(scene, request, block.glb, block.glb_bytes);
+    importer_finish(&block);
+    return result;
+}
+
+/* --- all kinds ------------------------------------------------------------------------------ */
+
+static whit_result load_obj(struct scene *scene, const struct model_request *request,
+                            enum import_kind kind)
+{
+    (void)kind;
+    return model_load_obj(scene, request);
+}
+
+static whit_result load_gltf(struct scene *scene, const struct model_request *request,
+                             enum import_kind kind)
+{
+    (void)kind;
+    return gltf_load(scene, request);
+}
+
+static const struct {
+    const char *extension;
+    whit_result (*load)(struct scene *scene, const struct model_request *request,
+                        enum import_kind kind);
+    enum import_kind kind;
+} kinds[] = {
+    {"obj", load_obj, IMPORT_OBJ},   {"gltf", load_gltf, IMPORT_GLTF},
+    {"glb", load_gltf, IMPORT_GLTF}, {"ply", load_plain, IMPORT_PLY},
+    {"stl", load_plain, IMPORT_STL}, {"fbx", load_whole, IMPORT_FBX},
+    {"dae", load_whole, IMPORT_DAE}, {"3mf", load_whole, IMPORT_3MF},
+    {"off", load_whole, IMPORT_OFF},
+};
+
+enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
+
+static size_t find_kind(const char *path)
+{
+    char extension[16];
+    size_t i = 0;
+    path_extension(path, extension, sizeof extension);
+    while (i < KIND_COUNT && strcmp(kinds[i].extension, extension) != 0)
+        i++;
+    return i;
+}
+
+bool load_is_model(const char *path)
+{
+    return find_kind(path) < KIND_COUNT;
+}
+
 whit_result load_model(struct scene *scene, const char *path, uint32_t parent, bool with_lights,
                        bool with_cameras, const struct load_params *params)
 {
     const struct model_request request = {path, parent, with_lights, with_cameras, params};
+    size_t kind = find_kind(path);
+    if (kind < KIND_COUNT)
+        return kinds[kind].load(scene, &request, kinds[kind].kind);
     char extension[16];
     path_extension(path, extension, sizeof extension);
-    if (strcmp(extension, "obj") == 0)
-        return model_load_obj(scene, &request);
-    if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0)
-        return gltf_load(scene, &request);
-    if (strcmp(extension, "ply") == 0)
-        return load_plain(scene, &request, IMPORT_PLY);
-    if (strcmp(extension, "stl") == 0)
-        return load_plain(scene, &request, IMPORT_STL);
-    log_error(&scene->log, "%s: unknown kind of model `.%s` (known: .obj .gltf .glb .ply .stl)",
-              path, text_token(extension).text);
+    log_error(&scene->log, "%s: unknown kind of model `.%s` (known: " LOAD_MODELS ")", path,
+              text_token(extension).text);
     return WHIT_ERROR_INPUT;
 }

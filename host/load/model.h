@@ -32,5 +32,8 @@ struct model_request {
 WHIT_CHECK whit_result model_load_obj(struct scene *scene, const struct model_request *request);
 /* .gltf and .glb */
 WHIT_CHECK whit_result gltf_load(struct scene *scene, const struct model_request *request);
+/* The same of a file in memory; what it names lies beside the request's path. */
+WHIT_CHECK whit_result gltf_load_bytes(struct scene *scene, const struct model_request *request,
+                                       const uint8_t *data, size_t size_bytes);
 
 #endif

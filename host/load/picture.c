@@ -348,3 +348,10 @@ char *picture_find(const struct roots *roots, const char *path)
     free(plain);
     return found;
 }
+
+void picture_inflate(const uint8_t *data, size_t size_bytes, char *out, int out_bytes)
+{
+    int bytes = size_bytes < INT_MAX ? (int)size_bytes : INT_MAX;
+    /* What does not fit is an error to stb_image, and yet there. */
+    (void)stbi_zlib_decode_noheader_buffer(out, out_bytes, (const char *)data, bytes);
+}

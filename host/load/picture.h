@@ -36,6 +36,9 @@ const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_byt
 /* Halves with a box filter until neither side is over `side_most`. False: memory ran out. */
 bool picture_shrink(struct picture *picture, uint32_t side_max);
 void picture_finish(struct picture *picture);
+/* The first bytes of what deflate has packed, as many as fit: zeros where it is damaged. Only for a
+   child, since foreign code does it. */
+void picture_inflate(const uint8_t *data, size_t size_bytes, char *out, int out_bytes);
 
 /* `path`, or the one file that differs from it by case and by \ for /. Release with free(); NULL
    when memory runs out. A path that leads nowhere is given back with its slashes turned; one that

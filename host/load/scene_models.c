@@ -147,18 +147,6 @@ static bool place_model(struct reader *reader, const struct place *place,
     return (other || know_model(reader, what, ANY_MATERIAL)) && add_model(reader, what, &range);
 }
 
-static bool has_extension_of_model(const char *path)
-{
-    static const char *const known[] = {"obj", "gltf", "glb", "ply", "stl"};
-    char extension[16];
-    path_extension(path, extension, sizeof extension);
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; ++i) {
-        if (strcmp(extension, known[i]) == 0)
-            return true;
-    }
-    return false;
-}
-
 bool reader_model(struct reader *reader, const struct place *place, const json_t *object,
                   uint32_t node)
 {
@@ -170,8 +158,8 @@ bool reader_model(struct reader *reader, const struct place *place, const json_t
         !reader_bool(reader, place, object, "cameras", &what.cameras) ||
         !reader_object_material(reader, place, object, &what.material))
         return false;
-    if (!has_extension_of_model(name))
-        return reader_fail(reader, &here, "`%s` is no model; whit reads .obj .gltf .glb .ply .stl",
+    if (!load_is_model(name))
+        return reader_fail(reader, &here, "`%s` is no model; whit reads " LOAD_MODELS,
                            text_token(name).text);
     char *path = roots_join(reader->path, name);
     if (!path)

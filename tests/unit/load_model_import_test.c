@@ -470,7 +470,7 @@ static void cancelling_is_not_the_files_fault(void **state)
 
 static void unknown_kinds_are_named(void **state)
 {
-    fixture_refused(*state, fixture_text(*state, "a.fbx", "x"), "`.fbx`");
+    fixture_refused(*state, fixture_text(*state, "a.blend", "x"), "`.blend`");
 }
 
 static void missing_files_are_named(void **state)

@@ -311,7 +311,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
 const struct cli_command command_render = {
     .name = "render",
     .arguments = "SCENE -o FILE [options]",
-    .summary = "Renders a scene (.json) or a model (.obj .gltf .glb .ply .stl) to a picture.",
+    .summary =
+        "Renders a scene (.json) or a model (.obj .gltf .glb .ply .stl .fbx .dae .3mf .off).",
     .details =
         "Defaults are in brackets. The picture carries its recipe: PNG text, EXR attributes.\n"
         "Exit codes: 0 fine, 1 a promise failed, 2 bad usage or input, 3 no device,\n"

@@ -110,7 +110,8 @@ struct scene_list {
 
 static bool is_scene(const char *name)
 {
-    static const char *const endings[] = {".json", ".obj", ".gltf", ".glb", ".ply", ".stl"};
+    static const char *const endings[] = {".json", ".obj", ".gltf", ".glb", ".ply",
+                                          ".stl",  ".fbx", ".dae",  ".3mf", ".off"};
     size_t length = strlen(name);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
         size_t end = strlen(endings[i]);

@@ -1,0 +1,142 @@
+/* The child's side of the importer, for files that are more than triangles: assimp's scene becomes
+   a GLB, in metres and with y upwards, that whit reads as any other. */
+#include <assimp/cexport.h>
+#include <assimp/cimport.h>
+#include <assimp/material.h>
+#include <assimp/metadata.h>
+#include <assimp/scene.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "load/importer_glb.h"
+#include "load/threemf.h"
+
+/* --- units and axes ------------------------------------------------------------------------- */
+
+static const struct aiMetadataEntry *find_meta(const struct aiScene *scene, const char *key)
+{
+    const struct aiMetadata *all = scene->mMetaData;
+    for (unsigned i = 0; all && i < all->mNumProperties; i++)
+        if (strcmp(all->mKeys[i].data, key) == 0)
+            return &all->mValues[i];
+    return NULL;
+}
+
+static int meta_int(const struct aiScene *scene, const char *key, int without)
+{
+    const struct aiMetadataEntry *entry = find_meta(scene, key);
+    return entry && entry->mType == AI_INT32 ? *(const int32_t *)entry->mData : without;
+}
+
+static double meta_double(const struct aiScene *scene, const char *key, double without)
+{
+    const struct aiMetadataEntry *entry = find_meta(scene, key);
+    bool is_float = entry && entry->mType == AI_FLOAT;
+    if (entry && entry->mType == AI_DOUBLE)
+        return *(const double *)entry->mData;
+    return is_float ? (double)*(const float *)entry->mData : without;
+}
+
+/* The rows of *out are the axes that become x, y and z. */
+static void set_row(struct aiMatrix4x4 *out, int row, int axis, double length)
+{
+    ai_real *rows[3] = {&out->a1, &out->b1, &out->c1};
+    for (int i = 0; i < 3; i++)
+        rows[row][i] = i == axis ? (ai_real)length : 0;
+}
+
+/* Lengths are UnitScaleFactor centimetres; three axes point to the side, up and to the front. */
+static void place_fbx(const struct aiScene *scene, struct aiMatrix4x4 *out)
+{
+    static const char *const axes[3][2] = {
+        {"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}};
+    double metres = meta_double(scene, "UnitScaleFactor", 1) / 100;
+    int axis[3], sign[3], seen = 0;
+    for (int i = 0; i < 3; i++) {
+        axis[i] = meta_int(scene, axes[i][0], i);
+        sign[i] = meta_int(scene, axes[i][1], 1) < 0 ? -1 : 1;
+        seen |= axis[i] >= 0 && axis[i] < 3 ? 1 << axis[i] : 0;
+    }
+    for (int i = 0; i < 3; i++)
+        set_row(out, i, seen == 7 ? axis[i] : i, metres * (seen == 7 ? sign[i] : 1));
+}
+
+/* z is up. */
+static void place_3mf(const struct import_file *file, struct aiMatrix4x4 *out)
+{
+    double metres = threemf_unit_m(file->data, file->size_bytes);
+    set_row(out, 0, 0, metres);
+    set_row(out, 1, 2, metres);
+    set_row(out, 2, 1, -metres);
+}
+
+/* assimp does it for COLLADA; OFF has neither units nor axes. */
+static void place(struct aiScene *scene, const struct import_request *request)
+{
+    struct aiMatrix4x4 placed;
+    aiIdentityMatrix4(&placed);
+    if (request->kind == IMPORT_FBX)
+        place_fbx(scene, &placed);
+    else if (request->kind == IMPORT_3MF)
+        place_3mf(&request->files[0], &placed);
+    aiMultiplyMatrix4(&placed, &scene->mRootNode->mTransformation);
+    scene->mRootNode->mTransformation = placed;
+}
+
+/* --- textures ------------------------------------------------------------------------------- */
+
+/* With slashes; the bare name where the path is one of the exporter's machine. */
+static void shorten_path(struct aiString *path)
+{
+    for (char *c = path->data; *c; c++)
+        *c = *c == '\\' ? '/' : *c;
+    const char *kept = path->data;
+    if (kept[0] == '/' || (kept[0] && kept[1] == ':'))
+        kept = path_name(kept);
+    path->length = (ai_uint32)strlen(kept);
+    memmove(path->data, kept, path->length + 1);
+}
+
+static void shorten_paths(struct aiMaterial *material)
+{
+    for (unsigned i = 0; i < material->mNumProperties; i++) {
+        struct aiMaterialProperty *property = material->mProperties[i];
+        struct aiString path = {0};
+        if (strcmp(property->mKey.data, "$tex.file") != 0 ||
+            aiGetMaterialString(material, property->mKey.data, property->mSemantic,
+                                property->mIndex, &path) != aiReturn_SUCCESS)
+            continue;
+        shorten_path(&path);
+        /* No longer than it was: a length, the text and a zero byte. */
+        memcpy(property->mData, &path.length, sizeof path.length);
+        memcpy(property->mData + sizeof path.length, path.data, path.length + 1);
+        property->mDataLength = (unsigned)(sizeof path.length + path.length + 1);
+    }
+}
+
+/* --- the whole ------------------------------------------------------------------------------ */
+
+/* What the scene will not have; it is told of it. */
+static void drop(struct aiScene *scene, struct import_counts *counts)
+{
+    for (unsigned i = 0; i < scene->mNumMeshes; i++) {
+        counts->skins += scene->mMeshes[i]->mNumBones > 0;
+        scene->mMeshes[i]->mNumBones = 0;
+    }
+    counts->animations = scene->mNumAnimations;
+    counts->lights = scene->mNumLights;
+    counts->cameras = scene->mNumCameras;
+    scene->mNumAnimations = 0;
+    scene->mNumCameras = scene->mNumLights = 0;
+}
+
+const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
+                                            const struct import_request *request,
+                                            struct import_counts *counts)
+{
+    drop(scene, counts);
+    place(scene, request);
+    for (unsigned i = 0; i < scene->mNumMaterials; i++)
+        shorten_paths(scene->mMaterials[i]);
+    return aiExportSceneToBlob(scene, "glb2", 0);
+}

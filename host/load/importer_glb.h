@@ -1,0 +1,16 @@
+/* assimp's scene as a GLB, in the importer's child. */
+#ifndef LOAD_IMPORTER_GLB_H
+#define LOAD_IMPORTER_GLB_H
+
+#include "load/importer.h"
+
+struct aiScene;
+struct aiExportDataBlob;
+
+/* In metres, with y upwards, without skins, animations, lights and cameras, which are counted. The
+   scene is changed; the caller releases the blob. NULL: aiGetErrorString() says why. */
+const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
+                                            const struct import_request *request,
+                                            struct import_counts *counts);
+
+#endif

@@ -1,0 +1,405 @@
+/* FBX, COLLADA, 3MF and OFF: units, the axis that is up, nodes, materials and textures arrive, and
+   what does not is named. */
+#include <math.h>
+
+#include "load_model_fixture.h"
+
+static const struct scene *load(struct fixture *fixture, const char *path)
+{
+    if (fixture_load(fixture, path) != WHIT_OK)
+        fail_msg("%s", fixture->last_error);
+    assert_int_equal(fixture->errors, 0);
+    return fixture->scene;
+}
+
+/* The place in the world of a vertex of an instance, through all nodes above it. */
+static void assert_place(const struct scene *scene, uint32_t instance, uint32_t vertex, double x,
+                         double y, double z)
+{
+    const struct scene_instance *of = &scene->instances[instance];
+    const float *position = scene->meshes[of->mesh].positions + 3 * vertex;
+    double at[3] = {(double)position[0], (double)position[1], (double)position[2]};
+    const double wanted[3] = {x, y, z};
+    for (uint32_t node = of->node; node != SCENE_NONE; node = scene->nodes[node].parent) {
+        const struct scene_node *n = &scene->nodes[node];
+        struct affine local =
+            n->has_matrix ? n->matrix : affine_from_trs(n->translation, n->rotation, n->scale);
+        double moved[3];
+        for (int i = 0; i < 3; i++)
+            moved[i] = local.m[4 * i] * at[0] + local.m[4 * i + 1] * at[1] +
+                       local.m[4 * i + 2] * at[2] + local.m[4 * i + 3];
+        memcpy(at, moved, sizeof at);
+    }
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(at[i] - wanted[i]) < 1e-6))
+            fail_msg("vertex %u is at %g %g %g and should be at %g %g %g", vertex, at[0], at[1],
+                     at[2], x, y, z);
+}
+
+static const struct scene_material *material_of(const struct scene *scene)
+{
+    return &scene->materials[scene->meshes[scene->instances[0].mesh].materials[0]];
+}
+
+/* --- OFF ------------------------------------------------------------------------------------ */
+
+static void off_has_faces_alone(void **state)
+{
+    const struct scene *scene =
+        load(*state,
+             fixture_text(*state, "a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 2 0\n0 2 3\n4 0 1 2 3\n"));
+    assert_int_equal(scene->meshes[0].triangle_count, 2);
+    assert_int_equal(scene->meshes[0].vertex_count, 4);
+    assert_place(scene, 0, 0, 0, 0, 0);
+}
+
+/* --- COLLADA -------------------------------------------------------------------------------- */
+
+#define SOURCE(id, count, numbers, stride, params)                                                 \
+    "<source id='" id "'><float_array id='" id "a' count='" count "'>" numbers "</float_array>"    \
+    "<technique_common><accessor source='#" id "a' count='3' stride='" stride "'>" params          \
+    "</accessor></technique_common></source>"
+#define PARAM(name) "<param name='" name "' type='float'/>"
+
+/* Half metres, z upwards; one triangle on two nodes, the second below the first. */
+static const char collada[] =
+    "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
+    "version='1.4.1'><asset><unit meter='0.5' name='half'/><up_axis>Z_UP</up_axis></asset>"
+    "<library_images><image id='i'><init_from>dir\\no%%20such.png</init_from></image>"
+    "</library_images><library_effects><effect id='e'><profile_COMMON>"
+    "<newparam sid='s'><surface type='2D'><init_from>i</init_from></surface></newparam>"
+    "<newparam sid='t'><sampler2D><source>s</source></sampler2D></newparam>"
+    "<technique sid='c'><lambert><emission><color>0.5 0.25 0 1</color></emission>"
+    "<diffuse><texture texture='t' texcoord='U'/></diffuse></lambert></technique>"
+    "</profile_COMMON></effect><effect id='f'><profile_COMMON><technique sid='c'><lambert>"
+    "<diffuse><color>0.25 0.5 0.75 1</color></diffuse></lambert></technique></profile_COMMON>"
+    "</effect></library_effects><library_materials><material id='m' name='painted'>"
+    "<instance_effect url='#%s'/></material></library_materials>"
+    "<library_geometries><geometry id='g' name='tri'><mesh>" SOURCE(
+        "p", "9", "0 0 0 2 0 0 0 0 4", "3", PARAM("X") PARAM("Y") PARAM("Z"))
+        SOURCE(
+            "u", "6", "0.25 0.75 1 0 0 1", "2",
+            PARAM("S") PARAM(
+                "T")) "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
+                      "<triangles material='mm' count='1'><input semantic='VERTEX' source='#v' "
+                      "offset='0'/>"
+                      "<input semantic='TEXCOORD' source='#u' offset='0' set='0'/><p>0 1 "
+                      "2</p></triangles></mesh>"
+                      "</geometry></library_geometries>%s<library_visual_scenes><visual_scene "
+                      "id='w'>"
+                      "<node id='a' name='a'><translate>2 0 0</translate><instance_geometry "
+                      "url='#g'>"
+                      "<bind_material><technique_common><instance_material symbol='mm' "
+                      "target='#m'/>"
+                      "</technique_common></bind_material></instance_geometry><node id='b' "
+                      "name='b'>"
+                      "<translate>0 0 6</translate><instance_geometry "
+                      "url='#g'><bind_material><technique_common>"
+                      "<instance_material symbol='mm' "
+                      "target='#m'/></technique_common></bind_material>"
+                      "</instance_geometry></node>%s</node></visual_scene></library_visual_scenes>"
+                      "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+
+/* `libraries` and what a scene's node has of them. */
+static const char *write_collada(struct fixture *fixture, const char *effect, const char *libraries,
+                                 const char *nodes)
+{
+    char *text = string_format(collada, effect, libraries, nodes);
+    assert_non_null(text);
+    const char *path = fixture_text(fixture, "a.dae", text);
+    free(text);
+    return path;
+}
+
+static void collada_in_half_metres_and_z_up(void **state)
+{
+    const struct scene *scene = load(*state, write_collada(*state, "f", "", ""));
+    assert_int_equal(scene->instance_count, 2);
+    assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
+    assert_place(scene, 0, 1, 2, 0, 0);
+    assert_place(scene, 0, 2, 1, 2, 0);
+    assert_place(scene, 1, 2, 1, 5, 0);
+    assert_float_equal(material_of(scene)->diffuse[0], 0.25, 1e-6);
+    assert_float_equal(material_of(scene)->diffuse[2], 0.75, 1e-6);
+}
+
+static void collada_names_its_textures(void **state)
+{
+    const struct scene *scene = load(*state, write_collada(*state, "e", "", ""));
+    assert_true(fixture_noted(*state, "texture `no such.png`"));
+    assert_int_not_equal(material_of(scene)->textures[SCENE_SLOT_DIFFUSE].texture, SCENE_NONE);
+    assert_float_equal(material_of(scene)->emission[0], 0.5, 1e-6);
+    assert_float_equal(scene->meshes[0].uvs[0][0], 0.25, 1e-6);
+    assert_float_equal(scene->meshes[0].uvs[0][1], 0.25, 1e-6); /* downwards */
+}
+
+#define NAMES(id, names)                                                                           \
+    "<source id='" id "'><Name_array id='" id "a' count='1'>" names "</Name_array>"                \
+    "<technique_common><accessor source='#" id "a' count='1' stride='1'>"                          \
+    "<param name='JOINT' type='name'/></accessor></technique_common></source>"
+
+static const char moving[] =
+    "<library_cameras><camera id='k'><optics><technique_common><perspective><yfov>45</yfov>"
+    "<znear>1</znear><zfar>9</zfar></perspective></technique_common></optics></camera>"
+    "</library_cameras><library_lights><light id='l'><technique_common><point><color>1 1 1</color>"
+    "</point></technique_common></light></library_lights>"
+    "<library_controllers><controller id='c'><skin source='#g'><bind_shape_matrix>1 0 0 0 0 1 0 0 "
+    "0 0 1 0 0 0 0 1</bind_shape_matrix>" NAMES(
+        "n",
+        "j") "<source id='q'><float_array id='qa' count='16'>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 "
+             "1</float_array>"
+             "<technique_common><accessor source='#qa' count='1' stride='16'><param "
+             "name='TRANSFORM' "
+             "type='float4x4'/></accessor></technique_common></source>"
+             "<source id='h'><float_array id='ha' count='1'>1</float_array><technique_common>"
+             "<accessor source='#ha' count='1' stride='1'><param name='WEIGHT' "
+             "type='float'/></accessor>"
+             "</technique_common></source><joints><input semantic='JOINT' source='#n'/>"
+             "<input semantic='INV_BIND_MATRIX' source='#q'/></joints><vertex_weights count='3'>"
+             "<input semantic='JOINT' source='#n' offset='0'/><input semantic='WEIGHT' source='#h' "
+             "offset='1'/><vcount>1 1 1</vcount><v>0 0 0 0 0 "
+             "0</v></vertex_weights></skin></controller>"
+             "</library_controllers><library_animations><animation id='x'>"
+             "<source id='xt'><float_array id='xta' count='2'>0 1</float_array><technique_common>"
+             "<accessor source='#xta' count='2' stride='1'><param name='TIME' "
+             "type='float'/></accessor>"
+             "</technique_common></source><source id='xv'><float_array id='xva' count='6'>0 0 0 1 "
+             "0 0"
+             "</float_array><technique_common><accessor source='#xva' count='2' stride='3'>"
+             "<param name='X' type='float'/><param name='Y' type='float'/><param name='Z' "
+             "type='float'/>"
+             "</accessor></technique_common></source><sampler id='xs'><input semantic='INPUT' "
+             "source='#xt'/>"
+             "<input semantic='OUTPUT' source='#xv'/></sampler><channel source='#xs' "
+             "target='d/tr'/>"
+             "</animation></library_animations>";
+
+static void what_moves_is_named(void **state)
+{
+    const struct scene *scene = load(
+        *state,
+        write_collada(*state, "f", moving,
+                      "<node id='d' name='d'><translate sid='tr'>0 0 0</translate><node id='j' "
+                      "sid='j' name='j' type='JOINT'/><instance_camera url='#k'/><instance_light "
+                      "url='#l'/></node><node id='s'><instance_controller url='#c'><skeleton>#j"
+                      "</skeleton></instance_controller></node>"));
+    assert_int_equal(scene->channel_count, 0);
+    assert_int_equal(scene->camera_count, 0);
+    uint32_t skins = 0;
+    for (uint32_t i = 0; i < scene->note_count; i++)
+        skins += strstr(scene->notes[i].text, "skins") != NULL;
+    assert_int_equal(skins, 1);
+    assert_true(fixture_noted(*state, "a.dae: skins are not animated: 1 drawn in the bind pose"));
+    assert_true(fixture_noted(*state, "a.dae: 1 animations are not played"));
+    assert_true(fixture_noted(*state, "a.dae: 1 lights and 1 cameras are not read"));
+}
+
+/* --- FBX ------------------------------------------------------------------------------------ */
+
+/* Units of two centimetres, z upwards and -y to the front. */
+static const char fbx[] =
+    "; FBX 7.4.0 project file\n"
+    "FBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n"
+    "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n"
+    "\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\",2\n"
+    "\t\tP: \"UpAxisSign\", \"int\", \"Integer\", \"\",1\n"
+    "\t\tP: \"FrontAxis\", \"int\", \"Integer\", \"\",1\n"
+    "\t\tP: \"FrontAxisSign\", \"int\", \"Integer\", \"\",-1\n"
+    "\t\tP: \"CoordAxis\", \"int\", \"Integer\", \"\",0\n"
+    "\t\tP: \"CoordAxisSign\", \"int\", \"Integer\", \"\",1\n"
+    "\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",2\n\t}\n}\n"
+    "Objects:  {\n"
+    "\tGeometry: 11, \"Geometry::tri\", \"Mesh\" {\n"
+    "\t\tVertices: *9 {\n\t\t\ta: 0,0,0,50,0,0,0,0,100\n\t\t}\n"
+    "\t\tPolygonVertexIndex: *%d {\n\t\t\ta: %s-3\n\t\t}\n\t\tGeometryVersion: 124\n"
+    "\t\tLayerElementMaterial: 0 {\n\t\t\tVersion: 101\n\t\t\tName: \"\"\n"
+    "\t\t\tMappingInformationType: \"AllSame\"\n"
+    "\t\t\tReferenceInformationType: \"IndexToDirect\"\n\t\t\tMaterials: *1 {\n\t\t\t\ta: 0\n"
+    "\t\t\t}\n\t\t}\n"
+    "\t\tLayer: 0 {\n\t\t\tVersion: 100\n\t\t\tLayerElement:  {\n"
+    "\t\t\t\tType: \"LayerElementMaterial\"\n\t\t\t\tTypedIndex: 0\n\t\t\t}\n\t\t}\n\t}\n"
+    "\tModel: 12, \"Model::placed\", \"Mesh\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n"
+    "\t\t\tP: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",0,0,25\n\t\t}\n"
+    "\t\tShading: T\n\t\tCulling: \"CullingOff\"\n\t}\n"
+    "\tMaterial: 13, \"Material::painted\", \"\" {\n\t\tVersion: 102\n"
+    "\t\tShadingModel: \"lambert\"\n\t\tMultiLayer: 0\n\t\tProperties70:  {\n"
+    "\t\t\tP: \"DiffuseColor\", \"Color\", \"\", \"A\",0.25,0.5,0.75\n\t\t}\n\t}\n"
+    "\tTexture: 14, \"Texture::t\", \"\" {\n\t\tType: \"TextureVideoClip\"\n\t\tVersion: 202\n"
+    "\t\tTextureName: \"Texture::t\"\n\t\tMedia: \"\"\n\t\tFileName: \"C:\\\\work\\\\wood.png\"\n"
+    "\t\tRelativeFilename: \"C:\\\\work\\\\wood.png\"\n\t}\n"
+    "}\n"
+    "Connections:  {\n\tC: \"OO\",12,0\n\tC: \"OO\",11,12\n\tC: \"OO\",13,12\n"
+    "\tC: \"OP\",14,13, \"DiffuseColor\"\n}\n";
+
+/* One face of `corners`. */
+static const char *write_fbx(struct fixture *fixture, int corners)
+{
+    char indices[4096] = "";
+    for (int i = 0; i + 1 < corners; i++)
+        strcat(indices, i % 2 ? "1," : "0,");
+    char *text = string_format(fbx, corners, indices);
+    assert_non_null(text);
+    const char *path = fixture_text(fixture, "a.fbx", text);
+    free(text);
+    return path;
+}
+
+static void faces_of_too_many_corners_are_refused(void **state)
+{
+    fixture_refused(*state, write_fbx(*state, 1025),
+                    "a.fbx: face 0 has 1025 corners, at most 1024 are possible");
+}
+
+static void fbx_in_two_centimetres_and_z_up(void **state)
+{
+    fixture_text(*state, "wood.png", "no picture");
+    const struct scene *scene = load(*state, write_fbx(*state, 3));
+    assert_int_equal(scene->instance_count, 1);
+    assert_place(scene, 0, 1, 1, 0.5, 0);
+    assert_place(scene, 0, 2, 0, 2.5, 0);
+    assert_float_equal(material_of(scene)->diffuse[1], 0.5, 1e-6);
+    assert_true(fixture_noted(*state, "texture `wood.png`"));
+    assert_false(fixture_noted(*state, "no such file")); /* it is beside the model */
+}
+
+/* --- 3MF ------------------------------------------------------------------------------------ */
+
+struct package {
+    uint8_t bytes[8192];
+    size_t size, directory_size;
+    uint8_t directory[1024];
+    uint16_t entries;
+};
+
+static void put(uint8_t *to, size_t *at, const void *data, size_t bytes)
+{
+    memcpy(to + *at, data, bytes);
+    *at += bytes;
+}
+
+static uint32_t crc_of(const char *text, size_t bytes)
+{
+    uint32_t crc = UINT32_MAX;
+    for (size_t i = 0; i < bytes; i++) {
+        crc ^= (uint8_t)text[i];
+        for (int k = 0; k < 8; k++)
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
+    }
+    return ~crc;
+}
+
+/* As it is, or as one block of deflate that packs nothing. */
+static void add_file(struct package *package, const char *name, const char *text, bool deflated)
+{
+    uint16_t bytes = (uint16_t)strlen(text), name_bytes = (uint16_t)strlen(name);
+    uint16_t inverse = (uint16_t)~bytes, method = deflated ? 8 : 0;
+    const uint32_t offset = (uint32_t)package->size, crc = crc_of(text, bytes);
+    const uint32_t sizes[2] = {bytes + (deflated ? 5u : 0u), bytes};
+    const uint16_t lengths[2] = {name_bytes, 0};
+    uint8_t common[26] = {20, 0}; /* what both headers have */
+    memcpy(common + 4, &method, 2);
+    memcpy(common + 10, &crc, 4);
+    memcpy(common + 14, sizes, 8);
+    memcpy(common + 22, lengths, 4);
+    put(package->bytes, &package->size, "PK\3\4", 4);
+    put(package->bytes, &package->size, common, sizeof common);
+    put(package->bytes, &package->size, name, name_bytes);
+    if (deflated) {
+        put(package->bytes, &package->size, "\1", 1);
+        put(package->bytes, &package->size, &bytes, 2);
+        put(package->bytes, &package->size, &inverse, 2);
+    }
+    put(package->bytes, &package->size, text, bytes);
+    uint8_t rest[14] = {0};
+    memcpy(rest + 10, &offset, 4);
+    put(package->directory, &package->directory_size, "PK\1\2\24\0", 6);
+    put(package->directory, &package->directory_size, common, sizeof common);
+    put(package->directory, &package->directory_size, rest, sizeof rest);
+    put(package->directory, &package->directory_size, name, name_bytes);
+    package->entries++;
+}
+
+static const char *write_3mf(struct fixture *fixture, const char *unit, bool deflated)
+{
+    struct package package = {0};
+    char *model = string_format(
+        "<?xml version='1.0' encoding='UTF-8'?><model %s xml:lang='en-US' "
+        "xmlns='http://schemas.microsoft.com/3dmanufacturing/core/2015/02'><resources>"
+        "<basematerials id='1'><base name='painted' displaycolor='#FF8000FF'/></basematerials>"
+        "<object id='2' type='model' pid='1' pindex='0'><mesh><vertices>"
+        "<vertex x='0' y='0' z='0'/><vertex x='100' y='0' z='0'/><vertex x='0' y='50' z='200'/>"
+        "</vertices><triangles><triangle v1='0' v2='1' v3='2' pid='1' p1='0'/></triangles></mesh>"
+        "</object></resources><build><item objectid='2'/></build></model>",
+        unit);
+    assert_non_null(model);
+    add_file(&package, "[Content_Types].xml",
+             "<?xml version='1.0'?><Types xmlns='http://schemas.openxmlformats.org/package/2006/"
+             "content-types'><Default Extension='model' ContentType='application/vnd.ms-package."
+             "3dmanufacturing-3dmodel+xml'/></Types>",
+             deflated);
+    add_file(&package, "_rels/.rels",
+             "<?xml version='1.0'?><Relationships xmlns='http://schemas.openxmlformats.org/package/"
+             "2006/relationships'><Relationship Target='/3D/3dmodel.model' Id='rel0' Type='http://"
+             "schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel'/></Relationships>",
+             deflated);
+    add_file(&package, "3D/3dmodel.model", model, deflated);
+    free(model);
+    const uint32_t ends[2] = {(uint32_t)package.directory_size, (uint32_t)package.size};
+    const uint16_t entries[2] = {package.entries, package.entries};
+    put(package.bytes, &package.size, package.directory, package.directory_size);
+    put(package.bytes, &package.size, "PK\5\6\0\0\0\0", 8);
+    put(package.bytes, &package.size, entries, sizeof entries);
+    put(package.bytes, &package.size, ends, sizeof ends);
+    put(package.bytes, &package.size, "\0", 2);
+    return fixture_write(fixture, "a.3mf", package.bytes, package.size);
+}
+
+static void units_of_3mf(void **state)
+{
+    static const struct {
+        const char *unit;
+        bool deflated;
+        double metres;
+    } rows[] = {{"", false, 0.1},
+                {"unit='micron'", false, 1e-4},
+                {"unit=\"inch\"", true, 2.54},
+                {"unit='meter'", true, 100}};
+    for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const struct scene *scene = load(*state, write_3mf(*state, rows[i].unit, rows[i].deflated));
+        assert_int_equal(scene->instance_count, i + 1);
+        assert_place(scene, i, 1, rows[i].metres, 0, 0);
+        assert_place(scene, i, 2, 0, 2 * rows[i].metres, -rows[i].metres / 2);
+        fixture_forget(*state);
+    }
+    assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[0], 1, 1e-6);
+    assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[2], 0, 1e-6);
+}
+
+/* --- what is not read ----------------------------------------------------------------------- */
+
+static void rubbish_is_refused(void **state)
+{
+    static const char *const names[] = {"a.fbx", "a.dae", "a.3mf", "a.off"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct fixture *fixture = *state;
+        fixture->errors = 0;
+        fixture_refused(fixture, fixture_text(fixture, names[i], "no model at all\n"), "assimp: ");
+    }
+}
+
+#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(off_has_faces_alone),
+        TEST(faces_of_too_many_corners_are_refused),
+        TEST(collada_in_half_metres_and_z_up),
+        TEST(collada_names_its_textures),
+        TEST(what_moves_is_named),
+        TEST(fbx_in_two_centimetres_and_z_up),
+        TEST(units_of_3mf),
+        TEST(rubbish_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
