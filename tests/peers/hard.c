@@ -21,15 +21,6 @@ static const char *const names[TRACERS] = {"fast", "watertight", "exact", "Embre
                                            "Embree ROBUST"};
 static const uint32_t levels[] = {NUMERICS_FAST, NUMERICS_WATERTIGHT, NUMERICS_EXACT};
 
-static void print_error(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    fprintf(stderr, "hard: %s\n", message);
-}
-
-static const struct log errors = {.fn = print_error};
-
 struct bench {
     struct hard_scene hard;
     struct hard_topology topology;
@@ -157,7 +148,7 @@ static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t 
                     uint64_t ray_count)
 {
     memset(bench->tallies, 0, sizeof bench->tallies);
-    if (hard_scene_init(&errors, hard, &bench->hard) != WHIT_OK)
+    if (hard_scene_init(&peers_log, hard, &bench->hard) != WHIT_OK)
         return 1;
     int failed = hard_topology_init(bench->hard.scene, &bench->topology) != WHIT_OK;
     for (int i = 0; i < 2; ++i)
@@ -165,7 +156,7 @@ static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t 
     for (int tracer = FAST; tracer <= EXACT && !failed; ++tracer) {
         const whit_renderer_params params = {
             .width = 16, .height = 16, .numerics = levels[tracer], .trace_rays = PIECE};
-        failed = renderer_create(&errors, bench->device, bench->hard.accel, &params,
+        failed = renderer_create(&peers_log, bench->device, bench->hard.accel, &params,
                                  &bench->renderers[tracer]) != WHIT_OK;
     }
     if (!failed)
@@ -199,7 +190,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: hard RAYS\n");
         return 2;
     }
-    if (device_create(&errors, NULL, &bench.device) != WHIT_OK)
+    if (device_create(&peers_log, NULL, &bench.device) != WHIT_OK)
         return 3;
     printf("device: %s, %s\n", device_get_info(bench.device)->name,
            device_get_info(bench.device)->driver);

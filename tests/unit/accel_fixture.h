@@ -129,6 +129,17 @@ static inline struct soup soup_terrain(uint32_t steps)
     return soup_of_mesh("terrain", mesh_terrain(10.0, 2.0, steps, 5));
 }
 
+/* A landscape whose vertices are integers. */
+static inline struct soup soup_landscape(uint32_t steps)
+{
+    struct soup soup = soup_terrain(steps);
+    for (uint32_t i = 0; i < 9 * soup.count; ++i)
+        soup.positions[i] = i % 3 == 1 ? rintf(4.0f * soup.positions[i])
+                                       : rintf((soup.positions[i] + 5.0f) * 0.1f * (float)steps);
+    soup_box(&soup);
+    return soup;
+}
+
 /* Each within a cube of side `size` of its own, whose middle is in the unit cube. */
 static inline struct soup soup_scattered(uint32_t count, float size)
 {

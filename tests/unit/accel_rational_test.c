@@ -82,29 +82,6 @@ static struct rational_hit list_all(struct rational *rational, const struct acce
 
 /* ---- Scenes ---- */
 
-/* Heights, and all else, are integers: rays along axes and diagonals meet vertices and edges. */
-static struct soup soup_grid(uint32_t steps)
-{
-    struct soup soup = soup_make("grid", 2 * steps * steps);
-    int height[33][33];
-    for (uint32_t i = 0; i < 33 * 33; ++i)
-        height[i / 33][i % 33] = (int)random_below(&random_state, 4);
-    for (uint32_t i = 0; i < steps * steps; ++i) {
-        uint32_t x = i % steps, y = i / steps;
-        float p[4][3];
-        for (uint32_t k = 0; k < 4; ++k) {
-            uint32_t cx = x + (k & 1), cy = y + (k >> 1);
-            p[k][0] = (float)cx;
-            p[k][1] = (float)cy;
-            p[k][2] = (float)height[cx][cy];
-        }
-        soup_set(&soup, 2 * i, p[0], p[1], p[3]);
-        soup_set(&soup, 2 * i + 1, p[0], p[3], p[2]);
-    }
-    soup_box(&soup);
-    return soup;
-}
-
 /* Each triangle three times, one of them turned round. */
 static struct soup soup_thrice(uint32_t count)
 {
@@ -157,7 +134,7 @@ enum { ALONE = 40, TWINS = 50 };
 static const double set_apart[12] = {ALONE, 0, 0, 1, TWINS, 0, 0, 1, TWINS, 0, 0, 1};
 
 /* One sphere mesh, where it is, that has those set apart as well. */
-static struct scene *sphere_scene(struct scene_mesh mesh)
+static struct scene *spheres_apart(struct scene_mesh mesh)
 {
     double all[4 * 128];
     uint32_t count = mesh.sphere_count;
@@ -339,7 +316,7 @@ static void triangles_are_found_by_trees_and_without(void **state)
         uint32_t rays;
     } rows[] = {
         {"sphere", soup_sphere(24, 12), 0, 0, &plain, 250},
-        {"grid", soup_grid(16), 0, 0, &plain, 250},
+        {"grid", soup_landscape(16), 0, 0, &plain, 250},
         {"thrice", soup_thrice(60), 0, 0, &plain, 250},
         {"exponential", soup_exponential(80, 1.3), 0, 0, &plain, 200},
         {"split hair", soup_hair(200, 0.01f), 0, 0, &split, 70},
@@ -349,7 +326,7 @@ static void triangles_are_found_by_trees_and_without(void **state)
         {"placed cubes", soup_of_mesh("cube", mesh_box(1, 1, 1)), 12, 0.0, &plain, 1500},
         {"placed far apart", soup_sphere(12, 6), 12, 1e5, &plain, 70},
         {"flat spheres", soup_sphere(12, 6), 12, 3.0, &flat, 70},
-        {"placed grids", soup_grid(4), 20, 3.0, &split, 70},
+        {"placed grids", soup_landscape(4), 20, 3.0, &split, 70},
     };
     uint32_t on_edges = 0;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
@@ -371,14 +348,14 @@ static void spheres_are_found_by_trees_and_without(void **state)
         uint32_t rays;
         float spread;
     } rows[] = {
-        {"scattered", sphere_scene(scattered_spheres(120, 1.0, 0.3)), &plain, aimed_ray, 600, 2},
-        {"no tree", sphere_scene(scattered_spheres(40, 1.0, 0.3)), &none, aimed_ray, 300, 2},
+        {"scattered", spheres_apart(scattered_spheres(120, 1.0, 0.3)), &plain, aimed_ray, 600, 2},
+        {"no tree", spheres_apart(scattered_spheres(40, 1.0, 0.3)), &none, aimed_ray, 300, 2},
         {"placed", mixed_scene(scattered_spheres(20, 1.0, 0.3), 1.5, false), &split, aimed_ray, 250,
          3},
         {"placed far apart", mixed_scene(scattered_spheres(20, 1.0, 0.3), 1e5, false), &plain,
          aimed_ray, 250, 3},
         {"flat", mixed_scene(scattered_spheres(20, 1.0, 0.3), 1.5, true), &flat, aimed_ray, 250, 3},
-        {"whole numbers", sphere_scene(whole_spheres(40)), &plain, whole_ray, 1000, 20},
+        {"whole numbers", spheres_apart(whole_spheres(40)), &plain, whole_ray, 1000, 20},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
         compare_scene(rows[i].name, rows[i].scene, *rows[i].params, rows[i].make,

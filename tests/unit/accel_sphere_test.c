@@ -1,155 +1,7 @@
-/* Spheres in every tree, against every sphere in turn, against double, and met again from their own
-   surface. */
+/* Spheres met again from their own surface, and in one tree for all instances. That trees find them
+   is the matter of hard_tree_test.c, and where of accel_oracle_test.c. */
 #include "accel_fixture.h"
-#include "oracle/oracle.h"
 #include "sphere_fixture.h"
-
-/* `placed`: the mesh as several instances of every kind; else once, as it is. */
-static struct scene *sphere_scene(struct scene_mesh mesh, bool placed)
-{
-    struct scene *scene = scene_begin(&silent, "spheres");
-    scene_put_mesh(scene, mesh);
-    for (uint32_t i = 0; i < (placed ? 12u : 1u); ++i) {
-        struct affine matrix = placement_random(&random_state, 1.5, i % 3 == 0);
-        scene_put_again(scene, 0, &(struct put){.matrix = placed && i > 0 ? &matrix : NULL});
-    }
-    return scene_ready(scene);
-}
-
-static void check_tree(const struct accel *accel, const struct gpu_ray *ray,
-                       const struct gpu_hit *wanted)
-{
-    for (uint32_t order = 0; order < 3; ++order) {
-        struct traverse_params params = {.order = order};
-        struct gpu_hit hit = trace_with(accel, params, ray, NULL);
-        assert_memory_equal(&hit, wanted, sizeof hit);
-        params.any = true;
-        hit = trace_with(accel, params, ray, NULL);
-        assert_int_equal(hit.primitive == HIT_NONE, wanted->primitive == HIT_NONE);
-    }
-}
-
-static void check_builders(struct scene *scene, const char *label)
-{
-    enum { RAYS = 4000 };
-    static struct gpu_ray rays[RAYS];
-    static struct gpu_hit wanted[RAYS];
-    static const struct bvh_params ways[] = {
-        {.builder = BVH_BINNED},  {.builder = BVH_BINNED, .bins = 7, .leaf_limit = 15},
-        {.builder = BVH_MEDIAN},  {.builder = BVH_SWEEP},
-        {.builder = BVH_SPATIAL}, {.builder = BVH_BINNED, .optimize = true},
-        {.builder = BVH_NONE},
-    };
-    uint32_t hits = 0;
-    for (uint32_t w = 0; w < sizeof ways / sizeof ways[0]; ++w) {
-        struct accel *accel = accel_of(scene, (struct accel_params){.mesh = ways[w]});
-        assert_int_equal(accel->record_count, accel->triangle_count);
-        for (uint32_t i = 0; i < RAYS; ++i) {
-            if (w == 0) {
-                rays[i] = ray_at_spheres(&scene->meshes[0], i, 100.0);
-                traverse_brute_float(accel, &rays[i], &wanted[i]);
-                hits += wanted[i].primitive != HIT_NONE;
-            }
-            check_tree(accel, &rays[i], &wanted[i]);
-        }
-        accel_destroy(accel);
-    }
-    print_message("  %s: %u rays, %u hit\n", label, RAYS, hits);
-    assert_in_range(hits, RAYS / 4, RAYS - 1);
-    scene_destroy(scene);
-}
-
-static void all_trees_agree(void **state)
-{
-    (void)state;
-    random_state = 1;
-    check_builders(sphere_scene(scattered_spheres(300, 1.0, 0.3), false), "one mesh");
-    check_builders(sphere_scene(scattered_spheres(40, 1.0, 0.3), true), "instances");
-}
-
-/* Spheres and triangles as instances of one scene. */
-static void spheres_mix_with_triangles(void **state)
-{
-    (void)state;
-    random_state = 2;
-    struct scene *scene = scene_begin(&silent, "mixed");
-    scene_put_mesh(scene, scattered_spheres(40, 1.0, 0.3));
-    scene_put_mesh(scene, mesh_torus(1.0, 0.4, 16, 8));
-    for (uint32_t i = 0; i < 8; ++i) {
-        struct affine matrix = placement_random(&random_state, 1.0, i % 3 == 0);
-        scene_put_again(scene, i % 2, &(struct put){.matrix = &matrix});
-    }
-    scene_ready(scene);
-    check_builders(scene, "spheres and rings");
-}
-
-/* ---- Double ---- */
-
-struct tally {
-    uint32_t rays, hits, unsure, wrong, off;
-    double worst; /* of t, in its error bounds */
-};
-
-static void compare(const struct accel *accel, const struct gpu_ray *ray, struct tally *tally)
-{
-    struct gpu_hit hit;
-    struct oracle_hit exact;
-    traverse_brute_float(accel, ray, &hit);
-    oracle_trace(accel, ray, true, &exact);
-    ++tally->rays;
-    tally->hits += exact.primitive != HIT_NONE;
-    if (fabs(exact.edge_margin) < 1.0) {
-        ++tally->unsure;
-        return;
-    }
-    if (exact.second_t == exact.t && exact.primitive != HIT_NONE)
-        return;
-    if (hit.primitive != exact.primitive || hit.instance != exact.instance) {
-        ++tally->wrong;
-        return;
-    }
-    if (hit.primitive == HIT_NONE)
-        return;
-    double off = fabs((double)hit.t - exact.t) / exact.t_error;
-    tally->worst = fmax(tally->worst, off);
-    tally->off += off > 1.0;
-}
-
-static void check_double(const char *label, double spread, double radius, double away, bool placed,
-                         double unsure_max)
-{
-    const uint32_t rays = cases_of(40000);
-    struct scene *scene = sphere_scene(scattered_spheres(20, spread, radius), placed);
-    struct accel *accel = accel_of(scene, (struct accel_params){0});
-    struct tally tally = {0};
-    for (uint32_t i = 0; i < rays; ++i) {
-        struct gpu_ray ray = ray_at_spheres(&scene->meshes[0], i, away);
-        compare(accel, &ray, &tally);
-    }
-    print_message("  %s: %u rays, %u hit; %u within error bounds of another answer, %u wrong; t at "
-                  "worst %.2f of its bound\n",
-                  label, tally.rays, tally.hits, tally.unsure, tally.wrong, tally.worst);
-    assert_int_equal(tally.wrong, 0);
-    assert_int_equal(tally.off, 0);
-    assert_true(tally.hits > rays / 4);
-    assert_true(tally.unsure < unsure_max * rays);
-    accel_destroy(accel);
-    scene_destroy(scene);
-}
-
-/* Unsure are the rays that graze a sphere or tie with its twin; far off all do. */
-static void hits_are_those_of_double(void **state)
-{
-    (void)state;
-    random_state = 3;
-    check_double("sizes of 1", 1.0, 0.3, 100.0, false, 0.2);
-    check_double("stretched instances", 1.0, 0.3, 100.0, true, 0.25);
-    check_double("radii from 1e-6", 1e-5, 1e-6, 100.0, false, 0.2);
-    check_double("radii to 1e6", 1e7, 1e6, 100.0, false, 0.2);
-    check_double("up to 1e6 radii away", 0.0, 1.0, 1e6, false, 0.1);
-}
-
-/* ---- From the surface ---- */
 
 struct own {
     uint32_t met, missed, wrong;
@@ -216,17 +68,16 @@ static void check_own(const char *label, double at, double radius)
     const uint32_t rays = cases_of(100000);
     struct own own = {0};
     const double sphere[4] = {at, -0.5 * at, 0.25 * at, radius};
-    struct scene *scene = sphere_scene(mesh_balls(sphere, 1), false);
-    struct accel *accel = accel_of(scene, (struct accel_params){0});
+    struct world world =
+        world_of(sphere_scene(&silent, mesh_balls(sphere, 1), false), (struct accel_params){0});
     for (uint32_t i = 0; i < rays; ++i)
-        leave(accel, scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
+        leave(world.accel, world.scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
     print_message("  %s: %u met again, %u left, %u wrong; t at worst %.2f of its bound\n", label,
                   own.met, own.missed, own.wrong, own.worst);
     assert_int_equal(own.wrong, 0);
     assert_true(own.worst <= 1.0);
     assert_true(own.met > rays / 3 && own.missed > rays / 3);
-    accel_destroy(accel);
-    scene_destroy(scene);
+    world_finish(&world);
 }
 
 static void rays_leave_their_sphere(void **state)
@@ -240,8 +91,6 @@ static void rays_leave_their_sphere(void **state)
     check_own("radius 0.1, at 10", 10.0, 0.1);
 }
 
-/* ---- Without instances, and files ---- */
-
 static void flat_keeps_spheres_that_stay_spheres(void **state)
 {
     (void)state;
@@ -249,10 +98,9 @@ static void flat_keeps_spheres_that_stay_spheres(void **state)
         .flatten = true, .validate = true, .mesh = {.builder = BVH_SPATIAL}};
     random_state = 5;
     for (int turned = 0; turned < 2; ++turned) {
-        struct scene *scene = sphere_scene(scattered_spheres(50, 1.0, 0.3), false);
+        struct scene *scene = sphere_scene(&silent, scattered_spheres(50, 1.0, 0.3), false);
         const double t[3] = {0.25, -1.5, 0.5}, q[4] = {0, turned, 0, 1}, s[3] = {2, 2, 2};
         const struct affine matrix = affine_from_trs(t, q, s);
-        scene->frozen = false;
         scene_put_again(scene, 0, &(struct put){.name = "second", .matrix = &matrix});
         scene_ready(scene);
         struct accel *one = NULL;
@@ -278,9 +126,6 @@ static void flat_keeps_spheres_that_stay_spheres(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_trees_agree),
-        cmocka_unit_test(spheres_mix_with_triangles),
-        cmocka_unit_test(hits_are_those_of_double),
         cmocka_unit_test(rays_leave_their_sphere),
         cmocka_unit_test(flat_keeps_spheres_that_stay_spheres),
     };

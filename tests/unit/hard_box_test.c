@@ -315,6 +315,23 @@ static void lengths_of_directions_scale_t(void **state)
     assert_int_equal(differ, 0);
 }
 
+/* Where the ray is in the box, in double; whether it is there from the origin on. */
+static bool find_ends(const struct gpu_ray *ray, const float lo[3], const float hi[3],
+                      double *enter, double *leave)
+{
+    *enter = -INFINITY;
+    *leave = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        if (ray->dir[k] == 0.0f)
+            continue;
+        double a = ((double)lo[k] - (double)ray->origin[k]) / (double)ray->dir[k];
+        double b = ((double)hi[k] - (double)ray->origin[k]) / (double)ray->dir[k];
+        *enter = fmax(*enter, fmin(a, b));
+        *leave = fmin(*leave, fmax(a, b));
+    }
+    return *enter <= *leave && *leave >= 0.0 && *leave < (double)FLT_MAX;
+}
+
 /* B8, any numbers: the interval ends where the box begins, rounded up to a float, or begins where
    it ends, rounded down; or it is 0 alone, and the ray starts in the box. At `watertight` three
    roundings may take the near end past the exact one: four of them behind it nothing is lost. */
@@ -329,14 +346,8 @@ static void intervals_are_closed(void **state)
             float lo[3], hi[3];
             make_box(&box_kinds[1 + r % 3], lo, hi);
             struct gpu_ray ray = ray_at_box(&box_kinds[1 + r % 3], lo, hi);
-            double enter = -INFINITY, leave = INFINITY;
-            for (int k = 0; k < 3; ++k) {
-                double a = ((double)lo[k] - (double)ray.origin[k]) / (double)ray.dir[k];
-                double b = ((double)hi[k] - (double)ray.origin[k]) / (double)ray.dir[k];
-                enter = fmax(enter, fmin(a, b));
-                leave = fmin(leave, fmax(a, b));
-            }
-            if (!(enter <= leave && leave >= 0.0 && leave < (double)FLT_MAX))
+            double enter, leave;
+            if (!find_ends(&ray, lo, hi, &enter, &leave))
                 continue;
             if (enter <= 0.0) {
                 ray.t_max = 0.0f;
@@ -390,17 +401,12 @@ static void ends_that_are_floats_count(void **state)
         struct tally at_end = {0}, before = {0}, at_begin = {0}, point = {0};
         random_state = 88;
         for (int r = 0; r < RAYS; ++r) {
-            float lo[3], hi[3], enter = 0.0f, leave = INFINITY;
+            float lo[3], hi[3];
+            double first, last;
             struct gpu_ray ray = integer_ray_at_box(lo, hi);
-            for (int k = 0; k < 3; ++k)
-                if (ray.dir[k] != 0.0f) {
-                    float a = (lo[k] - ray.origin[k]) / ray.dir[k];
-                    float b = (hi[k] - ray.origin[k]) / ray.dir[k];
-                    enter = fmaxf(enter, fminf(a, b));
-                    leave = fminf(leave, fmaxf(a, b));
-                }
-            if (!(enter <= leave && leave < INFINITY))
+            if (!find_ends(&ray, lo, hi, &first, &last))
                 continue;
+            float enter = fmaxf((float)first, 0.0f), leave = (float)last;
             ray.t_max = enter;
             compare_box(&levels[l], &ray, lo, hi, &at_end);
             ray.t_min = enter;

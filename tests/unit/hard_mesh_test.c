@@ -122,14 +122,9 @@ static struct soup make_plane(void)
 
 enum { GRID = 24 };
 
-/* A landscape of integers. */
 static struct soup make_grid(void)
 {
-    struct soup soup = soup_terrain(GRID);
-    for (uint32_t i = 0; i < 9 * soup.count; ++i)
-        soup.positions[i] = i % 3 == 1 ? rintf(4.0f * soup.positions[i])
-                                       : rintf((soup.positions[i] + 5.0f) * (float)GRID / 10.0f);
-    return soup;
+    return soup_landscape(GRID);
 }
 
 /* Vertices go out and in by turns, as in pbrt's Triangle.Watertight. Equal vertices stay equal. */

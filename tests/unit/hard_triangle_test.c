@@ -3,6 +3,7 @@
 #include "hard_triangle_fixture.h"
 
 #include "fraction_fixture.h"
+#include "hard/hard.h"
 #include "oracle/oracle.h"
 #include "twin/ff_triangle.h"
 
@@ -121,12 +122,6 @@ static bool is_in_doubt(const struct gpu_ray *ray, const struct vec3 v[3])
     return fabs(oracle.edge_margin) < 1.0;
 }
 
-static double ulps_between(float a, float b)
-{
-    float ulp = nextafterf(fabsf(b), INFINITY) - fabsf(b);
-    return fabs((double)a - (double)b) / (double)ulp;
-}
-
 struct truth {
     bool met; /* from the origin on */
     float key;
@@ -144,7 +139,7 @@ static void judge_level(int l, const struct gpu_ray *ray, const struct vec3 v[3]
     tally->of[l].invented += met && !truth->met;
     tally->of[l].unsound += met && !is_sound(&hit);
     if (met && truth->met) {
-        double off = ulps_between(hit.t, truth->key);
+        double off = hard_ulps_between(hit.t, truth->key);
         tally->of[l].worst_ulp = fmax(tally->of[l].worst_ulp, off);
         tally->of[l].over_4_ulp += off > 4.0;
     }
@@ -463,7 +458,7 @@ static void winding_does_not_matter(void **state)
             met += here;
             differ += here != there;
             if (here && there)
-                worst_ulp = fmax(worst_ulp, ulps_between(other.t, hit.t));
+                worst_ulp = fmax(worst_ulp, hard_ulps_between(other.t, hit.t));
         }
         print_message("%-10s T11 %u of %u differ by winding, %u met, t within %.3g ulp\n",
                       levels[l].name, differ, RAYS, met, worst_ulp);

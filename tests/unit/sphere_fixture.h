@@ -30,6 +30,18 @@ static inline struct scene_mesh scattered_spheres(uint32_t count, double spread,
     return mesh;
 }
 
+/* `placed`: the mesh as several instances of every kind; else once, as it is. Not frozen. */
+static inline struct scene *sphere_scene(const struct log *log, struct scene_mesh mesh, bool placed)
+{
+    struct scene *scene = scene_begin(log, "spheres");
+    scene_put(scene, mesh, NULL);
+    for (uint32_t i = 1; i < 12 && placed; ++i) {
+        struct affine matrix = placement_random(&random_state, 1.5, i % 3 == 0);
+        scene_put_again(scene, 0, &(struct put){.matrix = &matrix});
+    }
+    return scene;
+}
+
 /* A quarter each: anywhere; at a sphere; past it within a millionth of its radius; from inside.
    Their origins are up to `away` radii from that sphere. */
 static inline struct gpu_ray ray_at_spheres(const struct scene_mesh *mesh, uint32_t index,
