@@ -215,7 +215,7 @@ mutation(transform_by_a_sum_in_kernels render_trace RED instances_equal_twin)
 change(shaders/bind/traverse.glsl [[to_object_point(frame, origin)]]
   [[to_object_dir(frame, origin) - to_object_dir(frame, frame.origin)]])
 
-mutation(ties_undecided accel_stack RED duplicates_give_the_first)
+mutation(ties_undecided hard_tree RED the_first_of_equal_triangles_is_hit)
 change(host/accel/hit_order.h hit_comes_before [[[a-z]\.t == [a-z]\.t]] [[false]])
 change(shaders/bind/traverse.glsl [[(t == farthest(hit) && (instance < hit.instance ||]]
   [[(false && (instance < hit.instance ||]])

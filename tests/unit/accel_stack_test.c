@@ -183,35 +183,6 @@ static void flat_records_name_their_instance(void **state)
     accel_destroy(accel);
 }
 
-/* Identical triangles: the smallest primitive is hit, wherever its leaf is. */
-static void duplicates_give_the_first(void **state)
-{
-    (void)state;
-    const uint32_t counts[] = {2, 3, 10, 100, 513};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
-        uint32_t count = counts[i];
-        struct accel *accel = caterpillar(count - 1);
-        for (uint32_t k = 0; k < count; ++k) {
-            struct gpu_triangle *triangle = &accel->triangles[k];
-            *triangle = accel->triangles[0];
-            triangle->primitive = count - 1 - k;
-        }
-        for (uint32_t k = 2; k < 2 * count; ++k) {
-            accel->nodes[k].lo[2] = 0.0f;
-            accel->nodes[k].hi[2] = 0.0f;
-        }
-        for (uint32_t way = 0; way < 2 * ORDERS; ++way) {
-            struct gpu_ray ray = caterpillar_ray(0, way % 2);
-            struct gpu_hit brute,
-                hit = trace_with(accel, (struct traverse_params){.order = way / 2}, &ray, NULL);
-            traverse_brute_float(accel, &ray, &brute);
-            assert_int_equal(hit.primitive, 0);
-            assert_memory_equal(&hit, &brute, sizeof hit);
-        }
-        accel_destroy(accel);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -221,7 +192,6 @@ int main(void)
         cmocka_unit_test(levels_come_back_with_their_nodes),
         cmocka_unit_test(clipped_boxes_get_a_margin),
         cmocka_unit_test(flat_records_name_their_instance),
-        cmocka_unit_test(duplicates_give_the_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,14 +25,6 @@ static void shrink_leaf(struct bvh *b)
     struct gpu_bvh_node *n = &b->nodes[find_node(b, true)];
     n->lo[2] = nextafterf(n->lo[2], INFINITY);
 }
-static void repeat_primitive(struct bvh *b)
-{
-    b->order[0] = b->order[1];
-}
-static void exceed_primitives(struct bvh *b)
-{
-    b->order[3] = b->primitive_count;
-}
 static void make_cycle(struct bvh *b)
 {
     b->nodes[b->nodes[0].first] = b->nodes[0];
@@ -49,6 +41,10 @@ static void share_children(struct bvh *b)
 static void exceed_nodes(struct bvh *b)
 {
     b->nodes[find_node(b, false)].first = b->node_count;
+}
+static void repeat_primitive(struct bvh *b)
+{
+    b->order[0] = b->order[1];
 }
 static void turn_axis(struct bvh *b)
 {
@@ -68,10 +64,6 @@ static void lose_record(struct bvh *b)
         ++i;
     --b->nodes[i].count;
 }
-static void lose_pair(struct bvh *b)
-{
-    b->node_count -= 2;
-}
 /* Two leaves under one node become one leaf. */
 static void pass_by_pair(struct bvh *b)
 {
@@ -87,34 +79,6 @@ static void pass_by_pair(struct bvh *b)
     }
     fail();
 }
-static void add_half_pair(struct bvh *b)
-{
-    ++b->node_count;
-}
-static void set_nan(struct bvh *b)
-{
-    b->nodes[0].lo[0] = NAN;
-}
-static void set_infinity(struct bvh *b)
-{
-    b->nodes[0].hi[0] = INFINITY;
-}
-static void state_depth(struct bvh *b)
-{
-    ++b->depth;
-}
-static void state_leaf_count(struct bvh *b)
-{
-    --b->leaf_count;
-}
-static void state_largest(struct bvh *b)
-{
-    ++b->leaf_largest;
-}
-static void have_no_nodes(struct bvh *b)
-{
-    b->node_count = 0;
-}
 
 /* Each way must be refused for its own reason. */
 static const struct {
@@ -126,48 +90,64 @@ static const struct {
     {"another inner node's children", share_children, "two parents"},
     {"parent shrunk", shrink_parent, "a child is not inside"},
     {"leaf shrunk", shrink_leaf, "does not contain its primitive"},
-    {"primitive twice", repeat_primitive, "twice"},
-    {"primitive out of range", exceed_primitives, "names a primitive out of range"},
     {"cycle", make_cycle, "two parents"},
     {"cycle of inner nodes", make_cycle_of_inner, "two parents"},
     {"children behind the end", exceed_nodes, "children out of range"},
+    {"primitive twice", repeat_primitive, "twice"},
     {"another axis", turn_axis, "the axis is not"},
     {"leaves overlap", overlap_leaves, "share a record"},
     {"record lost", lose_record, "primitives are missing"},
-    {"pair beyond the end", lose_pair, "children out of range"},
     {"pair not reached", pass_by_pair, "not reached"},
-    {"half a pair", add_half_pair, "aligned pairs"},
-    {"NaN", set_nan, "not finite"},
-    {"infinity", set_infinity, "not finite"},
-    {"depth", state_depth, "stated depth"},
-    {"number of leaves", state_leaf_count, "stated number of leaves"},
-    {"largest leaf", state_largest, "stated largest leaf"},
-    {"no nodes", have_no_nodes, "no nodes for primitives"},
 };
 
-/* The same, of one word of a node: (word & keep) ^ change. */
-enum { ROOT, SECOND_CHILD = 3, INNER = 1000, LEAF };
+/* The same, of one word: it becomes ((word & ~clear) ^ flip) + add. Nodes by number, or the first
+   of their kind. */
+enum { ROOT, SECOND_CHILD = 3, INNER = 1000, LEAF, ORDER, TREE };
+enum { FIRST = offsetof(struct gpu_bvh_node, first), COUNT = offsetof(struct gpu_bvh_node, count) };
 static const struct {
     const char *name;
-    uint32_t node; /* its number, or the first of its kind */
-    bool count;    /* the word `count`; else `first` */
-    uint32_t keep, change;
+    uint32_t node;
+    size_t word; /* bytes from the beginning of a node, of `order` or of the tree */
+    uint32_t clear, flip, add;
     const char *reason;
 } changes[] = {
-    {"children far behind the end", INNER, false, 0, 0xfffffffeu, "children out of range"},
-    {"children at the root", INNER, false, 0, 0, "children out of range"},
-    {"children at an odd node", ROOT, false, ~0u, 1, "do not start at an even"},
-    {"leaf behind the end", LEAF, false, 0, 500, "reaches out of range"},
-    {"leaf far behind the end", LEAF, false, 0, 0xfffffffeu, "reaches out of range"},
-    {"all bits of a count", LEAF, true, 0, 0xfffffff0u, "stray bits"},
-    {"high bit of a count", 2, true, ~128u, 128, "stray bits"},
-    {"axis of the root", ROOT, true, ~(1u << BVH_AXIS_SHIFT), 1u << BVH_AXIS_SHIFT, "stray bits"},
-    {"sign at the second child", SECOND_CHILD, true, ~BVH_SECOND_LOW, BVH_SECOND_LOW, "stray bits"},
-    {"a fourth axis", 2, true, ~(BVH_AXIS_MASK << BVH_AXIS_SHIFT), BVH_AXIS_MASK << BVH_AXIS_SHIFT,
+    {"children far behind the end", INNER, FIRST, ~0u, 0, 0xfffffffeu, "children out of range"},
+    {"children at the root", INNER, FIRST, ~0u, 0, 0, "children out of range"},
+    {"children at an odd node", ROOT, FIRST, 0, 0, 1, "do not start at an even"},
+    {"leaf behind the end", LEAF, FIRST, ~0u, 0, 500, "reaches out of range"},
+    {"leaf far behind the end", LEAF, FIRST, ~0u, 0, 0xfffffffeu, "reaches out of range"},
+    {"all bits of a count", LEAF, COUNT, ~0u, 0, 0xfffffff0u, "stray bits"},
+    {"high bit of a count", 2, COUNT, 128, 0, 128, "stray bits"},
+    {"axis of the root", ROOT, COUNT, 0, 1u << BVH_AXIS_SHIFT, 0, "stray bits"},
+    {"sign at the second child", SECOND_CHILD, COUNT, 0, BVH_SECOND_LOW, 0, "stray bits"},
+    {"a fourth axis", 2, COUNT, BVH_AXIS_MASK << BVH_AXIS_SHIFT, 0, BVH_AXIS_MASK << BVH_AXIS_SHIFT,
      "the axis is not"},
-    {"sign of the axis", 2, true, ~0u, BVH_SECOND_LOW, "the axis is not"},
-    {"leaf over the limit", LEAF, true, 0, 5, "over the limit"},
+    {"sign of the axis", 2, COUNT, 0, BVH_SECOND_LOW, 0, "the axis is not"},
+    {"leaf over the limit", LEAF, COUNT, ~0u, 0, 5, "over the limit"},
+    {"NaN", ROOT, offsetof(struct gpu_bvh_node, lo), ~0u, 0, 0x7fc00000u, "not finite"},
+    {"infinity", ROOT, offsetof(struct gpu_bvh_node, hi), ~0u, 0, 0x7f800000u, "not finite"},
+    {"primitive out of range", ORDER, 12, ~0u, 0, 500, "names a primitive out of range"},
+    {"pair beyond the end", TREE, offsetof(struct bvh, node_count), 0, 0, 0u - 2u,
+     "children out of range"},
+    {"half a pair", TREE, offsetof(struct bvh, node_count), 0, 0, 1, "aligned pairs"},
+    {"no nodes", TREE, offsetof(struct bvh, node_count), ~0u, 0, 0, "no nodes for primitives"},
+    {"depth", TREE, offsetof(struct bvh, depth), 0, 0, 1, "stated depth"},
+    {"number of leaves", TREE, offsetof(struct bvh, leaf_count), 0, 0, ~0u,
+     "stated number of leaves"},
+    {"largest leaf", TREE, offsetof(struct bvh, leaf_largest), 0, 0, 1, "stated largest leaf"},
 };
+
+static void change_word(struct bvh *bvh, size_t row)
+{
+    uint32_t node = changes[row].node, word;
+    uint8_t *at = node == TREE    ? (uint8_t *)bvh
+                  : node == ORDER ? (uint8_t *)bvh->order
+                  : node >= INNER ? (uint8_t *)&bvh->nodes[find_node(bvh, node == LEAF)]
+                                  : (uint8_t *)&bvh->nodes[node];
+    memcpy(&word, at + changes[row].word, sizeof word);
+    word = ((word & ~changes[row].clear) ^ changes[row].flip) + changes[row].add;
+    memcpy(at + changes[row].word, &word, sizeof word);
+}
 
 static void assert_said(const struct bvh *bvh, const struct bvh_box *boxes, const char *name,
                         const char *reason)
@@ -191,10 +171,7 @@ static void broken_trees_are_refused(void **state)
                 breakages[i].apply(&bvh);
             assert_said(&bvh, soup.boxes, breakages[i].name, breakages[i].reason);
         } else {
-            uint32_t at = changes[i - WAYS].node;
-            at = at >= INNER ? find_node(&bvh, at == LEAF) : at;
-            uint32_t *word = changes[i - WAYS].count ? &bvh.nodes[at].count : &bvh.nodes[at].first;
-            *word = (*word & changes[i - WAYS].keep) ^ changes[i - WAYS].change;
+            change_word(&bvh, i - WAYS);
             assert_said(&bvh, soup.boxes, changes[i - WAYS].name, changes[i - WAYS].reason);
         }
         bvh_finish(&bvh);
