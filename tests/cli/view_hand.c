@@ -142,47 +142,27 @@ static void wait_for_title(const char *text)
     }
 }
 
+/* Xlib lays out events of keys, buttons and moves alike. `detail`: which key or button. */
+static void send(int type, long mask, unsigned detail)
+{
+    static Time time = 1000; /* GLFW takes two keys at the same time for one */
+    XEvent event = {.xkey = {.type = type,
+                             .display = display,
+                             .window = window,
+                             .root = DefaultRootWindow(display),
+                             .time = time += 50,
+                             .x = x,
+                             .y = y,
+                             .keycode = detail,
+                             .same_screen = True}};
+    XSendEvent(display, window, False, mask, &event);
+}
+
 static void press(const char *name)
 {
-    XKeyEvent event = {.display = display,
-                       .window = window,
-                       .root = DefaultRootWindow(display),
-                       .x = x,
-                       .y = y,
-                       .same_screen = True,
-                       .keycode = XKeysymToKeycode(display, XStringToKeysym(name))};
-    for (int down = 1; down >= 0; --down) {
-        static Time time = 1000; /* GLFW takes two keys at the same time for one */
-        event.time = time += 50;
-        event.type = down ? KeyPress : KeyRelease;
-        XSendEvent(display, window, False, down ? KeyPressMask : KeyReleaseMask, (XEvent *)&event);
-    }
-}
-
-static void move(void)
-{
-    XMotionEvent event = {.type = MotionNotify,
-                          .display = display,
-                          .window = window,
-                          .root = DefaultRootWindow(display),
-                          .x = x,
-                          .y = y,
-                          .same_screen = True};
-    XSendEvent(display, window, False, PointerMotionMask, (XEvent *)&event);
-}
-
-static void button(unsigned number, bool down)
-{
-    XButtonEvent event = {.type = down ? ButtonPress : ButtonRelease,
-                          .display = display,
-                          .window = window,
-                          .root = DefaultRootWindow(display),
-                          .x = x,
-                          .y = y,
-                          .button = number,
-                          .same_screen = True};
-    XSendEvent(display, window, False, down ? ButtonPressMask : ButtonReleaseMask,
-               (XEvent *)&event);
+    unsigned key = XKeysymToKeycode(display, XStringToKeysym(name));
+    send(KeyPress, KeyPressMask, key);
+    send(KeyRelease, KeyReleaseMask, key);
 }
 
 static void close_window(void)
@@ -198,16 +178,18 @@ static void close_window(void)
 
 static bool obey(const char *line)
 {
-    char word[32], more[32];
+    char word[32];
     unsigned number;
     if (sscanf(line, "title %31s", word) == 1)
         wait_for_title(word);
     else if (sscanf(line, "key %31s", word) == 1)
         press(word);
     else if (sscanf(line, "move %d %d", &x, &y) == 2)
-        move();
-    else if (sscanf(line, "button %u %31s", &number, more) == 2)
-        button(number, strcmp(more, "down") == 0);
+        send(MotionNotify, PointerMotionMask, 0);
+    else if (sscanf(line, "button %u %31s", &number, word) == 2 && strcmp(word, "down") == 0)
+        send(ButtonPress, ButtonPressMask, number);
+    else if (sscanf(line, "button %u %31s", &number, word) == 2)
+        send(ButtonRelease, ButtonReleaseMask, number);
     else if (strncmp(line, "close", 5) == 0)
         close_window();
     else
