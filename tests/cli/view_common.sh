@@ -29,7 +29,7 @@ steps() {
     awk -F ' *[|] *' -v wanted="$OUT/wanted" '
         function expect(    i, at) {
             for (i = 2; i <= NF; ++i) {
-                at = match($i, / (=|>|has|as|not as)( |$)/)
+                at = match($i, / (=|>|has|as|not as)( |$)/) # 0: as_wanted fails
                 print name "\t" substr($i, at + 1, RLENGTH - 2 + ($i ~ / =$/)) "\t" substr($i, 1, at - 1) "\t" \
                     substr($i, at + RLENGTH) >wanted
             }
@@ -81,7 +81,8 @@ as_wanted() {
         '>') check "at $at: $field is more than $wanted ($has)" holds "$has > $wanted" ;;
         has) check "at $at: $field has \`$wanted\` ($has)" test "${has#*"$wanted"}" != "$has" ;;
         as) same "$field" "$wanted" "$at" ;;
-        *) differs "$field" "$wanted" "$at" ;;
+        "not as") differs "$field" "$wanted" "$at" ;;
+        *) check "at $at: what is \`$field$wanted\`?" false ;;
         esac
     done <"$OUT/wanted"
 }
@@ -99,13 +100,15 @@ is() {
     check "at $1: $2 is \`$3\` (\`$has\`)" test "$has" = "$3"
 }
 
-# same FIELD NAME NAME, differs FIELD NAME NAME: of two states.
+# same FIELD NAME NAME, differs FIELD NAME NAME: of two states, which both have it.
 same() {
     has=$(value "$2" "$1")
-    check "$1 is the same at $2 and $3 ($has)" test "$has" = "$(value "$3" "$1")"
+    check "$1 is the same at $2 and $3 ($has)" test "$has" = "$(value "$3" "$1")" -a "$has" != "(no $1)"
 }
 differs() {
-    check "$1 differs from $2 to $3" test "$(value "$2" "$1")" != "$(value "$3" "$1")"
+    has=$(value "$2" "$1") other=$(value "$3" "$1")
+    check "$1 differs from $2 to $3 ($has, $other)" \
+        test "$has" != "$other" -a "$has" != "(no $1)" -a "$other" != "(no $1)"
 }
 
 # renders NAME OPTION...: the `whit render` line of the state, with `-o` and others of its own.
