@@ -272,6 +272,15 @@ struct scene *scene_ready(struct scene *scene)
     return scene;
 }
 
+bool scene_noted(const struct scene *scene, const char *text)
+{
+    for (uint32_t i = 0; i < scene->note_count; ++i) {
+        if (strstr(scene->notes[i].text, text))
+            return true;
+    }
+    return false;
+}
+
 /* ---- Placements ---- */
 
 struct affine placement_random(uint64_t *random, double spread, bool mirrored)

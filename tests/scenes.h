@@ -80,6 +80,8 @@ void scene_put_channel(struct scene *scene, uint32_t node, enum scene_path path,
 
 /* Freezes it; the same scene. */
 struct scene *scene_ready(struct scene *scene);
+/* One of its notes has this text. */
+bool scene_noted(const struct scene *scene, const char *text);
 
 /* ---- Placements ---- */
 

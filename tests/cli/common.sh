@@ -18,12 +18,12 @@ needs() {
 
 # check WHAT COMMAND...: the command succeeds.
 check() {
-    what=$1
+    checked=$1
     shift
     if "$@"; then
-        echo "ok      $what"
+        echo "ok      $checked"
     else
-        echo "FAILED  $what"
+        echo "FAILED  $checked"
         FAILED=1
     fi
 }

@@ -186,7 +186,7 @@ static uint32_t get_u32(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-void fuzz_sign_png(uint8_t *data, size_t size_bytes)
+static void sign_png(uint8_t *data, size_t size_bytes)
 {
     static const uint8_t magic[PNG_HEAD] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10};
     if (size_bytes < PNG_HEAD || memcmp(data, magic, PNG_HEAD) != 0)
@@ -199,6 +199,15 @@ void fuzz_sign_png(uint8_t *data, size_t size_bytes)
         put_u32(end, (uint32_t)crc32(0, data + at + 4, (uInt)(bytes + 4)));
         at += CHUNK_HEAD + bytes + CHUNK_TAIL;
     }
+}
+
+uint8_t *fuzz_signed(const uint8_t *data, size_t size_bytes)
+{
+    uint8_t *copy = malloc(size_bytes ? size_bytes : 1);
+    fuzz_check(copy, "out of memory");
+    memcpy(copy, data, size_bytes);
+    sign_png(copy, size_bytes);
+    return copy;
 }
 
 /* --- memory --------------------------------------------------------------------------------- */

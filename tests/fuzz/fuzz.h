@@ -50,7 +50,7 @@ void fuzz_check_trees(const struct scene *scene);
    bytes says how it is damaged. */
 extern void (*fuzz_reply)(struct child_reply *reply);
 
-/* Gives each chunk of a PNG the checksum that fits; nothing to other files. */
-void fuzz_sign_png(uint8_t *data, size_t size_bytes);
+/* A copy, in which each chunk of a PNG has the checksum that fits; of other files as they are. */
+uint8_t *fuzz_signed(const uint8_t *data, size_t size_bytes);
 
 #endif

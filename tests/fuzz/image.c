@@ -32,10 +32,7 @@ static void load_texts(const char *path)
 
 static void run(const uint8_t *data, size_t size_bytes)
 {
-    uint8_t *copy = malloc(size_bytes ? size_bytes : 1);
-    fuzz_check(copy, "out of memory");
-    memcpy(copy, data, size_bytes);
-    fuzz_sign_png(copy, size_bytes);
+    uint8_t *copy = fuzz_signed(data, size_bytes);
     const char *path = fuzz_file("picture", copy, size_bytes);
     load_whole(path);
     load_texts(path);

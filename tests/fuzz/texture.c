@@ -24,10 +24,7 @@ static void decode(const uint8_t *data, size_t size_bytes)
 
 static void run(const uint8_t *data, size_t size_bytes)
 {
-    uint8_t *copy = malloc(size_bytes ? size_bytes : 1);
-    fuzz_check(copy, "out of memory");
-    memcpy(copy, data, size_bytes);
-    fuzz_sign_png(copy, size_bytes);
+    uint8_t *copy = fuzz_signed(data, size_bytes);
     decode(copy, size_bytes);
     free(copy);
 }

@@ -34,15 +34,6 @@ static struct scene *scene_of(struct scene_mesh mesh)
     return scene;
 }
 
-static bool noted(const struct scene *scene, const char *text)
-{
-    for (uint32_t i = 0; i < scene->note_count; ++i) {
-        if (strstr(scene->notes[i].text, text))
-            return true;
-    }
-    return false;
-}
-
 TEST(bad_triangles_are_dropped_and_counted)
 {
     const float p[] = {0,          0,      0, 1,     0, 0, 0,      1,     0, /* 0 1 2 */
@@ -63,9 +54,9 @@ TEST(bad_triangles_are_dropped_and_counted)
     assert_int_equal(m->indices[4], 7);
     assert_int_equal(m->indices[7], 9);
     assert_int_equal(scene->triangle_total, 4);
-    assert_true(noted(scene,
-                      "dropped 5 triangles (1 with indices out of range, 2 with vertices not "
-                      "finite or beyond 1e18, 2 without area)"));
+    assert_true(scene_noted(scene,
+                            "dropped 5 triangles (1 with indices out of range, 2 with vertices not "
+                            "finite or beyond 1e18, 2 without area)"));
     assert_int_equal(m->groups[0].triangle_count, 1);
     assert_int_equal(m->groups[1].first_triangle, 1);
     assert_int_equal(m->groups[1].triangle_count, 3);
@@ -93,7 +84,7 @@ TEST(bad_spheres_are_dropped_and_counted)
     assert_true(m->spheres[7] == 1e-30f && m->spheres[11] == 1e17f);
     assert_true(m->materials[0] == 0 && m->materials[1] == 1 && m->materials[2] == 0);
     assert_true(m->lo[0] <= -1e17f && m->hi[2] >= 1e17f);
-    assert_true(noted(scene, "6 spheres dropped"));
+    assert_true(scene_noted(scene, "6 spheres dropped"));
     struct scene_effects effects;
     scene_effects_scan(scene, &effects);
     assert_true(effects.called[SCENE_EFFECT_SPHERES]);
@@ -131,8 +122,8 @@ TEST(attributes_are_mended)
     const float mended_uvs[] = {0.5f, 0.25f, 0, 0, 0, 0, 0, 0};
     assert_memory_equal(m->normals, mended, sizeof mended);
     assert_memory_equal(m->uvs[0], mended_uvs, sizeof mended_uvs);
-    assert_true(noted(scene, "3 normals"));
-    assert_true(noted(scene, "2 texture coordinates"));
+    assert_true(scene_noted(scene, "3 normals"));
+    assert_true(scene_noted(scene, "2 texture coordinates"));
     scene_destroy(scene);
 }
 
@@ -171,7 +162,7 @@ TEST(materials_are_mended)
     scene_ready(scene);
     const struct scene_material *m = &scene->materials[0];
     assert_true(m->diffuse[0] == 0.7f && m->diffuse[1] == 0.0f && m->ior == 1.5f);
-    assert_true(noted(scene, "material `odd`: 3 values"));
+    assert_true(scene_noted(scene, "material `odd`: 3 values"));
     scene_destroy(scene);
 }
 
@@ -205,7 +196,7 @@ TEST(singular_instances_and_unused_meshes_go)
     assert_int_equal(scene->instance_count, 1);
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instances[0].mesh, 0);
-    assert_true(noted(scene, "instance 0 `i` dropped"));
+    assert_true(scene_noted(scene, "instance 0 `i` dropped"));
     scene_destroy(scene);
 }
 
@@ -216,7 +207,7 @@ TEST(empty_scene_is_a_background)
     assert_int_equal(scene->camera_count, 1);
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->triangle_total, 0);
-    assert_true(noted(scene, "nothing to draw"));
+    assert_true(scene_noted(scene, "nothing to draw"));
     scene_destroy(scene);
 }
 

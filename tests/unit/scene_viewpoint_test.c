@@ -57,15 +57,6 @@ static const struct scene_camera *camera_of(struct scene *scene, double forward[
     return camera;
 }
 
-static bool noted(const struct scene *scene, const char *text)
-{
-    for (uint32_t i = 0; i < scene->note_count; ++i) {
-        if (strstr(scene->notes[i].text, text))
-            return true;
-    }
-    return false;
-}
-
 static double reach(const struct scene_camera *camera, const double forward[3], const float *p,
                     double slope[2])
 {
@@ -111,7 +102,7 @@ TEST(closed_shapes_fill_the_usual_view)
         assert_true(lo[0] > -0.95 && hi[0] < 0.95 && lo[1] > -0.95 && hi[1] < 0.95);
         assert_true(lo[1] < -0.9 && hi[1] > 0.9);
         assert_true(forward[0] < -0.3 && forward[1] < -0.2 && forward[2] < -0.7);
-        assert_true(noted(scene, "one was added that shows all of it"));
+        assert_true(scene_noted(scene, "one was added that shows all of it"));
         scene_destroy(scene);
     }
 }
@@ -129,7 +120,7 @@ TEST(open_boxes_are_seen_through_their_opening)
         for (int i = 0; i < 3; ++i)
             assert_true(fabs(forward[i] - expected[k][i]) < 1e-6);
         assert_true(fabs(camera->eye[0]) + fabs(camera->eye[2]) > 2.0);
-        assert_true(noted(scene, "straight on"));
+        assert_true(scene_noted(scene, "straight on"));
         scene_destroy(scene);
     }
 }
@@ -160,7 +151,7 @@ TEST(rooms_are_seen_from_inside)
             scene_put(scene, walls((const float[]){6.3f, 2.3f, 3.3f}, 0, true), NULL);
         double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
-        assert_true(noted(scene, "for it is a room"));
+        assert_true(scene_noted(scene, "for it is a room"));
         assert_true(fabs(fabs(forward[0]) - 1.0) < 1e-9);
         for (int i = 0; i < 3; ++i)
             assert_true(fabs(camera->eye[i]) < (double)half[i]);
@@ -177,7 +168,7 @@ TEST(rooms_are_seen_from_inside)
     scene_put(scene, walls(half, 0, true), NULL);
     double forward[3];
     camera_of(scene, forward);
-    assert_false(noted(scene, "room"));
+    assert_false(scene_noted(scene, "room"));
     assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
     scene_destroy(scene);
 }
@@ -303,7 +294,7 @@ TEST(stated_lights_change_only_where_nothing_is_seen)
         struct scene *scene = lit_scene(cases[i].level, cases[i].file);
         double level = (double)scene->lights[0].color[1];
         assert_true(level >= cases[i].lo && level <= cases[i].hi);
-        assert_int_equal(noted(scene, "times as strong"), cases[i].lo != cases[i].hi);
+        assert_int_equal(scene_noted(scene, "times as strong"), cases[i].lo != cases[i].hi);
         scene_destroy(scene);
     }
 }

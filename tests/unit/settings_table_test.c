@@ -44,24 +44,33 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
     }
 }
 
-static bool has_value(const struct setting *row)
+/* The row behind `row`, or the first one, that takes a value; NULL: there is none. */
+static const struct setting *next_row(const struct setting *row)
 {
-    return row->name && row->kind != SETTING_GONE;
+    row = row ? row + 1 : settings_table;
+    while (row->name && row->kind == SETTING_GONE)
+        ++row;
+    return row->name ? row : NULL;
+}
+
+/* The usual ones but for this row. `text`: what is read. */
+static struct settings other_settings(const struct setting *row, char text[SETTING_VALUE_BYTES])
+{
+    struct settings settings = settings_usual();
+    char why[SETTING_WHY_BYTES];
+    other_text(row, text);
+    if (!settings_read(row, text, &settings, why))
+        fail_msg("--%s%s", row->name, why);
+    return settings;
 }
 
 TEST(a_value_is_written_as_it_is_read)
 {
     char text[SETTING_VALUE_BYTES], again[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
+    const struct settings usual = settings_usual();
     uint32_t rows = 0;
-    for (const struct setting *row = settings_table; row->name; ++row) {
-        const struct settings usual = settings_usual();
-        struct settings settings = usual, copy = usual, third = usual;
-        if (!has_value(row))
-            continue;
-        ++rows;
-        other_text(row, text);
-        if (!settings_read(row, text, &settings, why))
-            fail_msg("--%s%s", row->name, why);
+    for (const struct setting *row = next_row(NULL); row; row = next_row(row), ++rows) {
+        struct settings settings = other_settings(row, text), copy = usual, third = usual;
         assert_true(settings_given(&settings, row->name));
         assert_false(setting_same(row, &settings, &usual));
         setting_copy(row, &settings, &copy);
@@ -76,16 +85,12 @@ TEST(a_value_is_written_as_it_is_read)
 /* And changes no other row. */
 TEST(a_row_has_a_field_of_its_own)
 {
-    char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
-    for (const struct setting *row = settings_table; row->name; ++row) {
-        const struct settings usual = settings_usual();
-        struct settings settings = usual;
-        if (!has_value(row))
-            continue;
-        other_text(row, text);
-        assert_true(setting_read(row, text, &settings, why));
-        for (const struct setting *other = settings_table; other->name; ++other) {
-            if (has_value(other) && other != row && !setting_same(other, &settings, &usual))
+    char text[SETTING_VALUE_BYTES];
+    const struct settings usual = settings_usual();
+    for (const struct setting *row = next_row(NULL); row; row = next_row(row)) {
+        struct settings settings = other_settings(row, text);
+        for (const struct setting *other = next_row(NULL); other; other = next_row(other)) {
+            if (other != row && !setting_same(other, &settings, &usual))
                 fail_msg("--%s %s changes --%s", row->name, text, other->name);
         }
     }
@@ -99,7 +104,7 @@ TEST(defaults_are_named_as_they_are)
         const struct settings usual = settings_usual();
         struct settings settings = usual;
         bool is_text = row->kind == SETTING_TEXT; /* reads anything */
-        if (has_value(row) && !is_text && row->usual && row->usual[0] &&
+        if (row->kind != SETTING_GONE && !is_text && row->usual && row->usual[0] &&
             setting_read(row, row->usual, &settings, why))
             assert_true(setting_same(row, &settings, &usual));
         /* Help may name a number as a fraction, which the option does not take. */
@@ -119,14 +124,10 @@ TEST(defaults_are_named_as_they_are)
 /* What a row needs is what comparing two settings says. */
 TEST(needs_are_kept)
 {
-    char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
-    for (const struct setting *row = settings_table; row->name; ++row) {
-        const struct settings usual = settings_usual();
-        struct settings settings = usual;
-        if (!has_value(row))
-            continue;
-        other_text(row, text);
-        assert_true(setting_read(row, text, &settings, why));
+    char text[SETTING_VALUE_BYTES];
+    const struct settings usual = settings_usual();
+    for (const struct setting *row = next_row(NULL); row; row = next_row(row)) {
+        struct settings settings = other_settings(row, text);
         bool kernel = row->need == SETTING_NEEDS_VIEW && strcmp(row->name, "view") != 0;
         assert_int_equal(settings_same_scene(&settings, &usual), row->need < SETTING_NEEDS_SCENE);
         assert_int_equal(settings_same_kernel(&settings, &usual), kernel);
@@ -142,12 +143,12 @@ TEST(each_kind_of_text_that_is_none_is_refused)
     static const char *const texts[] = {"",   "x",   "1x",      "-1", "nan", "99999999999999999999",
                                         "0x", "1,2", "4x4junk", "\n"};
     char why[SETTING_WHY_BYTES];
-    for (const struct setting *row = settings_table; row->name; ++row) {
+    for (const struct setting *row = next_row(NULL); row; row = next_row(row)) {
         for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
             const struct settings usual = settings_usual();
             struct settings settings = usual;
             bool any = row->kind == SETTING_TEXT || row->kind == SETTING_FOLDERS;
-            if (!has_value(row) || !setting_has_argument(row) || (any && texts[i][0]))
+            if (!setting_has_argument(row) || (any && texts[i][0]))
                 continue;
             why[0] = '\0';
             if (settings_read(row, texts[i], &settings, why))
@@ -171,9 +172,7 @@ static void print_row(const struct setting *row)
 int main(int argc, char **argv)
 {
     (void)argv;
-    for (const struct setting *row = settings_table; argc > 1 && row->name; ++row) {
-        if (has_value(row))
-            print_row(row);
-    }
+    for (const struct setting *row = next_row(NULL); argc > 1 && row; row = next_row(row))
+        print_row(row);
     return argc > 1 ? 0 : unit_run(NULL, NULL);
 }
