@@ -11,15 +11,15 @@ sweep() {
 check "a good and a broken file" sweep 10 "$WHIT"
 check "are counted" grep -q '^2 files: 1 rendered, 1 refused, 0 bad$' "$OUT/stdout"
 
-# fake BODY: a whit that misbehaves fails the sweep.
+# fake BODY [SECONDS]: a whit that misbehaves fails the sweep.
 fake() {
     printf '#!/bin/sh\n%s\n' "$1" >"$OUT/whit"
     chmod +x "$OUT/whit"
-    sweep 1 "$OUT/whit"
+    sweep "${2:-10}" "$OUT/whit"
     check "fails: $1" test $? -ne 0
 }
 fake 'kill -SEGV $$'
-fake 'exec sleep 20'
+fake 'exec sleep 20' 0.1
 fake 'exit 1'
 fake 'exit 2'
 fake 'echo "whit: error: a" >&2; echo "whit: error: b" >&2; exit 2'
