@@ -184,30 +184,28 @@ begin_trace() {
     ulimit -c 0
     "$WHIT" trace "$SCENES/cube.json" --input "rays$1" -o hits --on cpu --quiet 2>"$OUT/stderr" &
 }
-echo old >hits
-for signal in HUP:129 TERM:143 INT:130; do
+# sent SIGNAL: to whit while it waits; leaves $status.
+sent() {
     begin_trace 7
     exec 7>rays7
-    kill -${signal%:*} $!
-    wait $!
+    kill -"$1" $!
+    wait $! 2>/dev/null
     status=$?
     exec 7>&-
+    rm rays7
+}
+echo old >hits
+for signal in HUP:129 TERM:143 INT:130; do
+    sent "${signal%:*}"
     check "SIG${signal%:*}: exit code ${signal#*:} (got $status)" test $status -eq "${signal#*:}"
     check "SIG${signal%:*}: says so" \
         test "$(cat "$OUT/stderr")" = "whit: interrupted, nothing was written"
     check "SIG${signal%:*}: the old file" test "$(cat hits)" = old
-    rm rays7
 done
 # Without a shortage a crash is a crash.
-begin_trace 7
-exec 7>rays7
-kill -SEGV $!
-wait $! 2>/dev/null
-status=$?
-exec 7>&-
+sent SEGV
 check "SIGSEGV: dies of it (got $status)" test $status -eq 139
 check "SIGSEGV: without a word of whit's" test ! -s "$OUT/stderr"
-rm rays7
 trap '' HUP # as nohup does
 begin_trace 7
 exec 7>rays7
