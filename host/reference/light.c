@@ -45,24 +45,24 @@ static struct dvec3 at_most(struct dvec3 light)
 }
 
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
-              struct dvec3 p, struct light_sample_info *from)
+              struct dvec3 p, struct light_sample_info *sample)
 {
     bool flat = scene_light_is_flat(light);
-    *from = (struct light_sample_info){.arriving = d3_load(light->color)};
+    *sample = (struct light_sample_info){.arriving = d3_load(light->color)};
     struct dvec3 direction = d3_unit_or(three(light->direction), d3_all(0.0));
     if (light->kind == SCENE_LIGHT_DIRECTIONAL) {
-        from->to_light = d3_scale(direction, -1.0);
-        from->distance = INFINITY;
+        sample->to_light = d3_scale(direction, -1.0);
+        sample->distance = INFINITY;
         return true;
     }
     struct dvec3 from = flat ? emitter_point(tracer, light, index) : three(light->position);
     struct dvec3 way = dvec3_sub(from, p);
-    from->distance = d3_length(way);
-    if (!(from->distance > 0.0))
+    sample->distance = d3_length(way);
+    if (!(sample->distance > 0.0))
         return false;
-    from->to_light = d3_scale(way, 1.0 / from->distance);
-    double square = fmax(from->distance * from->distance, (double)FLT_MIN);
-    double cos_away = -dvec3_dot(from->to_light, direction), share = 1.0;
+    sample->to_light = d3_scale(way, 1.0 / sample->distance);
+    double square = fmax(sample->distance * sample->distance, (double)FLT_MIN);
+    double cos_away = -dvec3_dot(sample->to_light, direction), share = 1.0;
     double cos_emitter = light->two_sided ? fabs(cos_away) : fmax(cos_away, 0.0);
     if (light->falloff || flat || light->kind == SCENE_LIGHT_AREA_SAMPLE)
         share /= square;
@@ -71,15 +71,15 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
         share *= cos_emitter;
     if (flat) {
-        from->strength = fmin(cos_emitter / square, LIGHT_MAX);
-        share = light_area_share(tracer->reference, light) * from->strength;
+        sample->strength = fmin(cos_emitter / square, LIGHT_MAX);
+        share = light_area_share(tracer->reference, light) * sample->strength;
     }
-    from->arriving = at_most(d3_scale(from->arriving, share));
-    if (light->range > 0.0f && from->distance > (double)light->range)
+    sample->arriving = at_most(d3_scale(sample->arriving, share));
+    if (light->range > 0.0f && sample->distance > (double)light->range)
         return false;
     if (flat) /* what lies in one plane with it casts no shadow of its light */
-        from->distance *= 1.0 - 1.0 / 4096.0;
-    return d3_largest(from->arriving) > 0.0;
+        sample->distance *= 1.0 - 1.0 / 4096.0;
+    return d3_largest(sample->arriving) > 0.0;
 }
 
 /* ---- Form factors ---- */

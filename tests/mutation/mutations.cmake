@@ -13,7 +13,7 @@
 mutation(cosine_behind render_refraction RED slab_keeps_directions)
 change(shaders/lib/optics.glsl [[(1.0 - eta) * (1.0 + eta);]] [[(1.0 - eta);]])
 
-mutation(index_upside_down render_refraction RED slab_moves_rays_aside)
+mutation(index_upside_down render_media RED layers_bend_as_snell_says)
 change(shaders/kernel/shade.comp [[refract_dir(ray.dir, s.ns, o.eta,]]
   [[refract_dir(ray.dir, s.ns, 1.0 / o.eta,]])
 

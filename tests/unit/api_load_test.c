@@ -55,11 +55,12 @@ static void put(const char *path, const char *text, size_t bytes)
     assert_int_equal(fclose(file), 0);
 }
 
+static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
 /* A model by the importer, and a picture by a decoder. */
 static void the_host_is_left_as_it_was(void **state)
 {
     (void)state;
-    static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     static const char sky[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
     static const char scene_text[] =
         "{\"objects\": [{\"model\": \"a.obj\"}], \"environment\": {\"map\": \"a.hdr\"}}";
@@ -114,7 +115,6 @@ static void limits_are_those_that_were_asked_for(void **state)
 {
     (void)state;
     char folder[] = "/tmp/whit-load-XXXXXX", path[64];
-    static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     const whit_load_params asked = {.import_limit_s = 99.0,
                                     .time_limit_s = 7.0,
                                     .memory_limit_bytes = UINT64_C(1) << 30,

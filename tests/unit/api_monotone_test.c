@@ -125,31 +125,18 @@ static void compare(struct tally *tally, const char *scene, const char *knob, ui
                   after->bright, WIDTH * HEIGHT, is_bright ? "bright pixels" : "UNEXPLAINED");
 }
 
-static void check_samples(struct opened *o, const char *name, struct tally *tally)
+/* One picture after the other with more of one knob, beside one reference. */
+static void check_knob(struct opened *o, const char *name, bool depth, struct tally *tally)
 {
-    static const uint32_t samples[] = {1, 4, 16, SAMPLES};
-    whit_image *reference = reference_of(o, SAMPLES);
+    static const uint32_t samples[] = {1, 4, 16, SAMPLES}, depths[] = {0, 1, 2, 4, 8, 16};
+    whit_image *reference = reference_of(o, depth ? 1 : SAMPLES);
     struct error before = {.linear = INFINITY, .shown = INFINITY};
-    for (size_t i = 0; i < sizeof samples / sizeof *samples; ++i) {
+    for (size_t i = 0; i < (depth ? sizeof depths : sizeof samples) / sizeof *samples; ++i) {
         whit_renderer_params view = usual;
-        view.samples = samples[i];
+        uint32_t *knob = depth ? &view.depth : &view.samples;
+        *knob = depth ? depths[i] : samples[i];
         const struct error error = measure(o, reference, &view);
-        compare(tally, name, "aa", samples[i], &before, &error);
-        before = error;
-    }
-    whit_image_destroy(reference);
-}
-
-static void check_depth(struct opened *o, const char *name, struct tally *tally)
-{
-    static const uint32_t depths[] = {0, 1, 2, 4, 8, 16};
-    whit_image *reference = reference_of(o, 1);
-    struct error before = {.linear = INFINITY, .shown = INFINITY};
-    for (size_t i = 0; i < sizeof depths / sizeof *depths; ++i) {
-        whit_renderer_params view = usual;
-        view.depth = depths[i];
-        const struct error error = measure(o, reference, &view);
-        compare(tally, name, "depth", depths[i], &before, &error);
+        compare(tally, name, depth ? "depth" : "aa", *knob, &before, &error);
         before = error;
     }
     whit_image_destroy(reference);
@@ -172,8 +159,8 @@ static void error_falls_or_it_is_said_why(void **state)
     assert_true(count > 0);
     for (int i = 0; i < count; ++i) {
         struct opened o = open_scene(device, names[i]->d_name);
-        check_samples(&o, names[i]->d_name, &tally);
-        check_depth(&o, names[i]->d_name, &tally);
+        check_knob(&o, names[i]->d_name, false, &tally);
+        check_knob(&o, names[i]->d_name, true, &tally);
         close_scene(&o);
         free(names[i]);
     }

@@ -79,7 +79,7 @@ static void refuses_what_it_cannot_draw(void **state)
     (void)state;
     struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
     const whit_renderer_params refused[] = {
-        {.adaptive = 0.1}, {.effects_removed = 1}, {.camera = {.name = "nobody"}}};
+        {.adaptive = 0.1}, {.effects_removed = 1}, {.camera = {.name = "nobody"}}, {.samples = 3}};
     whit_reference *reference = NULL;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
         assert_int_equal(whit_reference_create(o.accel, &refused[i], 0, &reference),
@@ -92,6 +92,10 @@ static void refuses_what_it_cannot_draw(void **state)
     assert_int_equal(whit_reference_create(o.accel, &cancelled, 0, &reference), WHIT_OK);
     assert_int_equal(whit_reference_render(reference, &color, NULL), WHIT_ERROR_CANCELLED);
     assert_null(color);
+    whit_probe_ray *rays = NULL;
+    uint32_t count = 1;
+    assert_int_equal(whit_reference_rays(reference, 640, 0, 0, &rays, &count), WHIT_ERROR_USAGE);
+    assert_null(rays);
     whit_reference_destroy(reference);
     close_scene(&o);
 }

@@ -11,6 +11,13 @@ static inline void set_rgb(float *rgb, float r, float g, float b)
     rgb[2] = b;
 }
 
+static inline void cross_of(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 static inline void set_sky(struct scene *scene, float zenith, float horizon, float ground)
 {
     set_rgb(scene->environment.zenith, zenith, zenith, zenith);

@@ -132,11 +132,14 @@ static void only_fast_leaks(void **state)
     free(hits);
 }
 
+static const whit_renderer_params glass_params = {
+    .width = 96, .height = 64, .depth = 6, .camera = GLASS_CAMERA, .packets = WHIT_PACKETS_ON};
+
 /* Glass rings over ground: shadows through filters, media, all kinds of traversals. */
 static void pictures_agree(void **state)
 {
     (void)state;
-    whit_renderer_params params = {.width = 96, .height = 64, .depth = 6, .camera = GLASS_CAMERA};
+    whit_renderer_params params = glass_params;
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image pictures[LEVELS];
     for (uint32_t level = 0; level < LEVELS; ++level) {
@@ -168,12 +171,10 @@ static void trees_do_not_matter(void **state)
 {
     (void)state;
     const struct accel_params none = {.mesh = {.builder = BVH_NONE}, .stack_floor = 32};
-    const whit_renderer_params params = {.packets = WHIT_PACKETS_ON,
-                                         .width = 24,
-                                         .height = 16,
-                                         .depth = 6,
-                                         .camera = GLASS_CAMERA,
-                                         .numerics = NUMERICS_EXACT};
+    whit_renderer_params params = glass_params;
+    params.width = 24;
+    params.height = 16;
+    params.numerics = NUMERICS_EXACT;
     struct picture with = picture_of(glass_scene(), NULL, &params);
     struct picture without = picture_of(glass_scene(), &none, &params);
     assert_true(with.stats.deferred > 0 && without.stats.deferred > 0);

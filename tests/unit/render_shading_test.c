@@ -237,13 +237,6 @@ static void masks_heed_the_alpha_of_vertices(void **state)
     }
 }
 
-static void cross_of(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* A square across `n`, with texture coordinates along its sides. */
 static struct scene_mesh square_across(const double n[3])
 {

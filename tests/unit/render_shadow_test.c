@@ -204,24 +204,9 @@ static struct scene *flat_scene(bool normals)
 {
     struct scene *scene = floor_scene(eye_height);
     struct scene_mesh boxes = mesh_box(1.3, 0.7, 1.1);
-    free(boxes.normals);
-    boxes.normals = NULL;
-    if (normals) {
-        boxes.normals = calloc(3 * (size_t)boxes.vertex_count, sizeof *boxes.normals);
-        assert_non_null(boxes.normals);
-        for (uint32_t t = 0; t < boxes.triangle_count; ++t) {
-            const float *p[3];
-            float n[3];
-            for (int k = 0; k < 3; ++k)
-                p[k] = &boxes.positions[3 * (size_t)boxes.indices[3 * t + (uint32_t)k]];
-            for (int k = 0; k < 3; ++k) {
-                int a = (k + 1) % 3, b = (k + 2) % 3;
-                n[k] = (p[1][a] - p[0][a]) * (p[2][b] - p[0][b]) -
-                       (p[1][b] - p[0][b]) * (p[2][a] - p[0][a]);
-            }
-            for (int k = 0; k < 3; ++k)
-                memcpy(&boxes.normals[3 * (size_t)boxes.indices[3 * t + (uint32_t)k]], n, sizeof n);
-        }
+    if (!normals) {
+        free(boxes.normals);
+        boxes.normals = NULL;
     }
     add_object(scene, boxes, matte(1, 1, 1), 0.1, 0.9, 0.2);
     scene->nodes[scene->node_count - 1].rotation[0] = 0.3;
