@@ -2,6 +2,7 @@
 #include "accel_fixture.h"
 
 #include "accel/boxes.h"
+#include "unit.h"
 
 struct seen {
     whit_box boxes[4096];
@@ -67,9 +68,8 @@ static void check_covered(const struct world *w, const struct seen *seen, uint32
     }
 }
 
-static void mesh_trees_level_by_level(void **state)
+TEST(mesh_trees_level_by_level)
 {
-    (void)state;
     struct world w = placed_spheres(false);
     assert_int_equal(see(&w, false, 0, UINT32_MAX)->count, 5); /* a root each */
     for (uint32_t level = 0; level < 6; ++level) {
@@ -87,9 +87,8 @@ static void mesh_trees_level_by_level(void **state)
     world_finish(&w);
 }
 
-static void instances_and_one_tree(void **state)
+TEST(instances_and_one_tree)
 {
-    (void)state;
     struct world w = placed_spheres(false), flat = placed_spheres(true);
     const struct seen *root = see(&w, true, 0, UINT32_MAX);
     assert_int_equal(root->count, 1);
@@ -105,20 +104,9 @@ static void instances_and_one_tree(void **state)
     world_finish(&flat);
 }
 
-static void who_asks_can_stop(void **state)
+TEST(who_asks_can_stop)
 {
-    (void)state;
     struct world w = placed_spheres(false);
     assert_int_equal(see(&w, false, 4, 3)->count, 3);
     world_finish(&w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mesh_trees_level_by_level),
-        cmocka_unit_test(instances_and_one_tree),
-        cmocka_unit_test(who_asks_can_stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* The same tree whatever the number of threads and the order of the input; the sweep finds the
    splits of a quadratic search; and which way to build is the better one. */
 #include "accel_build_fixture.h"
+#include "unit.h"
 
 /* Also a heap that needs medians, and both zeros. */
 static struct soup soup_with_heap(uint32_t count)
@@ -15,9 +16,8 @@ static struct soup soup_with_heap(uint32_t count)
 
 /* Under ThreadSanitizer (accel_race) there are fewer triangles and rows, by WHIT_TEST_TRIANGLES.
    What is printed does not depend on what f4.h is made of (accel_scalar). */
-static void same_bytes_for_any_thread_count(void **state)
+TEST(same_bytes_for_any_thread_count)
 {
-    (void)state;
     enum { SOUPS = 5 };
     const char *few = getenv("WHIT_TEST_TRIANGLES");
     const uint32_t count = few ? (uint32_t)atoi(few) : cases_of(20000);
@@ -56,9 +56,8 @@ static void same_bytes_for_any_thread_count(void **state)
 
 /* Planes depend on the set of triangles alone, and what they do not part is told apart by index
    only where all three centroids agree. */
-static void same_tree_for_any_order(void **state)
+TEST(same_tree_for_any_order)
 {
-    (void)state;
     static const struct bvh_params params[] = {{.builder = BVH_BINNED},
                                                {.builder = BVH_BINNED, .bins = 7},
                                                {.builder = BVH_SWEEP},
@@ -158,9 +157,8 @@ static uint32_t check_splits(const struct bvh *bvh, const struct bvh_box *boxes,
            check_splits(bvh, boxes, &pair[1]);
 }
 
-static void sweep_finds_the_splits_of_the_quadratic_search(void **state)
+TEST(sweep_finds_the_splits_of_the_quadratic_search)
 {
-    (void)state;
     static const uint32_t counts[] = {2, 3, 5, 16, 33, 64, 65, 200, 700};
     uint32_t compared = 0;
     for (size_t i = 0; i < 2 * sizeof counts / sizeof *counts; ++i) {
@@ -200,9 +198,8 @@ static struct soup soup_uneven(uint32_t count)
     return soup;
 }
 
-static void the_better_way_costs_less(void **state)
+TEST(the_better_way_costs_less)
 {
-    (void)state;
     enum { UNEVEN, ROOMS, HAIR, THICK_HAIR, SPHERE, TERRAIN, SOUPS };
     static const struct bvh_params plain = {0}, spatial = {.builder = BVH_SPATIAL},
                                    median = {.builder = BVH_MEDIAN},
@@ -243,9 +240,8 @@ static void the_better_way_costs_less(void **state)
 }
 
 /* Greedy, so better on the whole and not at each node. */
-static void sweeping_is_as_good_as_bins(void **state)
+TEST(sweeping_is_as_good_as_bins)
 {
-    (void)state;
     static const float sizes[] = {0.003f, 0.03f, 0.3f};
     static const uint32_t bins[] = {0, 2, 4, 7, 8, 16, 32, 64, 128, 256};
     for (uint32_t round = 0; round < 3; ++round) {
@@ -265,9 +261,8 @@ static void sweeping_is_as_good_as_bins(void **state)
 /* ---- No tree ---- */
 
 /* Full leaves but for one, in the order of the input, and not a box that leaves anything out. */
-static void no_tree_is_one_box_for_all(void **state)
+TEST(no_tree_is_one_box_for_all)
 {
-    (void)state;
     static const uint32_t counts[] = {1, 15, 16, 1000};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
         uint32_t count = counts[c], leaves = (count + BVH_LEAF_MAX - 1) / BVH_LEAF_MAX;
@@ -287,17 +282,4 @@ static void no_tree_is_one_box_for_all(void **state)
         bvh_finish(&bvh);
         soup_finish(&soup);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bytes_for_any_thread_count),
-        cmocka_unit_test(same_tree_for_any_order),
-        cmocka_unit_test(sweep_finds_the_splits_of_the_quadratic_search),
-        cmocka_unit_test(the_better_way_costs_less),
-        cmocka_unit_test(sweeping_is_as_good_as_bins),
-        cmocka_unit_test(no_tree_is_one_box_for_all),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

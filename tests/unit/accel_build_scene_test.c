@@ -1,6 +1,7 @@
 /* The arrays of a whole scene: where each mesh lies, what its triangles say, and instances posed
    anywhere. */
 #include "accel_fixture.h"
+#include "unit.h"
 
 static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings)
 {
@@ -39,9 +40,8 @@ static struct scene *mixed_scene(void)
     return scene;
 }
 
-static void meshes_lie_side_by_side(void **state)
+TEST(meshes_lie_side_by_side)
 {
-    (void)state;
     struct world world = world_of(mixed_scene(), by_threads(2));
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
@@ -69,9 +69,8 @@ static void meshes_lie_side_by_side(void **state)
     world_finish(&world);
 }
 
-static void same_bytes_for_any_thread_count(void **state)
+TEST(same_bytes_for_any_thread_count)
 {
-    (void)state;
     struct world world = world_of(mixed_scene(), by_threads(1));
     const struct accel *one = world.accel;
     for (uint32_t threads = 2; threads <= 4; threads += 2) {
@@ -122,9 +121,8 @@ static void assert_posed(const struct accel *accel, const struct scene_pose *pos
     }
 }
 
-static void instances_are_boxed_wherever_they_are(void **state)
+TEST(instances_are_boxed_wherever_they_are)
 {
-    (void)state;
     struct world world = world_of(mixed_scene(), by_threads(1));
     struct accel *accel = world.accel;
     struct scene_pose *pose = &world.pose;
@@ -143,9 +141,8 @@ static void instances_are_boxed_wherever_they_are(void **state)
     world_finish(&world);
 }
 
-static void inverse_and_forward_are_inverse(void **state)
+TEST(inverse_and_forward_are_inverse)
 {
-    (void)state;
     struct world world = world_of(mixed_scene(), by_threads(1));
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
@@ -170,9 +167,8 @@ static void inverse_and_forward_are_inverse(void **state)
     world_finish(&world);
 }
 
-static void one_instance_at_the_origin_is_told_apart(void **state)
+TEST(one_instance_at_the_origin_is_told_apart)
 {
-    (void)state;
     struct affine moved = affine_identity(), same = affine_identity();
     moved.m[7] = 1e-30;
     const struct affine *matrices[] = {NULL, &same, &moved};
@@ -188,9 +184,8 @@ static void one_instance_at_the_origin_is_told_apart(void **state)
     }
 }
 
-static void scenes_without_anything(void **state)
+TEST(scenes_without_anything)
 {
-    (void)state;
     for (int k = 0; k < 3; ++k) {
         struct scene *scene = scene_begin(&silent, "test");
         if (k > 0) {
@@ -212,9 +207,8 @@ static void scenes_without_anything(void **state)
     }
 }
 
-static void many_instances_in_one_place(void **state)
+TEST(many_instances_in_one_place)
 {
-    (void)state;
     enum { COUNT = 3000 };
     struct scene *scene = scene_begin(&silent, "test");
     uint32_t mesh = add_sphere(scene, 4, 3);
@@ -227,9 +221,8 @@ static void many_instances_in_one_place(void **state)
     world_finish(&world);
 }
 
-static void matrices_without_inverse_are_refused(void **state)
+TEST(matrices_without_inverse_are_refused)
 {
-    (void)state;
     struct scene *scene = scene_begin(&silent, "test");
     uint32_t mesh = add_sphere(scene, 4, 3);
     scene_put_again(scene, mesh, NULL);
@@ -310,9 +303,8 @@ static uint32_t same_hits(const struct accel *a, const struct accel *b, uint32_t
 }
 
 /* A thousand steps, each way against a tree built for that step alone. */
-static void moved_instances_are_hit_alike_whatever_the_tree(void **state)
+TEST(moved_instances_are_hit_alike_whatever_the_tree)
 {
-    (void)state;
     struct world fresh = world_of(moving_scene(), (struct accel_params){0});
     struct accel *all[WAYS];
     for (size_t w = 0; w < WAYS; ++w)
@@ -343,9 +335,8 @@ static void moved_instances_are_hit_alike_whatever_the_tree(void **state)
 }
 
 /* The shape of a refitted tree is that of its first pose; a rebuilt one follows the instances. */
-static void only_a_rebuild_changes_the_tree(void **state)
+TEST(only_a_rebuild_changes_the_tree)
 {
-    (void)state;
     for (size_t w = 0; w < WAYS; ++w) {
         struct world world = world_of(moving_scene(), ways[w]);
         struct accel *accel = world.accel;
@@ -369,9 +360,8 @@ static void only_a_rebuild_changes_the_tree(void **state)
 }
 
 /* The source report drew the first object alone. */
-static void every_instance_is_hit(void **state)
+TEST(every_instance_is_hit)
 {
-    (void)state;
     enum { SIDE = 12 };
     for (size_t w = 0; w < 2 * WAYS; ++w) {
         struct scene *scene = scene_begin(&silent, "test");
@@ -427,9 +417,8 @@ static const struct {
     {.name = "lamp", .lamp = true, .flags = TRIANGLE_NO_SHADOW},
 };
 
-static void materials_become_bits(void **state)
+TEST(materials_become_bits)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof materials / sizeof *materials; ++i) {
         struct scene *scene = scene_begin(&silent, "test");
         struct scene_material material = material_grey("m");
@@ -454,9 +443,8 @@ static void materials_become_bits(void **state)
 
 /* ---- Broken ones ---- */
 
-static void broken_scenes_are_refused(void **state)
+TEST(broken_scenes_are_refused)
 {
-    (void)state;
     for (int k = 0; k < 12; ++k) {
         struct world world = world_of(mixed_scene(), by_threads(2));
         struct accel *accel = world.accel;
@@ -502,24 +490,4 @@ static void broken_scenes_are_refused(void **state)
             fail_msg("case %d was misjudged", k);
         world_finish(&world);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(meshes_lie_side_by_side),
-        cmocka_unit_test(same_bytes_for_any_thread_count),
-        cmocka_unit_test(instances_are_boxed_wherever_they_are),
-        cmocka_unit_test(inverse_and_forward_are_inverse),
-        cmocka_unit_test(one_instance_at_the_origin_is_told_apart),
-        cmocka_unit_test(scenes_without_anything),
-        cmocka_unit_test(many_instances_in_one_place),
-        cmocka_unit_test(matrices_without_inverse_are_refused),
-        cmocka_unit_test(moved_instances_are_hit_alike_whatever_the_tree),
-        cmocka_unit_test(only_a_rebuild_changes_the_tree),
-        cmocka_unit_test(every_instance_is_hit),
-        cmocka_unit_test(materials_become_bits),
-        cmocka_unit_test(broken_scenes_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Trees over triangles that builders get wrong, every way to build on each of them. */
 #include "accel_build_fixture.h"
+#include "unit.h"
 
 /* ---- Meshes ---- */
 
@@ -95,9 +96,8 @@ static struct soup soup_beside_planes(void)
 
 /* ---- Every way to build ---- */
 
-static void every_builder_on_every_mesh(void **state)
+TEST(every_builder_on_every_mesh)
 {
-    (void)state;
     const uint32_t many = cases_of(10000);
     random_state = 1;
     const struct soup soups[] = {
@@ -132,9 +132,8 @@ static void every_builder_on_every_mesh(void **state)
         check_all(soups[i]);
 }
 
-static void few_triangles(void **state)
+TEST(few_triangles)
 {
-    (void)state;
     for (uint32_t count = 0; count <= 40; ++count) {
         random_state = count;
         check_all(soup_hair(count, 0.3f));
@@ -153,9 +152,8 @@ static void few_triangles(void **state)
 }
 
 /* Extents and areas overflow, denormals vanish, many centroids meet. */
-static void a_thousand_trees_are_right(void **state)
+TEST(a_thousand_trees_are_right)
 {
-    (void)state;
     for (uint32_t round = 0; round < 1000; ++round) {
         random_state = 5000 + round;
         uint32_t count = 1 + random_below(&random_state, round % 10 == 0 ? 300 : 80);
@@ -173,9 +171,8 @@ static void a_thousand_trees_are_right(void **state)
 
 /* Two bins halve the extent, so each split takes off one box: deeper than any stack but for the
    medians. */
-static void depth_is_capped(void **state)
+TEST(depth_is_capped)
 {
-    (void)state;
     const struct bvh_params params = {.bins = 2, .leaf_limit = 1};
     struct soup soup = soup_make("halves", 230);
     for (uint32_t i = 0; i < soup.count; ++i) {
@@ -191,9 +188,8 @@ static void depth_is_capped(void **state)
 }
 
 /* Points in ten heaps on a line, shuffled: what is left of a median is not right of it. */
-static void medians_separate(void **state)
+TEST(medians_separate)
 {
-    (void)state;
     const struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
     random_state = 13;
     struct soup soup = soup_make("heaps", 200);
@@ -240,9 +236,8 @@ static void chain_make(uint32_t chain, struct bvh *bvh)
     bvh_complete(bvh, 1.0);
 }
 
-static void optimizing_keeps_the_limit_of_depth(void **state)
+TEST(optimizing_keeps_the_limit_of_depth)
 {
-    (void)state;
     for (uint32_t depth = 2; depth <= BVH_DEPTH_MAX; ++depth) {
         struct bvh bvh;
         chain_make(depth + 1, &bvh);
@@ -258,9 +253,8 @@ static void optimizing_keeps_the_limit_of_depth(void **state)
     }
 }
 
-static void bad_input_is_refused(void **state)
+TEST(bad_input_is_refused)
 {
-    (void)state;
     struct bvh bvh;
     struct bvh_box boxes[3] = {{{0, 0, 0}, {1, 1, 1}}, {{2, 2, 2}, {3, 3, 3}}, {{0}, {0}}};
     const float bad[] = {NAN, INFINITY, -INFINITY, 4.0f};
@@ -280,18 +274,4 @@ static void bad_input_is_refused(void **state)
         assert_null(bvh.nodes);
     }
     assert_non_null(strstr(last_error, "triangles")); /* of which there are none to split */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_builder_on_every_mesh),
-        cmocka_unit_test(few_triangles),
-        cmocka_unit_test(a_thousand_trees_are_right),
-        cmocka_unit_test(depth_is_capped),
-        cmocka_unit_test(medians_separate),
-        cmocka_unit_test(optimizing_keeps_the_limit_of_depth),
-        cmocka_unit_test(bad_input_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

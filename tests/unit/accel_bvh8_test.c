@@ -1,5 +1,6 @@
 /* Trees of eight children a node have the leaves of the trees of two, each once, boxes and all. */
 #include "accel_fixture.h"
+#include "unit.h"
 
 struct leaves {
     struct gpu_bvh_node all[20000];
@@ -50,9 +51,8 @@ static void check_tree(const struct accel *accel, uint32_t root, uint32_t root8,
     free(eight);
 }
 
-static void leaves_are_those_of_two(void **state)
+TEST(leaves_are_those_of_two)
 {
-    (void)state;
     for (int flat = 0; flat < 2; ++flat) {
         struct scene *scene = scene_begin(&silent, "wide");
         scene_put(scene, mesh_terrain(10.0, 2.0, 60, 3), NULL);
@@ -77,12 +77,4 @@ static void leaves_are_those_of_two(void **state)
         }
         world_finish(&world);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(leaves_are_those_of_two),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "accel_fixture.h"
 
 #include "oracle/oracle.h"
+#include "unit.h"
 
 static struct scene *new_scene(void)
 {
@@ -78,9 +79,8 @@ static struct comparison compare(const struct accel *instanced, const struct acc
     return c;
 }
 
-static void hits_are_those_of_the_instances(void **state)
+TEST(hits_are_those_of_the_instances)
 {
-    (void)state;
     enum { RAYS = 300000 };
     struct world instanced = mixed_world((struct accel_params){0});
     struct accel *flat = accel_of(instanced.scene, flatten);
@@ -97,9 +97,8 @@ static void hits_are_those_of_the_instances(void **state)
     world_finish(&instanced);
 }
 
-static void builders_agree_bit_for_bit(void **state)
+TEST(builders_agree_bit_for_bit)
 {
-    (void)state;
     static const enum bvh_builder builders[] = {BVH_MEDIAN, BVH_SWEEP, BVH_SPATIAL, BVH_NONE};
     struct world first = mixed_world(flatten);
     for (size_t b = 0; b < sizeof builders / sizeof *builders; ++b) {
@@ -120,9 +119,8 @@ static void builders_agree_bit_for_bit(void **state)
     world_finish(&first);
 }
 
-static void the_oracle_agrees(void **state)
+TEST(the_oracle_agrees)
 {
-    (void)state;
     struct world world = mixed_world(flatten);
     const struct accel *accel = world.accel;
     const uint32_t rays = cases_of(1500);
@@ -166,9 +164,8 @@ static void assert_placed(const struct scene *scene, const struct scene_pose *po
     }
 }
 
-static void records_say_whose_they_are(void **state)
+TEST(records_say_whose_they_are)
 {
-    (void)state;
     struct world world =
         mixed_world((struct accel_params){.mesh.builder = BVH_SWEEP, .flatten = true});
     const struct scene *scene = world.scene;
@@ -198,9 +195,8 @@ static void records_say_whose_they_are(void **state)
     world_finish(&world);
 }
 
-static void a_pose_builds_anew(void **state)
+TEST(a_pose_builds_anew)
 {
-    (void)state;
     struct world world = mixed_world((struct accel_params){0});
     struct accel *flat = accel_of(world.scene, flatten);
     struct scene_pose *pose = &world.pose;
@@ -258,9 +254,8 @@ static void break_record(struct accel *accel, int how)
     }
 }
 
-static void broken_records_are_refused(void **state)
+TEST(broken_records_are_refused)
 {
-    (void)state;
     for (int how = 0; how < 7; ++how) {
         struct world world = mixed_world(flatten);
         break_record(world.accel, how);
@@ -270,9 +265,8 @@ static void broken_records_are_refused(void **state)
     }
 }
 
-static void scenes_without_anything(void **state)
+TEST(scenes_without_anything)
 {
-    (void)state;
     for (int k = 0; k < 3; ++k) {
         struct scene *scene = new_scene();
         if (k > 0)
@@ -338,9 +332,8 @@ static struct scene *with_another(struct scene *scene, uint32_t mesh)
     return scene;
 }
 
-static void a_scene_takes_one_tree_where_nothing_is_lost(void **state)
+TEST(a_scene_takes_one_tree_where_nothing_is_lost)
 {
-    (void)state;
     struct affine aside = moved_by(3, 2), turned = moved_by(0, 1), there = moved_by(3, 2);
     turned.m[1] = there.m[1] = 0.5;
     takes_one_tree("moved objects", two_objects(&aside), 0, true);
@@ -381,9 +374,8 @@ static struct scene *many_spheres(uint32_t count, uint64_t memory_limit)
     return scene;
 }
 
-static void too_many_triangles_are_refused(void **state)
+TEST(too_many_triangles_are_refused)
 {
-    (void)state;
     static const struct {
         uint32_t spheres;
         uint64_t memory_limit;
@@ -405,20 +397,4 @@ static void too_many_triangles_are_refused(void **state)
         accel_destroy(accel);
         scene_destroy(scene);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hits_are_those_of_the_instances),
-        cmocka_unit_test(builders_agree_bit_for_bit),
-        cmocka_unit_test(the_oracle_agrees),
-        cmocka_unit_test(records_say_whose_they_are),
-        cmocka_unit_test(a_pose_builds_anew),
-        cmocka_unit_test(broken_records_are_refused),
-        cmocka_unit_test(scenes_without_anything),
-        cmocka_unit_test(a_scene_takes_one_tree_where_nothing_is_lost),
-        cmocka_unit_test(too_many_triangles_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

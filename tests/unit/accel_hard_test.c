@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "hard/hard.h"
+#include "unit.h"
 
 enum { RAYS = 512, THREADS = 2 };
 
@@ -93,9 +94,8 @@ static void check_case(const struct hard_case *hard, const struct shots *shots)
         assert_in_range(count_hits(shots), RAYS / 3, RAYS);
 }
 
-static void cases_are_what_they_say(void **state)
+TEST(cases_are_what_they_say)
 {
-    (void)state;
     uint32_t count;
     uint64_t hash = HASH_START, leaks[3] = {0}, wrong[3] = {0};
     const struct hard_case *cases = hard_cases(&count);
@@ -124,9 +124,8 @@ static void cases_are_what_they_say(void **state)
 }
 
 /* A hit that is taken away, put elsewhere or made up is seen, and breaks the promise. */
-static void the_judge_sees(void **state)
+TEST(the_judge_sees)
 {
-    (void)state;
     struct shots *shots = shots_make(&sphere, 1);
     for (uint32_t numerics = 0; numerics < 3; numerics += NUMERICS_EXACT) {
         whit_tally before = shots_trace(shots, numerics);
@@ -171,9 +170,8 @@ static struct hard_ray ray_in_plane(const struct scene_mesh *mesh, uint32_t i)
     return made;
 }
 
-static void rays_in_a_plane_are_no_leaks(void **state)
+TEST(rays_in_a_plane_are_no_leaks)
 {
-    (void)state;
     struct shots *shots = shots_make(&sphere, 1);
     const struct scene_mesh *mesh = &shots->hard.scene->meshes[0];
     uint32_t far = 0;
@@ -199,9 +197,8 @@ static void rays_in_a_plane_are_no_leaks(void **state)
 }
 
 /* The convex body is left without a hit; a hit made up is a self-hit. */
-static void self_hits_are_seen(void **state)
+TEST(self_hits_are_seen)
 {
-    (void)state;
     static const struct hard_case body = {
         "octahedron", HARD_OCTAHEDRON, HARD_LEAVING, 1e3, 1, false, false};
     struct shots *shots = shots_make(&body, 3);
@@ -218,9 +215,8 @@ static void self_hits_are_seen(void **state)
 
 /* A cube of 12 triangles, unwelded; without the last, with the first turned round, with the first
    in place of the last. */
-static void surfaces_are_described(void **state)
+TEST(surfaces_are_described)
 {
-    (void)state;
     static const struct {
         const char *name;
         uint64_t open, crowded, flipped, duplicates;
@@ -252,14 +248,4 @@ static void surfaces_are_described(void **state)
         scene_destroy(scene);
         soup_finish(&soup);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cases_are_what_they_say),      cmocka_unit_test(the_judge_sees),
-        cmocka_unit_test(rays_in_a_plane_are_no_leaks), cmocka_unit_test(self_hits_are_seen),
-        cmocka_unit_test(surfaces_are_described),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

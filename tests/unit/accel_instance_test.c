@@ -1,6 +1,7 @@
 /* What transforms cost in accuracy: hits in instances against the same triangles placed in double.
  */
 #include "accel_fixture.h"
+#include "unit.h"
 
 static struct world sphere_world(const struct affine *matrices, uint32_t count)
 {
@@ -130,18 +131,16 @@ static void assert_precision(const char *what, struct affine matrix, double stre
     }
 }
 
-static void far_translations_keep_their_precision(void **state)
+TEST(far_translations_keep_their_precision)
 {
-    (void)state;
     assert_precision("at 0", turned(0, 0, 0, 1, 1, 1), 1);
     assert_precision("at 1e3", turned(1e3, -1e3, 0.5e3, 1, 1, 1), 1);
     assert_precision("at 1e5", turned(1e5, -1e5, 0.5e5, 1, 1, 1), 1);
     assert_precision("at 1e6", turned(1e6, -1e6, 0.5e6, 1, 1, 1), 1);
 }
 
-static void scales_keep_their_precision(void **state)
+TEST(scales_keep_their_precision)
 {
-    (void)state;
     struct affine straight = affine_identity();
     straight.m[5] = 1e2;
     straight.m[10] = 1e4;
@@ -154,9 +153,8 @@ static void scales_keep_their_precision(void **state)
 }
 
 /* diag(2, 1, 1) puts a normal that goes by the matrix itself off by 36.87 degrees at worst. */
-static void normals_go_by_the_inverse_transpose(void **state)
+TEST(normals_go_by_the_inverse_transpose)
 {
-    (void)state;
     struct affine stretched = affine_identity(), sheared = turned(1, 2, 3, 2, 0.5, -1.5);
     struct affine shear = affine_identity();
     stretched.m[0] = 2.0;
@@ -174,9 +172,8 @@ static void normals_go_by_the_inverse_transpose(void **state)
 }
 
 /* 0 + 0 may come with another sign; nothing else may. */
-static void an_identity_is_no_transform(void **state)
+TEST(an_identity_is_no_transform)
 {
-    (void)state;
     struct affine identity = affine_identity();
     struct world world = sphere_world(&identity, 1);
     uint64_t random = 3;
@@ -225,9 +222,8 @@ static void assert_all_are_entered(const struct accel *accel, uint32_t count, ui
 
 /* Equal boxes: nothing can be ruled out, and the first instance is the one that is hit. With the
    label long there are a million of them. */
-static void instances_in_one_place_are_all_entered(void **state)
+TEST(instances_in_one_place_are_all_entered)
 {
-    (void)state;
     const char *many = getenv("WHIT_TEST_INSTANCES");
     const uint32_t count = many ? (uint32_t)atoi(many) : 10000;
     assert_true(count >= 10000);
@@ -245,16 +241,4 @@ static void instances_in_one_place_are_all_entered(void **state)
     assert_all_are_entered(accel, count, NUMERICS_EXACT, rays);
     world_finish(&world);
     free(matrices);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(far_translations_keep_their_precision),
-        cmocka_unit_test(scales_keep_their_precision),
-        cmocka_unit_test(normals_go_by_the_inverse_transpose),
-        cmocka_unit_test(an_identity_is_no_transform),
-        cmocka_unit_test(instances_in_one_place_are_all_entered),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "hard/hard.h"
+#include "unit.h"
 
 enum { STEPS = 2237, RAYS = 20000 };
 
@@ -27,9 +28,8 @@ static struct gpu_ray ray_at_record(const struct accel *accel, uint32_t i)
     return ray_through(vec3_add(target, vec3_add(random_point(1.0f), vec3_make(0, 8, 0))), target);
 }
 
-static void ten_million_triangles(void **state)
+TEST(ten_million_triangles)
 {
-    (void)state;
     struct scene_mesh mesh;
     struct scene *scene = NULL;
     assert_int_equal(shape_terrain(10.0, 2.0, STEPS, 5, &mesh), WHIT_OK);
@@ -63,12 +63,4 @@ static void ten_million_triangles(void **state)
     rational_destroy(rational);
     accel_destroy(accel);
     scene_destroy(scene);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ten_million_triangles),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "accel_fixture.h"
 
 #include "oracle/nearest.h"
+#include "unit.h"
 
 /* A ring in a few places, turned, stretched and mirrored. */
 static struct scene *ring_scene(void)
@@ -18,9 +19,8 @@ static struct scene *ring_scene(void)
 
 /* Trees leave nothing out: the bits are those of all triangles in turn. A tree over the scene in
    world space has other vertices, rounded once more. */
-static void trees_find_the_nearest(void **state)
+TEST(trees_find_the_nearest)
 {
-    (void)state;
     random_state = 3;
     struct world world = world_of(ring_scene(), (struct accel_params){.mesh.builder = BVH_NONE});
     struct accel *tree = accel_of(world.scene, (struct accel_params){0}),
@@ -40,9 +40,8 @@ static void trees_find_the_nearest(void **state)
 }
 
 /* To a box: faces, edges, corners. */
-static void distances_are_those_of_a_box(void **state)
+TEST(distances_are_those_of_a_box)
 {
-    (void)state;
     random_state = 5;
     struct world world =
         world_of_soup(soup_of_mesh("box", mesh_box(2, 2, 2)), (struct bvh_params){0});
@@ -57,13 +56,4 @@ static void distances_are_those_of_a_box(void **state)
         assert_true(fabs(accel_distance(world.accel, &world.pose, p) - expected) < 1e-12);
     }
     world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trees_find_the_nearest),
-        cmocka_unit_test(distances_are_those_of_a_box),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 
 #include "oracle/oracle.h"
 #include "sphere_fixture.h"
+#include "unit.h"
 
 /* ---- Scenes and rays ---- */
 
@@ -83,9 +84,8 @@ static void assert_tree_is_brute(const struct world *world, const struct gpu_ray
     assert_true(fmin(fabs(tree.edge_margin), 1.0) == fmin(fabs(brute.edge_margin), 1.0));
 }
 
-static void tree_gives_what_brute_force_gives(void **state)
+TEST(tree_gives_what_brute_force_gives)
 {
-    (void)state;
     struct world worlds[] = {soup_world(), sphere_world(), instances_world()};
     for (size_t w = 0; w < 3; ++w) {
         random_state = 3 + w;
@@ -155,9 +155,8 @@ static const struct {
     {"up to 1e6 radii away", NULL, 0.0, 1.0, 1e6, false, false, 40000, 0.25, 0, 0.1},
 };
 
-static void margins_explain_the_float_twin(void **state)
+TEST(margins_explain_the_float_twin)
 {
-    (void)state;
     for (size_t r = 0; r < sizeof scenes / sizeof *scenes; ++r) {
         random_state = 3;
         struct world world =
@@ -194,9 +193,8 @@ static const float unit_triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 
 /* Beside the triangle by how little the float test may not know; coordinates this small are exact.
  */
-static void one_triangle_is_known(void **state)
+TEST(one_triangle_is_known)
 {
-    (void)state;
     static const struct {
         const char *name;
         float x, t_min, t_max;
@@ -230,9 +228,8 @@ static void one_triangle_is_known(void **state)
     world_finish(&world);
 }
 
-static void ties_go_to_the_smaller_index(void **state)
+TEST(ties_go_to_the_smaller_index)
 {
-    (void)state;
     float corners[27];
     for (int i = 0; i < 27; ++i)
         corners[i] = unit_triangle[i % 9];
@@ -254,9 +251,8 @@ static void ties_go_to_the_smaller_index(void **state)
 
 /* A square across each axis, met along that axis at its middle, its borders and its corners, by
    rays that lie in faces of its box (NUMERICS B3): 0 and -0, from both sides. */
-static void borders_are_met_along_the_axes(void **state)
+TEST(borders_are_met_along_the_axes)
 {
-    (void)state;
     uint32_t rays = 0, missed = 0;
     for (uint32_t axis = 0; axis < 3; ++axis) {
         const uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -288,9 +284,8 @@ static void borders_are_met_along_the_axes(void **state)
     assert_int_equal(missed, 0);
 }
 
-static void senseless_rays_hit_nothing(void **state)
+TEST(senseless_rays_hit_nothing)
 {
-    (void)state;
     struct world world = sphere_world();
     const struct gpu_ray rays[] = {
         {{0, 0, 0}, 0, {0, 0, 0}, INFINITY},         {{NAN, 0, 0}, 0, {0, 0, 1}, INFINITY},
@@ -304,17 +299,4 @@ static void senseless_rays_hit_nothing(void **state)
         assert_tree_is_brute(&world, &rays[i]);
     }
     world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tree_gives_what_brute_force_gives),
-        cmocka_unit_test(margins_explain_the_float_twin),
-        cmocka_unit_test(one_triangle_is_known),
-        cmocka_unit_test(ties_go_to_the_smaller_index),
-        cmocka_unit_test(borders_are_met_along_the_axes),
-        cmocka_unit_test(senseless_rays_hit_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

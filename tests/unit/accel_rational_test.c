@@ -6,6 +6,7 @@
 #include "coordinate_fixture.h"
 #include "oracle/rational.h"
 #include "sphere_fixture.h"
+#include "unit.h"
 
 /* ---- The definition, with nothing left out ---- */
 
@@ -303,9 +304,8 @@ static const struct accel_params plain = {0}, flat = {.flatten = true},
                                  split = {.mesh = {.builder = BVH_SPATIAL, .spatial_budget = 2.0f}},
                                  none = {.mesh = {.builder = BVH_NONE}};
 
-static void triangles_are_found_by_trees_and_without(void **state)
+TEST(triangles_are_found_by_trees_and_without)
 {
-    (void)state;
     random_state = 21;
     const struct {
         const char *name;
@@ -336,9 +336,8 @@ static void triangles_are_found_by_trees_and_without(void **state)
     assert_true(on_edges > cases_of(500));
 }
 
-static void spheres_are_found_by_trees_and_without(void **state)
+TEST(spheres_are_found_by_trees_and_without)
 {
-    (void)state;
     random_state = 31;
     const struct {
         const char *name;
@@ -365,9 +364,8 @@ static void spheres_are_found_by_trees_and_without(void **state)
 /* ---- What the filter leaves out ---- */
 
 /* The filter is of use: few of random rays' triangles are left, and aimed rays do need integers. */
-static void integers_are_for_hard_cases(void **state)
+TEST(integers_are_for_hard_cases)
 {
-    (void)state;
     struct world world = world_of_soup(soup_sphere(24, 12), (struct bvh_params){0});
     struct rational *random = rational_create(world.accel), *aimed = rational_create(world.accel);
     random_state = 5;
@@ -400,9 +398,8 @@ static struct world world_of_ball(void)
 
 /* Of rays that pass a sphere within its box nearly all are left out by doubles, and none of those
    that touch it. */
-static void doubles_leave_out_what_misses(void **state)
+TEST(doubles_leave_out_what_misses)
 {
-    (void)state;
     struct world world = world_of_ball();
     struct accel *accel = world.accel;
     struct rational *rational = rational_create(accel);
@@ -455,9 +452,8 @@ static float min_radius(struct rational *rational, struct vec3 origin, struct ve
 
 /* From up to 2^27 radii away, where doubles cancel, at spheres that a float less of radius would
    make it miss. */
-static void doubles_leave_out_nothing_that_is_hit(void **state)
+TEST(doubles_leave_out_nothing_that_is_hit)
 {
-    (void)state;
     enum { RAYS = 10000 };
     struct world world = world_of_ball();
     struct accel *accel = world.accel;
@@ -495,9 +491,8 @@ static void doubles_leave_out_nothing_that_is_hit(void **state)
     world_finish(&world);
 }
 
-static void senseless_rays_hit_nothing(void **state)
+TEST(senseless_rays_hit_nothing)
 {
-    (void)state;
     struct world world = world_of_soup(soup_sphere(24, 12), (struct bvh_params){0});
     struct rational *rational = rational_create(world.accel);
     const struct gpu_ray rays[] = {
@@ -517,17 +512,4 @@ static void senseless_rays_hit_nothing(void **state)
     }
     rational_destroy(rational);
     world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangles_are_found_by_trees_and_without),
-        cmocka_unit_test(spheres_are_found_by_trees_and_without),
-        cmocka_unit_test(integers_are_for_hard_cases),
-        cmocka_unit_test(doubles_leave_out_what_misses),
-        cmocka_unit_test(doubles_leave_out_nothing_that_is_hit),
-        cmocka_unit_test(senseless_rays_hit_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

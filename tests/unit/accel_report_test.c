@@ -2,6 +2,7 @@
 #include "accel_fixture.h"
 
 #include "twin/report.h"
+#include "unit.h"
 
 #define assert_near(value, expected, by) assert_true(fabs((value) - (expected)) <= (by))
 
@@ -15,9 +16,8 @@ static whit_accel_report report_of(const struct world *world, uint32_t rays)
 
 /* ---- Clipping ---- */
 
-static void a_triangle_is_cut_to_a_box(void **state)
+TEST(a_triangle_is_cut_to_a_box)
 {
-    (void)state;
     static const float a[3] = {0, 0, 0}, b[3] = {4, 0, 0}, c[3] = {0, 4, 0};
     static const struct {
         struct bvh_box box;
@@ -37,9 +37,8 @@ static void a_triangle_is_cut_to_a_box(void **state)
 }
 
 /* What is clipped away and what is kept are the whole. */
-static void pieces_add_up(void **state)
+TEST(pieces_add_up)
 {
-    (void)state;
     uint64_t seed = 1;
     for (int round = 0; round < 2000; ++round) {
         float v[3][3], cut[3];
@@ -128,9 +127,8 @@ static const struct bvh_params builds[] = {
 };
 enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
 
-static void overlap_is_that_of_brute_force(void **state)
+TEST(overlap_is_that_of_brute_force)
 {
-    (void)state;
     static const uint32_t counts[] = {1, 2, 3, 40, 300};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
         for (size_t k = 0; k < BUILD_COUNT; ++k) {
@@ -148,9 +146,8 @@ static void overlap_is_that_of_brute_force(void **state)
 /* Two leaves of one triangle each. The box of the second, [1, 3] x [0, 2], holds of the first,
    (0, 0) (2, 0) (0, 2), what is right of x = 1: area 1/2; that of the first, [0, 2] x [0, 2], of
    the second, (1, 2) (3, 0) (3, 2), what is left of x = 2: area 1/2. Both surfaces are 2. */
-static void overlap_by_hand(void **state)
+TEST(overlap_by_hand)
 {
-    (void)state;
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
     struct world world = world_of_soup(soup_of_mesh("two", mesh_triangles(v, 2)),
                                        (struct bvh_params){.builder = BVH_MEDIAN, .leaf_limit = 1});
@@ -174,9 +171,8 @@ static void overlap_by_hand(void **state)
 
 /* ---- Shape ---- */
 
-static void report_agrees_with_the_tree(void **state)
+TEST(report_agrees_with_the_tree)
 {
-    (void)state;
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
         struct world world = world_of_soup(soup_sphere(60, 60), builds[i]);
         const struct accel *accel = world.accel;
@@ -199,9 +195,8 @@ static void report_agrees_with_the_tree(void **state)
     }
 }
 
-static void threads_change_nothing(void **state)
+TEST(threads_change_nothing)
 {
-    (void)state;
     whit_accel_report reports[2];
     for (uint32_t i = 0; i < 2; ++i) {
         struct world world =
@@ -233,9 +228,8 @@ static struct soup soup_apart(uint32_t side, double size)
     return soup;
 }
 
-static void nothing_hit_is_visited_as_predicted(void **state)
+TEST(nothing_hit_is_visited_as_predicted)
 {
-    (void)state;
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
         struct world world = world_of_soup(soup_apart(12, 0.6), builds[i]);
         whit_accel_report report = report_of(&world, 40000);
@@ -248,9 +242,8 @@ static void nothing_hit_is_visited_as_predicted(void **state)
 }
 
 /* Behind a hit nothing is opened: a closed sphere costs less than the areas say. */
-static void hits_save_visits(void **state)
+TEST(hits_save_visits)
 {
-    (void)state;
     struct world world = world_of_soup(soup_sphere(80, 80), builds[0]);
     whit_accel_report report = report_of(&world, 20000);
     assert_true(report.measured_inner_nodes < 0.9 * report.predicted_inner_nodes);
@@ -259,9 +252,8 @@ static void hits_save_visits(void **state)
 }
 
 /* A mesh counts once however often it is placed, and by the area of its box. */
-static void meshes_are_weighed_by_area(void **state)
+TEST(meshes_are_weighed_by_area)
 {
-    (void)state;
     struct scene *scene = scene_begin(&silent, "test");
     static const uint32_t sides[] = {4, 60, 0, 12};
     static const double sizes[] = {100.0, 1.0, 0.0, 5.0};
@@ -299,9 +291,8 @@ static void meshes_are_weighed_by_area(void **state)
     world_finish(&world);
 }
 
-static void nothing_has_a_report(void **state)
+TEST(nothing_has_a_report)
 {
-    (void)state;
     struct world world = world_of_soup(soup_make("nothing", 0), builds[0]);
     whit_accel_report report;
     memset(&report, 1, sizeof report);
@@ -309,21 +300,4 @@ static void nothing_has_a_report(void **state)
     assert_near(report.sah_cost, 0.0, 0.0);
     assert_int_equal(report.measured_rays, 0);
     world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_triangle_is_cut_to_a_box),
-        cmocka_unit_test(pieces_add_up),
-        cmocka_unit_test(overlap_is_that_of_brute_force),
-        cmocka_unit_test(overlap_by_hand),
-        cmocka_unit_test(report_agrees_with_the_tree),
-        cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(nothing_hit_is_visited_as_predicted),
-        cmocka_unit_test(hits_save_visits),
-        cmocka_unit_test(meshes_are_weighed_by_area),
-        cmocka_unit_test(nothing_has_a_report),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

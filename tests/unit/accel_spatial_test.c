@@ -3,12 +3,12 @@
 #include "accel_build_fixture.h"
 
 #include "bvh/clip.h"
+#include "unit.h"
 
 /* ---- Clipping ---- */
 
-static void clips_are_known(void **state)
+TEST(clips_are_known)
 {
-    (void)state;
     const float a[3] = {0, 0, 0}, b[3] = {4, 0, 0}, c[3] = {0, 4, 8};
     const struct clip_triangle triangle = {{a, b, c}};
     static const struct {
@@ -36,9 +36,8 @@ static void clips_are_known(void **state)
 }
 
 /* Planes through vertices, and anywhere; slivers down to lines and points, near and far. */
-static void clips_hold_what_is_inside(void **state)
+TEST(clips_hold_what_is_inside)
 {
-    (void)state;
     random_state = 3;
     uint32_t empty = 0;
     for (int round = 0; round < 10000; ++round) {
@@ -91,9 +90,8 @@ static void clips_hold_what_is_inside(void **state)
 /* How many references there are, and how many of them are parts, by budget and by how much must
    overlap. Without the rule that references which would cost less whole are not split, there were
    15,679 in the last row. */
-static void budgets_are_kept_and_used(void **state)
+TEST(budgets_are_kept_and_used)
 {
-    (void)state;
     enum { COUNT = 4000 };
     static const struct {
         float budget, alpha;
@@ -124,9 +122,8 @@ static void budgets_are_kept_and_used(void **state)
 }
 
 /* Splits are tried only where enough overlaps. */
-static void overlap_decides(void **state)
+TEST(overlap_decides)
 {
-    (void)state;
     static const float alphas[] = {1e-9f, 1e-2f, 0.1f, 1.0f};
     random_state = 6;
     struct soup soup = soup_rooms(1000);
@@ -142,9 +139,8 @@ static void overlap_decides(void **state)
     soup_finish(&soup);
 }
 
-static void whole_triangles_stay_whole(void **state)
+TEST(whole_triangles_stay_whole)
 {
-    (void)state;
     random_state = 7;
     struct soup soup = soup_rooms(1500);
     uint8_t *whole = calloc(soup.count, 1);
@@ -207,9 +203,8 @@ static struct gpu_ray ray_at_leaf(const struct accel *accel, double distance)
     }
 }
 
-static void hits_are_the_same(void **state)
+TEST(hits_are_the_same)
 {
-    (void)state;
     const uint32_t rays = cases_of(12000);
     random_state = 10;
     struct soup soups[] = {soup_rooms(1500), soup_hair(2500, 1e-3f), soup_hair(1500, 0.05f)};
@@ -233,9 +228,8 @@ static void hits_are_the_same(void **state)
 }
 
 /* A leaf that loses a piece of a part: the validator misses it. */
-static void lost_parts_are_noticed(void **state)
+TEST(lost_parts_are_noticed)
 {
-    (void)state;
     random_state = 12;
     struct world world = world_of_soup(
         soup_rooms(300),
@@ -264,9 +258,8 @@ static void lost_parts_are_noticed(void **state)
 }
 
 /* Shadow rays add up filters record by record: each must be there once. */
-static void filters_are_met_once(void **state)
+TEST(filters_are_met_once)
 {
-    (void)state;
     random_state = 11;
     struct soup soup = soup_rooms(1500);
     struct scene *scene = soup_scene(&soup);
@@ -292,19 +285,4 @@ static void filters_are_met_once(void **state)
     free(times);
     world_finish(&world);
     soup_finish(&soup);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clips_are_known),
-        cmocka_unit_test(clips_hold_what_is_inside),
-        cmocka_unit_test(budgets_are_kept_and_used),
-        cmocka_unit_test(overlap_decides),
-        cmocka_unit_test(whole_triangles_stay_whole),
-        cmocka_unit_test(hits_are_the_same),
-        cmocka_unit_test(lost_parts_are_noticed),
-        cmocka_unit_test(filters_are_met_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
    is the matter of hard_tree_test.c, and where of accel_oracle_test.c. */
 #include "accel_fixture.h"
 #include "sphere_fixture.h"
+#include "unit.h"
 
 struct own {
     uint32_t met, missed, wrong;
@@ -80,9 +81,8 @@ static void check_own(const char *label, double at, double radius)
     world_finish(&world);
 }
 
-static void rays_leave_their_sphere(void **state)
+TEST(rays_leave_their_sphere)
 {
-    (void)state;
     random_state = 4;
     check_own("radius 1", 0.0, 1.0);
     check_own("radius 1, at 3", 3.0, 1.0);
@@ -91,9 +91,8 @@ static void rays_leave_their_sphere(void **state)
     check_own("radius 0.1, at 10", 10.0, 0.1);
 }
 
-static void flat_keeps_spheres_that_stay_spheres(void **state)
+TEST(flat_keeps_spheres_that_stay_spheres)
 {
-    (void)state;
     const struct accel_params flat = {
         .flatten = true, .validate = true, .mesh = {.builder = BVH_SPATIAL}};
     random_state = 5;
@@ -121,13 +120,4 @@ static void flat_keeps_spheres_that_stay_spheres(void **state)
         accel_destroy(many);
         scene_destroy(scene);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_leave_their_sphere),
-        cmocka_unit_test(flat_keeps_spheres_that_stay_spheres),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "accel_fixture.h"
 
 #include "tree_fixture.h"
+#include "unit.h"
 
 enum { ORDERS = 3, STACK_SIZE = 512 /* of the traversal */ };
 
@@ -37,9 +38,8 @@ static struct accel *caterpillar(uint32_t depth)
 static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_FAST, NUMERICS_EXACT};
 enum { LEVELS = sizeof levels / sizeof *levels };
 
-static void deep_trees_are_walked(void **state)
+TEST(deep_trees_are_walked)
 {
-    (void)state;
     const uint32_t depths[] = {1, 31, 32, 33, 63, 64, 65, 128, 200, 511, 512};
     for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         uint32_t depth = depths[d];
@@ -65,9 +65,8 @@ static void deep_trees_are_walked(void **state)
     }
 }
 
-static void too_deep_trees_are_reported(void **state)
+TEST(too_deep_trees_are_reported)
 {
-    (void)state;
     struct accel *accel = caterpillar(STACK_SIZE + 1);
     for (uint32_t way = 0; way < ORDERS * LEVELS; ++way) {
         uint32_t status = 0;
@@ -84,9 +83,8 @@ static void too_deep_trees_are_reported(void **state)
 }
 
 /* What the traversal of a chain must count, worked out by hand. */
-static void costs_are_those_of_the_chain(void **state)
+TEST(costs_are_those_of_the_chain)
 {
-    (void)state;
     enum { DEPTH = 10 };
     const struct traverse_params closest = {.order = ORDER_DISTANCE},
                                  any = {.order = ORDER_DISTANCE, .any = true},
@@ -122,9 +120,8 @@ static void costs_are_those_of_the_chain(void **state)
 }
 
 /* A node that was pushed keeps its level, however deep the way went meanwhile. */
-static void levels_come_back_with_their_nodes(void **state)
+TEST(levels_come_back_with_their_nodes)
 {
-    (void)state;
     struct accel *accel = caterpillar(4);
     struct gpu_ray ray = caterpillar_ray(4, true);
     struct gpu_cost cost = {0};
@@ -138,9 +135,8 @@ static void levels_come_back_with_their_nodes(void **state)
 }
 
 /* A box that a clip left short of its triangle by less than the margin. */
-static void clipped_boxes_get_a_margin(void **state)
+TEST(clipped_boxes_get_a_margin)
 {
-    (void)state;
     struct accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {1.9999f, -0.99999f, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
     accel->instances[0].reach = 2.0f;
@@ -157,9 +153,8 @@ static void clipped_boxes_get_a_margin(void **state)
 }
 
 /* Without instances to go through, records say whose they are. */
-static void flat_records_name_their_instance(void **state)
+TEST(flat_records_name_their_instance)
 {
-    (void)state;
     struct accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {0, 0, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
     struct gpu_hit plain = trace(accel, &ray), brute;
@@ -181,17 +176,4 @@ static void flat_records_name_their_instance(void **state)
     assert_int_equal(hit.instance, 7);
     assert_true(hit.ng_z == plain.ng_z);
     accel_destroy(accel);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(deep_trees_are_walked),
-        cmocka_unit_test(too_deep_trees_are_reported),
-        cmocka_unit_test(costs_are_those_of_the_chain),
-        cmocka_unit_test(levels_come_back_with_their_nodes),
-        cmocka_unit_test(clipped_boxes_get_a_margin),
-        cmocka_unit_test(flat_records_name_their_instance),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* A validator that refuses every way of breaking a tree. */
 #include "accel_build_fixture.h"
+#include "unit.h"
 
 #include <stdalign.h>
 
@@ -158,9 +159,8 @@ static void assert_said(const struct bvh *bvh, const struct bvh_box *boxes, cons
         fail_msg("%s: expected `%s`, said `%s`", name, reason ? reason : "nothing", last_error);
 }
 
-static void broken_trees_are_refused(void **state)
+TEST(broken_trees_are_refused)
 {
-    (void)state;
     enum { WAYS = sizeof breakages / sizeof *breakages, WORDS = sizeof changes / sizeof *changes };
     random_state = 11;
     struct soup soup = soup_scattered(500, 0.1f);
@@ -210,9 +210,8 @@ static void split_tree_said(const struct split_tree *tree, const char *reason)
     assert_said(&tree->bvh, tree->boxes, "split tree", reason);
 }
 
-static void split_primitives_must_be_covered(void **state)
+TEST(split_primitives_must_be_covered)
 {
-    (void)state;
     struct split_tree tree;
     split_tree_init(&tree);
     split_tree_said(&tree, NULL);
@@ -237,9 +236,8 @@ static void split_primitives_must_be_covered(void **state)
 }
 
 /* Whatever bytes stand in the arrays, the validator ends and reads nothing outside. */
-static void validator_survives_any_bytes(void **state)
+TEST(validator_survives_any_bytes)
 {
-    (void)state;
     random_state = 12;
     struct soup soup = soup_scattered(200, 0.1f);
     uint32_t accepted = 0;
@@ -258,14 +256,4 @@ static void validator_survives_any_bytes(void **state)
     }
     assert_true(accepted < 2500); /* widened boxes and the unused node are no faults */
     soup_finish(&soup);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(broken_trees_are_refused),
-        cmocka_unit_test(split_primitives_must_be_covered),
-        cmocka_unit_test(validator_survives_any_bytes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

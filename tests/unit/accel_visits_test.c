@@ -1,5 +1,6 @@
 /* How many nodes rays open in the trees of different builders, and in different orders. */
 #include "accel_fixture.h"
+#include "unit.h"
 
 enum { RAYS = 4000 };
 
@@ -22,9 +23,8 @@ static struct gpu_cost cost_of(const struct scene *scene, const struct soup *sou
 
 /* One triangle a thousand times as large as the cloud of small ones: bins over its extent would
    put the whole cloud in one. With the label long the cloud is a million. */
-static void one_giant_costs_little(void **state)
+TEST(one_giant_costs_little)
 {
-    (void)state;
     const char *many = getenv("WHIT_TEST_TRIANGLES");
     const uint32_t small_ones = many ? (uint32_t)atoi(many) : 20000;
     const float size = 0.02f * cbrtf(20000.0f / (float)small_ones);
@@ -53,9 +53,8 @@ static void one_giant_costs_little(void **state)
 
 /* The order of the source report, no order, opens the most nodes. Spatial splits save some where
    boxes overlap. */
-static void orders_and_splits_save_visits(void **state)
+TEST(orders_and_splits_save_visits)
 {
-    (void)state;
     random_state = 10;
     const struct {
         struct soup soup;
@@ -80,13 +79,4 @@ static void orders_and_splits_save_visits(void **state)
         scene_destroy(scene);
         soup_finish(&soup);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_giant_costs_little),
-        cmocka_unit_test(orders_and_splits_save_visits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,7 @@
 /* Devices that a thread opens, through the public header. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 #include <pthread.h>
 
+#include "unit.h"
 #include "whit.h"
 
 struct heard {
@@ -42,9 +34,8 @@ static whit_device_opening *begin(const whit_device_params *params, const whit_l
     return opening;
 }
 
-static void gives_the_device_that_create_gives(void **state)
+TEST(gives_the_device_that_create_gives)
 {
-    (void)state;
     struct heard heard;
     whit_log log = log_of(&heard);
     whit_device *device = NULL, *other = NULL;
@@ -66,9 +57,8 @@ static void gives_the_device_that_create_gives(void **state)
     whit_device_destroy(device);
 }
 
-static void failures_are_said_at_the_end_and_once(void **state)
+TEST(failures_are_said_at_the_end_and_once)
 {
-    (void)state;
     struct heard heard, other;
     whit_log log = log_of(&heard), other_log = log_of(&other);
     whit_device *device = NULL;
@@ -83,9 +73,8 @@ static void failures_are_said_at_the_end_and_once(void **state)
     assert_string_equal(heard.text, other.text);
 }
 
-static void nothing_is_said_when_abandoned(void **state)
+TEST(nothing_is_said_when_abandoned)
 {
-    (void)state;
     const whit_device_params wrong = {.selector = "no such device"};
     struct heard heard;
     whit_log log = log_of(&heard);
@@ -93,14 +82,4 @@ static void nothing_is_said_when_abandoned(void **state)
     whit_device_open_abandon(begin(NULL, &log));
     whit_device_open_abandon(NULL);
     assert_int_equal(heard.count, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gives_the_device_that_create_gives),
-        cmocka_unit_test(failures_are_said_at_the_end_and_once),
-        cmocka_unit_test(nothing_is_said_when_abandoned),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,20 +2,12 @@
  */
 #include <dirent.h>
 #include <errno.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "base/foreign.h"
+#include "unit.h"
 #include "whit.h"
 
 /* All that a sandbox or a handler would change of this process. */
@@ -58,9 +50,8 @@ static void put(const char *path, const char *text, size_t bytes)
 static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 /* A model by the importer, and a picture by a decoder. */
-static void the_host_is_left_as_it_was(void **state)
+TEST(the_host_is_left_as_it_was)
 {
-    (void)state;
     static const char sky[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
     static const char scene_text[] =
         "{\"objects\": [{\"model\": \"a.obj\"}], \"environment\": {\"map\": \"a.hdr\"}}";
@@ -111,9 +102,8 @@ static void loads(const char *path, const whit_load_params *params)
     whit_scene_destroy(scene);
 }
 
-static void limits_are_those_that_were_asked_for(void **state)
+TEST(limits_are_those_that_were_asked_for)
 {
-    (void)state;
     char folder[] = "/tmp/whit-load-XXXXXX", path[64];
     const whit_load_params asked = {.import_limit_s = 99.0,
                                     .time_limit_s = 7.0,
@@ -133,13 +123,4 @@ static void limits_are_those_that_were_asked_for(void **state)
     const uint64_t bytes[] = {0, 10000000, 1000000000};
     for (int i = 0; i < 3; ++i)
         assert_true(foreign_limits(NULL, "importer", bytes[i], 1).cpu_s == seconds[i]);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_host_is_left_as_it_was),
-        cmocka_unit_test(limits_are_those_that_were_asked_for),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* The reference through the public header: no device. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 
-#include <cmocka.h>
-
+#include "unit.h"
 #include "whit.h"
 
 enum { WIDTH = 16, HEIGHT = 12 };
@@ -38,9 +32,8 @@ static void note_progress(void *user, double done)
     *last = done;
 }
 
-static void draws_pictures_and_ray_trees(void **state)
+TEST(draws_pictures_and_ray_trees)
 {
-    (void)state;
     struct opened o = open_scene(WHIT_SCENES_DIR "/default.json");
     double last = 0.0;
     whit_renderer_params params = whit_renderer_defaults();
@@ -74,9 +67,8 @@ static void draws_pictures_and_ray_trees(void **state)
     close_scene(&o);
 }
 
-static void refuses_what_it_cannot_draw(void **state)
+TEST(refuses_what_it_cannot_draw)
 {
-    (void)state;
     struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
     const whit_renderer_params refused[] = {
         {.adaptive = 0.1}, {.effects_removed = 1}, {.camera = {.name = "nobody"}}, {.samples = 3}};
@@ -98,13 +90,4 @@ static void refuses_what_it_cannot_draw(void **state)
     assert_null(rays);
     whit_reference_destroy(reference);
     close_scene(&o);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(draws_pictures_and_ray_trees),
-        cmocka_unit_test(refuses_what_it_cannot_draw),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 #include "device/vulkan.h"
 #include "device_fixture.h"
+#include "unit.h"
 
 /* More than one staging buffer, and no multiple of anything. */
 enum { LARGE_BYTES = (33 << 20) + 12345 };
@@ -54,9 +55,8 @@ static int close_device(void **state)
     return 0;
 }
 
-static void sizes_are_rounded_up(void **state)
+TEST(sizes_are_rounded_up)
 {
-    (void)state;
     const uint64_t sizes[][2] = {{0, 16}, {1, 16}, {16, 16}, {17, 32}, {4095, 4096}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
         struct buffer *buffer = buffer_make(device, sizes[i][0], BUFFER_STORAGE, "size");
@@ -68,9 +68,8 @@ static void sizes_are_rounded_up(void **state)
 /* lavapipe has a kernel of its own for texel buffers whose bytes are a power of two, and for those
    whose bytes have zeros in bits 8 to 15: no buffer is one of them. Storage buffers, and those of
    devices that are no CPU, are as large as they were asked to be. */
-static void texel_buffers_are_of_one_kind_for_lavapipe(void **state)
+TEST(texel_buffers_are_of_one_kind_for_lavapipe)
 {
-    (void)state;
     bool is_cpu = device_get_info(device)->kind == DEVICE_CPU;
     for (uint64_t around = 0; around <= 1 << 18; around += 1 << 15) {
         for (uint64_t size = around; size < around + 1024; size += 16) {
@@ -92,9 +91,8 @@ static void texel_buffers_are_of_one_kind_for_lavapipe(void **state)
     }
 }
 
-static void starts_as_zeros(void **state)
+TEST(starts_as_zeros)
 {
-    (void)state;
     uint8_t bytes[4096];
     for (int turn = 0; turn < 8; ++turn) {
         uint32_t uses = (turn & 1 ? BUFFER_HOST : BUFFER_STORAGE) | BUFFER_ZEROED;
@@ -110,9 +108,8 @@ static void starts_as_zeros(void **state)
 }
 
 /* So that what relies on zeros shows. */
-static void others_are_poisoned_in_tests(void **state)
+TEST(others_are_poisoned_in_tests)
 {
-    (void)state;
     uint8_t bytes[256] = {0};
     assert_non_null(getenv("WHIT_POISON"));
     struct buffer *buffer = buffer_make(device, sizeof bytes, BUFFER_STORAGE, "poisoned");
@@ -122,9 +119,8 @@ static void others_are_poisoned_in_tests(void **state)
     buffer_destroy(buffer);
 }
 
-static void keeps_what_is_written_where(void **state)
+TEST(keeps_what_is_written_where)
 {
-    (void)state;
     const uint32_t uses[] = {BUFFER_STORAGE, BUFFER_STORAGE | BUFFER_HOST};
     uint8_t *bytes = malloc(LARGE_BYTES), *back = malloc(LARGE_BYTES);
     assert_true(bytes && back);
@@ -149,9 +145,8 @@ static void keeps_what_is_written_where(void **state)
     free(back);
 }
 
-static void refuses_access_outside(void **state)
+TEST(refuses_access_outside)
 {
-    (void)state;
     struct buffer *buffer = buffer_make(device, 64, BUFFER_STORAGE, "small");
     uint8_t bytes[65] = {0};
     assert_int_equal(buffer_write(buffer, 0, bytes, 65), WHIT_ERROR_USAGE);
@@ -164,9 +159,8 @@ static void refuses_access_outside(void **state)
     buffer_destroy(buffer);
 }
 
-static void refuses_what_is_over_the_limits(void **state)
+TEST(refuses_what_is_over_the_limits)
 {
-    (void)state;
     const struct device_info *info = device_get_info(device);
     const struct {
         uint64_t size_bytes;
@@ -193,9 +187,8 @@ static void refuses_what_is_over_the_limits(void **state)
     messages = (struct messages){0};
 }
 
-static void names_sizes_in_mebibytes(void **state)
+TEST(names_sizes_in_mebibytes)
 {
-    (void)state;
     struct buffer *buffer;
     uint64_t size = (device_get_info(device)->max_storage_range_bytes + 1 + (1 << 20)) >> 20 << 20;
     char expected[64];
@@ -207,9 +200,8 @@ static void names_sizes_in_mebibytes(void **state)
     assert_non_null(strstr(messages.text, expected));
 }
 
-static void destroy_accepts_null(void **state)
+TEST(destroy_accepts_null)
 {
-    (void)state;
     buffer_destroy(NULL);
     pipeline_destroy(NULL);
     binding_set_destroy(NULL);
@@ -219,17 +211,6 @@ static void destroy_accepts_null(void **state)
 int main(void)
 {
     setenv("WHIT_NO_CACHE", "1", 1);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sizes_are_rounded_up),
-        cmocka_unit_test(texel_buffers_are_of_one_kind_for_lavapipe),
-        cmocka_unit_test(starts_as_zeros),
-        cmocka_unit_test(others_are_poisoned_in_tests),
-        cmocka_unit_test(keeps_what_is_written_where),
-        cmocka_unit_test(refuses_access_outside),
-        cmocka_unit_test(refuses_what_is_over_the_limits),
-        cmocka_unit_test(names_sizes_in_mebibytes),
-        cmocka_unit_test(destroy_accepts_null),
-    };
-    int failed = cmocka_run_group_tests_name("direct", tests, open_direct, close_device);
-    return failed + cmocka_run_group_tests_name("staged", tests, open_staged, close_device);
+    int failed = unit_run(open_direct, close_device);
+    return failed + unit_run(open_staged, close_device);
 }

@@ -6,6 +6,7 @@
 #include "device_count.h"
 #include "device_spin.h"
 #include "device_texels.h"
+#include "unit.h"
 
 static struct device *device;
 static struct messages messages;
@@ -63,18 +64,16 @@ static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t add
     return info;
 }
 
-static void constants_reach_the_shader(void **state)
+TEST(constants_reach_the_shader)
 {
-    (void)state;
     const uint32_t specs[][3] = {{64, 3, 7}, {16, 0xffffffffu, 5}, {1, 2, 0}};
     for (uint32_t i = 0; i < 3; ++i)
         assert_true(check_constants(specs[i], 1000000 * i).specialized);
 }
 
 /* A kernel that cannot be specialized still runs, and that is said. */
-static void kernels_go_to_the_driver_whole(void **state)
+TEST(kernels_go_to_the_driver_whole)
 {
-    (void)state;
     const uint32_t spec[] = {64, 3, 7};
     const struct pipeline_params params = affine_params(spec);
     messages = (struct messages){0};
@@ -88,9 +87,8 @@ static void kernels_go_to_the_driver_whole(void **state)
     assert_int_equal(info.bindings, 1);
 }
 
-static void texels_equal_storage(void **state)
+TEST(texels_equal_storage)
 {
-    (void)state;
     enum { ROWS = 4096 };
     uint32_t(*rows)[4] = malloc(ROWS * sizeof *rows), (*sums)[4] = malloc(ROWS * sizeof *sums);
     assert_true(rows && sums);
@@ -140,9 +138,8 @@ static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
 }
 
 /* Arguments made on the device in the same submission, at an offset. */
-static void indirect_dispatch_takes_its_arguments(void **state)
+TEST(indirect_dispatch_takes_its_arguments)
 {
-    (void)state;
     struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     struct buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
     struct kernel_run run = count_make(count);
@@ -162,9 +159,8 @@ static void indirect_dispatch_takes_its_arguments(void **state)
     buffer_destroy(arguments);
 }
 
-static void fill_and_copy_keep_to_their_range(void **state)
+TEST(fill_and_copy_keep_to_their_range)
 {
-    (void)state;
     struct buffer *a = buffer_make(device, 64, BUFFER_STORAGE | BUFFER_ZEROED, "a");
     struct buffer *b = buffer_make(device, 64, BUFFER_HOST | BUFFER_ZEROED, "b");
     struct commands *commands = commands_make(device);
@@ -242,9 +238,8 @@ static void time_two_spans(struct commands *commands, const struct kernel_run *r
     assert_true(commands_span_ms(commands, 2) < 0.0);
 }
 
-static void spans_are_timed(void **state)
+TEST(spans_are_timed)
 {
-    (void)state;
     struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = spin_make(buffer);
     struct commands *commands = commands_make(device);
@@ -298,9 +293,8 @@ VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkWaitForFences(VkDevice vk, uint32_t coun
     return is_busy ? VK_TIMEOUT : __real_vkWaitForFences(vk, count, fences, all, timeout);
 }
 
-static void wait_obeys_its_limit(void **state)
+TEST(wait_obeys_its_limit)
 {
-    (void)state;
     struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = spin_make(buffer);
     struct commands *commands = commands_make(device);
@@ -325,9 +319,8 @@ static void wait_obeys_its_limit(void **state)
     buffer_destroy(buffer);
 }
 
-static void recording_errors_surface_at_submit(void **state)
+TEST(recording_errors_surface_at_submit)
 {
-    (void)state;
     struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = count_make(buffer);
     struct commands *commands = commands_make(device);
@@ -388,9 +381,8 @@ static void recording_errors_surface_at_submit(void **state)
     buffer_destroy(buffer);
 }
 
-static void later_submissions_see_earlier_ones(void **state)
+TEST(later_submissions_see_earlier_ones)
 {
-    (void)state;
     struct buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     struct kernel_run run = count_make(buffer);
     struct commands *commands[2] = {commands_make(device), commands_make(device)};
@@ -411,9 +403,8 @@ static void later_submissions_see_earlier_ones(void **state)
     buffer_destroy(buffer);
 }
 
-static void refuses_wrong_pipelines_and_sets(void **state)
+TEST(refuses_wrong_pipelines_and_sets)
 {
-    (void)state;
     struct pipeline_params params = count_params();
     struct pipeline *pipeline;
     params.spirv_bytes = 7;
@@ -442,17 +433,5 @@ static void refuses_wrong_pipelines_and_sets(void **state)
 int main(void)
 {
     setenv("WHIT_NO_CACHE", "1", 1);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constants_reach_the_shader),
-        cmocka_unit_test(kernels_go_to_the_driver_whole),
-        cmocka_unit_test(texels_equal_storage),
-        cmocka_unit_test(indirect_dispatch_takes_its_arguments),
-        cmocka_unit_test(fill_and_copy_keep_to_their_range),
-        cmocka_unit_test(spans_are_timed),
-        cmocka_unit_test(wait_obeys_its_limit),
-        cmocka_unit_test(recording_errors_surface_at_submit),
-        cmocka_unit_test(later_submissions_see_earlier_ones),
-        cmocka_unit_test(refuses_wrong_pipelines_and_sets),
-    };
-    return cmocka_run_group_tests(tests, open_device, close_device);
+    return unit_run(open_device, close_device);
 }

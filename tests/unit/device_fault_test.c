@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "affine_fixture.h"
+#include "unit.h"
 
 /* Everything a user does with a device, once. */
 struct cycle {
@@ -98,27 +99,23 @@ static void fail_each_call(bool staged, bool validation)
     assert_true(call > (staged ? 50 : 28)); /* that it failed all along */
 }
 
-static void each_call_may_fail(void **state)
+TEST(each_call_may_fail)
 {
-    (void)state;
     fail_each_call(false, false);
 }
 
-static void each_call_may_fail_with_staging(void **state)
+TEST(each_call_may_fail_with_staging)
 {
-    (void)state;
     fail_each_call(true, false);
 }
 
-static void nothing_is_left_behind(void **state)
+TEST(nothing_is_left_behind)
 {
-    (void)state;
     fail_each_call(true, true);
 }
 
-static void memory_running_out_is_told_apart(void **state)
+TEST(memory_running_out_is_told_apart)
 {
-    (void)state;
     struct messages messages;
     setenv("WHIT_FAULT", "vkAllocateMemory:2", 1);
     struct device *device = device_open(&messages, false);
@@ -138,9 +135,8 @@ static void memory_running_out_is_told_apart(void **state)
     device_destroy(device);
 }
 
-static void loss_is_for_good(void **state)
+TEST(loss_is_for_good)
 {
-    (void)state;
     struct messages messages;
     setenv("WHIT_FAULT", "vkWaitForFences:1", 1);
     struct device *device = device_open(&messages, false);
@@ -168,9 +164,8 @@ static void loss_is_for_good(void **state)
     device_destroy(device);
 }
 
-static void fifty_devices_in_turn(void **state)
+TEST(fifty_devices_in_turn)
 {
-    (void)state;
     struct messages messages;
     for (int i = 0; i < 50; ++i)
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
@@ -232,9 +227,8 @@ static void damage_and_run(const char *path)
     }
 }
 
-static void damaged_cache_files_are_replaced(void **state)
+TEST(damaged_cache_files_are_replaced)
 {
-    (void)state;
     char folder[] = "/tmp/whit-device-XXXXXX", path[512], cache[64];
     struct messages messages;
     assert_non_null(mkdtemp(folder));
@@ -270,9 +264,8 @@ bool __wrap_threads_have_room(uint32_t count)
 }
 
 /* A driver of the CPU would wait for them for ever. */
-static void no_device_without_room_for_its_threads(void **state)
+TEST(no_device_without_room_for_its_threads)
 {
-    (void)state;
     struct messages messages;
     struct log log = messages_log(&messages);
     struct device *device = device_open(&messages, false);
@@ -300,15 +293,5 @@ static int plain_environment(void **state)
 int main(void)
 {
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_call_may_fail),
-        cmocka_unit_test(each_call_may_fail_with_staging),
-        cmocka_unit_test(nothing_is_left_behind),
-        cmocka_unit_test(memory_running_out_is_told_apart),
-        cmocka_unit_test(no_device_without_room_for_its_threads),
-        cmocka_unit_test(loss_is_for_good),
-        cmocka_unit_test(fifty_devices_in_turn),
-        cmocka_unit_test(damaged_cache_files_are_replaced),
-    };
-    return cmocka_run_group_tests(tests, plain_environment, NULL);
+    return unit_run(plain_environment, NULL);
 }

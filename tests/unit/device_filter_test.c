@@ -6,6 +6,7 @@
 #include "device_fixture.h"
 
 #include "device_filter.h"
+#include "unit.h"
 
 enum { CASES = 40000 };
 
@@ -73,9 +74,8 @@ static bool same_answer(const struct filter_answer *a, const struct filter_answe
            same_float(a->lo, b->lo) && same_float(a->hi, b->hi) && a->said == b->said;
 }
 
-static void bounds_are_those_of_c(void **state)
+TEST(bounds_are_those_of_c)
 {
-    (void)state;
     static struct filter_answer expected[CASES];
     uint32_t differ = 0, said[4] = {0};
     struct messages messages;
@@ -95,12 +95,4 @@ static void bounds_are_those_of_c(void **state)
     assert_int_equal(differ, 0);
     assert_true(said[0] > CASES / 10 && said[1] > CASES / 10 && said[2] > CASES / 10);
     device_close(device, &messages);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bounds_are_those_of_c),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

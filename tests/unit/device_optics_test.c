@@ -6,6 +6,7 @@
 #include "random_fixture.h"
 
 #include "device_optics.h"
+#include "unit.h"
 
 #define PI     3.14159265358979323846
 #define DEGREE (PI / 180.0)
@@ -111,9 +112,8 @@ static void assert_within(double value, double expected, double max)
 
 /* --- Fresnel -------------------------------------------------------------------------------- */
 
-static void fresnel_at_known_angles(void **state)
+TEST_IN(fresnel_at_known_angles, begin, NULL)
 {
-    (void)state;
     static const double degrees[] = {0, 45, 89};
     /* From the thin side, by hand: 45 degrees into 1.5 refracts to 28.1255 degrees. */
     add_angle(45 * DEGREE, 1 / 1.5);
@@ -132,9 +132,8 @@ static void fresnel_at_known_angles(void **state)
 
 /* Steps of 1e-7 across the critical angle, then wider ones. Near it F falls as the square root of
    the angle, so that the rounding of the cosine alone moves it by sqrt(6e-8) times a few. */
-static void critical_angle_is_met(void **state)
+TEST_IN(critical_angle_is_met, begin, NULL)
 {
-    (void)state;
     for (int n = 0; n < 3; n++) {
         double critical = asin(1 / indices[n]);
         begin(NULL);
@@ -162,9 +161,8 @@ static void critical_angle_is_met(void **state)
 
 /* What passes, from the two directions alone (Born and Wolf, 1.5.3), makes up one with what is
    reflected. The direction's cosine near the critical angle is left out. */
-static void nothing_is_lost(void **state)
+TEST_IN(nothing_is_lost, begin, NULL)
 {
-    (void)state;
     for (int n = 0; n < 3; n++)
         for (int i = 0; i < 900; i++) {
             double angle = i * 0.1 * DEGREE, critical = asin(1 / indices[n]);
@@ -185,9 +183,8 @@ static void nothing_is_lost(void **state)
     assert_true(max <= 1e-6);
 }
 
-static void grazing_rays_are_reflected(void **state)
+TEST_IN(grazing_rays_are_reflected, begin, NULL)
 {
-    (void)state;
     for (int n = 0; n < 3; n++)
         for (int side = 0; side < 2; side++)
             for (int i = 0; i <= 1000; i++) {
@@ -208,9 +205,8 @@ static void grazing_rays_are_reflected(void **state)
     }
 }
 
-static void equal_indices_leave_rays_alone(void **state)
+TEST_IN(equal_indices_leave_rays_alone, begin, NULL)
 {
-    (void)state;
     for (int i = 0; i <= 9000; i++)
         add_angle(i * 0.01 * DEGREE, 1.0);
     cases[count - 1].cos_in = 0.0f;
@@ -223,9 +219,8 @@ static void equal_indices_leave_rays_alone(void **state)
     }
 }
 
-static void schlick_is_off_as_stated(void **state)
+TEST_IN(schlick_is_off_as_stated, begin, NULL)
 {
-    (void)state;
     static const double stated[] = {0.0599, 0.0357, 0.0757};
     for (int n = 0; n < 3; n++) {
         begin(NULL);
@@ -252,9 +247,8 @@ static void schlick_is_off_as_stated(void **state)
 
 /* --- refraction ----------------------------------------------------------------------------- */
 
-static void snell_at_known_angles(void **state)
+TEST_IN(snell_at_known_angles, begin, NULL)
 {
-    (void)state;
     for (int n = 0; n < 3; n++)
         for (int i = 0; i < 900; i++) {
             add_angle(i * 0.1 * DEGREE, 1 / indices[n]);
@@ -300,9 +294,8 @@ static void unit(float *out)
 }
 
 /* Any frame: unit length, in the plane of ray and normal, on the far side. */
-static void refraction_in_any_frame(void **state)
+TEST_IN(refraction_in_any_frame, begin, NULL)
 {
-    (void)state;
     random_state = 7;
     for (int i = 0; i < 30000; i++) {
         struct optics_case *c = add_angle(0, i % 2 ? indices[i % 3] : 1 / indices[i % 3]);
@@ -342,9 +335,8 @@ static void refraction_in_any_frame(void **state)
 
 /* pow(x, y) is exp2(y log2 x): Vulkan grants log2 an error of 2^-21 between 1/2 and 2 and of 3 ulp
    elsewhere, exp2 one of 3 + 2 |x| ulp. */
-static void blinn_is_a_power(void **state)
+TEST_IN(blinn_is_a_power, begin, NULL)
 {
-    (void)state;
     static const double exponents[] = {0, 1, 10, 60, 1000};
     for (int e = 0; e < 5; e++)
         for (int i = 0; i <= 1000; i++) {
@@ -372,9 +364,8 @@ static double ggx(double half, double light, double view, double alpha)
     return a2 / (pow(half, 4) * (a2 + tangent2) * (a2 + tangent2)) * 0.5 / spread;
 }
 
-static void ggx_keeps_its_tip(void **state)
+TEST_IN(ggx_keeps_its_tip, begin, NULL)
 {
-    (void)state;
     static const float alphas[] = {0.02f, 0.1f, 0.5f, 1.0f};
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 2000; i++) {
@@ -398,17 +389,5 @@ static void ggx_keeps_its_tip(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(fresnel_at_known_angles, begin),
-        cmocka_unit_test_setup(critical_angle_is_met, begin),
-        cmocka_unit_test_setup(nothing_is_lost, begin),
-        cmocka_unit_test_setup(grazing_rays_are_reflected, begin),
-        cmocka_unit_test_setup(equal_indices_leave_rays_alone, begin),
-        cmocka_unit_test_setup(schlick_is_off_as_stated, begin),
-        cmocka_unit_test_setup(snell_at_known_angles, begin),
-        cmocka_unit_test_setup(refraction_in_any_frame, begin),
-        cmocka_unit_test_setup(blinn_is_a_power, begin),
-        cmocka_unit_test_setup(ggx_keeps_its_tip, begin),
-    };
-    return cmocka_run_group_tests(tests, open_device, close_device);
+    return unit_run(open_device, close_device);
 }

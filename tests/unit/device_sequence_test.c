@@ -3,14 +3,14 @@
 #include "picture/sequence.h"
 
 #include "device_sequence.h"
+#include "unit.h"
 
 enum { SMALL = 1 << 15, LARGE = 1 << 15, POINTS = SMALL + LARGE };
 
 static uint32_t indices[POINTS], points[POINTS][2];
 
-static void points_are_those_of_the_host(void **state)
+TEST(points_are_those_of_the_host)
 {
-    (void)state;
     struct messages messages;
     struct device *device = device_open(&messages, false);
     for (uint32_t i = 0; i < POINTS; ++i)
@@ -23,12 +23,4 @@ static void points_are_those_of_the_host(void **state)
         assert_memory_equal(points[i], expected, sizeof expected);
     }
     device_close(device, &messages);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_are_those_of_the_host),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,10 @@
 /* Kernels with their constants filled in. No device is needed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "abi/bindings.h"
 #include "abi/spec.h"
 #include "device/device.h"
 #include "device/specialize.h"
 #include "kernels.h"
+#include "unit.h"
 
 enum { HEADER_WORDS = 5, OP_SPEC_FIRST = 48, OP_SPEC_LAST = 52, OP_DECORATE = 71 };
 enum { OP_FUNCTION = 54, OP_CALL = 57 };
@@ -74,9 +65,8 @@ static struct tally specialized(enum kernel kernel, const struct gpu_spec *spec)
     return tally;
 }
 
-static void constants_are_gone_and_floats_stay_exact(void **state)
+TEST(constants_are_gone_and_floats_stay_exact)
 {
-    (void)state;
     const struct gpu_spec all = GPU_SPEC_DEFAULTS;
     for (int i = 0; i < KERNEL_COUNT; ++i) {
         enum kernel kernel = (enum kernel)i;
@@ -91,9 +81,8 @@ static void constants_are_gone_and_floats_stay_exact(void **state)
 }
 
 /* One function, as exact, that names no binding which the whole kernel does not. */
-static void evaluated_kernels_call_nothing(void **state)
+TEST(evaluated_kernels_call_nothing)
 {
-    (void)state;
     const struct gpu_spec all = GPU_SPEC_DEFAULTS;
     struct gpu_spec less = all;
     less.SPEC_REFRACTION = less.SPEC_FILTERS = less.SPEC_LISTED = 0;
@@ -118,9 +107,8 @@ static void evaluated_kernels_call_nothing(void **state)
     }
 }
 
-static void what_is_switched_off_is_gone(void **state)
+TEST(what_is_switched_off_is_gone)
 {
-    (void)state;
     const struct gpu_spec all = GPU_SPEC_DEFAULTS;
     struct gpu_spec plain = all;
     plain.SPEC_REFRACTION = plain.SPEC_REFLECTION = plain.SPEC_TEXTURES = 0;
@@ -131,9 +119,8 @@ static void what_is_switched_off_is_gone(void **state)
     assert_true(of_plain < of_all * 9 / 10);
 }
 
-static void nonsense_is_left_to_the_driver(void **state)
+TEST(nonsense_is_left_to_the_driver)
 {
-    (void)state;
     uint32_t words[64], *out = NULL;
     size_t count = 0;
     memset(words, 0x5a, sizeof words);
@@ -144,9 +131,8 @@ static void nonsense_is_left_to_the_driver(void **state)
 }
 
 /* Kernels cut short after each of their first instructions, and after some of the others. */
-static void cut_kernels_are_refused(void **state)
+TEST(cut_kernels_are_refused)
 {
-    (void)state;
     const uint32_t *words = kernels[KERNEL_TRACE].words;
     const uint32_t total = (uint32_t)(kernels[KERNEL_TRACE].bytes / 4);
     const struct gpu_spec spec = GPU_SPEC_DEFAULTS;
@@ -171,9 +157,8 @@ static void cut_kernels_are_refused(void **state)
 }
 
 /* Every binding that a function names is counted, and no other. */
-static void bindings_follow_the_constants(void **state)
+TEST(bindings_follow_the_constants)
 {
-    (void)state;
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;
     for (uint32_t i = 0; i < 2; ++i) {
         uint32_t path = i % 2 ? LOAD_TEXEL : LOAD_STORAGE;
@@ -190,17 +175,4 @@ static void bindings_follow_the_constants(void **state)
         assert_int_equal(info.bindings >> BIND_COSTS & 1, 0); /* SPEC_COUNT is 0 */
         free(words);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constants_are_gone_and_floats_stay_exact),
-        cmocka_unit_test(evaluated_kernels_call_nothing),
-        cmocka_unit_test(what_is_switched_off_is_gone),
-        cmocka_unit_test(nonsense_is_left_to_the_driver),
-        cmocka_unit_test(cut_kernels_are_refused),
-        cmocka_unit_test(bindings_follow_the_constants),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include "twin/ff_sphere.h"
 
 #include "device_sphere.h"
+#include "unit.h"
 
 enum { OF_KIND = 2000, CASES = OF_KIND * SPHERE_KINDS };
 
@@ -51,9 +52,8 @@ static struct sphere_answer answer_of(const struct sphere_case *c)
         .filtered = bits_of(bounds.outside, bounds.inside, bounds.inward_known) | 8u};
 }
 
-static void spheres_are_met_as_in_c(void **state)
+TEST(spheres_are_met_as_in_c)
 {
-    (void)state;
     static const struct gpu_spec exact = {.SPEC_NUMERICS = NUMERICS_EXACT};
     struct messages messages;
     struct device *device = device_open(&messages, false);
@@ -84,12 +84,4 @@ static void spheres_are_met_as_in_c(void **state)
         assert_true(met > OF_KIND / 10 && met < OF_KIND);
     }
     device_close(device, &messages);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_are_met_as_in_c),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "affine_fixture.h"
 
 #include "device_overrun.h"
+#include "unit.h"
 
 static void run_affine(struct device *device, bool with_barrier)
 {
@@ -31,9 +32,8 @@ static void run_affine(struct device *device, bool with_barrier)
     buffer_destroy(copy);
 }
 
-static void normal_use_is_silent(void **state)
+TEST(normal_use_is_silent)
 {
-    (void)state;
     for (int staged = 0; staged < 2; ++staged) {
         struct messages messages;
         setenv("WHIT_STAGING", staged ? "1" : "0", 1);
@@ -45,9 +45,8 @@ static void normal_use_is_silent(void **state)
     unsetenv("WHIT_STAGING");
 }
 
-static void missing_barrier_is_reported(void **state)
+TEST(missing_barrier_is_reported)
 {
-    (void)state;
     struct messages messages;
     struct device *device = device_open(&messages, true);
     run_affine(device, false);
@@ -57,9 +56,8 @@ static void missing_barrier_is_reported(void **state)
     device_destroy(device);
 }
 
-static void write_outside_is_reported(void **state)
+TEST(write_outside_is_reported)
 {
-    (void)state;
     for (uint32_t index = 3; index <= 100; index += 97) {
         struct messages messages;
         struct device *device = device_open(&messages, true);
@@ -76,9 +74,8 @@ static void write_outside_is_reported(void **state)
     }
 }
 
-static void leaks_are_reported(void **state)
+TEST(leaks_are_reported)
 {
-    (void)state;
     struct messages messages;
     struct device *device = device_open(&messages, true);
     struct buffer *lost = buffer_make(device, 16, BUFFER_STORAGE, "forgotten");
@@ -88,9 +85,8 @@ static void leaks_are_reported(void **state)
     free(lost);
 }
 
-static void environment_turns_it_on(void **state)
+TEST(environment_turns_it_on)
 {
-    (void)state;
     struct messages messages;
     for (int on = 0; on < 2; ++on) {
         setenv("WHIT_VALIDATION", on ? "1" : "0", 1);
@@ -103,9 +99,8 @@ static void environment_turns_it_on(void **state)
 }
 
 /* Last, since it hides the layer. */
-static void absence_is_an_error(void **state)
+TEST(absence_is_an_error)
 {
-    (void)state;
     struct messages messages;
     struct log log = messages_log(&messages);
     struct device_params params = {.validation = true};
@@ -122,10 +117,5 @@ int main(void)
 {
     setenv("WHIT_NO_CACHE", "1", 1);
     unsetenv("WHIT_VALIDATION");
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(normal_use_is_silent),      cmocka_unit_test(missing_barrier_is_reported),
-        cmocka_unit_test(write_outside_is_reported), cmocka_unit_test(leaks_are_reported),
-        cmocka_unit_test(environment_turns_it_on),   cmocka_unit_test(absence_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_run(NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* Boxes where they are hardest: a box that a ray does enter, by exact arithmetic, must be entered.
  */
 #include "hard_fixture.h"
+#include "unit.h"
 
 #include <gmp.h>
 
@@ -207,9 +208,8 @@ static void aim_at_boxes(const struct level *level, const struct box_kind *kind,
 }
 
 /* B1, B2, B3, B5, B6 */
-static void entered_boxes_are_entered(void **state)
+TEST(entered_boxes_are_entered)
 {
-    (void)state;
     enum { KINDS = sizeof box_kinds / sizeof *box_kinds };
     const uint32_t rays = cases_of(70000);
     for (int l = 0; l < LEVELS; ++l) {
@@ -232,9 +232,8 @@ static void entered_boxes_are_entered(void **state)
 }
 
 /* B4: 27 directions, every zero with either sign. */
-static void signs_of_zeros_do_not_matter(void **state)
+TEST(signs_of_zeros_do_not_matter)
 {
-    (void)state;
     const float lo[3] = {-1, -2, 0}, hi[3] = {1, 0, 3};
     const float starts[4][3] = {{0, -1, 1}, {-1, 0, 3}, {5, -1, 1}, {1, -2, 0}};
     uint32_t compared = 0, differ = 0;
@@ -258,9 +257,8 @@ static void signs_of_zeros_do_not_matter(void **state)
 }
 
 /* B4 in a tree: octants of every order, rays in the planes of boxes among them. */
-static void signs_of_zeros_do_not_matter_in_trees(void **state)
+TEST(signs_of_zeros_do_not_matter_in_trees)
 {
-    (void)state;
     enum { RAYS = 6000 };
     struct world world = world_of_soup(soup_rooms(200), (struct bvh_params){.leaf_limit = 1});
     const struct accel *accel = world.accel;
@@ -292,9 +290,8 @@ static void signs_of_zeros_do_not_matter_in_trees(void **state)
 }
 
 /* B6: t is that of the longer direction, times a power of two. */
-static void lengths_of_directions_scale_t(void **state)
+TEST(lengths_of_directions_scale_t)
 {
-    (void)state;
     enum { RAYS = 20000 };
     uint32_t differ = 0, entered = 0;
     random_state = 6;
@@ -335,9 +332,8 @@ static bool find_ends(const struct gpu_ray *ray, const float lo[3], const float 
 /* B8, any numbers: the interval ends where the box begins, rounded up to a float, or begins where
    it ends, rounded down; or it is 0 alone, and the ray starts in the box. At `watertight` three
    roundings may take the near end past the exact one: four of them behind it nothing is lost. */
-static void intervals_are_closed(void **state)
+TEST(intervals_are_closed)
 {
-    (void)state;
     enum { RAYS = 100000 };
     for (int l = 0; l < LEVELS; ++l) {
         struct tally at_end = {0}, near_end = {0}, at_begin = {0}, at_start = {0};
@@ -393,9 +389,8 @@ static struct gpu_ray integer_ray_at_box(float lo[3], float hi[3])
 
 /* B8, where nothing is rounded: t_max is the entry itself, t_min the exit, and both count. One
    float before the entry, or behind the exit, is outside: at `watertight` the near end tells so. */
-static void ends_that_are_floats_count(void **state)
+TEST(ends_that_are_floats_count)
 {
-    (void)state;
     enum { RAYS = 200000 };
     for (int l = 0; l < LEVELS; ++l) {
         struct tally at_end = {0}, before = {0}, at_begin = {0}, point = {0};
@@ -471,9 +466,8 @@ static void try_ends(const struct level *level, const struct accel *accel, uint3
 /* B8 in a tree: walls along the axes are boxes without a thickness, entered where they are hit, by
    rays from outside, from inside and from the wall itself. At `exact` hits are those of fractions,
    at t 0 too. */
-static void hits_at_the_entry_of_their_box_count(void **state)
+TEST(hits_at_the_entry_of_their_box_count)
 {
-    (void)state;
     enum { RAYS = 12000 };
     struct world world = world_of_soup(soup_rooms(200), (struct bvh_params){.leaf_limit = 1});
     const struct accel *accel = world.accel;
@@ -524,9 +518,8 @@ static struct gpu_ray spoiled(struct gpu_ray ray, uint32_t what, uint32_t axis)
 
 /* B9 and B10: nothing is hit, and no tree is walked for it, in any order: a pair of nodes at most,
    where a valid ray opens many. */
-static void senseless_rays_cost_nothing(void **state)
+TEST(senseless_rays_cost_nothing)
 {
-    (void)state;
     struct world world = world_of_soup(soup_sphere(40, 20), (struct bvh_params){0});
     const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
@@ -553,19 +546,4 @@ static void senseless_rays_cost_nothing(void **state)
         assert_true(max <= 1 && min > 1);
     }
     world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(entered_boxes_are_entered),
-        cmocka_unit_test(signs_of_zeros_do_not_matter),
-        cmocka_unit_test(signs_of_zeros_do_not_matter_in_trees),
-        cmocka_unit_test(lengths_of_directions_scale_t),
-        cmocka_unit_test(intervals_are_closed),
-        cmocka_unit_test(ends_that_are_floats_count),
-        cmocka_unit_test(hits_at_the_entry_of_their_box_count),
-        cmocka_unit_test(senseless_rays_cost_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 #include "hard_fixture.h"
 
 #include "hard/hard.h"
+#include "unit.h"
 
 /* In units of the last place of the largest coordinate: that is at least r = 2^-24 of it. A point
    is off by gamma(7) = 7 r of its coordinates on each axis at most, and moved by as much along the
@@ -127,9 +128,8 @@ static struct leaks leaks_of_gap(const struct gap *gap, uint32_t ulps)
 }
 
 /* S2 */
-static void narrow_gaps_keep_their_light(void **state)
+TEST(narrow_gaps_keep_their_light)
 {
-    (void)state;
     static const struct gap gaps[] = {
         {"S2 at the origin", 0.0f, 1.0f, false, false},
         {"S2 at 1e3", 1e3f, 1.0f, false, false},
@@ -159,9 +159,8 @@ static void narrow_gaps_keep_their_light(void **state)
     }
 }
 
-static void corners_of_a_degree_keep_their_light(void **state)
+TEST(corners_of_a_degree_keep_their_light)
 {
-    (void)state;
     static const struct gap corners[] = {
         {"S3 at the origin", 0.0f, 1.0f, false, true},
         {"S3 at 1e3, 10 in size", 1e3f, 10.0f, false, true},
@@ -177,13 +176,4 @@ static void corners_of_a_degree_keep_their_light(void **state)
                       leaks[1].rays);
         assert_int_equal(leaks[1].leaks + leaks[1].differ[0] + leaks[1].differ[1], 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(narrow_gaps_keep_their_light),
-        cmocka_unit_test(corners_of_a_degree_keep_their_light),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
    meets, and all of these must be among its hits, and no others. Counted by a rule for ties, the
    crossings are even from outside and odd from inside (github.com/jbikker/tinybvh, issue 168). */
 #include "hard_fixture.h"
+#include "unit.h"
 
 enum { STEPS = 24, PARTS = 4 }; /* of the landscape; units of integers in one of floats */
 
@@ -243,23 +244,12 @@ static void assert_crossings(struct soup made, int64_t step, bool block)
     world_finish(&world);
 }
 
-static void landscapes_are_crossed_in_pairs(void **state)
+TEST(landscapes_are_crossed_in_pairs)
 {
-    (void)state;
     assert_crossings(soup_block(), 1, true);
 }
 
-static void quantised_meshes_are_crossed_in_pairs(void **state)
+TEST(quantised_meshes_are_crossed_in_pairs)
 {
-    (void)state;
     assert_crossings(soup_quantised(), PARTS / 2, false);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(landscapes_are_crossed_in_pairs),
-        cmocka_unit_test(quantised_meshes_are_crossed_in_pairs),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

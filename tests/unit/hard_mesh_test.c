@@ -1,6 +1,7 @@
 /* Closed surfaces: no ray gets out of them, but where the traversal is built with a * b + c
    contracted. Other meshes with what is not promised of them. */
 #include "hard_fixture.h"
+#include "unit.h"
 
 enum { RAYS = 100000 };
 
@@ -202,9 +203,8 @@ static struct world world_of_hunt(const struct hunt *hunt)
 }
 
 /* W1, W2, W4, W7, W8; W10: the rays are hard enough for contraction to leak. */
-static void no_ray_gets_through(void **state)
+TEST(no_ray_gets_through)
 {
-    (void)state;
     uint64_t contracted_leaks = 0;
     for (size_t h = 0; h < sizeof hunts / sizeof *hunts; ++h) {
         struct world world = world_of_hunt(&hunts[h]);
@@ -274,9 +274,8 @@ static void count_crossings(const struct level *level, const struct accel *accel
 
 /* W5: a ray from inside a closed surface crosses it an odd number of times, exactly and at every
    level. Rays are not aimed: one through an edge may count both its triangles. */
-static void crossings_are_odd(void **state)
+TEST(crossings_are_odd)
 {
-    (void)state;
     const uint32_t rays = cases_of(RAYS / 3);
     struct world world =
         world_of_soup(soup_of_mesh("torus", mesh_torus(1.0, 0.4, 48, 24)), (struct bvh_params){0});
@@ -303,9 +302,8 @@ static void crossings_are_odd(void **state)
 
 /* W6: a vertex beside the edge of a larger triangle, by some roundings: the crack is real. What
    leaks there is counted; elsewhere nothing does. */
-static void only_t_junctions_leak(void **state)
+TEST(only_t_junctions_leak)
 {
-    (void)state;
     const float a[3] = {-1, -1, 0.1f}, b[3] = {1, -1, 0.3f}, c[3] = {1, 1.1f, 0.7f},
                 d[3] = {-1, 1, 0.2f};
     const float middle[3] = {a[0] + 0.3f * (c[0] - a[0]), a[1] + 0.3f * (c[1] - a[1]) + 1e-6f,
@@ -343,9 +341,8 @@ static void only_t_junctions_leak(void **state)
 
 /* W9: two halves of a floor, turned alike and placed side by side. Each has its own ray, and so its
    own roundings: not promised, counted. */
-static void edges_between_instances_are_counted(void **state)
+TEST(edges_between_instances_are_counted)
 {
-    (void)state;
     const double turn[4] = {0.3, -0.5, 0.2, 0.8}, one[3] = {1, 1, 1}, zero[3] = {0, 0, 0};
     const float corner[3] = {0, -1, 0}, along[3] = {1, 0, 0}, up[3] = {0, 2, 0};
     struct affine places[2];
@@ -378,15 +375,4 @@ static void edges_between_instances_are_counted(void **state)
     }
     rational_destroy(rational);
     world_finish(&world);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_ray_gets_through),
-        cmocka_unit_test(crossings_are_odd),
-        cmocka_unit_test(only_t_junctions_leak),
-        cmocka_unit_test(edges_between_instances_are_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 
 #include "fraction_fixture.h"
 #include "twin/ff_sphere.h"
+#include "unit.h"
 
 /* ---- What is so ---- */
 
@@ -213,9 +214,8 @@ static void check_bounds(const struct subject *s, const struct truth *truth, str
     tally->bad_bounds += !good;
 }
 
-static void spheres_are_met_as_fractions_say(void **state)
+TEST(spheres_are_met_as_fractions_say)
 {
-    (void)state;
     enum { SUBJECTS = 10000 };
     struct rational *rational = rational_create(NULL);
     struct truth truth;
@@ -265,9 +265,8 @@ struct known {
     float near, far;
 };
 
-static void rays_along_axes_meet_both_ends(void **state)
+TEST(rays_along_axes_meet_both_ends)
 {
-    (void)state;
     const struct known cases[] = {
         {upright(10, 2, 0, 0, 1), true, true, true, 8, 12},
         {upright(10, 2, 0, 0, -1), false, false, false, 0, 0}, /* away */
@@ -303,9 +302,8 @@ static void rays_along_axes_meet_both_ends(void **state)
     rational_destroy(rational);
 }
 
-static void keys_end_with_the_floats(void **state)
+TEST(keys_end_with_the_floats)
 {
-    (void)state;
     struct rational *rational = rational_create(NULL);
     struct rational_chord chord;
     assert_non_null(rational);
@@ -328,14 +326,4 @@ static void keys_end_with_the_floats(void **state)
     s = upright(FLT_MAX, FLT_MAX, 0x1p-149f, -FLT_MAX, FLT_MAX);
     assert_true(meet(rational, &s, &chord) && chord.near_key == 1.0f && chord.far_key == 3.0f);
     rational_destroy(rational);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_are_met_as_fractions_say),
-        cmocka_unit_test(rays_along_axes_meet_both_ends),
-        cmocka_unit_test(keys_end_with_the_floats),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 #include "hard_fixture.h"
 
 #include "sphere_fixture.h"
+#include "unit.h"
 
 static const struct bvh_params trees[] = {
     {.builder = BVH_BINNED},
@@ -114,9 +115,8 @@ static void try_trees(struct world world)
 }
 
 /* B11, R1, R8, U14: also where a hit's t is less than its box's, by roundings. */
-static void trees_and_orders_do_not_matter(void **state)
+TEST(trees_and_orders_do_not_matter)
 {
-    (void)state;
     random_state = 100;
     const struct soup soups[] = {
         soup_sphere(32, 16),     soup_terrain(20),
@@ -131,9 +131,8 @@ static void trees_and_orders_do_not_matter(void **state)
 }
 
 /* The same of spheres: as they are, in instances, and with rings beside them. */
-static void trees_and_orders_of_spheres_do_not_matter(void **state)
+TEST(trees_and_orders_of_spheres_do_not_matter)
 {
-    (void)state;
     random_state = 1;
     for (int kind = 0; kind < 3; ++kind) {
         struct scene_mesh mesh = scattered_spheres(kind == 0 ? 300 : 40, 1.0, 0.3);
@@ -173,9 +172,8 @@ static struct gpu_ray ray_at_equal(uint32_t i)
 }
 
 /* R2: of so many triangles in one place the first is hit, inside, at edges and at vertices. */
-static void the_first_of_equal_triangles_is_hit(void **state)
+TEST(the_first_of_equal_triangles_is_hit)
 {
-    (void)state;
     const uint32_t counts[] = {2, 3, 10, 100, 1000};
     uint32_t rays[LEVELS] = {0}, others[LEVELS] = {0};
     for (size_t n = 0; n < sizeof counts / sizeof *counts * TREES; ++n) {
@@ -198,9 +196,8 @@ static void the_first_of_equal_triangles_is_hit(void **state)
 }
 
 /* U1: leaves hold as many as they may, and no more, of so many triangles in one place. */
-static void equal_triangles_are_shared_out(void **state)
+TEST(equal_triangles_are_shared_out)
 {
-    (void)state;
     const uint32_t count = cases_times() > 1 ? 1000000 : 10000;
     for (uint32_t t = 0; t < TREES; ++t) {
         if (trees[t].spatial_budget > 0.0f || trees[t].builder == BVH_NONE)
@@ -269,9 +266,8 @@ static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
 
 /* U5, U6, U7: a thousand scenes (label long) of twenty meshes of any bits: what cannot be used is
    dropped, what is left has a valid tree, and rays meet in it what they meet without. */
-static void any_bits_have_trees(void **state)
+TEST(any_bits_have_trees)
 {
-    (void)state;
     const uint32_t scenes = cases_times() > 1 ? 1000 : 40;
     uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
     random_state = 7;
@@ -301,16 +297,4 @@ static void any_bits_have_trees(void **state)
     assert_true(kept <= usable && usable - kept < usable / 1000); /* some have no area */
     assert_true(kept > scenes * 20 && hits > rays / 100);
     assert_int_equal(differ, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trees_and_orders_do_not_matter),
-        cmocka_unit_test(trees_and_orders_of_spheres_do_not_matter),
-        cmocka_unit_test(the_first_of_equal_triangles_is_hit),
-        cmocka_unit_test(equal_triangles_are_shared_out),
-        cmocka_unit_test(any_bits_have_trees),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include "hard/hard.h"
 #include "oracle/oracle.h"
 #include "twin/ff_triangle.h"
+#include "unit.h"
 
 /* ---- Fractions, as the definition in rational.h is written ---- */
 
@@ -201,9 +202,8 @@ static void tell(const char *name, const struct tally *tally)
 
 /* T1 to T5, T12. Of `plain` ones t is nearly always far within its bound: one in 1,600 of those
    well conditioned is more than 4 ulp off, whatever the seed. */
-static void triangles_are_met_as_fractions_say(void **state)
+TEST(triangles_are_met_as_fractions_say)
 {
-    (void)state;
     const uint32_t cases = cases_of(80000);
     struct rational *rational = rational_create(NULL);
     assert_non_null(rational);
@@ -237,9 +237,8 @@ static bool key_of(struct rational *rational, float z, float origin, float dir, 
     return rational_meet(rational, s.origin, s.dir, s.v, key, NULL);
 }
 
-static void keys_end_with_the_floats(void **state)
+TEST(keys_end_with_the_floats)
 {
-    (void)state;
     struct rational *rational = rational_create(NULL);
     float key = 0.0f;
     assert_true(key_of(rational, FLT_MAX, -0x1.fffffep102f, 1.0f, &key));
@@ -257,9 +256,8 @@ static void keys_end_with_the_floats(void **state)
 
 /* T6: both ends count, for closest and any hits. The watertight test holds t_min against t as it is
    before it is moved into the triangle's box: where it was moved, the beginning may be past it. */
-static void ends_of_intervals_count(void **state)
+TEST(ends_of_intervals_count)
 {
-    (void)state;
     enum { RAYS = 5000 };
     struct world world = world_of_soup(soup_terrain(12), (struct bvh_params){0});
     const struct accel *accel = world.accel;
@@ -300,9 +298,8 @@ static void ends_of_intervals_count(void **state)
 /* T7: from 1e-15 (rays at edges: 1e-11, where products are smaller) to 1e18 in size, bit for bit
    what is at 1, whether directions are as long as scenes are large, or of the length of 1 as those
    of cameras. `fast` multiplies three lengths: from 6e-8 to 7e10. */
-static void size_does_not_matter(void **state)
+TEST(size_does_not_matter)
 {
-    (void)state;
     enum { RAYS = 40000 };
     for (int l = 0; l <= LEVELS; ++l) {
         const struct level *level = l < LEVELS ? &levels[l] : &fast_level;
@@ -337,9 +334,8 @@ static void size_does_not_matter(void **state)
 
 /* T8: pbrt-v4, shapes_test.cpp, Triangle.BadCases: it has no area, so that no scene holds it.
    T9: github.com/Oblikovati/Oblikovati, issue 2146: a ray at the diagonal of a square. */
-static void known_cases(void **state)
+TEST(known_cases)
 {
-    (void)state;
     const struct vec3 line[3] = {{-1113.45459f, -79.049614f, -56.2431908f},
                                  {-1113.45459f, -87.0922699f, -56.2431908f},
                                  {-1113.45459f, -79.2090149f, -56.2431908f}};
@@ -405,9 +401,8 @@ static struct gpu_ray make_edge_apart(bool towards, struct vec3 v[3])
    functions that are roundings all, wherever on its plane the ray is: `watertight` does not promise
    that such a ray misses (docs/numerics.md), but that it is in doubt, and that the triangle's box
    is met. */
-static void edges_apart_do_not_meet(void **state)
+TEST(edges_apart_do_not_meet)
 {
-    (void)state;
     enum { RAYS = 100000 };
     struct rational *rational = rational_create(NULL);
     assert_non_null(rational);
@@ -440,9 +435,8 @@ static void edges_apart_do_not_meet(void **state)
 }
 
 /* T11: turned round, the same rays hit, at the same t; T12 is part of is_sound. */
-static void winding_does_not_matter(void **state)
+TEST(winding_does_not_matter)
 {
-    (void)state;
     enum { RAYS = 40000 };
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t differ = 0, met = 0;
@@ -465,18 +459,4 @@ static void winding_does_not_matter(void **state)
         assert_true(met > RAYS / 4);
         assert_int_equal(differ, 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangles_are_met_as_fractions_say),
-        cmocka_unit_test(keys_end_with_the_floats),
-        cmocka_unit_test(ends_of_intervals_count),
-        cmocka_unit_test(size_does_not_matter),
-        cmocka_unit_test(known_cases),
-        cmocka_unit_test(winding_does_not_matter),
-        cmocka_unit_test(edges_apart_do_not_meet),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

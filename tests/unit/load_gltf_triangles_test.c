@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "load_model_fixture.h"
+#include "unit.h"
 
 /* Writes b.bin and a file of one mesh around it, in whose texts ' stands for ". */
 static const char *write_gltf(struct fixture *fixture, const void *data, size_t size_bytes,
@@ -54,7 +55,7 @@ static struct data triangle_data(const void *more, size_t size_bytes)
 }
 
 /* A colour of the second vertex, 20 bytes behind that of the first, which has an offset of 4. */
-static void components_become_floats(void **state)
+TEST_IN(components_become_floats, fixture_begin, fixture_end)
 {
     static const struct {
         int component, bytes, count;
@@ -97,7 +98,7 @@ static void components_become_floats(void **state)
 }
 
 /* Elements 0 and 2 are replaced; without a view the others are zeros. */
-static void sparse_elements_are_replaced(void **state)
+TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
 {
     static const struct {
         const char *view;
@@ -138,7 +139,7 @@ static void sparse_elements_are_replaced(void **state)
 
 /* --- triangles ------------------------------------------------------------------------------ */
 
-static void modes_and_indices(void **state)
+TEST_IN(modes_and_indices, fixture_begin, fixture_end)
 {
     enum { NONE = 0 };
     static const struct {
@@ -183,7 +184,7 @@ static void modes_and_indices(void **state)
 }
 
 /* Normals that are no direction, and those of a part without any, are those of the faces. */
-static void normals_that_are_missing(void **state)
+TEST_IN(normals_that_are_missing, fixture_begin, fixture_end)
 {
     const float normals[9] = {NAN, 0, 0, 1, 0, 0, 0, 0, 0};
     struct data data = triangle_data(normals, sizeof normals);
@@ -199,7 +200,7 @@ static void normals_that_are_missing(void **state)
         assert_floats(mesh->normals + 3 * mesh->indices[i], wanted + 3 * i, 3, "normals");
 }
 
-static void bad_accessors_are_refused(void **state)
+TEST_IN(bad_accessors_are_refused, fixture_begin, fixture_end)
 {
     static const struct {
         const char *accessors, *primitive, *reason;
@@ -254,7 +255,7 @@ static void bad_accessors_are_refused(void **state)
 }
 
 /* Twelve bytes that claim half a gigabyte of zeros, many times over. */
-static void small_files_stay_small(void **state)
+TEST_IN(small_files_stay_small, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     struct data data = triangle_data("", 0);
@@ -311,7 +312,7 @@ static const char *write_packed(struct fixture *fixture, const uint8_t *bytes, u
 }
 
 /* The normals are not packed: they come from their accessor. */
-static void draco_is_unpacked(void **state)
+TEST_IN(draco_is_unpacked, fixture_begin, fixture_end)
 {
     const double positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
     const double uvs[8] = {0.25, 0.125, 1, 0, 0, 1, 1, 1};
@@ -330,7 +331,7 @@ static void draco_is_unpacked(void **state)
     assert_memory_equal(mesh->indices, indices, sizeof indices);
 }
 
-static void bad_draco_is_refused(void **state)
+TEST_IN(bad_draco_is_refused, fixture_begin, fixture_end)
 {
     static const char all[] = PACKED_PRIMITIVE("", "'POSITION':0,'TEXCOORD_0':1,'COLOR_0':2");
     static const struct {
@@ -356,17 +357,4 @@ static void bad_draco_is_refused(void **state)
         fixture_refused(fixture, path, rows[i].reason);
         fixture_forget(fixture);
     }
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(components_become_floats),  TEST(sparse_elements_are_replaced),
-        TEST(modes_and_indices),         TEST(normals_that_are_missing),
-        TEST(bad_accessors_are_refused), TEST(small_files_stay_small),
-        TEST(draco_is_unpacked),         TEST(bad_draco_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

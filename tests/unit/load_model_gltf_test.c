@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "load_model_fixture.h"
+#include "unit.h"
 
 /* Binary data and the JSON around it: 60 floats, of which the first nine are a triangle. */
 static const float data[60] = {
@@ -79,7 +80,7 @@ static void refused(void **state, const char *members, const char *reason)
 
 /* --- nodes ---------------------------------------------------------------------------------- */
 
-static void nodes_share_a_mesh(void **state)
+TEST_IN(nodes_share_a_mesh, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, "\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
@@ -100,7 +101,7 @@ static void nodes_share_a_mesh(void **state)
     assert_int_equal(scene->instances[1].node, 2);
 }
 
-static void matrices_are_columns(void **state)
+TEST_IN(matrices_are_columns, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, "\"nodes\":[{\"mesh\":0,\"matrix\":[1,2,3,0,4,5,6,0,7,8,9,0,10,11,12,1]}]");
@@ -109,7 +110,7 @@ static void matrices_are_columns(void **state)
     assert_memory_equal(scene->nodes[0].matrix.m, rows, sizeof rows);
 }
 
-static void nodes_hang_below_the_given_one(void **state)
+TEST_IN(nodes_hang_below_the_given_one, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     struct scene_node node;
@@ -123,7 +124,7 @@ static void nodes_hang_below_the_given_one(void **state)
     assert_int_equal(fixture->scene->camera_count, 0);
 }
 
-static void only_the_default_scene_is_drawn(void **state)
+TEST_IN(only_the_default_scene_is_drawn, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, "\"nodes\":[{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}],\"scene\":1,"
@@ -132,7 +133,7 @@ static void only_the_default_scene_is_drawn(void **state)
     assert_int_equal(scene->node_count, 1);
 }
 
-static void instances_on_the_gpu(void **state)
+TEST_IN(instances_on_the_gpu, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
@@ -144,48 +145,48 @@ static void instances_on_the_gpu(void **state)
     assert_float_equal(scene->instances[2].local.m[11], 9, 0);
 }
 
-static void bad_trees_are_refused(void **state)
+TEST_IN(bad_trees_are_refused, fixture_begin, fixture_end)
 {
     refused(state, "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]", "nodes[0]: is its own");
 }
 
-static void second_parents_are_refused(void **state)
+TEST_IN(second_parents_are_refused, fixture_begin, fixture_end)
 {
     refused(state, "\"nodes\":[{\"children\":[2]},{\"children\":[2]},{\"mesh\":0}]",
             "nodes[1].children[0]: node 2 is already");
 }
 
-static void indices_out_of_range_are_refused(void **state)
+TEST_IN(indices_out_of_range_are_refused, fixture_begin, fixture_end)
 {
     refused(state, "\"nodes\":[{\"mesh\":7}]", "nodes[0].mesh: index 7 is out of range");
 }
 
-static void wrong_types_are_refused(void **state)
+TEST_IN(wrong_types_are_refused, fixture_begin, fixture_end)
 {
     refused(state, "\"nodes\":[{\"mesh\":0,\"translation\":\"up\"}]",
             "nodes[0]: `translation` should be an array and is a string");
 }
 
-static void unknown_extensions_are_refused_by_name(void **state)
+TEST_IN(unknown_extensions_are_refused_by_name, fixture_begin, fixture_end)
 {
     refused(state, ONE_NODE ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\",\"EXT_moon\"]",
             "`EXT_moon`");
 }
 
-static void old_versions_are_refused(void **state)
+TEST_IN(old_versions_are_refused, fixture_begin, fixture_end)
 {
     fixture_refused(*state, fixture_text(*state, "a.gltf", "{\"asset\":{\"version\":\"1.0\"}}"),
                     "version `1.0`");
 }
 
-static void syntax_errors_have_a_line(void **state)
+TEST_IN(syntax_errors_have_a_line, fixture_begin, fixture_end)
 {
     fixture_refused(*state, fixture_text(*state, "a.gltf", "{\n\"asset\":\n}"), "a.gltf:3:");
 }
 
 /* --- cameras and lights --------------------------------------------------------------------- */
 
-static void camera_angles_are_exact(void **state)
+TEST_IN(camera_angles_are_exact, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(
         state, "\"nodes\":[{\"camera\":0,\"translation\":[0,0,5]},{\"camera\":1},{\"mesh\":0}],"
@@ -205,7 +206,7 @@ static void camera_angles_are_exact(void **state)
 }
 
 /* But for the pi by which glTF's surfaces are darker. 40 / pi * 0.5; bright enough at 1 unit. */
-static void lights_keep_their_numbers(void **state)
+TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, "\"nodes\":[{\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":"
@@ -226,7 +227,7 @@ static void lights_keep_their_numbers(void **state)
 
 /* --- materials ------------------------------------------------------------------------------ */
 
-static void materials_and_extensions(void **state)
+TEST_IN(materials_and_extensions, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, ONE_NODE
@@ -261,7 +262,7 @@ static void materials_and_extensions(void **state)
     assert_true(fixture_noted(*state, "KHR_materials_clearcoat is not drawn"));
 }
 
-static void faces_have_one_side_unless_said(void **state)
+TEST_IN(faces_have_one_side_unless_said, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, ONE_NODE ",\"materials\":[{\"name\":\"plain\"},{\"doubleSided\":true},"
@@ -273,7 +274,7 @@ static void faces_have_one_side_unless_said(void **state)
     assert_false(scene->materials[2].one_sided);
 }
 
-static void unlit_is_the_base_color_alone(void **state)
+TEST_IN(unlit_is_the_base_color_alone, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, ONE_NODE ",\"materials\":[{\"emissiveFactor\":[1,1,1],"
@@ -287,7 +288,7 @@ static void unlit_is_the_base_color_alone(void **state)
     assert_float_equal(m->transmission[0], 0, 0);
 }
 
-static void what_is_not_drawn_is_noted_once(void **state)
+TEST_IN(what_is_not_drawn_is_noted_once, fixture_begin, fixture_end)
 {
     load(state, ONE_NODE ",\"materials\":[{\"name\":\"a\",\"extensions\":{\"KHR_x\":{}}},{},"
                          "{\"name\":\"b\",\"extensions\":{\"KHR_x\":{}}}]");
@@ -295,7 +296,7 @@ static void what_is_not_drawn_is_noted_once(void **state)
     assert_false(fixture_noted(*state, "`b`"));
 }
 
-static void glass_without_a_volume_is_thin(void **state)
+TEST_IN(glass_without_a_volume_is_thin, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, ONE_NODE ",\"materials\":[{\"extensions\":{\"KHR_materials_transmission\":"
@@ -304,7 +305,7 @@ static void glass_without_a_volume_is_thin(void **state)
     assert_true(scene->materials[0].fresnel);
 }
 
-static void texture_transforms(void **state)
+TEST_IN(texture_transforms, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(state, ONE_NODE ",\"images\":[{\"uri\":\"no%20such.png\"}],\"samplers\":[{\"wrapS\":"
@@ -324,7 +325,7 @@ static void texture_transforms(void **state)
     assert_true(fixture_noted(*state, "no such.png"));
 }
 
-static void texture_coordinates_grow_downwards(void **state)
+TEST_IN(texture_coordinates_grow_downwards, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(state, ONE_NODE);
     const struct scene_mesh *mesh = &scene->meshes[0];
@@ -334,7 +335,7 @@ static void texture_coordinates_grow_downwards(void **state)
 }
 
 /* Normalized shorts, which assimp would take for floats. */
-static void quantized_attributes(void **state)
+TEST_IN(quantized_attributes, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const uint16_t uvs[6] = {0, 65535, 32768, 0, 65535, 65535};
@@ -360,7 +361,7 @@ static void quantized_attributes(void **state)
     assert_true(fixture_noted(fixture, "1 primitives of points or lines"));
 }
 
-static void accessors_past_their_view_are_refused(void **state)
+TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     fixture_write(fixture, "b.bin", data, 48);
@@ -374,7 +375,7 @@ static void accessors_past_their_view_are_refused(void **state)
     fixture_refused(fixture, path, "accessors[0]: runs past the end of bufferViews[0]");
 }
 
-static void missing_buffers_are_named(void **state)
+TEST_IN(missing_buffers_are_named, fixture_begin, fixture_end)
 {
     fixture_refused(*state,
                     fixture_text(*state, "q.gltf",
@@ -385,7 +386,7 @@ static void missing_buffers_are_named(void **state)
 
 /* --- animation ------------------------------------------------------------------------------ */
 
-static void steps_stay_steps(void **state)
+TEST_IN(steps_stay_steps, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(
         state, ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
@@ -403,46 +404,11 @@ static void steps_stay_steps(void **state)
     assert_float_equal(scene->channels[1].values[3], 1, 0);
 }
 
-static void too_few_keys_are_refused(void **state)
+TEST_IN(too_few_keys_are_refused, fixture_begin, fixture_end)
 {
     refused(state,
             ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
                      "\"path\":\"scale\"}}],\"samplers\":[{\"input\":1,\"output\":2,"
                      "\"interpolation\":\"CUBICSPLINE\"}]}]",
             "animations[0].channels[0]: has 3 values where 9 are needed");
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(nodes_share_a_mesh),
-        TEST(matrices_are_columns),
-        TEST(nodes_hang_below_the_given_one),
-        TEST(only_the_default_scene_is_drawn),
-        TEST(instances_on_the_gpu),
-        TEST(bad_trees_are_refused),
-        TEST(second_parents_are_refused),
-        TEST(indices_out_of_range_are_refused),
-        TEST(wrong_types_are_refused),
-        TEST(unknown_extensions_are_refused_by_name),
-        TEST(old_versions_are_refused),
-        TEST(syntax_errors_have_a_line),
-        TEST(camera_angles_are_exact),
-        TEST(lights_keep_their_numbers),
-        TEST(materials_and_extensions),
-        TEST(faces_have_one_side_unless_said),
-        TEST(unlit_is_the_base_color_alone),
-        TEST(what_is_not_drawn_is_noted_once),
-        TEST(glass_without_a_volume_is_thin),
-        TEST(texture_transforms),
-        TEST(texture_coordinates_grow_downwards),
-        TEST(quantized_attributes),
-        TEST(accessors_past_their_view_are_refused),
-        TEST(missing_buffers_are_named),
-        TEST(steps_stay_steps),
-        TEST(too_few_keys_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include "load/importer.h"
 #include "load/ply.h"
 #include "load_model_fixture.h"
+#include "unit.h"
 
 /* Wrapped at link time: an importer that never ends, beside a clock that each reading turns. */
 double __real_clock_ms(void);
@@ -74,17 +75,15 @@ static bool parse(const struct block *block, size_t size, char *reason)
     return ok;
 }
 
-static void good_blocks_are_taken(void **state)
+TEST(good_blocks_are_taken)
 {
-    (void)state;
     char reason[128];
     struct block block = good_block();
     assert_true(parse(&block, sizeof block, reason));
 }
 
-static void damaged_blocks_are_refused(void **state)
+TEST(damaged_blocks_are_refused)
 {
-    (void)state;
     char reason[128];
     for (int i = 0; i < 13; i++) {
         struct block block = good_block();
@@ -137,9 +136,8 @@ static void damaged_blocks_are_refused(void **state)
 }
 
 /* Many arrays in one place would make a large scene out of a small block. */
-static void arrays_may_not_be_claimed_twice(void **state)
+TEST(arrays_may_not_be_claimed_twice)
 {
-    (void)state;
     char reason[128];
     struct block block = good_block();
     for (int i = IMPORT_NORMALS; i < IMPORT_INDICES; i++)
@@ -148,9 +146,8 @@ static void arrays_may_not_be_claimed_twice(void **state)
 }
 
 /* Names that end in one place would each be a text of their own. */
-static void names_may_not_be_claimed_twice(void **state)
+TEST(names_may_not_be_claimed_twice)
 {
-    (void)state;
     char reason[128];
     struct {
         struct block block;
@@ -171,9 +168,8 @@ static void names_may_not_be_claimed_twice(void **state)
     assert_string_equal(reason, "the importer's reply is damaged");
 }
 
-static void reasons_are_one_line(void **state)
+TEST(reasons_are_one_line)
 {
-    (void)state;
     char reason[128];
     const uint32_t magic = IMPORT_ERROR_MAGIC;
     uint8_t reply[16] = {0};
@@ -191,7 +187,7 @@ static void reasons_are_one_line(void **state)
     "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"            \
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
 
-static void colors_of_scans(void **state)
+TEST_IN(colors_of_scans, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(
@@ -204,7 +200,7 @@ static void colors_of_scans(void **state)
 }
 
 /* The first byte of the data is that of a line end. */
-static void binary_data_that_looks_like_a_line_end(void **state)
+TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     static const char header[] =
@@ -257,7 +253,7 @@ static void append_strip_file(FILE *file, const char *format)
     fputs(ascii ? "7\n" : "\7", file);
 }
 
-static void strips_become_triangles(void **state)
+TEST_IN(strips_become_triangles, fixture_begin, fixture_end)
 {
     static const struct {
         const char *format, *header;
@@ -285,7 +281,7 @@ static void strips_become_triangles(void **state)
     }
 }
 
-static void damaged_strips_are_refused(void **state)
+TEST_IN(damaged_strips_are_refused, fixture_begin, fixture_end)
 {
     static const char *const files[] = {
         STRIPS_HEADER("ascii", 3) "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n3 0 1 2\n7\n",
@@ -303,7 +299,7 @@ static void damaged_strips_are_refused(void **state)
     }
 }
 
-static void facets_are_welded(void **state)
+TEST_IN(facets_are_welded, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(
@@ -321,7 +317,7 @@ static void facets_are_welded(void **state)
 /* --- hostile files -------------------------------------------------------------------------- */
 
 /* assimp sees the file under a name that says nothing to the user. */
-static void refusals_name_the_file(void **state)
+TEST_IN(refusals_name_the_file, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     char rubbish[401] = "";
@@ -334,7 +330,7 @@ static void refusals_name_the_file(void **state)
     assert_null(strstr(fixture->last_error, "model.stl"));
 }
 
-static void claims_of_endless_memory_are_refused(void **state)
+TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(
@@ -347,7 +343,7 @@ static void claims_of_endless_memory_are_refused(void **state)
 }
 
 /* assimp would read on until its time is over. */
-static void headers_without_an_end_are_refused(void **state)
+TEST_IN(headers_without_an_end_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(fixture, "a.ply",
@@ -389,7 +385,7 @@ static const char *write_round_obj(struct fixture *fixture, const char *name, un
 }
 
 /* assimp's time for one face is its corners cubed. */
-static void faces_of_very_many_corners_are_refused(void **state)
+TEST_IN(faces_of_very_many_corners_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     fixture_refused(fixture, write_round_obj(fixture, "a.obj", 1025),
@@ -398,7 +394,7 @@ static void faces_of_very_many_corners_are_refused(void **state)
     assert_int_equal(fixture->scene->meshes[0].triangle_count, 1024);
 }
 
-static void faces_of_a_ply_are_counted_too(void **state)
+TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     char *corners = circle("", 1025), *text = NULL;
@@ -421,7 +417,7 @@ static void faces_of_a_ply_are_counted_too(void **state)
 }
 
 /* assimp 5.2 dies of a face index far out of range; whit must not. */
-static void crashes_stay_in_the_child(void **state)
+TEST_IN(crashes_stay_in_the_child, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
@@ -435,7 +431,7 @@ static void crashes_stay_in_the_child(void **state)
     assert_non_null(strstr(fixture->last_error, path));
 }
 
-static void time_limits_are_kept(void **state)
+TEST_IN(time_limits_are_kept, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const struct load_params params = {.foreign.clock_s = 2.5e-3};
@@ -448,7 +444,7 @@ static void time_limits_are_kept(void **state)
     assert_non_null(strstr(fixture->last_error, "or 0.0025 s by the clock"));
 }
 
-static void importers_that_reach_out_are_stopped(void **state)
+TEST_IN(importers_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -458,7 +454,7 @@ static void importers_that_reach_out_are_stopped(void **state)
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
 }
 
-static void cancelling_is_not_the_files_fault(void **state)
+TEST_IN(cancelling_is_not_the_files_fault, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const bool cancel = true;
@@ -468,45 +464,15 @@ static void cancelling_is_not_the_files_fault(void **state)
                      WHIT_ERROR_CANCELLED);
 }
 
-static void unknown_kinds_are_named(void **state)
+TEST_IN(unknown_kinds_are_named, fixture_begin, fixture_end)
 {
     fixture_refused(*state, fixture_text(*state, "a.blend", "x"), "`.blend`");
 }
 
-static void missing_files_are_named(void **state)
+TEST_IN(missing_files_are_named, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     char path[64];
     snprintf(path, sizeof path, "%s/gone.obj", fixture->folder);
     fixture_refused(fixture, path, "gone.obj");
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(good_blocks_are_taken),
-        cmocka_unit_test(damaged_blocks_are_refused),
-        cmocka_unit_test(arrays_may_not_be_claimed_twice),
-        cmocka_unit_test(names_may_not_be_claimed_twice),
-        cmocka_unit_test(reasons_are_one_line),
-        TEST(colors_of_scans),
-        TEST(binary_data_that_looks_like_a_line_end),
-        TEST(strips_become_triangles),
-        TEST(damaged_strips_are_refused),
-        TEST(facets_are_welded),
-        TEST(refusals_name_the_file),
-        TEST(claims_of_endless_memory_are_refused),
-        TEST(headers_without_an_end_are_refused),
-        TEST(faces_of_very_many_corners_are_refused),
-        TEST(faces_of_a_ply_are_counted_too),
-        TEST(crashes_stay_in_the_child),
-        TEST(time_limits_are_kept),
-        TEST(importers_that_reach_out_are_stopped),
-        TEST(cancelling_is_not_the_files_fault),
-        TEST(unknown_kinds_are_named),
-        TEST(missing_files_are_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* OBJ and MTL. */
 #include "image/image.h"
 #include "load_model_fixture.h"
+#include "unit.h"
 
 #define QUAD "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
@@ -31,7 +32,7 @@ static const struct scene_material *load_material(struct fixture *fixture, const
     return material(fixture, "m");
 }
 
-static void quads_and_negative_indices(void **state)
+TEST_IN(quads_and_negative_indices, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(fixture, "a.obj",
@@ -49,7 +50,7 @@ static void quads_and_negative_indices(void **state)
     assert_int_equal(fixture->scene->instances[0].node, SCENE_NONE);
 }
 
-static void odd_material_lines_lose_nothing(void **state)
+TEST_IN(odd_material_lines_lose_nothing, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const struct scene_material *m = load_material(
@@ -69,7 +70,7 @@ static void odd_material_lines_lose_nothing(void **state)
     assert_int_equal(fixture->errors, 0);
 }
 
-static void several_libraries_and_missing_ones(void **state)
+TEST_IN(several_libraries_and_missing_ones, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     fixture_text(fixture, "b.mtl", "newmtl b\nKd 0 1 0\n");
@@ -87,7 +88,7 @@ static void several_libraries_and_missing_ones(void **state)
     assert_int_equal(only_mesh(fixture)->group_count, 3);
 }
 
-static void missing_library_is_grey(void **state)
+TEST_IN(missing_library_is_grey, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
@@ -98,7 +99,7 @@ static void missing_library_is_grey(void **state)
     assert_int_equal(fixture->errors, 0);
 }
 
-static void groups_keep_their_materials(void **state)
+TEST_IN(groups_keep_their_materials, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     fixture_text(fixture, "a.mtl", "newmtl r\nKd 1 0 0\nnewmtl g\nKd 0 1 0\n");
@@ -115,7 +116,7 @@ static void groups_keep_their_materials(void **state)
     assert_string_equal(materials[mesh->materials[2]].name, "r");
 }
 
-static void uvs_grow_downwards(void **state)
+TEST_IN(uvs_grow_downwards, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
@@ -127,7 +128,7 @@ static void uvs_grow_downwards(void **state)
     assert_float_equal(mesh->uvs[0][2 * mesh->indices[0] + 1], 0.75, 0);
 }
 
-static void numbers_without_a_leading_digit(void **state)
+TEST_IN(numbers_without_a_leading_digit, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
@@ -141,7 +142,7 @@ static void numbers_without_a_leading_digit(void **state)
     assert_float_equal(b[1], 1.25, 0);
 }
 
-static void vertex_colors(void **state)
+TEST_IN(vertex_colors, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
@@ -153,7 +154,7 @@ static void vertex_colors(void **state)
     assert_float_equal(fixture->scene->materials[mesh->materials[0]].diffuse[0], 1, 0);
 }
 
-static void flat_group_beside_a_smooth_one(void **state)
+TEST_IN(flat_group_beside_a_smooth_one, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
@@ -165,7 +166,7 @@ static void flat_group_beside_a_smooth_one(void **state)
     assert_float_equal(mesh->normals[3 * mesh->indices[3] + 2], 1, 1e-6);
 }
 
-static void wide_text(void **state)
+TEST_IN(wide_text, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -177,7 +178,7 @@ static void wide_text(void **state)
     assert_int_equal(only_mesh(fixture)->triangle_count, 1);
 }
 
-static void lines_and_points_are_noted(void **state)
+TEST_IN(lines_and_points_are_noted, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(fixture, "a.obj", QUAD "f 1 2 3\nl 1 2 3\np 4\n");
@@ -187,20 +188,20 @@ static void lines_and_points_are_noted(void **state)
     assert_true(fixture_noted(fixture, "1 points are not drawn"));
 }
 
-static void nothing_to_draw_is_refused(void **state)
+TEST_IN(nothing_to_draw_is_refused, fixture_begin, fixture_end)
 {
     fixture_refused(*state, fixture_text(*state, "a.obj", QUAD "l 1 2\nl 3 4\n"),
                     "no triangles in it (0 points, 2 lines");
 }
 
-static void index_out_of_range_is_refused(void **state)
+TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
 {
     fixture_refused(*state, fixture_text(*state, "a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
 }
 
 /* --- classes -------------------------------------------------------------------------------- */
 
-static void class_of_mirrors(void **state)
+TEST_IN(class_of_mirrors, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
         load_material(*state, "newmtl m\nKd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\nTf 1 1 1\n");
@@ -210,7 +211,7 @@ static void class_of_mirrors(void **state)
     assert_int_equal(m->illum, 3);
 }
 
-static void class_of_glass(void **state)
+TEST_IN(class_of_glass, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
         load_material(*state, "newmtl m\nKs 1 1 1\nNi 1.33\nTf 0.25 1 0.5\nillum 7\n");
@@ -222,7 +223,7 @@ static void class_of_glass(void **state)
     assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
 }
 
-static void glass_refracts_what_it_does_not_reflect(void **state)
+TEST_IN(glass_refracts_what_it_does_not_reflect, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
         load_material(*state, "newmtl m\nKs 0.25 0.5 0\nTf 1 0.5 0.5\nillum 6\n");
@@ -232,7 +233,7 @@ static void glass_refracts_what_it_does_not_reflect(void **state)
     assert_float_equal(m->reflection[1], 0.5, 0);
 }
 
-static void dissolve_decides_what_glass_passes(void **state)
+TEST_IN(dissolve_decides_what_glass_passes, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
         load_material(*state, "newmtl m\nd 0.1\nTf 0.9 0.9 0.9\nNi 1.5\nillum 6\n");
@@ -240,7 +241,7 @@ static void dissolve_decides_what_glass_passes(void **state)
     assert_false(m->fresnel);
 }
 
-static void dark_filters_are_read_as_held_back(void **state)
+TEST_IN(dark_filters_are_read_as_held_back, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
         load_material(*state, "newmtl m\nTf 0.1 0.1 0.1\nNi 2.5\nillum 7\n");
@@ -248,21 +249,21 @@ static void dark_filters_are_read_as_held_back(void **state)
     assert_true(fixture_noted(*state, "held back"));
 }
 
-static void transparency_the_other_way_round(void **state)
+TEST_IN(transparency_the_other_way_round, fixture_begin, fixture_end)
 {
     const struct scene_material *m = load_material(*state, "newmtl m\nTr 0.25\nillum 2\n");
     assert_float_equal(m->opacity, 0.75, 0);
     assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
 }
 
-static void class_10_catches_shadows(void **state)
+TEST_IN(class_10_catches_shadows, fixture_begin, fixture_end)
 {
     const struct scene_material *m = load_material(*state, "newmtl m\nillum 10\n");
     assert_true(m->shadow_catcher);
     assert_false(fixture_noted(*state, "shadow"));
 }
 
-static void class_of_plain_colors(void **state)
+TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 {
     const struct scene_material *m = load_material(*state, "newmtl m\nKs 1 1 1\nillum 1\n");
     assert_float_equal(m->specular[0], 0, 0);
@@ -284,7 +285,7 @@ static void write_picture(struct fixture *fixture, const char *name, float left_
     image_finish(&image);
 }
 
-static void maps_with_options(void **state)
+TEST_IN(maps_with_options, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     write_picture(fixture, "a b.png", 1);
@@ -315,7 +316,7 @@ static int first_texel(const struct fixture *fixture, const struct scene_materia
     return fixture->scene->textures[m->textures[slot].texture].rgba[0];
 }
 
-static void channels_and_ranges_of_maps(void **state)
+TEST_IN(channels_and_ranges_of_maps, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     struct image image;
@@ -342,7 +343,7 @@ static void channels_and_ranges_of_maps(void **state)
     assert_false(fixture_noted(fixture, "-boost"));
 }
 
-static void unused_maps_are_named(void **state)
+TEST_IN(unused_maps_are_named, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     load_material(fixture, "newmtl m\ndisp d.png\ndecal d.png\nrefl -type sphere d.png\n"
@@ -353,7 +354,7 @@ static void unused_maps_are_named(void **state)
     assert_true(fixture_noted(fixture, "`a.png` of map_Ka"));
 }
 
-static void alpha_cuts_out_once(void **state)
+TEST_IN(alpha_cuts_out_once, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     write_picture(fixture, "leaf.png", 0);
@@ -365,16 +366,14 @@ static void alpha_cuts_out_once(void **state)
     assert_int_equal(m->textures[SCENE_SLOT_OPACITY].texture, SCENE_NONE);
 }
 
-static void whole_pictures_cut_out_nothing(void **state)
+TEST_IN(whole_pictures_cut_out_nothing, fixture_begin, fixture_end)
 {
     write_picture(*state, "wall.png", 1);
     assert_int_equal(load_material(*state, "newmtl m\nmap_Kd wall.png\n")->alpha,
                      SCENE_ALPHA_OPAQUE);
 }
 
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
-
-static void models_too_large_are_refused(void **state)
+TEST_IN(models_too_large_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -383,38 +382,4 @@ static void models_too_large_are_refused(void **state)
     assert_int_equal(fixture->errors, 1);
     assert_non_null(strstr(fixture->last_error, "mesh `a.obj` of 1 triangles would take"));
     assert_int_equal(fixture->scene->mesh_count, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(quads_and_negative_indices),
-        TEST(odd_material_lines_lose_nothing),
-        TEST(several_libraries_and_missing_ones),
-        TEST(missing_library_is_grey),
-        TEST(groups_keep_their_materials),
-        TEST(uvs_grow_downwards),
-        TEST(numbers_without_a_leading_digit),
-        TEST(vertex_colors),
-        TEST(flat_group_beside_a_smooth_one),
-        TEST(wide_text),
-        TEST(lines_and_points_are_noted),
-        TEST(nothing_to_draw_is_refused),
-        TEST(index_out_of_range_is_refused),
-        TEST(class_of_mirrors),
-        TEST(class_of_glass),
-        TEST(glass_refracts_what_it_does_not_reflect),
-        TEST(dissolve_decides_what_glass_passes),
-        TEST(dark_filters_are_read_as_held_back),
-        TEST(transparency_the_other_way_round),
-        TEST(class_10_catches_shadows),
-        TEST(class_of_plain_colors),
-        TEST(maps_with_options),
-        TEST(channels_and_ranges_of_maps),
-        TEST(unused_maps_are_named),
-        TEST(alpha_cuts_out_once),
-        TEST(whole_pictures_cut_out_nothing),
-        cmocka_unit_test_setup_teardown(models_too_large_are_refused, fixture_begin, fixture_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

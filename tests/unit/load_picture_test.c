@@ -11,6 +11,7 @@
 #include "load/jpeg.h"
 #include "load/picture.h"
 #include "stb_write_fixture.h"
+#include "unit.h"
 
 enum { WIDTH = 37, HEIGHT = 21, FLIPS = 2000, SCANS = 250 };
 
@@ -123,9 +124,8 @@ static void check(struct bytes bytes, int channels, int off_max)
     free(bytes.data);
 }
 
-static void jpegs_have_their_pixels(void **state)
+TEST(jpegs_have_their_pixels)
 {
-    (void)state;
     check(write_stb(95), 3, 3);
     check(write_stb(90), 3, 8);
     check(write_libjpeg((struct options){3, JCS_RGB, JCS_YCbCr, false, 0}), 3, 6);
@@ -151,9 +151,8 @@ static bool decodes(const uint8_t *data, size_t size_bytes, const char **reason)
     return result == WHIT_OK;
 }
 
-static void cut_jpegs_are_refused(void **state)
+TEST(cut_jpegs_are_refused)
 {
-    (void)state;
     struct bytes files[] = {write_stb(95), progressive_file()};
     for (size_t i = 0; i < 2; i++) {
         const char *reason = "";
@@ -164,9 +163,8 @@ static void cut_jpegs_are_refused(void **state)
     }
 }
 
-static void changed_jpegs_end(void **state)
+TEST(changed_jpegs_end)
 {
-    (void)state;
     struct bytes files[] = {write_stb(95), progressive_file()};
     uint64_t random = 3;
     for (size_t i = 0; i < 2; i++) {
@@ -204,9 +202,8 @@ static void check_reason(const struct bytes *bytes, const char *wanted)
 }
 
 /* Little to read and much to do. */
-static void greedy_jpegs_are_refused(void **state)
+TEST(greedy_jpegs_are_refused)
 {
-    (void)state;
     struct bytes file = write_stb(95);
     uint8_t *sides = file.data + find(&file, 0xc0, 0) + 5; /* height, width: 2 bytes each */
     memcpy(sides, (uint8_t[]){0x3f, 0xff, 0x3f, 0xff}, 4);
@@ -242,7 +239,7 @@ void *__wrap_realloc(void *block, size_t size_bytes)
 }
 
 /* 2x2 pixels by its header, and what would be 4 million. Checksums are not looked at. */
-static void pngs_take_what_their_header_tells_of(void **state)
+TEST(pngs_take_what_their_header_tells_of)
 {
     enum { SIDE = 2048, IHDR_WIDTH = 16 };
     (void)state;
@@ -260,7 +257,7 @@ static void pngs_take_what_their_header_tells_of(void **state)
     free(file.data);
 }
 
-static void damaged_textures_are_named(void **state)
+TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     struct bytes file = write_stb(95);
@@ -313,7 +310,7 @@ int __wrap_sandbox_enter(void)
 
 static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
 
-static void environments_too_large_are_refused(void **state)
+TEST_IN(environments_too_large_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *sky = fixture_write(fixture, "a.hdr", hdr, sizeof hdr - 1);
@@ -325,7 +322,7 @@ static void environments_too_large_are_refused(void **state)
     assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_OK);
 }
 
-static void decoders_that_reach_out_are_stopped(void **state)
+TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     static const char why[] = "the decoder tried on this file what it may not, and was stopped";
@@ -349,7 +346,7 @@ static void decoders_that_reach_out_are_stopped(void **state)
 }
 
 /* A texture that cannot be had is magenta; one that whit was told not to read that way is not. */
-static void a_sandbox_that_is_required_is_an_error(void **state)
+TEST_IN(a_sandbox_that_is_required_is_an_error, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const struct load_params params = {.foreign.require_sandbox = true};
@@ -366,23 +363,4 @@ static void a_sandbox_that_is_required_is_an_error(void **state)
     assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
     sandbox_is_refused = false;
     free(file.data);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jpegs_have_their_pixels),
-        cmocka_unit_test(cut_jpegs_are_refused),
-        cmocka_unit_test(changed_jpegs_end),
-        cmocka_unit_test(greedy_jpegs_are_refused),
-        cmocka_unit_test(pngs_take_what_their_header_tells_of),
-        cmocka_unit_test_setup_teardown(damaged_textures_are_named, fixture_begin, fixture_end),
-        cmocka_unit_test_setup_teardown(environments_too_large_are_refused, fixture_begin,
-                                        fixture_end),
-        cmocka_unit_test_setup_teardown(decoders_that_reach_out_are_stopped, fixture_begin,
-                                        fixture_end),
-        cmocka_unit_test_setup_teardown(a_sandbox_that_is_required_is_an_error, fixture_begin,
-                                        fixture_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
    with each kind of reference, and every file that is opened is looked at. */
 #define _GNU_SOURCE
 #include "load_model_fixture.h"
+#include "unit.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -329,7 +330,7 @@ static void load(struct place *place, const char *path, const char *allowed, str
     scene_destroy(scene);
 }
 
-static void nothing_outside_is_read(void **state)
+TEST_IN(nothing_outside_is_read, begin, end)
 {
     struct place *place = *state;
     struct outcome out;
@@ -358,7 +359,7 @@ static void nothing_outside_is_read(void **state)
 }
 
 /* The test above would see it: every kind reads the secret once its folder is allowed. */
-static void an_allowed_folder_is_read(void **state)
+TEST_IN(an_allowed_folder_is_read, begin, end)
 {
     struct place *place = *state;
     static const char *const names[] = {"../out/secret.%E", "%O/secret.%E", "link/secret.%E"};
@@ -380,7 +381,7 @@ static void an_allowed_folder_is_read(void **state)
     }
 }
 
-static void the_model_itself_may_be_a_link(void **state)
+TEST_IN(the_model_itself_may_be_a_link, begin, end)
 {
     struct place *place = *state;
     struct outcome out;
@@ -393,7 +394,7 @@ static void the_model_itself_may_be_a_link(void **state)
     leak_count = 0;
 }
 
-static void a_folder_that_is_not_there_cannot_be_allowed(void **state)
+TEST_IN(a_folder_that_is_not_there_cannot_be_allowed, begin, end)
 {
     struct place *place = *state;
     struct outcome out;
@@ -409,7 +410,7 @@ static void a_folder_that_is_not_there_cannot_be_allowed(void **state)
 
 /* The folder becomes a link after any of the times that its path is resolved: so between the look
    and the opening too. */
-static void a_folder_that_is_swapped_is_not_followed(void **state)
+TEST_IN(a_folder_that_is_swapped_is_not_followed, begin, end)
 {
     struct place *place = *state;
     struct outcome out;
@@ -439,7 +440,7 @@ static void a_folder_that_is_swapped_is_not_followed(void **state)
 }
 
 /* Inside, but nothing to read: neither opened nor waited for. */
-static void what_is_no_file_is_not_opened(void **state)
+TEST_IN(what_is_no_file_is_not_opened, begin, end)
 {
     struct place *place = *state;
     static const char *const names[] = {"pipe", "socket", "zero", "sub", "."};
@@ -468,7 +469,7 @@ static void what_is_no_file_is_not_opened(void **state)
 }
 
 /* What is pasted from a message does what it says, whatever a folder is called. */
-static void the_option_can_be_pasted(void **state)
+TEST_IN(the_option_can_be_pasted, begin, end)
 {
     struct place *place = *state;
     struct outcome out;
@@ -481,19 +482,4 @@ static void the_option_can_be_pasted(void **state)
     write_model(place, &kinds[2], "../a'$(reboot)'/x.png", path);
     load(place, path, NULL, &out);
     assert_non_null(strstr(out.text, "--allow-path FOLDER lets"));
-}
-
-int main(void)
-{
-#define WITH_FOLDERS(test) cmocka_unit_test_setup_teardown(test, begin, end)
-    const struct CMUnitTest tests[] = {
-        WITH_FOLDERS(nothing_outside_is_read),
-        WITH_FOLDERS(an_allowed_folder_is_read),
-        WITH_FOLDERS(the_model_itself_may_be_a_link),
-        WITH_FOLDERS(a_folder_that_is_not_there_cannot_be_allowed),
-        WITH_FOLDERS(a_folder_that_is_swapped_is_not_followed),
-        WITH_FOLDERS(what_is_no_file_is_not_opened),
-        WITH_FOLDERS(the_option_can_be_pasted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,9 @@
 /* whit's own scene files: what they mean, and where their errors are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "load/load.h"
+#include "unit.h"
 
 #ifndef WHIT_SCENES_DIR
 #define WHIT_SCENES_DIR "scenes"
@@ -94,7 +86,7 @@ static struct scene *load_fine(void **state, const char *text)
     return scene;
 }
 
-static void errors_name_line_and_column(void **state)
+TEST_IN(errors_name_line_and_column, open_folder, close_folder)
 {
     assert_error(state, "{\n  \"objects\": [,]\n}", "test.json:2:15: ");
     assert_error(state, "{\n  \"object\": []\n}",
@@ -115,7 +107,7 @@ static void errors_name_line_and_column(void **state)
 }
 
 /* Strings with braces, escapes and wide letters must not confuse the search for a place. */
-static void places_survive_odd_strings(void **state)
+TEST_IN(places_survive_odd_strings, open_folder, close_folder)
 {
     assert_error(state,
                  "{ \"description\": \"} ] \\\" { \\\\\",\n"
@@ -125,7 +117,7 @@ static void places_survive_odd_strings(void **state)
                  "test.json:1:54: objects[0].children[0]: an object { } is expected");
 }
 
-static void senseless_content_is_refused(void **state)
+TEST_IN(senseless_content_is_refused, open_folder, close_folder)
 {
     assert_error(
         state,
@@ -186,7 +178,7 @@ static void senseless_content_is_refused(void **state)
                  "test.json:1:38: objects[0].repeat.count: more than 4000000 copies");
 }
 
-static void camera_kinds_do_not_mix(void **state)
+TEST_IN(camera_kinds_do_not_mix, open_folder, close_folder)
 {
     assert_error(state, "{\"camera\":{\"panorama\":true,\n\"fov\":40}}",
                  "test.json:2:1: camera.fov: a panorama has no `fov`");
@@ -202,7 +194,7 @@ static void camera_kinds_do_not_mix(void **state)
     assert_error(state, "{\"camera\":{\n\"fov\":180}}", "test.json:2:1: camera.fov: ");
 }
 
-static void camera_kinds_are_read(void **state)
+TEST_IN(camera_kinds_are_read, open_folder, close_folder)
 {
     struct scene *scene =
         load_fine(state, "{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
@@ -218,7 +210,7 @@ static void camera_kinds_are_read(void **state)
     scene_destroy(scene);
 }
 
-static void nested_repeats_have_a_limit(void **state)
+TEST_IN(nested_repeats_have_a_limit, open_folder, close_folder)
 {
     assert_error(
         state,
@@ -227,7 +219,7 @@ static void nested_repeats_have_a_limit(void **state)
         "test.json:1:13: objects[0]: more than 4000000 instances");
 }
 
-static void deep_children_are_refused(void **state)
+TEST_IN(deep_children_are_refused, open_folder, close_folder)
 {
     enum { DEEP = 100 };
     char text[DEEP * 32] = "{\"objects\":[";
@@ -239,7 +231,7 @@ static void deep_children_are_refused(void **state)
     assert_error(state, text, "test.json:1:");
 }
 
-static void shapes_are_placed(void **state)
+TEST_IN(shapes_are_placed, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state,
@@ -258,7 +250,7 @@ static void shapes_are_placed(void **state)
     scene_destroy(scene);
 }
 
-static void equal_shapes_share_a_mesh(void **state)
+TEST_IN(equal_shapes_share_a_mesh, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state, "{\"objects\":[{\"shape\":\"box\"},{\"shape\":\"box\",\"translation\":[3,0,0]},"
@@ -270,7 +262,7 @@ static void equal_shapes_share_a_mesh(void **state)
     scene_destroy(scene);
 }
 
-static void repeat_places_copies_around(void **state)
+TEST_IN(repeat_places_copies_around, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state, "{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
@@ -291,7 +283,7 @@ static void repeat_places_copies_around(void **state)
     scene_destroy(scene);
 }
 
-static void repeated_animation_moves_every_copy(void **state)
+TEST_IN(repeated_animation_moves_every_copy, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state, "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
@@ -305,7 +297,7 @@ static void repeated_animation_moves_every_copy(void **state)
     scene_destroy(scene);
 }
 
-static void sphereflake_is_instances(void **state)
+TEST_IN(sphereflake_is_instances, open_folder, close_folder)
 {
     struct scene *scene =
         load_fine(state, "{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
@@ -321,7 +313,7 @@ static void sphereflake_is_instances(void **state)
 }
 
 /* As such, in place of triangles; equal ones share a mesh, and each list is a mesh of its own. */
-static void balls_are_spheres(void **state)
+TEST_IN(balls_are_spheres, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state, "{\"materials\":{\"a\":{\"diffuse\":1},\"b\":{\"diffuse\":0.5}},\"objects\":["
@@ -366,7 +358,7 @@ static const struct scene_material *material_named(const struct scene *scene, co
     return NULL;
 }
 
-static void materials_mean_what_they_say(void **state)
+TEST_IN(materials_mean_what_they_say, open_folder, close_folder)
 {
     struct scene *scene =
         load_fine(state, "{\"materials\":{\n\"plain\":{\"diffuse\":\"#ff0080\"},\n"
@@ -401,7 +393,7 @@ static void materials_mean_what_they_say(void **state)
     scene_destroy(scene);
 }
 
-static void patterns_become_textures(void **state)
+TEST_IN(patterns_become_textures, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state,
@@ -445,7 +437,7 @@ static void lights_cameras_and_sky(void **state)
     scene_destroy(scene);
 }
 
-static void flat_emitters(void **state)
+TEST_IN(flat_emitters, open_folder, close_folder)
 {
     struct scene *scene = load_fine(
         state, "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[1,4,2],\"u\":[2,0,0],"
@@ -461,7 +453,7 @@ static void flat_emitters(void **state)
     scene_destroy(scene);
 }
 
-static void sky_test(void **state)
+TEST_IN(sky_test, open_folder, close_folder)
 {
     struct heard *heard = *state;
     char path[128];
@@ -479,7 +471,7 @@ static void sky_test(void **state)
 }
 
 /* An uncompressed TGA, found despite the wrong case and slash. */
-static void textures_are_found(void **state)
+TEST_IN(textures_are_found, open_folder, close_folder)
 {
     struct heard *heard = *state;
     char path[128];
@@ -499,7 +491,7 @@ static void textures_are_found(void **state)
 }
 
 /* Of a scene file's own textures; models do with a stand-in, even if the scene names it later. */
-static void missing_textures_are_refused(void **state)
+TEST_IN(missing_textures_are_refused, open_folder, close_folder)
 {
     struct heard *heard = *state;
     char obj[128], mtl[128];
@@ -530,7 +522,7 @@ static void missing_textures_are_refused(void **state)
     unlink(mtl);
 }
 
-static void large_textures_are_halved(void **state)
+TEST_IN(large_textures_are_halved, open_folder, close_folder)
 {
     struct heard *heard = *state;
     struct scene *scene = scene_create(NULL, "test");
@@ -549,7 +541,7 @@ static void large_textures_are_halved(void **state)
     scene_destroy(scene);
 }
 
-static void unknown_files_are_refused(void **state)
+TEST_IN(unknown_files_are_refused, open_folder, close_folder)
 {
     struct heard *heard = *state;
     struct scene *scene;
@@ -568,7 +560,7 @@ static void unknown_files_are_refused(void **state)
     assert_non_null(strstr(heard->errors[1], "`.blend` is not known"));
 }
 
-static void shipped_scenes_have_their_sizes(void **state)
+TEST_IN(shipped_scenes_have_their_sizes, open_folder, close_folder)
 {
     static const struct {
         const char *name;
@@ -596,35 +588,4 @@ static void shipped_scenes_have_their_sizes(void **state)
             assert_int_equal(scene->notes[k].level, SCENE_NOTE_INFO);
         scene_destroy(scene);
     }
-}
-
-#define FOLDER_TEST(test) cmocka_unit_test_setup_teardown(test, open_folder, close_folder)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FOLDER_TEST(errors_name_line_and_column),
-        FOLDER_TEST(places_survive_odd_strings),
-        FOLDER_TEST(senseless_content_is_refused),
-        FOLDER_TEST(camera_kinds_do_not_mix),
-        FOLDER_TEST(camera_kinds_are_read),
-        FOLDER_TEST(nested_repeats_have_a_limit),
-        FOLDER_TEST(deep_children_are_refused),
-        FOLDER_TEST(shapes_are_placed),
-        FOLDER_TEST(equal_shapes_share_a_mesh),
-        FOLDER_TEST(repeat_places_copies_around),
-        FOLDER_TEST(repeated_animation_moves_every_copy),
-        FOLDER_TEST(sphereflake_is_instances),
-        FOLDER_TEST(balls_are_spheres),
-        FOLDER_TEST(materials_mean_what_they_say),
-        FOLDER_TEST(patterns_become_textures),
-        FOLDER_TEST(sky_test),
-        FOLDER_TEST(flat_emitters),
-        FOLDER_TEST(textures_are_found),
-        FOLDER_TEST(missing_textures_are_refused),
-        FOLDER_TEST(large_textures_are_halved),
-        FOLDER_TEST(unknown_files_are_refused),
-        FOLDER_TEST(shipped_scenes_have_their_sizes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

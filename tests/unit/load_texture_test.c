@@ -2,6 +2,7 @@
 #include "load_model_fixture.h"
 
 #include "load/picture.h"
+#include "unit.h"
 
 static uint32_t decoded, file_reads;
 
@@ -85,7 +86,7 @@ static void spell(char spellings[SPELLINGS][96])
     }
 }
 
-static void one_file_of_many_names(void **state)
+TEST_IN(one_file_of_many_names, begin, fixture_end)
 {
     struct fixture *fixture = *state;
     char spellings[SPELLINGS][96];
@@ -103,7 +104,7 @@ static void one_file_of_many_names(void **state)
         assert_int_equal(fixture->scene->materials[i].textures[SCENE_SLOT_DIFFUSE].texture, 0);
 }
 
-static void one_picture_in_many_places(void **state)
+TEST_IN(one_picture_in_many_places, begin, fixture_end)
 {
     static const char *const images[] = {
         "{\"uri\":\"a.tga\"}",
@@ -126,7 +127,7 @@ static void one_picture_in_many_places(void **state)
     assert_int_equal(fixture->scene->materials[5].textures[SCENE_SLOT_DIFFUSE].texture, 1);
 }
 
-static void limits_keep_pictures_apart(void **state)
+TEST_IN(limits_keep_pictures_apart, begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const struct load_params params = {.texture_limit = 1};
@@ -140,7 +141,7 @@ static void limits_keep_pictures_apart(void **state)
 }
 
 /* A damaged one is tried once, each of its names is told, and no scene file takes the magenta. */
-static void damaged_pictures_are_tried_once(void **state)
+TEST_IN(damaged_pictures_are_tried_once, begin, fixture_end)
 {
     struct fixture *fixture = *state;
     uint32_t index, same;
@@ -159,7 +160,7 @@ static void damaged_pictures_are_tried_once(void **state)
 }
 
 /* Neither of the folder nor of a long name more than 40 characters, nor within the reason. */
-static void notes_quote_little(void **state)
+TEST_IN(notes_quote_little, begin, fixture_end)
 {
     struct fixture *fixture = *state;
     uint32_t index;
@@ -185,7 +186,7 @@ static void notes_quote_little(void **state)
     assert_false(fixture_noted(fixture, fixture->folder));
 }
 
-static void textures_too_large_are_not_decoded(void **state)
+TEST_IN(textures_too_large_are_not_decoded, begin, fixture_end)
 {
     struct fixture *fixture = *state;
     uint32_t index;
@@ -198,16 +199,4 @@ static void textures_too_large_are_not_decoded(void **state)
     fixture->scene->memory_limit = 16;
     assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),
                      WHIT_OK);
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(one_file_of_many_names),     TEST(one_picture_in_many_places),
-        TEST(limits_keep_pictures_apart), TEST(damaged_pictures_are_tried_once),
-        TEST(notes_quote_little),         TEST(textures_too_large_are_not_decoded),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "load_model_fixture.h"
+#include "unit.h"
 
 static const struct scene *load(struct fixture *fixture, const char *path)
 {
@@ -43,7 +44,7 @@ static const struct scene_material *material_of(const struct scene *scene)
 
 /* --- OFF ------------------------------------------------------------------------------------ */
 
-static void off_has_faces_alone(void **state)
+TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
 {
     const struct scene *scene =
         load(*state,
@@ -111,7 +112,7 @@ static const char *write_collada(struct fixture *fixture, const char *effect, co
     return path;
 }
 
-static void collada_in_half_metres_and_z_up(void **state)
+TEST_IN(collada_in_half_metres_and_z_up, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(*state, write_collada(*state, "f", "", ""));
     assert_int_equal(scene->instance_count, 2);
@@ -123,7 +124,7 @@ static void collada_in_half_metres_and_z_up(void **state)
     assert_float_equal(material_of(scene)->diffuse[2], 0.75, 1e-6);
 }
 
-static void collada_names_its_textures(void **state)
+TEST_IN(collada_names_its_textures, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(*state, write_collada(*state, "e", "", ""));
     assert_true(fixture_noted(*state, "texture `no such.png`"));
@@ -174,7 +175,7 @@ static const char moving[] =
              "target='d/tr'/>"
              "</animation></library_animations>";
 
-static void what_moves_is_named(void **state)
+TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(
         *state,
@@ -244,13 +245,13 @@ static const char *write_fbx(struct fixture *fixture, int corners)
     return path;
 }
 
-static void faces_of_too_many_corners_are_refused(void **state)
+TEST_IN(faces_of_too_many_corners_are_refused, fixture_begin, fixture_end)
 {
     fixture_refused(*state, write_fbx(*state, 1025),
                     "a.fbx: face 0 has 1025 corners, at most 1024 are possible");
 }
 
-static void fbx_in_two_centimetres_and_z_up(void **state)
+TEST_IN(fbx_in_two_centimetres_and_z_up, fixture_begin, fixture_end)
 {
     fixture_text(*state, "wood.png", "no picture");
     const struct scene *scene = load(*state, write_fbx(*state, 3));
@@ -354,7 +355,7 @@ static const char *write_3mf(struct fixture *fixture, const char *unit, bool def
     return fixture_write(fixture, "a.3mf", package.bytes, package.size);
 }
 
-static void units_of_3mf(void **state)
+TEST_IN(units_of_3mf, fixture_begin, fixture_end)
 {
     static const struct {
         const char *unit;
@@ -377,7 +378,7 @@ static void units_of_3mf(void **state)
 
 /* --- what is not read ----------------------------------------------------------------------- */
 
-static void rubbish_is_refused(void **state)
+TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
 {
     static const char *const names[] = {"a.fbx", "a.dae", "a.3mf", "a.off"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -385,21 +386,4 @@ static void rubbish_is_refused(void **state)
         fixture->errors = 0;
         fixture_refused(fixture, fixture_text(fixture, names[i], "no model at all\n"), "assimp: ");
     }
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(off_has_faces_alone),
-        TEST(faces_of_too_many_corners_are_refused),
-        TEST(collada_in_half_metres_and_z_up),
-        TEST(collada_names_its_textures),
-        TEST(what_moves_is_named),
-        TEST(fbx_in_two_centimetres_and_z_up),
-        TEST(units_of_3mf),
-        TEST(rubbish_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * lack. */
 #include "picture_fixture.h"
 #include "reference_fixture.h"
+#include "unit.h"
 
 enum { SIDE = 48 };
 
@@ -187,9 +188,8 @@ static struct difference compare(const struct image *a, const struct image *b)
     return d;
 }
 
-static void every_effect_agrees_with_the_device(void **state)
+TEST(every_effect_agrees_with_the_device)
 {
-    (void)state;
     struct reference_params params = {.picture = {.width = SIDE,
                                                   .height = SIDE,
                                                   .depth = 6,
@@ -235,9 +235,8 @@ static struct scene *touching_smooth_bodies(void)
     return scene;
 }
 
-static void touching_smooth_bodies_agree(void **state)
+TEST(touching_smooth_bodies_agree)
 {
-    (void)state;
     struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
                                       .whole_stops = true};
     struct fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
@@ -253,9 +252,5 @@ static void touching_smooth_bodies_agree(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_effect_agrees_with_the_device),
-        cmocka_unit_test(touching_smooth_bodies_agree),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -2,6 +2,7 @@
  * float. */
 #include "media_fixture.h"
 #include "reference_fixture.h"
+#include "unit.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -107,9 +108,8 @@ static void check_glass(double angle, double ior, bool schlick)
     close_reference(&d);
 }
 
-static void glass_follows_fresnel_and_snell(void **state)
+TEST(glass_follows_fresnel_and_snell)
 {
-    (void)state;
     static const double angles[] = {0.0, 0.2, 0.9, 1.2, 1.5};
     static const double iors[] = {1.33, 1.5, 2.42};
     for (size_t i = 0; i < 30; ++i)
@@ -118,9 +118,8 @@ static void glass_follows_fresnel_and_snell(void **state)
 
 /* From inside of a block of glass of index 1.5, beside and beyond the critical angle of 41.8
  * degrees. */
-static void light_is_reflected_whole_from_inside(void **state)
+TEST(light_is_reflected_whole_from_inside)
 {
-    (void)state;
     for (int beyond = 0; beyond < 2; ++beyond) {
         double angle = (41.81 + (beyond ? 0.02 : -0.02)) * pi / 180.0;
         struct scene *scene =
@@ -138,9 +137,8 @@ static void light_is_reflected_whole_from_inside(void **state)
     }
 }
 
-static void bodies_absorb_by_beer(void **state)
+TEST(bodies_absorb_by_beer)
 {
-    (void)state;
     const double absorption[3] = {0.1, 0.7, 3.0};
     struct scene_material m = clear_glass(1.0f, 0);
     for (int c = 0; c < 3; ++c)
@@ -175,9 +173,8 @@ static void check_furnace(const struct drawn *d, uint32_t x, uint32_t y)
     free(rays.all);
 }
 
-static void nothing_is_lost_in_a_furnace(void **state)
+TEST(nothing_is_lost_in_a_furnace)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, 0, 6}, (double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
     add_object(scene, mesh_torus(1.0, 0.35, 24, 12), clear_glass(1.5f, 2), 0, 0, 0);
@@ -217,9 +214,8 @@ static struct scene *floor_of(struct scene_material m)
     return scene;
 }
 
-static void light_falls_with_cosine_and_square(void **state)
+TEST(light_falls_with_cosine_and_square)
 {
-    (void)state;
     struct scene *scene = floor_scene(8);
     scene_put_lamp(scene, 3, 4, 0, 100);
     assert_close(pixel_light(scene, &of_one_pixel), 100 / 25.0 * 0.8, 2e-6);
@@ -229,9 +225,8 @@ static void light_falls_with_cosine_and_square(void **state)
 }
 
 /* (n . h)^shininess, and GGX where light, eye and normal are one direction: 1 / (4 alpha^2). */
-static void highlights_follow_their_formulas(void **state)
+TEST(highlights_follow_their_formulas)
 {
-    (void)state;
     struct scene_material m = matte(0, 0, 0);
     set_rgb(m.specular, 0.7f, 0.7f, 0.7f);
     m.shininess = 30;
@@ -249,9 +244,8 @@ static void highlights_follow_their_formulas(void **state)
 }
 
 /* A rectangle above the floor, parallel to it: 4 times the closed form of a quarter. */
-static void emitters_follow_their_form_factor(void **state)
+TEST(emitters_follow_their_form_factor)
 {
-    (void)state;
     struct scene *scene = floor_scene(8);
     scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
                                                 .node = SCENE_NONE,
@@ -265,9 +259,8 @@ static void emitters_follow_their_form_factor(void **state)
 }
 
 /* Light through sheets: (1 - opacity) each; in whole stops what kernels make of that. */
-static void filters_multiply(void **state)
+TEST(filters_multiply)
 {
-    (void)state;
     for (int stops = 0; stops < 2; ++stops) {
         struct scene *scene = floor_scene(8);
         struct scene_material sheet = matte(0, 0, 0);
@@ -301,9 +294,8 @@ static struct scene *crowded_scene(void)
     return scene;
 }
 
-static void threads_draw_the_same_bytes(void **state)
+TEST(threads_draw_the_same_bytes)
 {
-    (void)state;
     const whit_renderer_params picture = {.width = 37, .height = 41, .depth = 6, .samples = 4};
     struct drawn d = open_reference(crowded_scene(), &picture);
     struct image first = draw(&d);
@@ -334,9 +326,8 @@ static void check_tree(const struct reference_ray *rays, uint32_t count, double 
     }
 }
 
-static void ray_trees_add_up_to_pixels(void **state)
+TEST(ray_trees_add_up_to_pixels)
 {
-    (void)state;
     const whit_renderer_params picture = {.width = 16, .height = 16, .depth = 5};
     struct drawn d = open_reference(crowded_scene(), &picture);
     struct image image = draw(&d);
@@ -365,9 +356,8 @@ static void ray_trees_add_up_to_pixels(void **state)
 
 /* First rays are those of kernels (camera_all_rays has their bits), but for the roundings of
  * floats. */
-static void cameras_are_those_of_kernels(void **state)
+TEST(cameras_are_those_of_kernels)
 {
-    (void)state;
     static const struct {
         enum scene_camera_kind kind;
         float lens;
@@ -408,9 +398,8 @@ static void cameras_are_those_of_kernels(void **state)
 }
 
 /* Trees of every kind hold the same surfaces; in one tree for all they are placed by floats. */
-static void trees_do_not_matter(void **state)
+TEST(trees_do_not_matter)
 {
-    (void)state;
     const struct accel_params trees[] = {{.mesh.builder = BVH_MEDIAN},
                                          {.mesh.builder = BVH_SPATIAL},
                                          {.mesh.builder = BVH_NONE},
@@ -437,9 +426,8 @@ static void trees_do_not_matter(void **state)
 }
 
 /* What glows lies in its light's plane, but for what its corners are rounded by in one tree. */
-static void emitters_do_not_light_themselves(void **state)
+TEST(emitters_do_not_light_themselves)
 {
-    (void)state;
     const struct accel_params flat = {.flatten = true};
     const struct reference_params params = {
         .picture = {.width = 9, .height = 9, .shadows = WHIT_SHADOWS_NONE}};
@@ -451,24 +439,4 @@ static void emitters_do_not_light_themselves(void **state)
         image_finish(&image);
         close_reference(&d);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(glass_follows_fresnel_and_snell),
-        cmocka_unit_test(light_is_reflected_whole_from_inside),
-        cmocka_unit_test(bodies_absorb_by_beer),
-        cmocka_unit_test(nothing_is_lost_in_a_furnace),
-        cmocka_unit_test(light_falls_with_cosine_and_square),
-        cmocka_unit_test(highlights_follow_their_formulas),
-        cmocka_unit_test(emitters_follow_their_form_factor),
-        cmocka_unit_test(filters_multiply),
-        cmocka_unit_test(threads_draw_the_same_bytes),
-        cmocka_unit_test(ray_trees_add_up_to_pixels),
-        cmocka_unit_test(cameras_are_those_of_kernels),
-        cmocka_unit_test(trees_do_not_matter),
-        cmocka_unit_test(emitters_do_not_light_themselves),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

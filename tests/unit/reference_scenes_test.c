@@ -4,6 +4,7 @@
 
 #include "load/load.h"
 #include "reference_fixture.h"
+#include "unit.h"
 
 enum { WIDTH = 64, HEIGHT = 48 };
 
@@ -124,9 +125,8 @@ static bool is_wanted(const char *name)
     return wanted;
 }
 
-static void default_scenes_agree(void **state)
+TEST(default_scenes_agree)
 {
-    (void)state;
     const struct load_params load = {.foreign.cpu_s = 60.0};
     glob_t paths;
     size_t compared = 0;
@@ -148,8 +148,5 @@ static void default_scenes_agree(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(default_scenes_agree),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

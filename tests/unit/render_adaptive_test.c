@@ -2,6 +2,7 @@
    by the rule that docs/effects.md states. The rule is written down here once more, plainly. */
 #include "render/renderer.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 enum { WIDTH = 29, HEIGHT = 19, PIXELS = WIDTH * HEIGHT };
 
@@ -125,31 +126,27 @@ static void check_scene(struct scene *scene, const struct accel_params *accel,
 /* 1: nothing differs by more, so all pixels keep 4. */
 static const double contrasts[] = {0.05, 1.0};
 
-static void pixels_are_those_of_plain_pictures(void **state)
+TEST(pixels_are_those_of_plain_pictures)
 {
-    (void)state;
     check_scene(glass_scene(), NULL, &glass_camera, contrasts, 2);
 }
 
-static void so_they_are_without_trees(void **state)
+TEST(so_they_are_without_trees)
 {
-    (void)state;
     const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
     check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, contrasts, 1);
 }
 
-static void lens_and_plain_scenes_too(void **state)
+TEST(lens_and_plain_scenes_too)
 {
-    (void)state;
     struct scene *scene = terrain_scene();
     scene_put_camera(scene, (double[]){0, 4, 9}, (double[]){0, 0, 0}, 0.7);
     scene->cameras[0].lens_radius = 0.4f;
     check_scene(scene, NULL, &(whit_camera){.name = NULL}, contrasts, 1);
 }
 
-static void marks_come_in_pairs(void **state)
+TEST(marks_come_in_pairs)
 {
-    (void)state;
     struct image image = {0};
     uint8_t levels[12];
     assert_int_equal(image_init(&image, 4, 3, 4, false), WHIT_OK);
@@ -175,9 +172,8 @@ static void watch(void *user, double done)
         stop_now = true;
 }
 
-static void progress_goes_on_to_the_end(void **state)
+TEST(progress_goes_on_to_the_end)
 {
-    (void)state;
     whit_renderer_params params = {.width = WIDTH,
                                    .height = HEIGHT,
                                    .depth = 3,
@@ -204,9 +200,8 @@ static void progress_goes_on_to_the_end(void **state)
     fixture_close(&f);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     const whit_renderer_params wrong[] = {
         {.adaptive = -0.5}, {.adaptive = 1.5}, {.adaptive = NAN}, {.adaptive = 0.1, .count = true}};
     struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
@@ -216,13 +211,5 @@ static void nonsense_is_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pixels_are_those_of_plain_pictures),
-        cmocka_unit_test(so_they_are_without_trees),
-        cmocka_unit_test(lens_and_plain_scenes_too),
-        cmocka_unit_test(marks_come_in_pairs),
-        cmocka_unit_test(progress_goes_on_to_the_end),
-        cmocka_unit_test(nonsense_is_refused),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -2,6 +2,7 @@
    byte for byte. */
 #include "ray_fixture.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 static const whit_renderer_params animate_params = {
     .width = 40, .height = 32, .depth = 4, .packets = WHIT_PACKETS_ON};
@@ -125,9 +126,8 @@ static void check_any_order(const char *name, struct scene *scene, const double 
     fixture_close(&f);
 }
 
-static void pictures_are_those_of_new_renderers(void **state)
+TEST(pictures_are_those_of_new_renderers)
 {
-    (void)state;
     static const struct {
         const char *name;
         struct scene *(*make)(void);
@@ -156,9 +156,8 @@ static const struct pipeline *shading_of(const struct fixture *f)
     return f->renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
 }
 
-static void a_deeper_tree_gets_a_larger_stack(void **state)
+TEST(a_deeper_tree_gets_a_larger_stack)
 {
-    (void)state;
     const struct accel_params as_deep = {0}; /* as its tree, no deeper */
     struct fixture f = fixture_open(strung_out(), &as_deep, &animate_params);
     uint32_t depth = f.accel->instance_depth, size = f.renderer->node_stack_size;
@@ -194,9 +193,8 @@ static double difference(const struct image *a, const struct image *b)
 /* The vertices' last bits differ, and so do those of the pictures; a ray at an edge may go the
    other way. At 0.9 s the glass is a mirrored instance: with inside and outside exchanged, or a
    normal by the wrong matrix, the difference is 0.1 or more. */
-static void a_flattened_scene_looks_the_same(void **state)
+TEST(a_flattened_scene_looks_the_same)
 {
-    (void)state;
     static const double times_s[] = {0.0, 0.9, 2.0};
     struct fixture f = fixture_open(everything_moves(), NULL, &animate_params);
     for (int i = 0; i < 3; ++i) {
@@ -213,9 +211,8 @@ static void a_flattened_scene_looks_the_same(void **state)
 }
 
 /* Batches of rays see what pictures see. */
-static void traced_rays_follow(void **state)
+TEST(traced_rays_follow)
 {
-    (void)state;
     struct fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);
     const struct gpu_ray ray = {.origin = {1.3f, 0, 5}, .dir = {0, 0, -1}, .t_max = INFINITY};
     static const double times_s[] = {0.0, 1.0, 0.0, 2.0, 1.0};
@@ -228,9 +225,8 @@ static void traced_rays_follow(void **state)
     fixture_close(&f);
 }
 
-static void an_old_picture_is_not_taken_for_a_new_one(void **state)
+TEST(an_old_picture_is_not_taken_for_a_new_one)
 {
-    (void)state;
     struct fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);
     struct image image = render(&f), again = {0};
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
@@ -241,12 +237,5 @@ static void an_old_picture_is_not_taken_for_a_new_one(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_are_those_of_new_renderers),
-        cmocka_unit_test(a_deeper_tree_gets_a_larger_stack),
-        cmocka_unit_test(a_flattened_scene_looks_the_same),
-        cmocka_unit_test(traced_rays_follow),
-        cmocka_unit_test(an_old_picture_is_not_taken_for_a_new_one),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

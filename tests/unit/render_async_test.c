@@ -7,6 +7,7 @@
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 struct thread *__real_thread_start(void (*fn)(void *context), void *context);
 struct thread *__wrap_thread_start(void (*fn)(void *context), void *context);
@@ -113,9 +114,8 @@ static whit_renderer_params beside_params(whit_camera camera)
                                   .compile_async = true};
 }
 
-static void both_kernels_draw_the_same(void **state)
+TEST(both_kernels_draw_the_same)
 {
-    (void)state;
     static struct scene *(*const make[])(void) = {glass_scene, flat_scene, ring_scene};
     static const whit_camera cameras[] = {GLASS_CAMERA, CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40),
                                           CAMERA_AT(0, 6, 14, 0, 0, 0, 0, 1, 0, 40)};
@@ -147,9 +147,8 @@ static void both_kernels_draw_the_same(void **state)
 }
 
 /* What is taken out by name stays out of the general kernel too. */
-static void removed_effects_stay_removed(void **state)
+TEST(removed_effects_stay_removed)
 {
-    (void)state;
     whit_renderer_params params = beside_params(glass_camera);
     params.shadows = WHIT_SHADOWS_NONE;
     params.effects_removed |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
@@ -164,9 +163,8 @@ static void removed_effects_stay_removed(void **state)
 }
 
 /* With everything compiled there is nothing to wait for. */
-static void all_effects_need_no_thread(void **state)
+TEST(all_effects_need_no_thread)
 {
-    (void)state;
     whit_renderer_params params = beside_params((whit_camera){.name = NULL});
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
     params.all_effects = true;
@@ -179,9 +177,8 @@ static void all_effects_need_no_thread(void **state)
 
 /* Other scenes, other times, passes that are gone, cancelled pictures: all while a thread is at
    work or has just left its pipeline. */
-static void anything_may_come_in_between(void **state)
+TEST(anything_may_come_in_between)
 {
-    (void)state;
     bool cancel = false;
     whit_renderer_params params =
         beside_params((whit_camera)CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40));
@@ -224,11 +221,5 @@ static void anything_may_come_in_between(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(both_kernels_draw_the_same),
-        cmocka_unit_test(removed_effects_stay_removed),
-        cmocka_unit_test(all_effects_need_no_thread),
-        cmocka_unit_test(anything_may_come_in_between),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

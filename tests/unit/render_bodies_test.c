@@ -1,18 +1,11 @@
 /* How near the surfaces of bodies of media come: never said to be farther apart than they are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "../cases.h"
 #include "../random.h"
 #include "../scenes.h"
 #include "picture/bodies.h"
+#include "unit.h"
 
 static struct scene_material glass(const char *name)
 {
@@ -68,9 +61,8 @@ static void put_solid(struct scene *scene, const struct solid *solid)
         put_glass(scene, mesh_box(size[0], size[1], size[2]), "box", at[0], at[1], at[2]);
 }
 
-static void gaps_are_known(void **state)
+TEST(gaps_are_known)
 {
-    (void)state;
     const struct {
         const char *name;
         struct solid solids[3];
@@ -95,9 +87,8 @@ static void gaps_are_known(void **state)
 }
 
 /* One body has none beside it, whatever its own shape; what is opaque or thin is none. */
-static void one_body(void **state)
+TEST(one_body)
 {
-    (void)state;
     struct scene *scene = scene_begin(NULL, "one");
     struct scene_material thin = glass("thin");
     thin.thin_walled = true;
@@ -111,9 +102,8 @@ static void one_body(void **state)
 }
 
 /* A stretched sphere is known by its box alone, one that is turned and made larger as it is. */
-static void placed_spheres(void **state)
+TEST(placed_spheres)
 {
-    (void)state;
     const double ball[4] = {0, 0, 0, 1};
     const struct affine stretched = {{1, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0}};
     const struct affine turned = {{0, -2, 0, 4, 2, 0, 0, 0, 0, 0, 2, 0}};
@@ -137,9 +127,8 @@ static double apart(const double a[3], const double b[3])
 }
 
 /* Beside the nearest of many points of a triangle. */
-static void no_distance_is_too_large(void **state)
+TEST(no_distance_is_too_large)
 {
-    (void)state;
     enum { STEPS = 24 };
     uint64_t random = 1;
     for (int n = 0; n < (int)cases_of(1600); ++n) {
@@ -163,15 +152,4 @@ static void no_distance_is_too_large(void **state)
         assert_true(come_within(scene, nearest + 1e-6));
         scene_destroy(scene);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gaps_are_known),
-        cmocka_unit_test(one_body),
-        cmocka_unit_test(placed_spheres),
-        cmocka_unit_test(no_distance_is_too_large),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "ray_fixture.h"
 #include "render/probe.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 enum { RAYS = 500 };
 
@@ -54,9 +55,8 @@ static struct scene *plain_scene(void)
     return scene;
 }
 
-static void rays_equal_those_of_trees(void **state)
+TEST(rays_equal_those_of_trees)
 {
-    (void)state;
     struct scene *(*const make[])(void) = {terrain_scene, plain_scene, ring_scene};
     for (int i = 0; i < 3; ++i) {
         const whit_renderer_params params = {.width = 16, .height = 16, .count = true};
@@ -143,9 +143,8 @@ static void check_refused(struct scene *scene, const char *why)
 
 /* As many primitives, or instances, as are possible, to the last of them: within the turns that a
    driver grants. */
-static void max_are_drawn_and_more_are_refused(void **state)
+TEST(max_are_drawn_and_more_are_refused)
 {
-    (void)state;
     const struct {
         uint32_t max;
         bool apart;
@@ -182,9 +181,8 @@ static void check_picture(struct scene *scene, struct scene *again,
 
 /* Two lights, four instances, mirror and glass. Then cut-outs, blending and thin glass; media that
    touch; balls, and shadows through filters; emitters. */
-static void pictures_equal_those_of_trees(void **state)
+TEST(pictures_equal_those_of_trees)
 {
-    (void)state;
     static const char *const names[] = {"layers", "glass-of-water", "whitted", "room"};
     const whit_renderer_params counted = {
         .width = 19, .height = 11, .depth = 5, .samples = 4, .camera = GLASS_CAMERA, .count = true};
@@ -196,9 +194,8 @@ static void pictures_equal_those_of_trees(void **state)
 
 /* All points of an area light share what a driver grants: refused where they are too many, and
    noticed by the kernel. */
-static void many_shadows_are_refused(void **state)
+TEST(many_shadows_are_refused)
 {
-    (void)state;
     const struct log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
     struct scene *scene = scene_begin(&fixture_log, "ground");
     scene_put(scene, mesh_terrain(8.0, 0.6, 120, 1), NULL);
@@ -224,9 +221,8 @@ static void many_shadows_are_refused(void **state)
     fixture_close(&f);
 }
 
-static void empty_scenes_have_a_picture(void **state)
+TEST(empty_scenes_have_a_picture)
 {
-    (void)state;
     struct fixture f = fixture_open(scene_begin(&fixture_log, "empty"), &no_trees, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
@@ -241,12 +237,5 @@ static void empty_scenes_have_a_picture(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_equal_those_of_trees),
-        cmocka_unit_test(max_are_drawn_and_more_are_refused),
-        cmocka_unit_test(pictures_equal_those_of_trees),
-        cmocka_unit_test(many_shadows_are_refused),
-        cmocka_unit_test(empty_scenes_have_a_picture),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -5,6 +5,7 @@
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "twin/traverse.h"
+#include "unit.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -26,9 +27,8 @@ static void assert_finite(const struct image *image)
 
 /* ---- Sine and cosine ---- */
 
-static void sines_are_those_of_libm(void **state)
+TEST(sines_are_those_of_libm)
 {
-    (void)state;
     enum { STEPS = 1 << 20 };
     double worst = 0.0;
     for (int i = -STEPS; i <= STEPS; ++i) {
@@ -89,9 +89,8 @@ static struct patch measure(const struct image *image)
 /* Behind, before and in the focus: the circle of confusion in a plane at distance 1 has the radius
    lens * |1 / z - 1 / focus|. A disk of even brightness has a mean square distance of half its
    radius squared; 64 points in place of it are within 2 % of that. */
-static void blur_has_its_size(void **state)
+TEST(blur_has_its_size)
 {
-    (void)state;
     const double pixel = 2.0 * tan(0.3) / 75.0, ball = 1.5; /* radius of the ball, in pixels */
     const double depths[] = {10.0, 3.5, 5.0};
     for (int i = 0; i < 3; ++i) {
@@ -109,9 +108,8 @@ static void blur_has_its_size(void **state)
     }
 }
 
-static void one_sample_is_a_pinhole(void **state)
+TEST(one_sample_is_a_pinhole)
 {
-    (void)state;
     struct image lens = lens_picture(10.0, 2.0f, 1, 0.03), hole = lens_picture(10.0, 0.0f, 1, 0.03);
     assert_same_image("one sample", &lens, &hole);
     image_finish(&lens);
@@ -120,9 +118,8 @@ static void one_sample_is_a_pinhole(void **state)
 
 /* All rays of a sample's pixel meet in one point of the focus plane, whatever the lens point; and
    the lens points fill the disk evenly, around its middle. */
-static void lens_rays_meet_in_focus(void **state)
+TEST(lens_rays_meet_in_focus)
 {
-    (void)state;
     struct gpu_frame frame = {.eye = {1, 2, 3},
                               .width = 30,
                               .height = 20,
@@ -190,9 +187,8 @@ static void swap_halves(struct image *image)
     }
 }
 
-static void markers_are_where_they_should(void **state)
+TEST(markers_are_where_they_should)
 {
-    (void)state;
     enum { WIDTH = 180, HEIGHT = 90 };
     const double places[][2] = {{0, 0}, {90, 0}, {-135, 45}, {60, -70}, {179, 10}, {-30, 80}};
     const double eye[3] = {3, -1, 2}, target[3] = {-4, 2, 5}, up[3] = {0.2, 1, 0};
@@ -226,9 +222,8 @@ static void markers_are_where_they_should(void **state)
 }
 
 /* From the middle of a box each face takes a sixth of the sphere. */
-static void panorama_sees_all_around(void **state)
+TEST(panorama_sees_all_around)
 {
-    (void)state;
     struct scene *scene = panorama_scene((double[]){0, 0, 0}, (double[]){1, 2, 3});
     add_object(scene, mesh_box(2, 2, 2), unlit(1, 1, 1), 0, 0, 0);
     for (uint32_t face = 0; face < 6; ++face) {
@@ -254,9 +249,8 @@ static void panorama_sees_all_around(void **state)
 
 /* ---- Odd views ---- */
 
-static void view_along_up_has_a_picture(void **state)
+TEST(view_along_up_has_a_picture)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
     add_object(scene, mesh_plane(1), matte(1, 1, 1), 0, 0, 0);
     scene_put_sun(scene, 0, -1, 0, 1.0f);
@@ -288,9 +282,8 @@ static void view_along_up_has_a_picture(void **state)
 
 /* The ray through the middle of the top row is half the angle off the view, but for half a pixel.
  */
-static void angles_of_view_are_kept(void **state)
+TEST(angles_of_view_are_kept)
 {
-    (void)state;
     const double angles[] = {1e-3, 0.01, 1.0, 90.0, 179.0, 179.9};
     for (size_t i = 0; i < sizeof angles / sizeof *angles; ++i) {
         struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
@@ -317,9 +310,8 @@ static void angles_of_view_are_kept(void **state)
 }
 
 /* Camera rays that lie in the edge between two triangles, or in the plane of a face. */
-static void rays_along_edges_hit(void **state)
+TEST(rays_along_edges_hit)
 {
-    (void)state;
     enum { SIDE = 64 };
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
@@ -332,9 +324,8 @@ static void rays_along_edges_hit(void **state)
     image_finish(&image);
 }
 
-static void faces_seen_edge_on_are_finite(void **state)
+TEST(faces_seen_edge_on_are_finite)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, 1, 5}, (double[]){0, 1, 0});
     struct scene_material m = matte(1, 1, 1);
     set_rgb(m.specular, 1, 1, 1);
@@ -347,9 +338,8 @@ static void faces_seen_edge_on_are_finite(void **state)
 }
 
 /* Every pixel of pictures of odd sizes sees what the C traversal of its ray hits. */
-static void sizes_may_be_odd(void **state)
+TEST(sizes_may_be_odd)
 {
-    (void)state;
     const uint32_t sizes[][2] = {{1, 1}, {1, 4096}, {4096, 1}, {37, 23}, {8, 9}, {65, 1}};
     struct scene *scene = dark_scene((double[]){2, 6, 8}, (double[]){0, 0, 0});
     add_object(scene, mesh_terrain(10.0, 2.0, 40, 3), material_plain("ground"), 0, 0, 0);
@@ -382,9 +372,8 @@ static void sizes_may_be_odd(void **state)
 }
 
 /* Walls a millionth and a million away, each to the edge of the other. */
-static void near_and_far_share_a_picture(void **state)
+TEST(near_and_far_share_a_picture)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});
     struct scene_material near = unlit(0.25f, 0.25f, 0.25f), far = unlit(0.75f, 0.75f, 0.75f);
     /* Faces towards the eye at z = -1e-6 and -1e6; the near one left of x = 0. */
@@ -399,19 +388,5 @@ static void near_and_far_share_a_picture(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sines_are_those_of_libm),
-        cmocka_unit_test(blur_has_its_size),
-        cmocka_unit_test(one_sample_is_a_pinhole),
-        cmocka_unit_test(lens_rays_meet_in_focus),
-        cmocka_unit_test(markers_are_where_they_should),
-        cmocka_unit_test(panorama_sees_all_around),
-        cmocka_unit_test(view_along_up_has_a_picture),
-        cmocka_unit_test(angles_of_view_are_kept),
-        cmocka_unit_test(rays_along_edges_hit),
-        cmocka_unit_test(faces_seen_edge_on_are_finite),
-        cmocka_unit_test(sizes_may_be_odd),
-        cmocka_unit_test(near_and_far_share_a_picture),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -2,6 +2,7 @@
 #include "ray_fixture.h"
 #include "render_scenes.h"
 #include "tree_fixture.h"
+#include "unit.h"
 
 enum { RAYS = 6000, ORDERS = 3 };
 
@@ -51,22 +52,19 @@ static void check_scene(struct scene *(*make)(void), bool instanced)
     assert_true(all[ORDER_SIGN].inner_nodes < all[ORDER_BASIC].inner_nodes);
 }
 
-static void one_mesh_costs_the_same(void **state)
+TEST(one_mesh_costs_the_same)
 {
-    (void)state;
     check_scene(terrain_scene, false);
 }
 
-static void instances_cost_the_same(void **state)
+TEST(instances_cost_the_same)
 {
-    (void)state;
     check_scene(ring_scene, true);
 }
 
 /* Margins of boxes change what is visited, on both sides alike, but no hit. */
-static void clipped_trees_cost_the_same(void **state)
+TEST(clipped_trees_cost_the_same)
 {
-    (void)state;
     struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
     for (int i = 0; i < 2; ++i) {
         const whit_renderer_params params = {.width = 16, .height = 16, .count = true};
@@ -80,9 +78,8 @@ static void clipped_trees_cost_the_same(void **state)
 }
 
 /* One tree for all instances, in world space. */
-static void flat_trees_cost_the_same(void **state)
+TEST(flat_trees_cost_the_same)
 {
-    (void)state;
     const struct accel_params flat = {.flatten = true};
     const whit_renderer_params params = {
         .width = 16, .height = 16, .traversal = ORDER_SIGN, .count = true};
@@ -93,9 +90,8 @@ static void flat_trees_cost_the_same(void **state)
     fixture_close(&f);
 }
 
-static void costs_must_be_asked_for(void **state)
+TEST(costs_must_be_asked_for)
 {
-    (void)state;
     struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
@@ -159,9 +155,8 @@ static whit_result trace_caterpillar(uint32_t depth, uint32_t stated,
 }
 
 /* With the short stack of lavapipe and without it. */
-static void deep_trees_are_walked(void **state)
+TEST(deep_trees_are_walked)
 {
-    (void)state;
     const uint32_t depths[] = {31, 32, 33, 63, 64, 65, 128, 200};
     for (uint32_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         uint32_t depth = depths[d];
@@ -180,9 +175,8 @@ static void deep_trees_are_walked(void **state)
 }
 
 /* A tree deeper than stated is an error, not a hit. */
-static void understated_depth_is_reported(void **state)
+TEST(understated_depth_is_reported)
 {
-    (void)state;
     for (uint32_t order = 0; order < ORDERS; ++order) {
         const whit_renderer_params params = {
             .width = 8, .height = 8, .traversal = order, .count = order == ORDER_SIGN};
@@ -193,9 +187,8 @@ static void understated_depth_is_reported(void **state)
 }
 
 /* Identical triangles: the first one is hit, whatever the order. */
-static void duplicates_give_the_first(void **state)
+TEST(duplicates_give_the_first)
 {
-    (void)state;
     for (uint32_t order = 0; order < ORDERS; ++order) {
         const uint32_t count = 1000;
         struct scene_mesh mesh = mesh_zeroed(3, count);
@@ -221,9 +214,8 @@ static void duplicates_give_the_first(void **state)
 }
 
 /* A tree that is one leaf has no boxes to test. */
-static void a_leaf_alone_has_no_boxes(void **state)
+TEST(a_leaf_alone_has_no_boxes)
 {
-    (void)state;
     float corners[9];
     caterpillar_corners(0, corners);
     struct scene *scene = scene_begin(&fixture_log, "triangle");
@@ -306,9 +298,8 @@ static void check_sums(const struct counted *counted)
 }
 
 /* A width that is no multiple of 8, tiles smaller than the picture. */
-static void pictures_cost_the_same(void **state)
+TEST(pictures_cost_the_same)
 {
-    (void)state;
     for (uint32_t order = 0; order < ORDERS; ++order) {
         whit_renderer_params params = {.width = 45,
                                        .height = 30,
@@ -344,9 +335,8 @@ static struct scene *seen_by(struct scene *scene, const struct scene_camera *cam
 /* From so far away that the last bit of a camera ray is a tenth of a triangle; the panorama, which
    cannot look closer, over a terrain of that much smaller triangles. The first sample of several is
    off the middles of pixel and lens. */
-static void camera_rays_are_those_of_c(void **state)
+TEST(camera_rays_are_those_of_c)
 {
-    (void)state;
     static const struct scene_camera cameras[] = {
         [CAMERA_PERSPECTIVE] = {.eye = {30011, 70003, 50021}, .fov_y = 1.1e-4f},
         [CAMERA_ORTHOGRAPHIC] = {.kind = SCENE_CAMERA_ORTHOGRAPHIC,
@@ -376,9 +366,8 @@ static void camera_rays_are_those_of_c(void **state)
 }
 
 /* Sums are of all samples; pixels hold the first one, whatever came after it. */
-static void samples_add_up(void **state)
+TEST(samples_add_up)
 {
-    (void)state;
     whit_renderer_params params = {
         .width = 40, .height = 24, .depth = 5, .camera = GLASS_CAMERA, .samples = 4, .count = true};
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
@@ -399,19 +388,5 @@ static void samples_add_up(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mesh_costs_the_same),
-        cmocka_unit_test(instances_cost_the_same),
-        cmocka_unit_test(clipped_trees_cost_the_same),
-        cmocka_unit_test(flat_trees_cost_the_same),
-        cmocka_unit_test(costs_must_be_asked_for),
-        cmocka_unit_test(deep_trees_are_walked),
-        cmocka_unit_test(understated_depth_is_reported),
-        cmocka_unit_test(duplicates_give_the_first),
-        cmocka_unit_test(a_leaf_alone_has_no_boxes),
-        cmocka_unit_test(pictures_cost_the_same),
-        cmocka_unit_test(camera_rays_are_those_of_c),
-        cmocka_unit_test(samples_add_up),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

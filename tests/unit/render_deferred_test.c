@@ -3,6 +3,7 @@
 #include "ray_fixture.h"
 
 #include "render_scenes.h"
+#include "unit.h"
 
 enum { SIDE = 96, RAYS = 20000 };
 
@@ -19,9 +20,8 @@ static whit_renderer_params exact_params(bool count)
 
 /* ---- Batches ---- */
 
-static void batches_are_those_of_looks_in_place(void **state)
+TEST(batches_are_those_of_looks_in_place)
 {
-    (void)state;
     const whit_renderer_params counted = exact_params(true), deferred = exact_params(false);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
@@ -71,9 +71,8 @@ static void check_picture(const char *name, struct scene *scene, whit_camera cam
 
 /* Looked at from straight above a corner of the grid of the ground: whole rows and columns of
    pixels are seen along edges. */
-static void pictures_are_those_of_looks_in_place(void **state)
+TEST(pictures_are_those_of_looks_in_place)
 {
-    (void)state;
     check_picture("ground", glass_scene_of(20, 12),
                   (whit_camera)CAMERA_AT(3, 1000, 3, 3, 0, 3, 0, 0, -1, 1), 100);
     check_picture("glass", glass_scene(), glass_camera, 1);
@@ -81,9 +80,5 @@ static void pictures_are_those_of_looks_in_place(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(batches_are_those_of_looks_in_place),
-        cmocka_unit_test(pictures_are_those_of_looks_in_place),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

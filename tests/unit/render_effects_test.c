@@ -3,6 +3,7 @@
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 static const whit_renderer_params small = {.width = 24, .height = 18, .depth = 5};
 
@@ -171,9 +172,8 @@ static whit_stats assert_auto_is_all(struct scene *(*make)(void))
     return a.stats;
 }
 
-static void kernels_for_a_scene_draw_the_same(void **state)
+TEST(kernels_for_a_scene_draw_the_same)
 {
-    (void)state;
     whit_stats plain = assert_auto_is_all(plain_scene);
     assert_int_equal(plain.rays_reflected + plain.rays_refracted, 0);
     assert_true(plain.rays_shadow > 0);
@@ -208,9 +208,8 @@ static struct traced trace(struct scene *scene)
 }
 
 /* A driver that gets kernels whole and fills the constants in itself finds the same hits. */
-static void the_driver_fills_in_the_same(void **state)
+TEST(the_driver_fills_in_the_same)
 {
-    (void)state;
     struct traced a = trace(rich_scene());
     assert_int_equal(setenv("WHIT_NO_SPECIALIZE", "1", 1), 0);
     struct traced b = trace(rich_scene());
@@ -225,9 +224,8 @@ static void the_driver_fills_in_the_same(void **state)
 
 /* It draws the same too. lavapipe takes a quarter of a minute to inline the calls of the whole
    kernel: only where WHIT_TEST_WHOLE_KERNELS is set. */
-static void the_driver_draws_the_same(void **state)
+TEST(the_driver_draws_the_same)
 {
-    (void)state;
     if (!getenv("WHIT_TEST_WHOLE_KERNELS"))
         skip();
     struct picture a = picture_of(rich_scene(), NULL, &small);
@@ -296,9 +294,8 @@ static struct scene *alone_scene(void)
 }
 
 /* One at a time: what the scan of one effect misses, no other effect can hide. */
-static void effects_alone_draw_the_same(void **state)
+TEST(effects_alone_draw_the_same)
 {
-    (void)state;
     static const enum scene_effect effects[] = {
         SCENE_EFFECT_REFLECTION,      SCENE_EFFECT_REFRACTION,    SCENE_EFFECT_FRESNEL,
         SCENE_EFFECT_ABSORPTION,      SCENE_EFFECT_CUTOUTS,       SCENE_EFFECT_TEXTURES,
@@ -315,9 +312,8 @@ static void effects_alone_draw_the_same(void **state)
 
 /* What is left out leaves no rays of its kind and takes no others along, in the general kernel as
    well. */
-static void effects_left_out_are_gone(void **state)
+TEST(effects_left_out_are_gone)
 {
-    (void)state;
     static const enum scene_effect effects[] = {SCENE_EFFECT_SHADOWS, SCENE_EFFECT_REFLECTION,
                                                 SCENE_EFFECT_REFRACTION};
     static const struct {
@@ -341,9 +337,8 @@ static void effects_left_out_are_gone(void **state)
     }
 }
 
-static void effects_added_do_not_matter(void **state)
+TEST(effects_added_do_not_matter)
 {
-    (void)state;
     static const enum scene_effect added[] = {SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,
                                               SCENE_EFFECT_NORMAL_MAPS, SCENE_EFFECT_AREA_LIGHTS,
                                               SCENE_EFFECT_CULLING,     SCENE_EFFECT_SPHERES};
@@ -375,9 +370,8 @@ static whit_kernel_info kernel_of(struct scene *scene, const whit_renderer_param
 
 /* Every effect that can be left out takes instructions with it, and each that is added brings
    some, but what does nothing alone. */
-static void every_effect_has_its_code(void **state)
+TEST(every_effect_has_its_code)
 {
-    (void)state;
     struct scene_effects effects;
     struct scene *rich = rich_scene();
     assert_int_equal(scene_freeze(rich), WHIT_OK);
@@ -418,9 +412,8 @@ static bool has(uint64_t bindings, int binding)
     return bindings >> binding & 1;
 }
 
-static void plain_scenes_bind_little(void **state)
+TEST(plain_scenes_bind_little)
 {
-    (void)state;
     struct fixture f = fixture_open(plain_scene(), NULL, &small);
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     uint64_t plain = bindings_of(&f);
@@ -503,9 +496,8 @@ static void check_who_refracts(whit_classes classes)
 
 /* One kernel for all materials must leave alone what is no glass; a kernel for each class must have
    what its materials call for. */
-static void only_pixels_that_see_glass_refract(void **state)
+TEST(only_pixels_that_see_glass_refract)
 {
-    (void)state;
     check_who_refracts(WHIT_CLASSES_ONE);
     check_who_refracts(WHIT_CLASSES_MANY);
 }
@@ -521,9 +513,8 @@ static struct scene *rising_glass_scene(void)
     return scene;
 }
 
-static void what_comes_into_view_is_right_at_once(void **state)
+TEST(what_comes_into_view_is_right_at_once)
 {
-    (void)state;
     whit_renderer_params later = small;
     later.time_s = 1.0;
     struct picture expected = picture_of(rising_glass_scene(), NULL, &later);
@@ -544,17 +535,5 @@ static void what_comes_into_view_is_right_at_once(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(kernels_for_a_scene_draw_the_same),
-        cmocka_unit_test(the_driver_fills_in_the_same),
-        cmocka_unit_test(the_driver_draws_the_same),
-        cmocka_unit_test(effects_alone_draw_the_same),
-        cmocka_unit_test(effects_left_out_are_gone),
-        cmocka_unit_test(effects_added_do_not_matter),
-        cmocka_unit_test(every_effect_has_its_code),
-        cmocka_unit_test(plain_scenes_bind_little),
-        cmocka_unit_test(only_pixels_that_see_glass_refract),
-        cmocka_unit_test(what_comes_into_view_is_right_at_once),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -1,6 +1,7 @@
 /* Nothing gains light, nothing is lost but what was cut, and what was cut is counted. */
 #include "media_fixture.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 /* ---- White furnace ---- */
 
@@ -38,9 +39,8 @@ static void check_furnace(const char *name, struct scene *scene)
     fixture_close(&f);
 }
 
-static void white_furnace(void **state)
+TEST(white_furnace)
 {
-    (void)state;
     check_furnace("cube", furnace(mesh_box(1, 1, 1), clear_glass(1.5f, 0)));
     check_furnace("smooth mesh", furnace(mesh_icosphere(1, 3), clear_glass(1.5f, 0)));
     check_furnace("smooth ring", furnace(mesh_torus(0.7, 0.3, 24, 12), clear_glass(2.42f, 0)));
@@ -51,9 +51,8 @@ static void white_furnace(void **state)
     check_furnace("mirror ring", furnace(mesh_torus(0.7, 0.3, 24, 12), mirror(1, 1, 1)));
 }
 
-static void white_furnace_of_nested_media(void **state)
+TEST(white_furnace_of_nested_media)
 {
-    (void)state;
     struct scene *scene = furnace(mesh_box(1.6, 1.6, 1.6), clear_glass(1.33f, 0));
     add_object(scene, mesh_icosphere(0.6, 3), clear_glass(1.5f, 1), 0.3, 0, 0);
     add_object(scene, mesh_torus(0.5, 0.2, 24, 12), clear_glass(1.0f, 2), -0.2, 0.1, 0.2);
@@ -64,9 +63,8 @@ static void white_furnace_of_nested_media(void **state)
 /* ---- Facing mirrors ---- */
 
 /* Mirrors that reflect everything and shine a little: each bounce adds as much, and it ends. */
-static void facing_mirrors_end(void **state)
+TEST(facing_mirrors_end)
 {
-    (void)state;
     const uint32_t depths[] = {0, 1, 2, 3, 8, 64, 255};
     struct image before = {0};
     for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
@@ -119,9 +117,8 @@ static double largest_difference(const struct image *a, const struct image *b)
 }
 
 /* No pixel is off by more than the statistics say, and that is no idle word. */
-static void bailout_keeps_its_bound(void **state)
+TEST(bailout_keeps_its_bound)
 {
-    (void)state;
     const double bailouts[] = {-1.0, 1.0 / 16, 1.0 / 64, 1.0 / 256};
     for (int which = 0; which < 2; ++which) {
         struct image full = {0};
@@ -155,11 +152,5 @@ static void bailout_keeps_its_bound(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(white_furnace),
-        cmocka_unit_test(white_furnace_of_nested_media),
-        cmocka_unit_test(facing_mirrors_end),
-        cmocka_unit_test(bailout_keeps_its_bound),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -2,6 +2,7 @@
 #include <float.h>
 
 #include "picture_fixture.h"
+#include "unit.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -79,9 +80,8 @@ static void check_form_factor(struct scene_light light, uint32_t samples, double
     image_finish(&image);
 }
 
-static void emitters_give_their_integral(void **state)
+TEST(emitters_give_their_integral)
 {
-    (void)state;
     /* Above the floor, tilted, and through the floor's horizon. */
     static const struct {
         double corner[3], u[3], v[3];
@@ -99,9 +99,8 @@ static void emitters_give_their_integral(void **state)
 
 /* From the middle of the floor a plate hides just the half of the emitter on its side: of n points
    each stands for 1 / n. */
-static void half_a_cover_takes_half(void **state)
+TEST(half_a_cover_takes_half)
 {
-    (void)state;
     static const uint32_t samples[] = {4, 16, 64};
     for (int i = 0; i < 6; ++i) {
         /* The triangle's line of symmetry is x = 0. */
@@ -129,9 +128,8 @@ static void half_a_cover_takes_half(void **state)
 }
 
 /* Samples of the pixel move the points, so that steps of a soft shadow grow smaller. */
-static void pixel_samples_smooth_shadows(void **state)
+TEST(pixel_samples_smooth_shadows)
 {
-    (void)state;
     double largest[2];
     for (int i = 0; i < 2; ++i) {
         struct scene *scene = floor_scene(eye_height);
@@ -156,9 +154,8 @@ static void pixel_samples_smooth_shadows(void **state)
     assert_true(largest[1] < 0.35 * largest[0]);
 }
 
-static void spots_fall_off_between_their_cones(void **state)
+TEST(spots_fall_off_between_their_cones)
 {
-    (void)state;
     const double height = 3.0, inner = 0.15, outer = 0.4;
     struct scene *scene = floor_scene(eye_height);
     struct scene_light light = {.kind = SCENE_LIGHT_SPOT,
@@ -196,9 +193,8 @@ static void spots_fall_off_between_their_cones(void **state)
     image_finish(&image);
 }
 
-static void ranges_end_lights(void **state)
+TEST(ranges_end_lights)
 {
-    (void)state;
     struct scene *scene = floor_scene(eye_height);
     scene_put_lamp(scene, 0, 1, 0, 2.0f);
     scene->lights[0].range = 1.5f;
@@ -219,9 +215,8 @@ static void ranges_end_lights(void **state)
 }
 
 /* No light, light in the surface itself, none and far too much of it: a picture, and finite. */
-static void odd_lights_give_finite_pictures(void **state)
+TEST(odd_lights_give_finite_pictures)
 {
-    (void)state;
     for (int i = 0; i < 6; ++i) {
         struct scene *scene = floor_scene(eye_height);
         float strength = i == 2 ? 0.0f : i == 3 ? 3e38f : 1.0f;
@@ -243,9 +238,8 @@ static void odd_lights_give_finite_pictures(void **state)
 
 /* S4 of the catalogue of hard cases: a lamp just above the floor lights it by the formula, one in
    it or just behind it not at all. */
-static void lamps_next_to_a_surface_are_on_one_side(void **state)
+TEST(lamps_next_to_a_surface_are_on_one_side)
 {
-    (void)state;
     enum { ACROSS = 33 };
     const double heights[] = {1e-6, 1e-3, 0.0, -1e-6};
     for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
@@ -273,9 +267,8 @@ static void lamps_next_to_a_surface_are_on_one_side(void **state)
 }
 
 /* What glows lies in its light's plane, but for the roundings of where it is met. */
-static void emitters_do_not_light_themselves(void **state)
+TEST(emitters_do_not_light_themselves)
 {
-    (void)state;
     const double heights[] = {1.99, 1001.3};
     const whit_renderer_params params = {
         .width = SIDE, .height = SIDE, .shadows = WHIT_SHADOWS_NONE};
@@ -314,9 +307,8 @@ static struct scene *rings_under(struct scene_light light, double moved, float s
 /* S4 and S5 of the catalogue of hard cases, for lights: 10^-6 above a surface, 10^4 sizes away and
    farther, in a plane or a corner of what stands there, near to coordinates that are large.
    Packets, whose boxes are told from the light, meet what the rays meet alone. */
-static void packets_to_a_light_shade_as_rays_do(void **state)
+TEST(packets_to_a_light_shade_as_rays_do)
 {
-    (void)state;
     static const struct {
         double at[3], moved;
         float slope;
@@ -378,16 +370,5 @@ static void packets_to_a_light_shade_as_rays_do(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(emitters_give_their_integral),
-        cmocka_unit_test(half_a_cover_takes_half),
-        cmocka_unit_test(pixel_samples_smooth_shadows),
-        cmocka_unit_test(spots_fall_off_between_their_cones),
-        cmocka_unit_test(ranges_end_lights),
-        cmocka_unit_test(odd_lights_give_finite_pictures),
-        cmocka_unit_test(lamps_next_to_a_surface_are_on_one_side),
-        cmocka_unit_test(emitters_do_not_light_themselves),
-        cmocka_unit_test(packets_to_a_light_shade_as_rays_do),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -1,5 +1,6 @@
 /* Media that are nested, touch, leak, or hold the camera. */
 #include "media_fixture.h"
+#include "unit.h"
 
 static const double FOV = 0.5;
 
@@ -74,9 +75,8 @@ static void check_layers(const struct stack *s)
     image_finish(&image);
 }
 
-static void layers_bend_as_snell_says(void **state)
+TEST(layers_bend_as_snell_says)
 {
-    (void)state;
     static const struct stack stacks[] = {
         {"a slab", {{0.3, 1.5f, 0}}, 1, 2, {0.3, -0.3}, {1.0, 1.5}},
         /* With equal priorities, the medium entered last is there; and so it is when they say the
@@ -106,9 +106,8 @@ static void layers_bend_as_snell_says(void **state)
 }
 
 /* The highest priority wins, wherever it was entered: nothing of the others is seen. */
-static void priority_hides_what_is_inside(void **state)
+TEST(priority_hides_what_is_inside)
 {
-    (void)state;
     static const struct stack hidden = {
         "hidden",   {{1.5, 1.33f, 2}, {1.0, 1.5f, 1}, {0.4, 1.0f, 0}}, 3, 2, {1.5, -1.5},
         {1.0, 1.33}};
@@ -117,9 +116,8 @@ static void priority_hides_what_is_inside(void **state)
 
 /* What looks for touching surfaces is compiled where there are some, and changes nothing elsewhere.
  */
-static void lone_bodies_need_less(void **state)
+TEST(lone_bodies_need_less)
 {
-    (void)state;
     const struct layer layers[] = {{1.5, 1.33f, 0}, {1.0, 1.5f, 0}};
     const uint32_t expected[] = {MEDIA_NONE, MEDIA_ALONE, MEDIA_TOUCH};
     for (int count = 0; count < 3; ++count) {
@@ -153,9 +151,8 @@ static struct scene *shell_scene(int count)
     return scene;
 }
 
-static void ninth_medium_is_an_error(void **state)
+TEST(ninth_medium_is_an_error)
 {
-    (void)state;
     static const int counts[] = {8, 9, 16};
     for (int i = 0; i < 3; ++i) {
         const whit_renderer_params params = {
@@ -173,9 +170,8 @@ static void ninth_medium_is_an_error(void **state)
 }
 
 /* Balls with holes: rays leave what they never entered, and enter what they never leave. */
-static void open_meshes_stay_finite(void **state)
+TEST(open_meshes_stay_finite)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, 0.3, 4}, (double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
     for (int i = 0; i < 3; ++i) {
@@ -219,9 +215,8 @@ static struct scene_mesh ball(double radius)
     return mesh_balls((double[]){0, 0, 0, radius}, 1);
 }
 
-static void camera_knows_its_media(void **state)
+TEST(camera_knows_its_media)
 {
-    (void)state;
     const double inside[3] = {0.1, 0.2, 0.1}, away[3] = {0, 0, -9};
     /* Outside; in a box; in two, of which the inner one is entered last; by priority. */
     struct scene *scene = dark_scene((double[]){0, 0, 5}, away);
@@ -249,9 +244,8 @@ static void camera_knows_its_media(void **state)
 
 /* Looking up from water: within the critical angle the sky, beyond it what the surface reflects,
    here the dark below. One bounce. */
-static void snells_window_is_where_it_should_be(void **state)
+TEST(snells_window_is_where_it_should_be)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, -1, 0}, (double[]){0, 0, 0});
     scene->cameras[0].fov_y = 2.0f;
     set_sky(scene, 1, 1, 0);
@@ -320,9 +314,8 @@ static struct scene_mesh octahedron_mesh(void)
 /* Bodies that do not bend, seen so that whole rows of pixels look exactly at edges and vertices,
    where rays meet several triangles at once, and leave by others. Each is entered and left once:
    light is lost along the way inside, and nowhere else. */
-static void edges_are_crossed_once(void **state)
+TEST(edges_are_crossed_once)
 {
-    (void)state;
     enum { SIDE = 33 };
     const double far = 5, eyes[2][3] = {{far, 0, far}, {0, 0, far}};
     for (int way = 0; way < 4; ++way) {
@@ -401,9 +394,8 @@ static uint32_t count_over(const struct image *a, const struct image *b, double 
 }
 
 /* Three ways to model it make one picture. */
-static void liquid_in_a_glass(void **state)
+TEST(liquid_in_a_glass)
 {
-    (void)state;
     enum { NONE = 0, SOME = LIQUID_PIXELS / 64, MANY = LIQUID_PIXELS / 8, ALL = LIQUID_PIXELS };
     static const struct {
         const char *name;
@@ -440,16 +432,5 @@ static void liquid_in_a_glass(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_bend_as_snell_says),
-        cmocka_unit_test(priority_hides_what_is_inside),
-        cmocka_unit_test(edges_are_crossed_once),
-        cmocka_unit_test(liquid_in_a_glass),
-        cmocka_unit_test(lone_bodies_need_less),
-        cmocka_unit_test(ninth_medium_is_an_error),
-        cmocka_unit_test(open_meshes_stay_finite),
-        cmocka_unit_test(camera_knows_its_media),
-        cmocka_unit_test(snells_window_is_where_it_should_be),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

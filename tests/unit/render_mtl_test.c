@@ -4,6 +4,7 @@
 
 #include "load/load.h"
 #include "picture_fixture.h"
+#include "unit.h"
 
 /* The eye looks down on the strips at 60 degrees to their normal; the light comes in at 30. */
 #define COS_VIEW   0.5
@@ -185,18 +186,16 @@ static void check_strips(const struct image *image, bool schlick)
 
 static const whit_renderer_params strip_params = {.width = STRIPS, .height = 1, .depth = 8};
 
-static void classes_mean_what_the_format_says(void **state)
+TEST(classes_mean_what_the_format_says)
 {
-    (void)state;
     struct image image = render_strips(&strip_params);
     check_strips(&image, false);
     image_finish(&image);
 }
 
 /* The knob, whatever is compiled in. */
-static void schlick_takes_the_place_of_fresnel(void **state)
+TEST(schlick_takes_the_place_of_fresnel)
 {
-    (void)state;
     whit_renderer_params params = strip_params;
     params.schlick = true;
     struct image image = render_strips(&params);
@@ -210,9 +209,5 @@ static void schlick_takes_the_place_of_fresnel(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(classes_mean_what_the_format_says),
-        cmocka_unit_test(schlick_takes_the_place_of_fresnel),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

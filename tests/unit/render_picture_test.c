@@ -2,10 +2,10 @@
    shadows, refraction and energy. */
 #include "picture_fixture.h"
 #include "render/renderer.h"
+#include "unit.h"
 
-static void glass_slab_passes_and_absorbs(void **state)
+TEST(glass_slab_passes_and_absorbs)
 {
-    (void)state;
     const double ior = 1.5, thickness = 2.0, sigma = 0.3;
     struct scene *scene = dark_scene((double[]){0, 0, 9}, (double[]){0, 0, 0});
     struct scene_material glass = matte(0, 0, 0);
@@ -50,9 +50,8 @@ static struct image transmitting_box(float transmission, int texel)
     return color_of(scene, NULL, &picture_params);
 }
 
-static void texture_of_transmission_decides(void **state)
+TEST(texture_of_transmission_decides)
 {
-    (void)state;
     struct image opaque = transmitting_box(0.0f, -1);
     struct image masked = transmitting_box(1.0f, 0);
     struct image clear = transmitting_box(1.0f, 255);
@@ -89,9 +88,8 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     return seen;
 }
 
-static void textures_of_specular_scale_it(void **state)
+TEST(textures_of_specular_scale_it)
 {
-    (void)state;
     /* ior 1.5: 0.04 straight on. The tint is sRGB, the level linear. */
     assert_near(mirrored(1.0f, 1.0f, SCENE_SLOT_SPECULAR, 255), 0.04, 1e-5);
     assert_near(mirrored(1.0f, 1.0f, SCENE_SLOT_SPECULAR, 188), 0.04 * 0.50288646, 1e-5);
@@ -127,9 +125,8 @@ static struct scene *plain_scene(void)
     return scene;
 }
 
-static void tiles_do_not_matter(void **state)
+TEST(tiles_do_not_matter)
 {
-    (void)state;
     whit_renderer_params params = {
         .width = 75, .height = 51, .depth = 6, .samples = 4, .tile_size = 16};
     struct picture small = picture_of(mixed_scene(), NULL, &params);
@@ -162,9 +159,8 @@ static struct scene *panes_scene(int count)
 }
 
 /* In one large tree, and of one picture where it has enough rays to pay for the kernels. */
-static void packets_are_chosen_where_they_pay(void **state)
+TEST(packets_are_chosen_where_they_pay)
 {
-    (void)state;
     static const struct {
         uint32_t steps, side;
         bool instances, beside, many;
@@ -200,9 +196,8 @@ static void packets_are_chosen_where_they_pay(void **state)
 /* More loop turns than lavapipe grants: an error, never a silently wrong picture. Here a shadow ray
    passes all panes of a stack, the last thing that it meets, through each kind of tree and of walk.
  */
-static void cut_loops_are_reported(void **state)
+TEST(cut_loops_are_reported)
 {
-    (void)state;
     for (int i = 0; i < 4; ++i) {
         const whit_renderer_params params = {.width = 8,
                                              .height = 8,
@@ -240,9 +235,8 @@ static struct scene *lamps_scene(int lamps)
 }
 
 /* Each light is a dispatch of its own. */
-static void many_lights_are_drawn(void **state)
+TEST(many_lights_are_drawn)
 {
-    (void)state;
     const whit_renderer_params params = {.width = 8, .height = 8, .depth = 0};
     struct picture picture = picture_of(lamps_scene(4000), NULL, &params);
     assert_true(picture.stats.rays_shadow > 4000);
@@ -250,9 +244,8 @@ static void many_lights_are_drawn(void **state)
 }
 
 /* In one tile, whose first submission takes some of its lights. */
-static void many_lights_defer_no_one(void **state)
+TEST(many_lights_defer_no_one)
 {
-    (void)state;
     bool cancel = false;
     whit_renderer_params params = {.width = 8, .height = 8, .depth = 0, .cancel = &cancel};
     for (int lights = 4; lights <= 4000; lights += 3996) {
@@ -335,9 +328,8 @@ static void check_shares(const struct accel_params *accel)
     fixture_close(&f);
 }
 
-static void shares_are_those_of_hits(void **state)
+TEST(shares_are_those_of_hits)
 {
-    (void)state;
     const struct accel_params flat = {.stack_floor = 32, .flatten = true};
     check_shares(NULL);
     check_shares(&flat);
@@ -345,9 +337,8 @@ static void shares_are_those_of_hits(void **state)
 
 /* With two segments lists are filled from both ends. Hits of camera rays must still be there when
    they are counted, after later generations have listed theirs. */
-static void shares_are_the_same_by_one_segment_and_by_two(void **state)
+TEST(shares_are_the_same_by_one_segment_and_by_two)
 {
-    (void)state;
     whit_renderer_params params = {
         .width = 64, .height = 32, .tile_size = 32, .depth = 4, .segments = 1};
     struct picture one = picture_of(mixed_scene(), NULL, &params);
@@ -367,9 +358,8 @@ static void shares_are_the_same_by_one_segment_and_by_two(void **state)
 }
 
 /* Each of these rays calls for two others. */
-static void full_queues_end_in_smaller_tiles(void **state)
+TEST(full_queues_end_in_smaller_tiles)
 {
-    (void)state;
     for (int count = 0; count < 2; ++count) {
         struct glass_picture large = glass_picture(64, count), small = glass_picture(16, count);
         assert_true(large.was_full && !small.was_full);
@@ -386,9 +376,8 @@ static void full_queues_end_in_smaller_tiles(void **state)
     }
 }
 
-static void cancel_and_time_limit_stop(void **state)
+TEST(cancel_and_time_limit_stop)
 {
-    (void)state;
     bool cancel = true;
     whit_renderer_params params = {.width = 64, .height = 64, .cancel = &cancel};
     struct fixture f = fixture_open(plain_scene(), NULL, &params);
@@ -407,9 +396,8 @@ static void cancel_and_time_limit_stop(void **state)
 }
 
 /* What a renderer has uploaded may go; another one may not be made then. */
-static void pictures_may_be_dropped(void **state)
+TEST(pictures_may_be_dropped)
 {
-    (void)state;
     struct fixture f = fixture_open(mixed_scene(), NULL, &picture_params);
     struct image before = render(&f);
     scene_drop_pictures(f.scene);
@@ -421,9 +409,8 @@ static void pictures_may_be_dropped(void **state)
     fixture_close(&f);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     struct fixture f = fixture_open(plain_scene(), NULL, NULL);
     const whit_renderer_params bad[] = {
         {.width = 0, .height = 4},
@@ -443,21 +430,5 @@ static void nonsense_is_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(glass_slab_passes_and_absorbs),
-        cmocka_unit_test(texture_of_transmission_decides),
-        cmocka_unit_test(textures_of_specular_scale_it),
-        cmocka_unit_test(tiles_do_not_matter),
-        cmocka_unit_test(packets_are_chosen_where_they_pay),
-        cmocka_unit_test(cut_loops_are_reported),
-        cmocka_unit_test(many_lights_are_drawn),
-        cmocka_unit_test(many_lights_defer_no_one),
-        cmocka_unit_test(shares_are_those_of_hits),
-        cmocka_unit_test(shares_are_the_same_by_one_segment_and_by_two),
-        cmocka_unit_test(full_queues_end_in_smaller_tiles),
-        cmocka_unit_test(cancel_and_time_limit_stop),
-        cmocka_unit_test(pictures_may_be_dropped),
-        cmocka_unit_test(nonsense_is_refused),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -1,5 +1,6 @@
 /* Where refracted rays go and what they carry, against formulas in double. */
 #include "media_fixture.h"
+#include "unit.h"
 
 static const double FOV = 0.7;
 
@@ -23,9 +24,8 @@ static void set_height_sky(struct scene *scene)
 }
 
 /* All rays leave as steep as they came, those reflected within too. */
-static void slab_keeps_directions(void **state)
+TEST(slab_keeps_directions)
 {
-    (void)state;
     struct scene *scene = lens_scene((double[]){0, 0, 5});
     set_height_sky(scene);
     add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
@@ -80,9 +80,8 @@ static bool pass_ball(const double slope[2], double n, double wall, double at[2]
 }
 
 /* An analytic ball, and walls before, at and behind the image of the camera. */
-static void ball_bends_rays_to_its_focus(void **state)
+TEST(ball_bends_rays_to_its_focus)
 {
-    (void)state;
     const double walls[] = {1.2, 2.14, 6.0}; /* 1 / 1.5 = 1 / 5 + 1 / 2.14 */
     double spread[3] = {0};
     for (int w = 0; w < 3; ++w) {
@@ -156,9 +155,8 @@ static void leave_mirrors(double turn)
     picture_finish(&picture);
 }
 
-static void directions_stay_unit(void **state)
+TEST(directions_stay_unit)
 {
-    (void)state;
     for (int i = 0; i < 6; ++i)
         leave_mirrors(0.5 * i);
 }
@@ -166,9 +164,8 @@ static void directions_stay_unit(void **state)
 /* ---- Absorption ---- */
 
 /* Straight through glass of index 1, a unit thick: what is left of each colour. */
-static void beer_from_nothing_to_infinity(void **state)
+TEST(beer_from_nothing_to_infinity)
 {
-    (void)state;
     const float absorptions[] = {0.0f, 1e-9f, 1.0f, 100.0f, 3e38f, INFINITY};
     for (size_t i = 0; i < sizeof absorptions / sizeof *absorptions; ++i) {
         struct scene *scene = lens_scene((double[]){0, 0, 5});
@@ -193,9 +190,8 @@ static void beer_from_nothing_to_infinity(void **state)
 }
 
 /* A camera in a medium that never ends sees nothing of the colours that it absorbs. */
-static void endless_media_are_dark(void **state)
+TEST(endless_media_are_dark)
 {
-    (void)state;
     struct scene *scene = lens_scene((double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
     struct scene_material m = clear_glass(1.0f, 0);
@@ -226,9 +222,8 @@ static void endless_media_are_dark(void **state)
 
 /* From air into glass and back along the same path the same share arrives: whit carries radiance
    over the square of the index. */
-static void paths_are_reversible(void **state)
+TEST(paths_are_reversible)
 {
-    (void)state;
     const double slopes[] = {0.1, 0.7, 2.0, 5.0};
     for (int i = 0; i < 4; ++i) {
         double sine = slopes[i] / sqrt(1 + slopes[i] * slopes[i]), inside = sine / 1.5;
@@ -254,10 +249,5 @@ static void paths_are_reversible(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slab_keeps_directions),  cmocka_unit_test(ball_bends_rays_to_its_focus),
-        cmocka_unit_test(directions_stay_unit),   cmocka_unit_test(beer_from_nothing_to_infinity),
-        cmocka_unit_test(endless_media_are_dark), cmocka_unit_test(paths_are_reversible),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

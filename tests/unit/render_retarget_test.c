@@ -2,6 +2,7 @@
    it, byte for byte. */
 #include "render/renderer.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 #define ASIDE CAMERA_AT(3, 2.5, 4, 0, 0.6, 0, 0, 1, 0, 35)
 
@@ -49,18 +50,16 @@ static void walk(const char *name, const struct accel_params *accel, int count)
     fixture_close(&f);
 }
 
-static void views_are_those_of_new_renderers(void **state)
+TEST(views_are_those_of_new_renderers)
 {
-    (void)state;
     walk("spin", NULL, STEPS);
     walk("whitted", NULL, STEPS);
     walk("cube", &(struct accel_params){.mesh = {.builder = BVH_NONE}}, 3);
 }
 
 /* Seen from afar, a ray may meet the glass and its hollow at one place, but for rounding. */
-static void media_touch_for_cameras_far_away(void **state)
+TEST(media_touch_for_cameras_far_away)
 {
-    (void)state;
     whit_renderer_params far_away = steps[0];
     far_away.camera = (whit_camera)CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3);
     struct fixture f = fixture_open(file_scene("whitted"), NULL, &steps[0]);
@@ -75,9 +74,8 @@ static void media_touch_for_cameras_far_away(void **state)
 }
 
 /* Kernels of ray batches are bound to what a new size must keep. */
-static void rays_are_traced_in_between(void **state)
+TEST(rays_are_traced_in_between)
 {
-    (void)state;
     struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     const struct gpu_ray ray = {.origin = {3, 2.5f, 4}, .dir = {-3, -2, -4}, .t_max = INFINITY};
     struct gpu_hit before = {0}, after = {0};
@@ -89,9 +87,8 @@ static void rays_are_traced_in_between(void **state)
     fixture_close(&f);
 }
 
-static void nonsense_is_refused(void **state)
+TEST(nonsense_is_refused)
 {
-    (void)state;
     struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     whit_renderer_params wrong = steps[0];
     wrong.camera = (whit_camera){.name = "no such camera"};
@@ -106,9 +103,8 @@ static void nonsense_is_refused(void **state)
 }
 
 /* The number of kernels is that for the picture which the renderer was made for. */
-static void a_larger_view_keeps_the_kernels(void **state)
+TEST(a_larger_view_keeps_the_kernels)
 {
-    (void)state;
     const whit_renderer_params small = {.width = 20, .height = 16, .depth = 4};
     const whit_renderer_params large = {.width = 600, .height = 300, .depth = 4};
     struct fixture f = fixture_open(file_scene("whitted"), NULL, &small);
@@ -126,12 +122,5 @@ static void a_larger_view_keeps_the_kernels(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(views_are_those_of_new_renderers),
-        cmocka_unit_test(a_larger_view_keeps_the_kernels),
-        cmocka_unit_test(media_touch_for_cameras_far_away),
-        cmocka_unit_test(rays_are_traced_in_between),
-        cmocka_unit_test(nonsense_is_refused),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -2,6 +2,7 @@
  * the whole. */
 #include "picture_fixture.h"
 #include "render/renderer.h"
+#include "unit.h"
 
 enum { WIDTH = 20, HEIGHT = 18, FLOATS = WIDTH * HEIGHT * 4, SAMPLES = 16 };
 
@@ -76,9 +77,8 @@ static uint32_t count_differing(uint32_t count)
     return differing;
 }
 
-static void samples_are_summed_in_pairs(void **state)
+TEST(samples_are_summed_in_pairs)
 {
-    (void)state;
     uint32_t differing = 0;
     draw_parts(1);
     draw(0, SAMPLES, 0, whole);
@@ -92,9 +92,8 @@ static void samples_are_summed_in_pairs(void **state)
     assert_true(differing > FLOATS / 10);
 }
 
-static void sets_merge_to_the_whole(void **state)
+TEST(sets_merge_to_the_whole)
 {
-    (void)state;
     draw(0, SAMPLES, 16, whole);
     draw_parts(4);
     assert_int_equal(count_differing(SAMPLES / 4), 0);
@@ -102,9 +101,8 @@ static void sets_merge_to_the_whole(void **state)
 }
 
 /* Halves of a tile keep their sums apart. */
-static void full_queues_do_not_matter(void **state)
+TEST(full_queues_do_not_matter)
 {
-    (void)state;
     static float smaller[FLOATS];
     draw(0, SAMPLES, 0, whole);
     assert_int_equal(f.renderer->picture.stages.blocks_max, 0);
@@ -115,9 +113,8 @@ static void full_queues_do_not_matter(void **state)
 }
 
 /* A buffer of the device holds one sample of all of it, but not the sums of more as well. */
-static void large_pictures_have_room_for_sums(void **state)
+TEST(large_pictures_have_room_for_sums)
 {
-    (void)state;
     const whit_renderer_params params = {.width = 4096, .height = 2048, .samples = 4096};
     const struct pixel_buffers *p = &f.renderer->picture.buffers;
     assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
@@ -128,9 +125,8 @@ static void large_pictures_have_room_for_sums(void **state)
     assert_true(p->band_rows == params.height || limit == UINT64_C(4096) * 2048 * 16);
 }
 
-static void other_samples_are_refused(void **state)
+TEST(other_samples_are_refused)
 {
-    (void)state;
     static const whit_renderer_params wrong[] = {{.samples = 2},
                                                  {.samples = 8},
                                                  {.samples = 3},
@@ -153,12 +149,5 @@ static void other_samples_are_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(samples_are_summed_in_pairs),
-        cmocka_unit_test(sets_merge_to_the_whole),
-        cmocka_unit_test(full_queues_do_not_matter),
-        cmocka_unit_test(large_pictures_have_room_for_sums),
-        cmocka_unit_test(other_samples_are_refused),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, open_scene, close_scene));
+    return fixture_end(unit_run(open_scene, close_scene));
 }

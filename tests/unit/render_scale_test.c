@@ -1,6 +1,7 @@
 /* No length is built in: a scene that is larger or smaller by a power of two, where floats round as
    before, gives the same picture. */
 #include "media_fixture.h"
+#include "unit.h"
 
 /* Shadows, mirror images, glass in glass, smooth normals, analytic balls. */
 static struct scene *still_life(bool lamp)
@@ -62,9 +63,8 @@ static void compare_sizes(bool lamp, const double *scales, size_t count)
     image_finish(&first);
 }
 
-static void pictures_do_not_depend_on_the_unit(void **state)
+TEST(pictures_do_not_depend_on_the_unit)
 {
-    (void)state;
     const double scales[] = {0x1p-20, 0x1p-8, 0x1p8, 0x1p20};
     const double extremes[] = {0x1p-34, 0x1p45}; /* for which no lamp is strong enough */
     compare_sizes(true, scales, sizeof scales / sizeof *scales);
@@ -73,8 +73,5 @@ static void pictures_do_not_depend_on_the_unit(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_do_not_depend_on_the_unit),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -1,14 +1,8 @@
 /* The sequence that samples follow: where its points lie, and what pairs of them have in common. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "picture/sequence.h"
+#include "unit.h"
 
 enum { LEVELS = 6, POINTS = 1 << (2 * LEVELS) };
 
@@ -41,9 +35,8 @@ static bool fills_all_boxes(uint32_t first, uint32_t level)
 
 /* The first 4^k of the sequence, and all blocks behind them, up to what 4096 samples of 64 points
  * take. */
-static void blocks_fill_all_boxes(void **state)
+TEST(blocks_fill_all_boxes)
 {
-    (void)state;
     for (uint32_t level = 0; level <= LEVELS; ++level) {
         uint32_t count = 1u << (2 * level), step = level < 3 ? 17 : 3;
         for (uint32_t block = 0; block * count < POINTS * 64u; block += step)
@@ -53,9 +46,8 @@ static void blocks_fill_all_boxes(void **state)
 }
 
 /* The mean of 4, 16, ... is near the middle: the nearer, the more they are. */
-static void points_lean_to_no_side(void **state)
+TEST(points_lean_to_no_side)
 {
-    (void)state;
     uint64_t sum[2] = {0, 0};
     for (uint32_t i = 0, count = 1; i < POINTS; ++i) {
         uint32_t xy[2];
@@ -90,9 +82,8 @@ static void light_of(uint32_t index, uint32_t xy[2])
 
 /* The first 4^k take the first 4^k points, so that they fill all boxes too, and the first one the
  * first. */
-static void samples_keep_blocks(void **state)
+TEST(samples_keep_blocks)
 {
-    (void)state;
     uint32_t (*const orders[])(uint32_t) = {sequence_lens, sequence_light};
     for (int o = 0; o < 2; ++o) {
         static bool taken[POINTS];
@@ -112,9 +103,8 @@ static void samples_keep_blocks(void **state)
 
 /* Of the first 16^k samples each has a square of the one, a 4^k-th of it, with a square of the
  * other for itself. */
-static void squares_meet_once(void **state)
+TEST(squares_meet_once)
 {
-    (void)state;
     void (*const places[])(uint32_t, uint32_t[2]) = {pixel_of, lens_of, light_of};
     for (uint32_t bits = 1; bits <= 3; ++bits) {
         for (int pair = 0; pair < 3; ++pair) {
@@ -132,15 +122,4 @@ static void squares_meet_once(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blocks_fill_all_boxes),
-        cmocka_unit_test(points_lean_to_no_side),
-        cmocka_unit_test(samples_keep_blocks),
-        cmocka_unit_test(squares_meet_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

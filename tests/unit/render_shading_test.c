@@ -1,6 +1,7 @@
 /* Normals and texture coordinates as files have them: missing, without length, not finite, turned
    about, huge. All with every effect compiled, since nothing may be left to luck there. */
 #include "picture_fixture.h"
+#include "unit.h"
 
 enum { SIDE = 9 };
 static const whit_renderer_params all_params = {
@@ -55,9 +56,8 @@ static void fill_normals(struct scene_mesh *mesh, float x, float y, float z)
         set_rgb(&mesh->normals[3 * i], x, y, z);
 }
 
-static void unusable_normals_are_those_of_the_faces(void **state)
+TEST(unusable_normals_are_those_of_the_faces)
 {
-    (void)state;
     static const float wrong[][3] = {{0, 0, 0},        {-0.0f, 0, -0.0f}, {NAN, 1, 0},
                                      {0, INFINITY, 0}, {0, -INFINITY, 1}, {NAN, NAN, NAN},
                                      {0, 1e-44f, 0},   {0, 3.4e38f, 0}}; /* these have one */
@@ -73,9 +73,8 @@ static void unusable_normals_are_those_of_the_faces(void **state)
 }
 
 /* A longer normal weighs no more than its neighbours. */
-static void lengths_of_normals_do_not_matter(void **state)
+TEST(lengths_of_normals_do_not_matter)
 {
-    (void)state;
     static const float lengths[] = {1e-30f, 1e30f, 3.0f, 0.01f};
     struct scene_mesh mesh = mesh_plane(10), even = mesh_plane(10);
     for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
@@ -95,9 +94,8 @@ static void lengths_of_normals_do_not_matter(void **state)
 }
 
 /* Normals to the other side, or corners the other way round, or both: the eye sees its own side. */
-static void turned_normals_shade_the_same(void **state)
+TEST(turned_normals_shade_the_same)
 {
-    (void)state;
     for (int i = 0; i < 4; ++i) {
         struct scene_mesh mesh = mesh_plane(10);
         if (i & 1)
@@ -112,9 +110,8 @@ static void turned_normals_shade_the_same(void **state)
 }
 
 /* A shading normal that faces away from the eye gives way to the face's own. */
-static void averted_normals_give_way(void **state)
+TEST(averted_normals_give_way)
 {
-    (void)state;
     struct scene_mesh mesh = mesh_plane(40);
     fill_normals(&mesh, 0, 0.3f, -1);
     struct scene *scene = dark_scene((double[]){0, 1, 3}, (double[]){0, 0, 0});
@@ -169,9 +166,8 @@ static double linear_of(uint8_t srgb)
 }
 
 /* The texture is of one colour: whatever its coordinates, that is what is seen. */
-static void coordinates_may_be_anything(void **state)
+TEST(coordinates_may_be_anything)
 {
-    (void)state;
     static const float uvs[][4][2] = {
         {{0, 0}, {1, 0}, {0, 1}, {1, 1}},
         {{0, 0}, {0, 0}, {0, 0}, {0, 0}},
@@ -192,9 +188,8 @@ static void coordinates_may_be_anything(void **state)
 
 /* By set 0 a texture's first texel is met, by set 1 its second one; two textures, each by its own.
  */
-static void each_texture_has_its_coordinates(void **state)
+TEST(each_texture_has_its_coordinates)
 {
-    (void)state;
     static const uint8_t diffuse[2] = {200, 90}, emission[2] = {60, 140};
     for (uint32_t sets = 0; sets < 4; ++sets) {
         struct scene_mesh mesh = mesh_plane(10);
@@ -218,9 +213,8 @@ static void each_texture_has_its_coordinates(void **state)
 
 /* glTF multiplies the opacity of a mask by the alpha of vertices: below the cutoff nothing is
  * there. */
-static void masks_heed_the_alpha_of_vertices(void **state)
+TEST(masks_heed_the_alpha_of_vertices)
 {
-    (void)state;
     static const float alphas[] = {0.6f, 0.4f};
     for (int i = 0; i < 2; ++i) {
         struct scene_mesh mesh = mesh_plane(10);
@@ -264,9 +258,8 @@ static struct scene_mesh square_across(const double n[3])
 /* Normals at which frames built from a normal alone lose their digits (Duff et al. 2017, Building
    an Orthonormal Basis, Revisited). A map that tilts by the same angle everywhere shades the same.
  */
-static void frames_stand_in_every_direction(void **state)
+TEST(frames_stand_in_every_direction)
 {
-    (void)state;
     static const double normals[][3] = {
         {0, 0, -1},
         {0, 0, 1},
@@ -294,15 +287,5 @@ static void frames_stand_in_every_direction(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(unusable_normals_are_those_of_the_faces),
-        cmocka_unit_test(lengths_of_normals_do_not_matter),
-        cmocka_unit_test(turned_normals_shade_the_same),
-        cmocka_unit_test(averted_normals_give_way),
-        cmocka_unit_test(coordinates_may_be_anything),
-        cmocka_unit_test(each_texture_has_its_coordinates),
-        cmocka_unit_test(masks_heed_the_alpha_of_vertices),
-        cmocka_unit_test(frames_stand_in_every_direction),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

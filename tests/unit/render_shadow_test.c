@@ -1,6 +1,7 @@
 /* Shadows: through textured and absorbing filters, on smooth meshes, and on surfaces that show
    nothing else. */
 #include "picture_fixture.h"
+#include "unit.h"
 
 static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
 /* Depths are rounded to 1/64 stop: by half of that. */
@@ -56,9 +57,8 @@ static void check_pane(bool blends)
     image_finish(&image);
 }
 
-static void textures_pattern_shadows(void **state)
+TEST(textures_pattern_shadows)
 {
-    (void)state;
     for (int blends = 0; blends < 2; ++blends)
         check_pane(blends);
 }
@@ -94,9 +94,8 @@ static struct scene *block_scene(const struct block *block)
 }
 
 /* exp(-sigma length) is left; each end of the light's way inside is rounded to 1/64 stop. */
-static void bodies_absorb_along_the_way(void **state)
+TEST(bodies_absorb_along_the_way)
 {
-    (void)state;
     /* The first is under the block. */
     static const whit_camera beside = CAMERA_AT(3.9, 0.3, 0, 0, 0, 0, 0, 1, 0, 0.01),
                              above = CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.01);
@@ -123,9 +122,8 @@ static void bodies_absorb_along_the_way(void **state)
     }
 }
 
-static void knobs_make_shadows_opaque(void **state)
+TEST(knobs_make_shadows_opaque)
 {
-    (void)state;
     for (int all = 0; all < 2; ++all) {
         whit_renderer_params params = {.width = 201, .height = 1, .shadows = WHIT_SHADOWS_OPAQUE};
         params.all_effects = all;
@@ -182,9 +180,8 @@ static double ball_error(const struct image *a, const struct image *b)
 }
 
 /* The coarsest ball's own shape is off by more than its shadows are. */
-static void coarse_balls_are_shaded_like_fine_ones(void **state)
+TEST(coarse_balls_are_shaded_like_fine_ones)
 {
-    (void)state;
     struct image fine = ball_picture(512, true);
     static const uint32_t segments[] = {12, 20, 32};
     for (int i = 0; i < 3; ++i) {
@@ -216,9 +213,8 @@ static struct scene *flat_scene(bool normals)
     return scene;
 }
 
-static void flat_meshes_do_not_change(void **state)
+TEST(flat_meshes_do_not_change)
 {
-    (void)state;
     for (int normals = 0; normals < 2; ++normals) {
         struct image images[2];
         for (int i = 0; i < 2; ++i) {
@@ -252,9 +248,8 @@ static struct scene_mesh round_box(void)
 }
 
 /* From inside a closed mesh with smooth normals no lamp outside is seen to light anything. */
-static void closed_rooms_stay_dark(void **state)
+TEST(closed_rooms_stay_dark)
 {
-    (void)state;
     static const double lamps[][3] = {{3, 0.2, 0.1}, {1.6, 1.7, 1.5}, {0.3, 1.2, -0.4},
                                       {1.05, 0, 0},  {-2, -3, 0.5},   {0.99, 1.2, 1.2}};
     for (int shape = 0; shape < 2; ++shape) {
@@ -297,9 +292,8 @@ static struct scene *catcher_scene(bool lit)
     return scene;
 }
 
-static void catchers_show_shadows_alone(void **state)
+TEST(catchers_show_shadows_alone)
 {
-    (void)state;
     for (int all = 0; all < 2; ++all) {
         whit_renderer_params params = {.width = 201, .height = 1, .depth = 4};
         params.camera = (whit_camera)CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.17);
@@ -342,9 +336,8 @@ static struct scene_mesh sheets(uint32_t count, float y)
 /* More sheets than lavapipe grants turns of loops, each of which has to be looked at and lets the
    ray through: an error, and no picture of what was met so far. On the way of the eye, or of the
    light alone. */
-static void cut_walks_through_sheets_are_reported(void **state)
+TEST(cut_walks_through_sheets_are_reported)
 {
-    (void)state;
     for (int lit = 0; lit < 2; ++lit) {
         struct scene *scene = lit ? floor_scene(eye_height)
                                   : dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
@@ -419,9 +412,8 @@ static uint32_t lit_pixels(double offset, uint32_t ulps)
 
 /* S2 of the catalogue of hard cases. From 28 ulp on no light gets between, by the sum of the bounds
    in hard_gap_test.c, which looks for the narrowest gap; at 1 ulp, and below the floor, it does. */
-static void narrow_gaps_stay_dark(void **state)
+TEST(narrow_gaps_stay_dark)
 {
-    (void)state;
     static const double offsets[] = {0.0, 1e3, 1e5};
     for (int i = 0; i < 3; ++i) {
         uint32_t touching = lit_pixels(offsets[i], 1), narrow = lit_pixels(offsets[i], 28);
@@ -434,16 +426,5 @@ static void narrow_gaps_stay_dark(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(textures_pattern_shadows),
-        cmocka_unit_test(bodies_absorb_along_the_way),
-        cmocka_unit_test(knobs_make_shadows_opaque),
-        cmocka_unit_test(coarse_balls_are_shaded_like_fine_ones),
-        cmocka_unit_test(flat_meshes_do_not_change),
-        cmocka_unit_test(closed_rooms_stay_dark),
-        cmocka_unit_test(narrow_gaps_stay_dark),
-        cmocka_unit_test(catchers_show_shadows_alone),
-        cmocka_unit_test(cut_walks_through_sheets_are_reported),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

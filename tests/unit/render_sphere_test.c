@@ -3,6 +3,7 @@
 #include "picture_fixture.h"
 #include "ray_fixture.h"
 #include "sphere_fixture.h"
+#include "unit.h"
 
 /* ---- Hits ---- */
 
@@ -25,9 +26,8 @@ static void check_twin(struct scene *scene, const struct accel_params *params, c
     fixture_close(&f);
 }
 
-static void spheres_equal_twin(void **state)
+TEST(spheres_equal_twin)
 {
-    (void)state;
     random_state = 11;
     struct scene *scene = scene_begin(&fixture_log, "spheres");
     scene_put(scene, scattered_spheres(300, 1.0, 0.3), NULL);
@@ -42,9 +42,8 @@ static void spheres_equal_twin(void **state)
 }
 
 /* Triangles in clipped trees among them. */
-static void mixed_scene_equals_twin(void **state)
+TEST(mixed_scene_equals_twin)
 {
-    (void)state;
     random_state = 12;
     const struct accel_params spatial = {.mesh = {.builder = BVH_SPATIAL}};
     struct scene *scene = scene_begin(&fixture_log, "spheres");
@@ -120,9 +119,8 @@ static const whit_renderer_params small = {.width = 64, .height = 48, .depth = 5
    of the checker cross some 12 times the 64 columns, a hundredth of these makes 8. All others are
    off by what 8e-5 changes in texture coordinates, times the slope of bilinear texels (64 of up to
    0.8 in 2 pi: 6e-4), or in a normal (smooth ones: less), which glass multiplies by some 10. */
-static void balls_look_like_fine_triangles(void **state)
+TEST(balls_look_like_fine_triangles)
 {
-    (void)state;
     static const char *const names[LOOK_COUNT] = {"texture", "mask", "bump", "glass"};
     for (int look = 0; look < LOOK_COUNT; ++look) {
         bool stretched = look != LOOK_TEXTURE;
@@ -150,9 +148,8 @@ static void balls_look_like_fine_triangles(void **state)
 }
 
 /* Light through a ball of glass is filtered where it enters and where it leaves. */
-static void glass_filters_light_twice(void **state)
+TEST(glass_filters_light_twice)
 {
-    (void)state;
     for (int balls = 0; balls < 2; ++balls) {
         struct scene *scene = floor_scene(2);
         struct scene_material glass = matte(0, 0, 0);
@@ -195,9 +192,8 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
     image_finish(&image);
 }
 
-static void one_sided_leaves_are_not_seen_from_behind(void **state)
+TEST(one_sided_leaves_are_not_seen_from_behind)
 {
-    (void)state;
     for (int how = 0; how < 8; ++how) {
         float seen[3], shadow;
         bool behind = (how & ONE_SIDED_BEHIND) != 0;
@@ -215,9 +211,8 @@ static void one_sided_leaves_are_not_seen_from_behind(void **state)
 }
 
 /* The near side is its outside; through it one would see the far one. */
-static void one_sided_balls_hide_their_inside(void **state)
+TEST(one_sided_balls_hide_their_inside)
 {
-    (void)state;
     for (int inside = 0; inside < 2; ++inside) {
         struct scene *scene = dark_scene((double[]){0, 0, inside ? 0.5 : 4}, (double[]){0, 0, 0});
         struct scene_material m = unlit(1, 0, 0);
@@ -231,13 +226,5 @@ static void one_sided_balls_hide_their_inside(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_equal_twin),
-        cmocka_unit_test(mixed_scene_equals_twin),
-        cmocka_unit_test(balls_look_like_fine_triangles),
-        cmocka_unit_test(glass_filters_light_twice),
-        cmocka_unit_test(one_sided_leaves_are_not_seen_from_behind),
-        cmocka_unit_test(one_sided_balls_hide_their_inside),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }

@@ -1,5 +1,6 @@
 /* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
 #include "ray_fixture.h"
+#include "unit.h"
 
 enum { RAYS = 20000 };
 
@@ -90,9 +91,8 @@ static struct scene *scene_of(struct scene_mesh mesh)
     return scene;
 }
 
-static void meshes_equal_twin(void **state)
+TEST(meshes_equal_twin)
 {
-    (void)state;
     check_scene(scene_of(mesh_sphere(1.0, 40, 20)), "sphere");
     check_scene(scene_of(mesh_box(2.0, 1.0, 3.0)), "box");
     check_scene(scene_of(mesh_terrain(10.0, 2.0, 24, 3)), "terrain");
@@ -112,9 +112,8 @@ static struct scene *forty_rings(void)
     return scene;
 }
 
-static void instances_equal_twin(void **state)
+TEST(instances_equal_twin)
 {
-    (void)state;
     struct scene *scene = forty_rings();
     scene_put_again(scene, 0, NULL);
     scene_put_again(scene, 0, NULL); /* the same place twice: ties between instances */
@@ -199,9 +198,8 @@ static void check_packets(struct scene *scene, const struct accel_params *params
     fixture_close(&f);
 }
 
-static void packets_equal_twin(void **state)
+TEST(packets_equal_twin)
 {
-    (void)state;
     check_packets(scene_of(mesh_torus(1.0, 0.45, 60, 30)), NULL, "torus");
     check_packets(integer_ring(), NULL, "ring of integers");
     const struct accel_params flat = {.stack_floor = 32, .flatten = true};
@@ -259,9 +257,8 @@ static void check_ends(const struct fixture *f, struct gpu_ray *rays, uint32_t c
     free(hits);
 }
 
-static void integers_equal_twin(void **state)
+TEST(integers_equal_twin)
 {
-    (void)state;
     const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
     for (int l = 0; l < 2; ++l) {
         struct fixture f = open_at(integer_ring(), levels[l]);
@@ -304,16 +301,14 @@ static void check_degenerate_rays(uint32_t numerics)
     fixture_close(&f);
 }
 
-static void degenerate_rays_miss(void **state)
+TEST(degenerate_rays_miss)
 {
-    (void)state;
     check_degenerate_rays(NUMERICS_WATERTIGHT);
     check_degenerate_rays(NUMERICS_EXACT);
 }
 
-static void empty_scene_misses(void **state)
+TEST(empty_scene_misses)
 {
-    (void)state;
     struct fixture f = fixture_open(scene_begin(&fixture_log, "empty"), NULL, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
@@ -324,9 +319,8 @@ static void empty_scene_misses(void **state)
 
 /* Slivers along one diagonal, layer on layer: a ray beside the diagonal meets every box and no
    triangle. That is more loop turns than lavapipe grants; the kernel must say so. */
-static void cut_traversals_are_reported(void **state)
+TEST(cut_traversals_are_reported)
 {
-    (void)state;
     enum { COUNT = 70000 };
     float(*corners)[9] = array_alloc(COUNT, sizeof *corners);
     assert_non_null(corners);
@@ -360,11 +354,5 @@ static void cut_traversals_are_reported(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(meshes_equal_twin),           cmocka_unit_test(instances_equal_twin),
-        cmocka_unit_test(packets_equal_twin),          cmocka_unit_test(integers_equal_twin),
-        cmocka_unit_test(degenerate_rays_miss),        cmocka_unit_test(empty_scene_misses),
-        cmocka_unit_test(cut_traversals_are_reported),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
+    return fixture_end(unit_run(NULL, NULL));
 }
