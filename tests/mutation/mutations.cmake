@@ -71,7 +71,7 @@ change(host/scene/effects.c scan_optics
   [[\([^()]*SCENE_MODEL_PHONG && any\([^()]*specular\)\)]] [[false]])
 
 mutation(effects_not_left_out cli_effects RED "less is another picture" TARGET whit_changed)
-change(host/api/renderer_api.c switch_effect [[: ([^ ;]+)effects_removed]] [[: \1effects_added]])
+change(host/settings/effects.c switch_effect [[: ([^ ;]+)effects_removed\) \|=]] [[: \1effects_added) |=]])
 
 # ---- Loops that end early ----
 
