@@ -20,7 +20,7 @@ TEST(same_bytes_for_any_thread_count)
 {
     enum { SOUPS = 5 };
     const char *few = getenv("WHIT_TEST_TRIANGLES");
-    const uint32_t count = few ? (uint32_t)atoi(few) : cases_of(20000);
+    const uint32_t count = few ? (uint32_t)atoi(few) : cases_of(12000);
     random_state = 7;
     /* The first one has so many nodes that several threads complete its trees; in the grid, planes
        cost the same but for rounding. */
