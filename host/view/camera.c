@@ -7,7 +7,6 @@
 #include "base/vec.h"
 #include "settings/settings.h"
 
-static const double FOV_DEFAULT = 45.0;
 static const double STEEPEST = 0.998; /* cosine between a look and up */
 
 static bool normalize(double a[3])
@@ -142,13 +141,6 @@ void camera_show(struct view_camera *camera, const double lo[3], const double hi
             camera->target[i] = 0.0;
         camera->eye[i] = camera->target[i] - distance * f.forward[i];
     }
-}
-
-void camera_fit(struct view_camera *camera, const double lo[3], const double hi[3], double aspect)
-{
-    *camera = (struct view_camera){
-        .eye = {1.0, 0.7, 1.6}, .up = {0.0, 1.0, 0.0}, .fov_y_degrees = FOV_DEFAULT};
-    camera_show(camera, lo, hi, aspect);
 }
 
 void camera_along(struct view_camera *camera, int axis, int from)

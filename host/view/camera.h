@@ -11,9 +11,8 @@ struct view_camera {
     double fov_y_degrees;
 };
 
-/* From above and aside onto the box, with all of it in the picture. An empty box: at the origin. */
-void camera_fit(struct view_camera *camera, const double lo[3], const double hi[3], double aspect);
-/* The same direction, another distance: so that the box is in the picture. */
+/* The same direction, onto the middle of the box, from where all of it is in the picture; an empty
+   box is one around the origin. */
 void camera_show(struct view_camera *camera, const double lo[3], const double hi[3], double aspect);
 /* Along an axis, 0..2, towards negative (`from` 1) or positive (-1), onto the same target. */
 void camera_along(struct view_camera *camera, int axis, int from);

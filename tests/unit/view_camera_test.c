@@ -73,10 +73,11 @@ TEST(all_of_a_box_is_shown)
 {
     const double lo[3] = {-3, 1, 10}, hi[3] = {9, 2, 11};
     const double aspects[] = {0.3, 1.0, 1.7, 5.0};
+    const struct view_camera aside = {.eye = {1, 0.7, 1.6}, .up = {0, 1, 0}, .fov_y_degrees = 45};
     for (int i = 0; i < 4; ++i) {
-        struct view_camera c;
+        struct view_camera c = aside;
         double height = 100.0, width = height * aspects[i];
-        camera_fit(&c, lo, hi, aspects[i]);
+        camera_show(&c, lo, hi, aspects[i]);
         for (int corner = 0; corner < 8; ++corner) {
             double p[3], line[4];
             for (int k = 0; k < 3; ++k)
@@ -87,8 +88,8 @@ TEST(all_of_a_box_is_shown)
     }
     const double nothing_lo[3] = {INFINITY, INFINITY, INFINITY};
     const double nothing_hi[3] = {-INFINITY, -INFINITY, -INFINITY};
-    struct view_camera c;
-    camera_fit(&c, nothing_lo, nothing_hi, 1.0);
+    struct view_camera c = aside;
+    camera_show(&c, nothing_lo, nothing_hi, 1.0);
     for (int k = 0; k < 3; ++k)
         assert_true(isfinite(c.eye[k]) && isfinite(c.target[k]));
 }
