@@ -127,10 +127,12 @@ whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
         result = renderer_set_view(renderer->renderer, params);
-    if (result == WHIT_OK) {
-        const volatile bool *cancel = renderer->params.cancel;
+    if (result == WHIT_OK) { /* what rays on the CPU go by stays */
+        const whit_renderer_params made = renderer->params;
         renderer->params = *params;
-        renderer->params.cancel = cancel;
+        renderer->params.cancel = made.cancel;
+        renderer->params.traversal = made.traversal;
+        renderer->params.numerics = made.numerics;
     }
     return result;
 }

@@ -19,6 +19,17 @@ static bool is_power_of_4(uint32_t n)
     return (n & (n - 1)) == 0 && (n & 0x55555555u) != 0;
 }
 
+/* Enumerations are not checked by C. */
+static bool is_known(const whit_renderer_params *params)
+{
+    return (uint32_t)params->traversal <= WHIT_TRAVERSAL_BASIC &&
+           (uint32_t)params->numerics <= WHIT_NUMERICS_EXACT &&
+           (uint32_t)params->shadows <= WHIT_SHADOWS_NONE &&
+           (uint32_t)params->load_path <= WHIT_LOAD_TEXEL &&
+           (uint32_t)params->packets <= WHIT_PACKETS_OFF &&
+           (uint32_t)params->classes <= WHIT_CLASSES_MANY;
+}
+
 whit_result params_check(const struct log *log, whit_renderer_params *params)
 {
     if (params->width == 0 && params->height == 0) {
@@ -30,6 +41,10 @@ whit_result params_check(const struct log *log, whit_renderer_params *params)
     if (params->width == 0 || params->height == 0 || params->width > 65535 ||
         params->height > 65535) {
         log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
+        return WHIT_ERROR_USAGE;
+    }
+    if (!is_known(params)) {
+        log_error(log, "parameters of a picture: a value of an enumeration that there is none of");
         return WHIT_ERROR_USAGE;
     }
     uint32_t n = params->samples, first = params->first_sample;

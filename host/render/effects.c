@@ -71,6 +71,26 @@ bool render_effect_can_remove(enum scene_effect effect)
            (effect != SCENE_EFFECT_SPHERES && render_effect_can_add(effect));
 }
 
+whit_result effects_check(const struct log *log, const whit_renderer_params *params)
+{
+    for (uint32_t i = 0; i < 64; ++i) {
+        enum scene_effect effect = (enum scene_effect)i;
+        bool adds = params->effects_added >> i & 1, removes = params->effects_removed >> i & 1;
+        const char *name = i < SCENE_EFFECT_COUNT ? scene_effect_name(effect) : "";
+        if (adds && removes) {
+            log_error(log, "effects: `%s` is both added and left out", name);
+            return WHIT_ERROR_USAGE;
+        }
+        if ((adds && (!name[0] || !render_effect_can_add(effect))) ||
+            (removes && (!name[0] || !render_effect_can_remove(effect)))) {
+            log_error(log, "effects: number %u (`%s`) cannot be %s", i, name,
+                      adds ? "added" : "left out");
+            return WHIT_ERROR_USAGE;
+        }
+    }
+    return WHIT_OK;
+}
+
 void effects_choose(const whit_renderer_params *params, struct scene_effects *effects)
 {
     uint64_t added = params->effects_added;

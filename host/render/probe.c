@@ -85,7 +85,8 @@ static int compare_records(const void *a, const void *b)
     return (keys[0] > keys[1]) - (keys[0] < keys[1]);
 }
 
-/* Names parents by their place in place of their id, which traced rays have as their light_sample. */
+/* Names parents by their place in place of their id, which traced rays have as their light_sample.
+ */
 static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t *places)
 {
     for (uint32_t i = 0; i < count; ++i) {

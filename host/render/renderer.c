@@ -64,6 +64,8 @@ whit_result renderer_init(struct renderer *renderer, const struct log *log, stru
     scene_effects_scan(renderer->scene, &renderer->effects);
     effects_choose(&renderer->params, &renderer->effects);
     whit_result result = params_check(log, &renderer->params);
+    if (result == WHIT_OK)
+        result = effects_check(log, &renderer->params);
     if (renderer->scene->pictures_dropped) {
         log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
                   renderer->scene->name);

@@ -258,7 +258,9 @@ uint32_t lights_kinds(const struct scene_pose *pose);
 uint32_t lights_samples(const struct renderer *renderer);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
-/* effects.c: what the scene calls for, as `effects` says, more and less what `params` say; what
+/* effects.c: WHIT_ERROR_USAGE, logged, for effects that cannot be added or left out. */
+WHIT_CHECK whit_result effects_check(const struct log *log, const whit_renderer_params *params);
+/* What the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */
 void effects_choose(const whit_renderer_params *params, struct scene_effects *effects);
 /* Sets the constants that effects switch. */
