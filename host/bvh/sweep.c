@@ -240,7 +240,7 @@ static void grow_small(const struct builder *builder, const struct build_output 
         list[0][i] = own[small.leaves[i]];
 }
 
-/* ---- */
+/* ---- The builder ---- */
 
 static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uint32_t count,
                                  uint32_t thread_count)

@@ -237,7 +237,7 @@ static void settle(struct walk *walk, const struct ray_setup *ray,
         settle_hit(walk);
 }
 
-/* ---- */
+/* ---- Which candidate is the hit ---- */
 
 /* Whether a candidate is met, comes before the hit so far and behind the known one: or may, unless
    both keys are known. */
