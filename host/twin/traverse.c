@@ -70,7 +70,7 @@ static uint32_t pop_ref(struct walk *walk, uint32_t base, uint32_t *top)
 }
 
 static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, float near_scale,
-                          uint32_t pair, uint32_t base, uint32_t *top)
+                              uint32_t pair, uint32_t base, uint32_t *top)
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
     float a_near, a_far, b_near, b_far;
