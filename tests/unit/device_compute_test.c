@@ -83,14 +83,20 @@ TEST_IN(kernels_go_to_the_driver_whole, NULL, specialize_again)
 {
     const uint32_t spec[] = {64, 3, 7};
     const struct pipeline_params params = affine_params(spec);
+    struct pipeline_info info;
     messages = (struct messages){0};
     cannot_specialize = true;
-    struct pipeline_info info = check_constants(spec, 5);
-    assert_false(pipeline_count(&params, &(struct pipeline_info){0}));
+    struct buffer *buffer = buffer_make(device, 4, BUFFER_STORAGE, "values");
+    struct kernel_run run = kernel_make(device, &params, &buffer);
+    pipeline_get_info(run.pipeline, &info);
+    kernel_free(&run);
+    buffer_destroy(buffer);
     assert_non_null(strstr(messages.text, "\"affine\": its kernel cannot be specialized"));
     assert_int_equal(messages.errors, 0);
     assert_false(info.specialized);
     assert_int_equal(info.bindings, 1);
+    assert_false(pipeline_count(&params, &info));
+    check_constants(spec, 5);
 }
 
 TEST(texels_equal_storage)
