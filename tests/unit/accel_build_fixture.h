@@ -52,16 +52,22 @@ static inline struct bvh soup_build(const struct soup *soup, struct bvh_params p
     return bvh;
 }
 
+/* Whether `count` bytes are the same; there may be none, and no memory then. */
+static inline bool bytes_equal(const void *a, const void *b, size_t count)
+{
+    return count == 0 || memcmp(a, b, count) == 0;
+}
+
 static inline bool trees_equal(const struct bvh *a, const struct bvh *b)
 {
     return a->node_count == b->node_count && a->depth == b->depth && a->sah_cost == b->sah_cost &&
            a->reference_count == b->reference_count &&
-           memcmp(a->nodes, b->nodes, a->node_count * sizeof *a->nodes) == 0;
+           bytes_equal(a->nodes, b->nodes, a->node_count * sizeof *a->nodes);
 }
 
 static inline bool orders_equal(const struct bvh *a, const struct bvh *b)
 {
-    return memcmp(a->order, b->order, a->reference_count * sizeof *a->order) == 0;
+    return bytes_equal(a->order, b->order, a->reference_count * sizeof *a->order);
 }
 
 static inline double half_area(const float lo[3], const float hi[3])
