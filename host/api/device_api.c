@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "api/handles.h"
-#include "base/child.h"
 #include "base/threads.h"
 
 static void describe(const struct device_info *from, whit_device_info *to)
@@ -173,13 +172,10 @@ struct whit_device_opening {
     whit_result result;
 };
 
-/* Loading drivers takes locks that a child forked meanwhile would never see released. */
 static void open_in_thread(void *context)
 {
     whit_device_opening *opening = context;
-    child_hold_forks();
     opening->result = open_device(&opening->params, &opening->log, &opening->device);
-    child_release_forks();
 }
 
 whit_device_opening *whit_device_open_begin(const whit_device_params *params, const whit_log *log)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/child.h"
 #include "base/file.h"
 #include "base/threads.h"
 
@@ -279,6 +280,8 @@ whit_result device_create(const struct log *log, const struct device_params *par
 
     device->surface_source = params ? params->surface : NULL;
 
+    /* Loading drivers takes locks that a child forked meanwhile would find held for ever. */
+    child_hold_forks();
     whit_result result = instance_create(device);
     if (result == WHIT_OK)
         result = instance_make_surface(device);
@@ -291,6 +294,7 @@ whit_result device_create(const struct log *log, const struct device_params *par
         result = logical_create(device);
     if (result == WHIT_OK)
         result = cache_open(device);
+    child_release_forks();
     if (result != WHIT_OK) {
         device_destroy(device);
         return result;
@@ -305,6 +309,7 @@ void device_destroy(struct device *device)
 {
     if (!device)
         return;
+    child_hold_forks(); /* unloading takes the locks that loading takes */
     if (device->vk) {
         commands_destroy(device->transfer);
         buffer_destroy(device->staging);
@@ -312,6 +317,7 @@ void device_destroy(struct device *device)
         vkDestroyDevice(device->vk, NULL);
     }
     instance_destroy(device);
+    child_release_forks();
     free(device);
 }
 

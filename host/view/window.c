@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/child.h"
 
 enum { EVENTS_HELD = 256 };
 
@@ -226,7 +227,9 @@ whit_result window_create(const struct log *log, const struct window_params *par
     window->log = *log;
     the_window = window;
     glfwSetErrorCallback(on_error);
+    child_hold_forks(); /* it loads libraries: see child.h */
     whit_result result = make_window(window, params);
+    child_release_forks();
     if (result != WHIT_OK) {
         window_destroy(window);
         return result;
