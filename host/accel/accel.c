@@ -242,8 +242,8 @@ static void creation_finish(struct creation *creation)
     free(creation->spans);
 }
 
-/* What a ray does at most: an iteration for each record, two more for each leaf and three for each
- * instance. */
+/* Counts the most iterations that the traversal of one ray takes without trees: one for each
+   record, two more for each leaf and three for each instance. */
 static whit_result bare_check(struct accel *accel)
 {
     const struct scene *scene = accel->scene;

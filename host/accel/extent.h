@@ -56,7 +56,8 @@ static inline uint32_t accel_node_ref(const struct gpu_bvh_node *node)
     return bvh_count(node) << BVH_COUNT_SHIFT | node->first;
 }
 
-/* What a tree of its own says of its mesh: among others both have yet to find their place. */
+/* The record of a mesh with a tree of its own. Its first node and first record are 0: they are set
+   when the arrays of all meshes are put together. */
 static inline struct accel_mesh accel_mesh_over(const struct bvh *tree)
 {
     return (struct accel_mesh){

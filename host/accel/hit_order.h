@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Where a ray meets a primitive of an instance. */
+/* A hit, as far as its order is concerned: t is the ray's parameter, in lengths of its direction.
+ */
 struct hit_place {
     double t;
     uint32_t instance, primitive;

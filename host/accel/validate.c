@@ -406,7 +406,8 @@ static bool is_placed(const struct gpu_instance *in, const float *p, const float
     return placed;
 }
 
-/* Of one tree for all; the record names a triangle. */
+/* Whether a record of the tree over all instances is its triangle or sphere, placed in the world.
+ */
 static bool record_is_placed(const struct accel *accel, const struct gpu_triangle *t)
 {
     const struct gpu_instance *in = &accel->instances[t->flags >> TRIANGLE_INSTANCE_SHIFT];

@@ -4,7 +4,8 @@
 
 #include "app/commands.h"
 
-/* What is painted of costs means nothing for pictures of colours. */
+/* Whether the JSON of a command tells a setting: those of heat maps (SETTING_PAINT) mean nothing
+   for pictures of colours. */
 static bool is_described(const struct setting *row, const struct settings *settings,
                          enum settings_command command)
 {

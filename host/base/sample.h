@@ -10,7 +10,8 @@ void sample_sort(double *values, uint32_t count);
    when there are none. */
 double sample_quantile(const double *sorted, uint32_t count, double share);
 
-/* What is printed of repeated runs. All 0 when there are none. */
+/* The summary that is printed of repeated runs, in the unit of their values. All 0 when there are
+   none. */
 struct sample_summary {
     double median, low, high, spread; /* low, high: quartiles; spread: half of what is between */
     double min, max;

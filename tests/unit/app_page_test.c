@@ -139,10 +139,7 @@ TEST_IN(everything_is_well_formed, folder_begin, folder_end)
     if (path)
         assert_int_equal(page_save(&page, path, NULL), WHIT_OK);
     page_finish(&page);
-    if (system("command -v xmllint >/dev/null") != 0) {
-        print_message("skipped: no xmllint (Debian: libxml2-utils)\n");
-        skip();
-    }
+    /* Debian: libxml2-utils. Without it the check fails: nothing else reads the page. */
     snprintf(command, sizeof command, "xmllint --noout --nonet %s", in_folder("page.html"));
     assert_int_equal(system(command), 0);
 }

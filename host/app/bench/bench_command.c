@@ -16,7 +16,8 @@ static int list_benches(void)
     return cli_finish_stdout(EXIT_FINE);
 }
 
-/* Where this program and the other one are: built beside each other, or installed. */
+/* Finds the paths of this program and of whit-bench, which lies beside it in a build folder and in
+   ../libexec/whit where both are installed. */
 static bool find_programs(char whit[2048], char bench[2200])
 {
     static const char *const places[] = {"whit-bench", "../libexec/whit/whit-bench"};

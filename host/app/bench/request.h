@@ -1,5 +1,5 @@
-/* What `whit bench` is asked for. The program whit-bench (tools/bench/), which does the work, reads
-   the same arguments by the same table. */
+/* The arguments of `whit bench`: whit checks them, and the program whit-bench (tools/bench/), which
+   does the work, reads them once more by the same table. */
 #ifndef APP_BENCH_REQUEST_H
 #define APP_BENCH_REQUEST_H
 
