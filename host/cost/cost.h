@@ -111,11 +111,13 @@ struct cost_row {
 enum cost_goal_kind { COST_UNDER, COST_WITHIN }; /* an error, a time in ms */
 enum cost_metric { COST_RMSE, COST_FLIP };
 const char *cost_metric_name(enum cost_metric metric); /* "rmse" */
-enum { COST_GOALS_MAX = 2, COST_CHOICE_KNOBS = 32 };
+enum { COST_GOALS_MAX = 5, COST_CHOICE_KNOBS = 32 };
 struct cost_goal {
     enum cost_goal_kind kind;
     enum cost_metric metric;
     double limit;
+    double of_usual; /* > 0: the limit is about this many times the time of the usual picture, and
+                        nobody is told where it cannot be kept */
 };
 struct cost_answer {
     struct cost_goal goal;
@@ -160,6 +162,7 @@ struct cost_request {
     uint64_t knobs;       /* bits of knob_table; 0: all */
     double seconds;       /* that it may take, roughly */
     uint32_t samples_max; /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
+    uint32_t judged_min;  /* the judged picture is no narrower, where the whole one is not */
     uint32_t rays;        /* of each set; 0: none */
     uint32_t goal_count;
     struct cost_goal goals[COST_GOALS_MAX]; /* each gets a row that measures the choice */
@@ -209,6 +212,23 @@ void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_
 enum cost_use { COST_USE_TRADE, COST_USE_NONE, COST_USE_FREE };
 /* NONE: neither cheaper nor more right; FREE: cheaper and as right (within 1 %). */
 enum cost_use cost_use_of(const struct cost_report *report, const struct cost_row *row);
+
+/* ---- What a report says first (findings.c) ---- */
+
+/* A sentence without its full stop, and the figures of the report that it rounds. */
+enum { COST_FINDINGS_MAX = 5, COST_FINDING_VALUES = 4 };
+struct cost_finding {
+    char text[192];
+    uint32_t value_count;
+    double values[COST_FINDING_VALUES];
+};
+/* What more time buys, bounces, exact hits, what is free, and what takes most of the time: those of
+   them that the measured rows tell. Gives their number. */
+uint32_t cost_findings(const struct cost_report *report,
+                       struct cost_finding findings[COST_FINDINGS_MAX]);
+/* The first ones as one sentence. */
+enum { COST_SENTENCE_BYTES = 1024 };
+void cost_sentence(const struct cost_report *report, char text[COST_SENTENCE_BYTES]);
 
 /* Marks the Pareto set by the report's clock and metric. */
 void cost_mark_best(struct cost_report *report, enum cost_metric metric);

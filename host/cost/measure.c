@@ -8,6 +8,8 @@
 enum { SMALL_SHRINK = 4, SMALL_SIDE = 16, PROBES = 6 };
 /* Shares of the requested time: for references and their judging; for the usual settings. */
 static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
+/* Four times the samples take a little more than four times as long. */
+static const double OF_USUAL_ROOM = 1.2;
 
 whit_result measure_still_wanted(const struct measure *measure)
 {
@@ -280,6 +282,9 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
     struct cost_report *report = measure->report;
     struct cost_answer *answer = &report->answers[report->answer_count++];
     struct cost_goal aim = *goal;
+    if (goal->of_usual > 0.0)
+        aim.limit = OF_USUAL_ROOM * goal->of_usual * report->usual_ms_max;
+    const struct cost_goal wanted = aim;
     whit_result result = WHIT_OK;
     for (int i = 0; result == WHIT_OK && i < TRIES; ++i) {
         const struct cost_choice choice = cost_choose(report, &aim);
@@ -287,7 +292,7 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
             --report->row_count; /* of the try before */
         if (!choice.found && i > 0)
             break;
-        *answer = (struct cost_answer){.goal = *goal,
+        *answer = (struct cost_answer){.goal = wanted,
                                        .found = choice.found,
                                        .row = WHIT_NONE,
                                        .ms = choice.ms,
@@ -319,7 +324,7 @@ whit_result cost_measure(const struct cost_request *request, struct cost_report 
     report->complete = result == WHIT_OK;
     measure_close(&measure);
     report->spent_ms = whit_clock_ms() - measure.start_ms;
-    cost_mark_best(report, COST_RMSE);
+    cost_mark_best(report, COST_FLIP);
     if ((result == WHIT_OK || result == WHIT_ERROR_CANCELLED) && report->rows[0].measured)
         *out = report;
     else

@@ -1,5 +1,6 @@
 /* Pictures of the reference in double, made once and kept. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,7 +142,8 @@ static bool fits(const struct measure *measure, double pixel_ms, uint32_t shrink
     double width = report->width / shrink, height = report->height / shrink;
     double all_ms = pixel_ms * (report->reference_samples + 1) +
                     measure->usual_pixel_ms * pictures_to_judge(report);
-    return all_ms * width * height <= seconds * 1e3 || width / 2.0 < SIDE_MIN ||
+    double least = fmax(SIDE_MIN, measure->request->judged_min);
+    return all_ms * width * height <= seconds * 1e3 || width / 2.0 < least ||
            height / 2.0 < SIDE_MIN;
 }
 

@@ -104,6 +104,9 @@ static void draw_row(struct view *view, const struct cost_report *report,
 static void draw_table(struct view *view, const struct cost_report *report)
 {
     static const char *const columns[] = {"knob", "setting", "a picture", "FLIP", "best"};
+    char sentence[COST_SENTENCE_BYTES];
+    cost_sentence(report, sentence);
+    ui_paragraph(sentence);
     if (ui_table_begin("prices", 5)) {
         ui_table_header(columns, 5);
         for (uint32_t i = 0; i < report->row_count; ++i)

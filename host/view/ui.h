@@ -79,6 +79,7 @@ void ui_panel_end(void);
 /* What these say is shown by whit_text_show, and so is one line; labels and titles are whit's own.
  */
 void ui_text(const char *format, ...) WHIT_PRINTF(1, 2);
+void ui_paragraph(const char *text); /* wrapped at the end of the window */
 void ui_text_dim(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_text_color(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
 /* On the line of what stands before where that has room for it, else on the next one. */

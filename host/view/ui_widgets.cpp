@@ -32,6 +32,13 @@ void ui_text(const char *format, ...)
     va_end(args);
 }
 
+void ui_paragraph(const char *text)
+{
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(shown(text));
+    ImGui::PopTextWrapPos();
+}
+
 void ui_text_dim(const char *format, ...)
 {
     va_list args;

@@ -31,6 +31,15 @@ expect 0 "a page" cost "$CUBE" --size 48x36 --quick --rays 0 --spend 1 --referen
     --quiet --html "$page"
 look "$page"
 check "it is drawn" test -s "$OUT/page.png"
+timeout 50 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$OUT/browser" --dump-dom \
+    "file://$page" >"$OUT/dom" 2>/dev/null
+count() {
+    grep -o "$1" "$OUT/dom" | wc -l
+}
+check "by its script: four crops" test "$(count '<div class="crop"')" -eq 4
+check "a point for each setting that the reference can judge" test "$(count '<circle ')" -ge 2
+check "a table of the usual settings and for each knob" test "$(count '<table>')" -ge 3
+check "the sentence" grep -q '<p id="sentence">[A-Z0-9].*\.</p>' "$OUT/dom"
 check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
 check "no request" test "$(wc -l <"$OUT/requests")" -eq 0
 

@@ -46,7 +46,8 @@ for scene in whitted cube; do
         check "$scene: it is below ($(head -n 1 "$OUT/stdout"))" test "$status" -eq 0
         for i in 1 2; do
             expect 0 "$scene: --under $error, run $i" cost "$SCENES/$scene.json" --size 96x72 --quick \
-                --rays 0 --spend 5 --reference-samples 64 --knobs aa,depth,bailout --under "$error" --quiet
+                --rays 0 --spend 5 --reference-samples 64 --knobs aa,depth,bailout --metric rmse \
+                --under "$error" --quiet
             check "kept" grep -q "^Cheapest with rmse up to $error: .*: kept" "$OUT/stdout"
         done
     done

@@ -5,7 +5,6 @@
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
-needs xmllint
 . "$(dirname "$0")/cost_common.sh"
 RIGHT=$WHIT
 J=$OUT/files/cost.json
@@ -36,14 +35,31 @@ check "prices have intervals" jq -e 'all(.rows[].price; (.cpu // .wall).ratio as
 WHIT=$WRONG
 shows "a scene by known clocks" "^usual  " cost "$GLASS" $small --reference-samples 16 \
     --knobs aa,depth,light-samples --csv "$C" --html "$OUT/files/cost.html" \
-    --markdown "$OUT/files/cost.md" --json "$J" --under 0.03 --within 1e6
+    --markdown "$OUT/files/cost.md" --json "$J" --metric rmse --under 0.03 --within 1e6
 check "what is not here is named" grep -q "^Not here: .*light-samples 1" "$OUT/stdout"
 check "--under is kept" grep -q "^Cheapest with rmse up to 0.03: .*: kept" "$OUT/stdout"
-check "the page has plots and pictures" \
-    test "$(grep -c '<svg\|data:image/png' "$OUT/files/cost.html")" -ge 4
+P=$OUT/files/page.json
+sed -n 's|^<script id="report" type="application/json">\(.*\)</script>$|\1|p' "$OUT/files/cost.html" >"$P"
+check "the page holds the JSON and pictures of its own" jq -e --slurpfile json "$J" '.page as $page |
+    ($json[0] == del(.page)) and ($page.reference | startswith("data:image/png;base64,iVBOR")) and
+    all($page.pictures[0][]; startswith("data:image/png;base64,iVBOR")) and ($page.method | length) > 1 and
+    ($page.crop | .x + .width <= 48 and .y + .height <= 36)' "$P"
+# By these clocks nothing but samples takes time.
+check "it shows what 4 and 16 times the time bring" jq -e '. as $all |
+    [.answers[] | select(.of_usual)] | map(.of_usual) == [0.25, 4, 16] and
+    (.[0].found | not) and all(.[1:][]; .found and $all.rows[.row].measured) and
+    .[1].predicted_error > .[2].predicted_error' "$P"
 check "and asks for nothing from elsewhere" \
-    test "$(grep -c 'src="[^d]\|href=\|<script\|url(' "$OUT/files/cost.html")" -eq 0
-check "its elements are closed" xmllint --noout "$OUT/files/cost.html"
+    test "$(grep -c 'src="[^d]\|href=\|<script src\|url(' "$OUT/files/cost.html")" -eq 0
+# A number in a sentence is the rounded figure beside it, or names a setting.
+numbers='. as $all | [.findings[] | . as $finding | .text | scan("[0-9]+(?:\\.[0-9]+)?") | . as $text |
+    (if contains(".") then -(split(".")[1] | length) else 0 end) as $decimals |
+    select(([$finding.values[], ($all.rows[].setting | tonumber? // empty)] |
+        any((. - ($text | tonumber) | fabs) <= 0.501 * pow(10; $decimals))) | not)] '
+check "sentences have the figures of the report" jq -e ".sentence as \$sentence | (.findings | length) > 1 and
+    all(.findings[:3][]; .text[1:] as \$text | \$sentence | contains(\$text)) and ($numbers == [])" "$J"
+check "and another number is seen" jq -e "(.findings[0].values) = [] | $numbers != []" "$J"
+check "the terminal begins with it" grep -qF "$(jq -r .sentence "$J")" "$OUT/stdout"
 check "the Markdown is a table" grep -q "^| usual | " "$OUT/files/cost.md"
 check "4 samples take 4 times as long" test "$(value "$C" aa 4 ratio)" = 4
 check "that is more" test "$(value "$C" aa 4 verdict)" = 1
@@ -150,7 +166,7 @@ refuse 2 "no scene" "a scene is missing" cost
 refuse 2 "no such scene" "missing.json" cost "$OUT/missing.json" --quiet
 refuse 2 "no such knob" "did you mean .fresnel." cost "$CUBE" --knobs fresnal
 refuse 2 "no error at all" "a number from" cost "$CUBE" --under 0
-refuse 2 "no such metric" "rmse, flip" cost "$CUBE" --metric psnr
+refuse 2 "no such metric" "flip, rmse" cost "$CUBE" --metric psnr
 refuse 2 "too many scenes" "too many" cost "$CUBE" "$CUBE"
 refuse 2 "one file to compare" "two files" cost --compare "$CUBE"
 refuse 2 "no report" "no report of" cost --compare "$CUBE" "$CUBE"

@@ -8,13 +8,14 @@
 
 static void choose(const struct cost_report *report)
 {
-    static const struct cost_goal goals[] = {{COST_UNDER, COST_RMSE, 0.01},
-                                             {COST_WITHIN, COST_FLIP, 20.0}};
-    char text[512];
+    static const struct cost_goal goals[] = {{COST_UNDER, COST_RMSE, 0.01, 0.0},
+                                             {COST_WITHIN, COST_FLIP, 20.0, 0.0}};
+    char text[COST_SENTENCE_BYTES];
     for (size_t i = 0; i < sizeof goals / sizeof *goals; i++) {
         struct cost_choice choice = cost_choose(report, &goals[i]);
         cost_choice_text(&choice, text, sizeof text);
     }
+    cost_sentence(report, text);
 }
 
 static void run(const uint8_t *data, size_t size_bytes)

@@ -1,7 +1,8 @@
 /* How far each figure is from what it must reach, one below the other on a logarithmic axis. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
-#include "app/plot.h"
 #include "bench/table.h"
 
 static const double WIDTH = 760.0, LEFT = 230.0, RIGHT = 150.0, TOP = 34.0, ROW = 22.0,
@@ -28,46 +29,48 @@ static void include(struct axis *axis, double share)
     axis->high = fmax(axis->high, share);
 }
 
-static void put_text(struct page *page, double x, double y, const char *anchor, const char *text)
+/* Names of models and scenes are those of files. */
+static void put_text(FILE *to, double x, double y, const char *anchor, const char *text)
 {
-    page_markup(page, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);
-    page_text(page, text);
-    page_markup(page, "</text>\n");
+    fprintf(to, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);
+    for (text = cli_shown(text); *text; ++text) {
+        if (*text == '<' || *text == '&')
+            fprintf(to, "&#%d;", *text);
+        else
+            fputc(*text, to);
+    }
+    fputs("</text>\n", to);
 }
 
-static void put_axis(struct page *page, const struct axis *axis, double bottom)
+static void put_axis(FILE *to, const struct axis *axis, double bottom)
 {
-    double ticks[PLOT_TICKS_MAX];
-    uint32_t count = plot_ticks(axis->low, axis->high, true, 6, ticks);
-    for (uint32_t i = 0; i < count; ++i) {
+    for (double tick = exp2(ceil(log2(axis->low))); tick <= axis->high; tick *= 2.0) {
         char text[32];
-        snprintf(text, sizeof text, "%.3g", ticks[i]);
-        page_markup(page, "<path class=\"grid\" d=\"M%.1f %.1fV%.1f\"/>\n", place(axis, ticks[i]),
-                    TOP, bottom);
-        put_text(page, place(axis, ticks[i]), bottom + 16.0, "middle", text);
-    }
-    page_markup(page, "<path class=\"must\" d=\"M%.1f %.1fV%.1f\"/>\n", place(axis, 1.0), TOP,
+        snprintf(text, sizeof text, "%.3g", tick);
+        fprintf(to, "<path class=\"grid\" d=\"M%.1f %.1fV%.1f\"/>\n", place(axis, tick), TOP,
                 bottom);
-    put_text(page, place(axis, 1.0), bottom + 34.0, "middle",
+        put_text(to, place(axis, tick), bottom + 16.0, "middle", text);
+    }
+    fprintf(to, "<path class=\"must\" d=\"M%.1f %.1fV%.1f\"/>\n", place(axis, 1.0), TOP, bottom);
+    put_text(to, place(axis, 1.0), bottom + 34.0, "middle",
              "1: what it must reach; to the right is better; ring: the aim");
 }
 
-static void put_figure(struct page *page, const struct axis *axis, const struct figure *figure,
-                       double y)
+static void put_figure(FILE *to, const struct axis *axis, const struct figure *figure, double y)
 {
     char text[TABLE_CELL];
     double x = place(axis, share_of(&figure->goal, figure->value)), from = place(axis, 1.0);
-    put_text(page, LEFT - 8.0, y + 4.5, "end", figure->name);
-    page_markup(page, "<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"10\"/>\n",
-                x < from ? "far" : "good", fmin(x, from), y - 5.0, fmax(fabs(x - from), 1.0));
-    page_markup(page, "<circle class=\"aim\" cx=\"%.1f\" cy=\"%.1f\" r=\"4\"/>\n",
-                place(axis, share_of(&figure->goal, figure->goal.aim)), y);
+    put_text(to, LEFT - 8.0, y + 4.5, "end", figure->name);
+    fprintf(to, "<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"10\"/>\n",
+            x < from ? "far" : "good", fmin(x, from), y - 5.0, fmax(fabs(x - from), 1.0));
+    fprintf(to, "<circle class=\"aim\" cx=\"%.1f\" cy=\"%.1f\" r=\"4\"/>\n",
+            place(axis, share_of(&figure->goal, figure->goal.aim)), y);
     snprintf(text, sizeof text, "%.3g of %.3g%s%s", figure->value, figure->goal.must,
              figure->unit[0] ? " " : "", figure->unit);
-    put_text(page, WIDTH - RIGHT + 10.0, y + 4.5, "start", text);
+    put_text(to, WIDTH - RIGHT + 10.0, y + 4.5, "start", text);
 }
 
-static void put_drawing(struct page *page, const struct table *table, const char *title)
+static void put_drawing(FILE *to, const struct table *table, const char *title)
 {
     struct axis axis = {0.5, 2.0};
     for (uint32_t i = 0; i < table->figure_count; ++i) {
@@ -75,27 +78,35 @@ static void put_drawing(struct page *page, const struct table *table, const char
         include(&axis, share_of(&figure->goal, figure->value));
         include(&axis, share_of(&figure->goal, figure->goal.aim));
     }
-    plot_widen(&axis.low, &axis.high, true);
+    include(&axis, axis.low / 1.1);
+    include(&axis, axis.high * 1.1);
     double bottom = TOP + ROW * (table->figure_count + 1);
-    page_markup(page,
-                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\">\n<style>"
-                "text{font:13px sans-serif;fill:#222}.grid{stroke:#ddd}.must{stroke:#222}"
-                ".far{fill:#d55e00}.good{fill:#0072b2}.aim{fill:none;stroke:#222}</style>\n"
-                "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
-                WIDTH, bottom + BOTTOM);
-    put_text(page, 8.0, 20.0, "start", title);
-    put_axis(page, &axis, bottom);
+    fprintf(to,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\">\n<style>"
+            "text{font:13px sans-serif;fill:#222}.grid{stroke:#ddd}.must{stroke:#222}"
+            ".far{fill:#d55e00}.good{fill:#0072b2}.aim{fill:none;stroke:#222}</style>\n"
+            "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+            WIDTH, bottom + BOTTOM);
+    put_text(to, 8.0, 20.0, "start", title);
+    put_axis(to, &axis, bottom);
     for (uint32_t i = 0; i < table->figure_count; ++i)
-        put_figure(page, &axis, &table->figures[i], TOP + ROW * (i + 1));
-    page_markup(page, "</svg>\n");
+        put_figure(to, &axis, &table->figures[i], TOP + ROW * (i + 1));
+    fprintf(to, "</svg>\n");
 }
 
 whit_result table_plot(const struct table *table, const char *title, const char *path)
 {
-    struct page page = {0};
-    put_drawing(&page, table, title);
+    char *text = NULL;
+    size_t bytes;
+    FILE *to = open_memstream(&text, &bytes);
+    whit_result result = WHIT_ERROR_MEMORY;
+    if (to)
+        put_drawing(to, table, title);
     cli_set_saving();
-    whit_result result = page_save(&page, path, &cli_log);
-    page_finish(&page);
+    if (to && fclose(to) == 0)
+        result = whit_file_write(path, text, bytes, &cli_log);
+    else
+        cli_error("out of memory");
+    free(text);
     return result;
 }

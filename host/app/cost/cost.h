@@ -4,7 +4,6 @@
 
 #include "app/commands.h"
 #include "app/document.h"
-#include "app/page.h"
 #include "cost/cost.h"
 
 #define COST_RAYS_UNSAID WHIT_NONE
@@ -31,11 +30,16 @@ void cost_on_progress(void *user, double done, double seconds_left, const char *
 
 /* ---- Tables and sentences, the same in all forms (cost_table.c) ---- */
 
+/* `is_number`: to the right. */
+struct cost_column {
+    const char *head;
+    bool is_number;
+};
 enum { COST_COLUMNS = 11, COST_HIT_COLUMNS = 13, COST_CELL = 64, COST_COLUMNS_MAX = 13 };
 struct cost_cells {
     char text[COST_COLUMNS_MAX][COST_CELL];
 };
-extern const struct page_column cost_columns[COST_COLUMNS], cost_hit_columns[COST_HIT_COLUMNS];
+extern const struct cost_column cost_columns[COST_COLUMNS], cost_hit_columns[COST_HIT_COLUMNS];
 void cost_row_cells(const struct cost_report *report, const struct cost_row *row,
                     struct cost_cells *cells);
 void cost_hit_cells(const struct cost_row *row, enum cost_set set, struct cost_cells *cells);
@@ -50,6 +54,7 @@ whit_result cost_save_csv(const struct cost *cost);
 
 /* ---- JSON (cost_json.c) ---- */
 
+json_t *cost_document(const struct cost *cost);
 whit_result cost_save_json(const struct cost *cost, const char *path);
 /* What cost_save_json wrote, for comparisons: no pictures. `scene` gets the name of its scene,
    which the caller frees. False, said: another file. */
@@ -60,6 +65,7 @@ bool cost_load_kept(const char *name, struct cost_report *report);
 
 /* ---- The page (cost_page.c) ---- */
 
+extern const char cost_page_html[]; /* page.html, ended by 0; CMake makes it */
 whit_result cost_save_page(const struct cost *cost);
 
 /* Two reports beside each other (cost_compare.c). */

@@ -7,11 +7,12 @@
 #include "settings/quote.h"
 
 enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MAX = 1 << 22, SAMPLES_QUICK = 16 };
+enum { JUDGED_MIN = 320, JUDGED_MIN_QUICK = 160 };
 /* Drivers cannot be stopped while they compile a kernel, and some take that long. */
 enum { GRACE_MS = 20000 };
 
 static const struct setting_value values_metric[] = {
-    {"rmse", COST_RMSE, NULL}, {"flip", COST_FLIP, NULL}, {0}};
+    {"flip", COST_FLIP, NULL}, {"rmse", COST_RMSE, NULL}, {0}};
 static const struct setting_value values_reference_samples[] = {
     {"4", 4, NULL}, {"16", 16, NULL}, {"64", 64, NULL}, {0}};
 
@@ -43,7 +44,7 @@ static bool read_knobs(const struct setting *setting, const char *list, void *re
 }
 
 static const struct setting options[] = {
-    {"html", 0, "FILE", "the report as one page, with plots and pictures",
+    {"html", 0, "FILE", "the report as one page, with a plot and pictures",
      SETTING_AT_NAME(struct cost, html)},
     {"json", 0, "FILE", "all figures as JSON", SETTING_AT_NAME(struct cost, json)},
     {"csv", 0, "FILE", "a row for each setting", SETTING_AT_NAME(struct cost, csv)},
@@ -52,8 +53,8 @@ static const struct setting options[] = {
      SETTING_AT_NUMBER(struct cost, under), .min = 1e-12, .max = 1e6},
     {"within", 0, "T", "find the best picture that takes at most T ms",
      SETTING_AT_NUMBER(struct cost, within_ms), .min = 1e-3, .max = 1e9},
-    {"metric", 0, NULL, "what E is (rmse)", SETTING_AT_CHOICE(struct cost, metric),
-     .values = values_metric},
+    {"metric", 0, NULL, "what E is, and what the best picture has least of (flip)",
+     SETTING_AT_CHOICE(struct cost, metric), .values = values_metric},
     {"quick", 0, NULL, "20 s, 16 samples, 2000 rays", SETTING_AT_FLAG(struct cost, quick)},
     {"spend", 0, "S", "seconds that it may take, more or less (150)",
      SETTING_AT_NUMBER(struct cost, request.seconds), .min = 0.1, .max = 1e6},
@@ -96,6 +97,7 @@ static void complete(struct cost *cost)
         request->seconds = cost->quick ? COST_SECONDS_QUICK : COST_SECONDS;
     if (request->samples_max == 0 && cost->quick)
         request->samples_max = SAMPLES_QUICK;
+    request->judged_min = cost->quick ? JUDGED_MIN_QUICK : JUDGED_MIN;
     request->rays = cost->rays != COST_RAYS_UNSAID ? cost->rays
                     : cost->quick                  ? RAYS_QUICK
                                                    : RAYS_USUAL;
@@ -107,6 +109,11 @@ static void complete(struct cost *cost)
             (struct cost_goal){.kind = COST_WITHIN,
                                .metric = (enum cost_metric)cost->metric,
                                .limit = cost->within_ms};
+    /* What the page shows side by side. */
+    static const double steps[] = {0.25, 4.0, 16.0};
+    for (size_t i = 0; cost->html && i < sizeof steps / sizeof *steps; ++i)
+        request->goals[request->goal_count++] =
+            (struct cost_goal){.kind = COST_WITHIN, .metric = COST_FLIP, .of_usual = steps[i]};
 }
 
 static bool check_request(struct cli_reader *reader, struct cost *cost)
@@ -188,7 +195,7 @@ static int judge(const struct cost_report *report)
     }
     for (uint32_t i = 0; i < report->answer_count; ++i) {
         const struct cost_answer *answer = &report->answers[i];
-        if (answer->kept)
+        if (answer->kept || answer->goal.of_usual > 0.0)
             continue;
         cli_error("no setting was found %s %.6g%s",
                   answer->goal.kind == COST_WITHIN ? "within" : "with an error of at most",
@@ -251,7 +258,7 @@ static char *command_line(int argc, char **argv)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct cost cost = {.rays = COST_RAYS_UNSAID};
+    struct cost cost = {.rays = COST_RAYS_UNSAID, .metric = COST_FLIP};
     job_init(&cost.job, command);
     cli_reader_init(&reader, command, argc, argv);
     if (!job_read(&cost.job, &reader, &cost, true) || !check_request(&reader, &cost))

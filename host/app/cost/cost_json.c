@@ -113,6 +113,12 @@ static json_t *answer_document(const struct cost_report *report, const struct co
     document_text(out, "goal", answer->goal.kind == COST_WITHIN ? "within_ms" : "under");
     document_text(out, "metric", cost_metric_name(answer->goal.metric));
     document_number(out, "limit", answer->goal.limit);
+    document_number(out, "of_usual",
+                    answer->goal.of_usual > 0.0 ? answer->goal.of_usual : (double)NAN);
+    if (answer->found && answer->row != WHIT_NONE)
+        document_count(out, "row", answer->row);
+    else
+        document_put(out, "row", json_null());
     document_flag(out, "found", answer->found);
     document_flag(out, "kept", answer->kept);
     document_number(out, "predicted_ms", answer->ms);
@@ -162,11 +168,30 @@ static json_t *reference_document(const struct cost_report *report)
     return out;
 }
 
+/* The sentence, and what it is made of. */
+static void put_findings(json_t *out, const struct cost_report *report)
+{
+    struct cost_finding findings[COST_FINDINGS_MAX];
+    char sentence[COST_SENTENCE_BYTES];
+    json_t *list = document_array();
+    uint32_t count = cost_findings(report, findings);
+    cost_sentence(report, sentence);
+    document_text(out, "sentence", sentence);
+    for (uint32_t i = 0; i < count; ++i) {
+        json_t *entry = document_object();
+        document_text(entry, "text", findings[i].text);
+        document_numbers(entry, "values", findings[i].values, findings[i].value_count);
+        document_append(list, entry);
+    }
+    document_put(out, "findings", list);
+}
+
 static json_t *report_document(const struct cost_report *report, const struct cost *cost)
 {
     json_t *out = document_root(), *rows = document_array(), *answers = document_array();
     json_t *absent = document_array();
     put_head(out, report, cost);
+    put_findings(out, report);
     document_put(out, "reference", reference_document(report));
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(rows, row_document(&report->rows[i]));
@@ -184,9 +209,14 @@ static json_t *report_document(const struct cost_report *report, const struct co
     return out;
 }
 
+json_t *cost_document(const struct cost *cost)
+{
+    return report_document(cost->report, cost);
+}
+
 whit_result cost_save_json(const struct cost *cost, const char *path)
 {
-    return document_save(report_document(cost->report, cost), path);
+    return document_save(cost_document(cost), path);
 }
 
 void cost_keep(const struct cost_report *report, const char *name)

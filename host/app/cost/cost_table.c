@@ -7,12 +7,12 @@
 
 #include "app/cost/cost.h"
 
-const struct page_column cost_columns[COST_COLUMNS] = {
+const struct cost_column cost_columns[COST_COLUMNS] = {
     {"knob", false},    {"setting", false}, {"ms", true},   {"95 %", true},
     {"of usual", true}, {"RMSE", true},     {"FLIP", true}, {"over 1/255", true},
     {"largest", true},  {"alone", true},    {"", false},
 };
-const struct page_column cost_hit_columns[COST_HIT_COLUMNS] = {
+const struct cost_column cost_hit_columns[COST_HIT_COLUMNS] = {
     {"knob", false},  {"setting", false}, {"rays", false}, {"N", true},     {"wrong", true},
     {"leaks", true},  {"misses", true},   {"false", true}, {"other", true}, {"ulp, half", true},
     {"99.9 %", true}, {"most", true},     {"ms", true},
@@ -221,7 +221,8 @@ void cost_say_answers(const struct cost_report *report, cost_say *say, void *use
 {
     char list[800] = "";
     for (uint32_t i = 0; i < report->answer_count; ++i)
-        say_answer(report, &report->answers[i], say, user);
+        if (!(report->answers[i].goal.of_usual > 0.0))
+            say_answer(report, &report->answers[i], say, user);
     say_list(report, COST_USE_FREE, "Cheaper than the usual settings, and as right", say, user);
     say_list(report, COST_USE_NONE, "Buy nothing here (neither cheaper nor more right)", say, user);
     say_break_even(report, say, user);
@@ -235,10 +236,10 @@ void cost_say_answers(const struct cost_report *report, cost_say *say, void *use
 
 /* ---- Text and Markdown ---- */
 
-typedef void put_row(FILE *to, const struct page_column *columns, uint32_t count,
+typedef void put_row(FILE *to, const struct cost_column *columns, uint32_t count,
                      const struct cost_cells *cells, const uint32_t *widths);
 
-static void put_text_row(FILE *to, const struct page_column *columns, uint32_t count,
+static void put_text_row(FILE *to, const struct cost_column *columns, uint32_t count,
                          const struct cost_cells *cells, const uint32_t *widths)
 {
     for (uint32_t i = 0; i < count; ++i)
@@ -246,7 +247,7 @@ static void put_text_row(FILE *to, const struct page_column *columns, uint32_t c
     fputc('\n', to);
 }
 
-static void put_markdown_row(FILE *to, const struct page_column *columns, uint32_t count,
+static void put_markdown_row(FILE *to, const struct cost_column *columns, uint32_t count,
                              const struct cost_cells *cells, const uint32_t *widths)
 {
     (void)columns;
@@ -260,7 +261,7 @@ static void put_markdown_row(FILE *to, const struct page_column *columns, uint32
 struct table {
     FILE *to;
     put_row *put;
-    const struct page_column *columns;
+    const struct cost_column *columns;
     uint32_t count, widths[COST_COLUMNS_MAX], row_count;
     struct cost_cells rows[2 * COST_ROWS_MAX + 1];
 };
@@ -274,7 +275,7 @@ static void add(struct table *table, const struct cost_cells *cells)
     }
 }
 
-static void add_head(struct table *table, const struct page_column *columns, uint32_t count)
+static void add_head(struct table *table, const struct cost_column *columns, uint32_t count)
 {
     struct cost_cells cells = {0};
     table->columns = columns;
@@ -348,6 +349,9 @@ int cost_print_text(const struct cost *cost)
     const struct cost_report *report = cost->report;
     printf("scene      %s\n", cli_shown(cost->job.settings.scene));
     printf("device     %s (%s)\n\n", cli_shown(report->device), cli_shown(report->driver));
+    char sentence[COST_SENTENCE_BYTES];
+    cost_sentence(report, sentence);
+    printf("%s\n\n", sentence);
     put_tables(report, stdout, put_text_row);
     cost_say_method(report, say_plain, stdout);
     putchar('\n');

@@ -1,0 +1,259 @@
+/* What a report says first: sentences made of its figures. */
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cost/cost.h"
+
+enum {
+    SENTENCE_FINDINGS = 3, /* more are not read in ten seconds */
+    JUDGED_WIDTH = 320,    /* what is judged by smaller pictures says so */
+};
+
+/* Below this FLIP nobody sees a difference; a time or error that differs by less than these shares
+   is not worth a sentence; more time than this is not what people wait for at a whim. */
+static const double FLIP_UNSEEN = 0.002, ERROR_SHARE = 0.05, TIME_SHARE = 0.03, RATIO_MAX = 20.0,
+                    HALF_LOW = 45.0, HALF_HIGH = 55.0;
+
+static void find(struct cost_finding *finding, const char *format, ...) WHIT_PRINTF(2, 3);
+static void find(struct cost_finding *finding, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(finding->text, sizeof finding->text, format, args);
+    va_end(args);
+}
+
+static void add_value(struct cost_finding *finding, double value)
+{
+    finding->values[finding->value_count++] = value;
+}
+
+static bool is_judged(const struct cost_row *row)
+{
+    return row->measured && !row->broken && row->knob_index != WHIT_NONE;
+}
+
+static double ratio_of(const struct cost_report *report, const struct cost_row *row)
+{
+    return row->price.ratio[report->clock].median;
+}
+
+static const struct cost_row *row_of(const struct cost_report *report, const char *knob,
+                                     const char *setting)
+{
+    for (uint32_t i = 1; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        if (is_judged(row) && strcmp(row->knob, knob) == 0 && strcmp(row->setting, setting) == 0)
+            return row;
+    }
+    return NULL;
+}
+
+/* ---- More time ---- */
+
+/* Pictures of as many samples as the reference has are not judged by it: their samples are the
+ * same.
+ */
+static bool has_all_samples(const struct cost_report *report, const struct cost_row *row)
+{
+    return strcmp(row->knob, "aa") == 0 &&
+           !(strtod(row->setting, NULL) < (double)report->reference_samples);
+}
+
+/* The setting whose error falls most for each doubling of the time. */
+static const struct cost_row *best_buy(const struct cost_report *report)
+{
+    const struct cost_row *best = NULL;
+    double usual = report->rows[0].error.flip_mean, most = 0.0;
+    for (uint32_t i = 1; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        double ratio = ratio_of(report, row);
+        if (!is_judged(row) || row->price.verdict <= 0 || ratio <= 1.0 || ratio > RATIO_MAX ||
+            has_all_samples(report, row) || row->error.flip_mean > (1.0 - ERROR_SHARE) * usual)
+            continue;
+        double gain = log(usual / fmax(row->error.flip_mean, 1e-9)) / log(ratio);
+        if (gain > most) {
+            most = gain;
+            best = row;
+        }
+    }
+    return best;
+}
+
+static bool find_more_time(const struct cost_report *report, struct cost_finding *finding)
+{
+    double usual = report->rows[0].error.flip_mean;
+    const struct cost_row *row = best_buy(report);
+    add_value(finding, usual);
+    if (usual < FLIP_UNSEEN) {
+        find(finding, "no eye tells the usual picture from the reference (FLIP %.4f)", usual);
+        return true;
+    }
+    if (!row) {
+        find(finding, "nothing that was measured comes nearer to the reference (FLIP %.4f)", usual);
+        return true;
+    }
+    double left = 100.0 * row->error.flip_mean / usual;
+    add_value(finding, ratio_of(report, row));
+    add_value(finding, left);
+    add_value(finding, row->error.flip_mean);
+    if (left >= HALF_LOW && left <= HALF_HIGH)
+        find(finding, "%.1f times the time halves the visible error (%s %s: FLIP %.4f, was %.4f)",
+             ratio_of(report, row), row->knob, row->setting, row->error.flip_mean, usual);
+    else
+        find(finding,
+             "%.1f times the time leaves %.0f %% of the visible error (%s %s: FLIP %.4f, was %.4f)",
+             ratio_of(report, row), left, row->knob, row->setting, row->error.flip_mean, usual);
+    return true;
+}
+
+/* ---- Bounces ---- */
+
+/* How much less right it is than the deepest picture, both with the reference's one sample. */
+static double flip_beyond(const struct cost_row *row, const struct cost_row *deepest)
+{
+    return row->alone.flip_mean - deepest->alone.flip_mean;
+}
+
+static bool find_bounces(const struct cost_report *report, struct cost_finding *finding)
+{
+    uint32_t count;
+    const struct knob *depth = &knob_table(&count)[knob_find("depth")];
+    const char *enough = knob_setting_name(depth, depth->usual);
+    const struct cost_row *deepest = row_of(report, "depth", "16"), *first = &report->rows[0];
+    if (!deepest)
+        return false;
+    for (uint32_t s = 0; s < depth->usual; ++s) {
+        const struct cost_row *row = row_of(report, "depth", knob_setting_name(depth, s));
+        if (row && flip_beyond(row, deepest) < FLIP_UNSEEN) {
+            enough = row->setting;
+            first = row;
+            break;
+        }
+    }
+    double beyond = flip_beyond(first, deepest);
+    add_value(finding, strtod(enough, NULL));
+    add_value(finding, beyond);
+    if (beyond < FLIP_UNSEEN)
+        find(finding, "bounces above %s change nothing that is seen", enough);
+    else
+        find(finding, "bounces above %s are seen (FLIP %.4f)", enough, beyond);
+    return true;
+}
+
+/* ---- Exact hits ---- */
+
+static bool find_exact(const struct cost_report *report, struct cost_finding *finding)
+{
+    const struct cost_row *exact = row_of(report, "numerics", "exact");
+    const struct cost_hits *aimed = &report->rows[0].hits[COST_AIMED];
+    if (!exact)
+        return false;
+    double more = 100.0 * (ratio_of(report, exact) - 1.0);
+    add_value(finding, more);
+    if (exact->price.verdict == 0)
+        find(finding, "exact hits cost nothing that can be measured");
+    else
+        find(finding, "exact hits cost %.2g %%", more);
+    if (aimed->traced && !aimed->unanswered && aimed->judged.tally.wrong) {
+        size_t used = strlen(finding->text);
+        add_value(finding, (double)aimed->judged.tally.wrong);
+        add_value(finding, (double)aimed->judged.tally.rays);
+        snprintf(finding->text + used, sizeof finding->text - used,
+                 " (without them %llu of %llu aimed rays are wrong)",
+                 (unsigned long long)aimed->judged.tally.wrong,
+                 (unsigned long long)aimed->judged.tally.rays);
+    }
+    return true;
+}
+
+/* ---- Less time ---- */
+
+/* The setting that saves most of those that are as right; NULL: there is none. */
+static const struct cost_row *free_saving(const struct cost_report *report)
+{
+    const struct cost_row *best = NULL;
+    for (uint32_t i = 1; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        /* Trees take time to build, which a picture has to earn: cost_say_answers tells when. */
+        if (is_judged(row) && row->build_ms < 0.0 && ratio_of(report, row) < 1.0 - TIME_SHARE &&
+            cost_use_of(report, row) == COST_USE_FREE &&
+            (!best || ratio_of(report, row) < ratio_of(report, best)))
+            best = row;
+    }
+    return best;
+}
+
+static bool find_saving(const struct cost_report *report, struct cost_finding *finding)
+{
+    const struct cost_row *best = free_saving(report);
+    if (!best)
+        return false;
+    double saved = 100.0 * (1.0 - ratio_of(report, best));
+    add_value(finding, saved);
+    find(finding, "%s %s is as right and takes %.0f %% less time", best->knob, best->setting,
+         saved);
+    return true;
+}
+
+static bool find_dearest(const struct cost_report *report, struct cost_finding *finding)
+{
+    static const char *const parts[][3] = {
+        {"shadows", "none", "shadows"},
+        {"depth", "0", "reflection and refraction"},
+        {"textures", "off", "textures"},
+        {"light-samples", "1", "soft shadows"},
+    };
+    const struct cost_row *free = free_saving(report);
+    double least = 1.0 - TIME_SHARE;
+    const char *what = NULL;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
+        const struct cost_row *row = row_of(report, parts[i][0], parts[i][1]);
+        if (row && row != free && row->price.verdict < 0 && ratio_of(report, row) < least) {
+            least = ratio_of(report, row);
+            what = parts[i][2];
+        }
+    }
+    if (!what)
+        return false;
+    add_value(finding, 100.0 * (1.0 - least));
+    find(finding, "without %s it would take %.0f %% less time", what, 100.0 * (1.0 - least));
+    return true;
+}
+
+uint32_t cost_findings(const struct cost_report *report,
+                       struct cost_finding findings[COST_FINDINGS_MAX])
+{
+    static bool (*const all[COST_FINDINGS_MAX])(const struct cost_report *,
+                                                struct cost_finding *) = {
+        find_more_time, find_bounces, find_exact, find_saving, find_dearest};
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < COST_FINDINGS_MAX; ++i) {
+        findings[count] = (struct cost_finding){.value_count = 0};
+        count += all[i](report, &findings[count]);
+    }
+    return count;
+}
+
+void cost_sentence(const struct cost_report *report, char text[COST_SENTENCE_BYTES])
+{
+    struct cost_finding findings[COST_FINDINGS_MAX];
+    _Static_assert(COST_SENTENCE_BYTES > SENTENCE_FINDINGS * (sizeof findings[0].text + 2) + 64,
+                   "all of them fit");
+    uint32_t count = cost_findings(report, findings);
+    count = count < SENTENCE_FINDINGS ? count : SENTENCE_FINDINGS;
+    char *end = text;
+    text[0] = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        end = stpcpy(end, i ? "; " : "");
+        end = stpcpy(end, findings[i].text);
+    }
+    if (report->judged_width < report->width && report->judged_width < JUDGED_WIDTH)
+        end += sprintf(end, " (judged at %u x %u)", report->judged_width, report->judged_height);
+    strcpy(end, ".");
+    text[0] = (char)toupper((unsigned char)text[0]);
+}
