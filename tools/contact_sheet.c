@@ -149,7 +149,7 @@ static whit_result render(const struct sheet *sheet, whit_device *device, const 
     whit_renderer_params params = whit_renderer_defaults();
     params.width = sheet->width;
     params.height = sheet->height;
-    params.samples = sheet->samples;
+    params.sampling.count = sheet->samples;
     whit_scene *scene = NULL;
     whit_accel *accel = NULL;
     whit_renderer *renderer = NULL;

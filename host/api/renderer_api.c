@@ -42,7 +42,7 @@ whit_renderer_params whit_renderer_defaults(void)
 {
     return (whit_renderer_params){.width = 640,
                                   .height = 480,
-                                  .samples = 1,
+                                  .sampling.count = 1,
                                   .depth = DEPTH_DEFAULT,
                                   .light_samples = LIGHT_SAMPLES_DEFAULT,
                                   .bailout = WHIT_BAILOUT_DEFAULT};

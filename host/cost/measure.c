@@ -98,8 +98,8 @@ whit_result measure_open(struct measure *measure, const struct cost_request *req
 {
     *measure = (struct measure){.request = request, .report = report, .start_ms = whit_clock_ms()};
     measure->usual = *request->settings;
-    measure->usual.picture.samples = 1;
-    measure->usual.picture.adaptive = 0.0;
+    measure->usual.picture.sampling.count = 1;
+    measure->usual.picture.sampling.kind = WHIT_SAMPLING_FIXED;
     measure->usual.paint = PAINT_COLOR;
     whit_result result = open_renderer(measure);
     if (result == WHIT_OK)

@@ -23,10 +23,10 @@ static whit_renderer_params reference_params(const struct measure *measure, uint
     whit_renderer_params params = settings_picture(&measure->usual);
     params.width = measure->report->width / shrink ? measure->report->width / shrink : 1;
     params.height = measure->report->height / shrink ? measure->report->height / shrink : 1;
-    params.samples = samples;
+    params.sampling.count = samples;
     params.cancel = measure->request->cancel;
     params.time_limit_s = measure_left_s(measure);
-    params.adaptive = 0.0;
+    params.sampling.kind = WHIT_SAMPLING_FIXED;
     params.depth = MEASURE_DEPTH;
     params.bailout = MEASURE_BAILOUT;
     params.light_samples = measure->report->reference_light_samples;
@@ -48,7 +48,7 @@ static void kept_name(const struct measure *measure, const whit_renderer_params 
     char key[512];
     snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %u %u %u %.17g %s", KEPT_VERSION,
              WHIT_VERSION, measure->report->scene_hash, params->width, params->height,
-             params->samples, params->depth, params->light_samples, params->time_s,
+             params->sampling.count, params->depth, params->light_samples, params->time_s,
              measure->usual.camera);
     snprintf(name, KEPT_NAME, "reference-%016" PRIx64, cost_hash(key));
 }

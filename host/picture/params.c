@@ -27,7 +27,8 @@ static bool is_known(const whit_renderer_params *params)
            (uint32_t)params->shadows <= WHIT_SHADOWS_NONE &&
            (uint32_t)params->load_path <= WHIT_LOAD_TEXEL &&
            (uint32_t)params->packets <= WHIT_PACKETS_OFF &&
-           (uint32_t)params->classes <= WHIT_CLASSES_MANY;
+           (uint32_t)params->classes <= WHIT_CLASSES_MANY &&
+           (uint32_t)params->sampling.kind <= WHIT_SAMPLING_ADAPTIVE;
 }
 
 whit_result params_check(const struct log *log, whit_renderer_params *params)
@@ -36,8 +37,10 @@ whit_result params_check(const struct log *log, whit_renderer_params *params)
         params->width = 640;
         params->height = 480;
     }
-    if (params->samples == 0)
-        params->samples = 1;
+    if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
+        params->sampling.count = 4; /* to begin with */
+    else if (params->sampling.count == 0)
+        params->sampling.count = 1;
     if (params->width == 0 || params->height == 0 || params->width > 65535 ||
         params->height > 65535) {
         log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
@@ -47,7 +50,7 @@ whit_result params_check(const struct log *log, whit_renderer_params *params)
         log_error(log, "parameters of a picture: a value of an enumeration that there is none of");
         return WHIT_ERROR_USAGE;
     }
-    uint32_t n = params->samples, first = params->first_sample;
+    uint32_t n = params->sampling.count, first = params->sampling.first;
     if (!is_power_of_4(n) || n > WHIT_SAMPLES_MAX) {
         log_error(log, "%u samples a pixel: must be 1, 4, 16, 64, 256, 1024 or 4096", n);
         return WHIT_ERROR_USAGE;
@@ -70,16 +73,19 @@ whit_result params_check(const struct log *log, whit_renderer_params *params)
         log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
         return WHIT_ERROR_USAGE;
     }
-    if (!(params->adaptive >= 0.0) || params->adaptive > 1.0) {
-        log_error(log, "adaptive contrast %g: must be 0 (off) up to 1", params->adaptive);
+    bool adaptive = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE;
+    if (adaptive && !(params->sampling.contrast > 0.0 && params->sampling.contrast <= 1.0)) {
+        log_error(log, "adaptive contrast %g: must be above 0, up to 1", params->sampling.contrast);
         return WHIT_ERROR_USAGE;
     }
-    if (params->adaptive > 0.0 && params->count) {
+    if (adaptive && params->sampling.first) {
+        log_error(log, "adaptive samples begin with the first one");
+        return WHIT_ERROR_USAGE;
+    }
+    if (adaptive && params->count) {
         log_error(log, "what rays cost is not counted with adaptive samples");
         return WHIT_ERROR_USAGE;
     }
-    if (params->adaptive > 0.0)
-        params->samples = 4; /* to begin with */
     if (params->depth > DEPTH_LARGEST) {
         log_error(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
         return WHIT_ERROR_USAGE;

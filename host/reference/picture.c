@@ -13,7 +13,7 @@ enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
 static whit_result check_params(const struct log *log, const struct scene *scene,
                                 whit_renderer_params *params)
 {
-    if (params->adaptive != 0.0 || params->effects_removed) {
+    if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE || params->effects_removed) {
         log_error(log, "a reference picture has all effects, and as many samples in every pixel");
         return WHIT_ERROR_USAGE;
     }
@@ -125,9 +125,9 @@ static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x,
     size_t pixel = (size_t)y * params->width + x;
     struct dvec3 sum = d3_all(0.0),
                  partial[SEQUENCE_BITS + 1]; /* of 2^i samples; see resolve.comp */
-    for (uint32_t i = 0; i < params->samples; ++i) {
+    for (uint32_t i = 0; i < params->sampling.count; ++i) {
         struct hit first = {.primitive = HIT_NONE, .instance = HIT_NONE};
-        tracer->sample = params->first_sample + i;
+        tracer->sample = params->sampling.first + i;
         sum = tree_trace(tracer, x, y, &first);
         uint32_t level = 0;
         for (; i >> level & 1u; ++level)
@@ -138,7 +138,7 @@ static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x,
             job->ids->words[2 * pixel + 1] = first.primitive;
         }
     }
-    sum = d3_scale(sum, 1.0 / params->samples);
+    sum = d3_scale(sum, 1.0 / params->sampling.count);
     float *out = &job->color->pixels[4 * pixel];
     out[0] = (float)sum.x;
     out[1] = (float)sum.y;
@@ -248,9 +248,9 @@ whit_result reference_ray_tree(const struct reference *r, uint32_t x, uint32_t y
     struct hit first;
     *rays = NULL;
     *count = 0;
-    if (x >= params->width || y >= params->height || sample >= params->samples) {
+    if (x >= params->width || y >= params->height || sample >= params->sampling.count) {
         log_error(&r->log, "pixel %u,%u, sample %u: the picture has %ux%u pixels of %u samples", x,
-                  y, sample, params->width, params->height, params->samples);
+                  y, sample, params->width, params->height, params->sampling.count);
         return WHIT_ERROR_USAGE;
     }
     tree_trace(&tracer, x, y, &first);

@@ -12,7 +12,9 @@ uint32_t pixels_blocks_across(uint32_t pixels)
 
 uint32_t pixels_levels(const whit_renderer_params *params)
 {
-    uint32_t max = params->adaptive > 0.0 ? ADAPTIVE_MAX : params->samples, levels = 0;
+    uint32_t max = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? ADAPTIVE_MAX
+                                                                   : params->sampling.count,
+             levels = 0;
     while (max >> (levels + 1))
         ++levels;
     return levels;
@@ -43,7 +45,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     uint64_t pixels = (uint64_t)width * p->band_rows;
     uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
     /* What nothing is bound to has no bytes, and is not created. */
-    bool lists = renderer->params.adaptive > 0.0 || target->probed;
+    bool lists = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;
     const struct {

@@ -302,8 +302,9 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     *out = (struct probe_report){.x = x,
                                  .y = y,
                                  .light_samples = renderer->frame.light_samples,
-                                 .samples = params->adaptive > 0.0 ? PROBE_ADAPTIVE_SAMPLES
-                                                                   : params->samples};
+                                 .samples = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE
+                                                ? PROBE_ADAPTIVE_SAMPLES
+                                                : params->sampling.count};
     whit_result result = check(renderer, x, y);
     if (result == WHIT_OK)
         result = params_check_loops(renderer);

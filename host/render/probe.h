@@ -26,7 +26,7 @@ struct probe_ray {
 
 struct probe_report {
     uint32_t x, y;
-    uint32_t samples;       /* that `color` is of; with params.adaptive the 4 of the first pass */
+    uint32_t samples;       /* that `color` is of; of an adaptive picture the 4 of its first pass */
     uint32_t light_samples; /* of each light: see gpu_probe_ray.light_sample */
     float color[4];         /* of the pixel, as in the picture */
     /* The rays of the first sample, as they were traced: a ray is followed by its shadow rays,

@@ -8,7 +8,7 @@
 bool readback_is_late(const struct renderer *renderer)
 {
     return renderer->picture.buffers.band_rows >= renderer->params.height &&
-           !(renderer->params.adaptive > 0.0);
+           renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
 static whit_result read_pixels(const struct renderer *renderer, uint32_t rows, float *pixels)

@@ -9,9 +9,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.height = from->height;
     params.camera = from->camera;
     params.time_s = from->time_s;
-    params.samples = from->samples;
-    params.first_sample = from->first_sample;
-    params.adaptive = from->adaptive;
+    params.sampling = from->sampling;
     params.light_samples = from->light_samples;
     params.bailout = from->bailout;
     params.depth = from->depth;
@@ -21,7 +19,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
 static bool same_buffers(const whit_renderer_params *a, const whit_renderer_params *b)
 {
     return a->width == b->width && a->height == b->height && a->depth == b->depth &&
-           a->light_samples == b->light_samples && (a->adaptive > 0.0) == (b->adaptive > 0.0);
+           a->light_samples == b->light_samples && a->sampling.kind == b->sampling.kind;
 }
 
 static whit_result replace_pixels(struct renderer *renderer)
@@ -45,7 +43,8 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
     bool moved = wanted.time_s != renderer->params.time_s;
     bool same = same_buffers(&renderer->params, &wanted) && renderer->picture.buffers.pixels &&
                 pixels_levels(&wanted) <= renderer->picture.buffers.levels;
-    bool listed = renderer->params.adaptive > 0.0, had_secondary = renderer->has_secondary;
+    bool listed = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE,
+         had_secondary = renderer->has_secondary;
     renderer->rendered = false;
     renderer->params = wanted;
     renderer->has_secondary = renderer_bounces(renderer);
@@ -58,7 +57,8 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
     else if (result == WHIT_OK)
         result = frame_upload(renderer);
     bool other_kernel =
-        variant_camera(renderer) != camera || (wanted.adaptive > 0.0) != listed ||
+        variant_camera(renderer) != camera ||
+        (wanted.sampling.kind == WHIT_SAMPLING_ADAPTIVE) != listed ||
         renderer->has_secondary != had_secondary ||
         media_touch(renderer->scene, &renderer->bodies, &renderer->frame) != touched;
     if (result == WHIT_OK && other_kernel) {

@@ -175,7 +175,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
 {
     const struct renderer *renderer = target->renderer;
     const struct pixel_buffers *p = &target->buffers;
-    camera_sample(&renderer->frame, renderer->params.first_sample + index, chunk);
+    camera_sample(&renderer->frame, renderer->params.sampling.first + index, chunk);
     chunk->sample_weight = 1.0f / (float)samples;
     chunk->summed = index;
     chunk->samples = samples;
@@ -281,7 +281,7 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     whit_result result = render_pass(renderer, 4, progress);
     for (uint8_t level = 2; result == WHIT_OK && level <= 3; ++level) {
         uint64_t marked =
-            adaptive_mark(&renderer->color, params->adaptive, level, progress->levels);
+            adaptive_mark(&renderer->color, params->sampling.contrast, level, progress->levels);
         renderer->picture.stats.rays_primary += marked << (2 * level);
         progress->listed = true;
         if (marked > 0)
@@ -301,14 +301,14 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
 {
     const whit_renderer_params *params = &renderer->params;
     uint64_t pixels = (uint64_t)params->width * params->height;
-    renderer->picture.stats.rays_primary = pixels * params->samples;
-    if (params->adaptive > 0.0)
+    renderer->picture.stats.rays_primary = pixels * params->sampling.count;
+    if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return render_adaptive(renderer, progress);
     uint32_t level = 0;
-    while (1u << (2 * level) < params->samples)
+    while (1u << (2 * level) < params->sampling.count)
         ++level;
     renderer->picture.stats.pixels_by_samples[level] = pixels;
-    return render_pass(renderer, params->samples, progress);
+    return render_pass(renderer, params->sampling.count, progress);
 }
 
 whit_result renderer_render(struct renderer *renderer)

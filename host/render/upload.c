@@ -344,7 +344,8 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
     const struct accel *accel = renderer->accel;
-    double samples = params->adaptive > 0.0 ? 4.0 : (double)params->samples;
+    double samples =
+        params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 4.0 : (double)params->sampling.count;
     double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
     double rays = (double)params->width * params->height * samples * (1.0 + lights);
     double halvings = log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;

@@ -85,7 +85,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
-    spec.SPEC_LISTED = renderer->params.adaptive > 0.0 || target->probed;
+    spec.SPEC_LISTED = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
     return spec;
@@ -310,7 +310,9 @@ enum { RAYS_FOR_MANY = 150000 };
 
 bool render_few_kernels(const whit_renderer_params *params)
 {
-    double samples = params->adaptive > 0.0 ? 4.0 : fmax((double)params->samples, 1.0);
+    double samples = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE
+                         ? 4.0
+                         : fmax((double)params->sampling.count, 1.0);
     if (params->classes != WHIT_CLASSES_AUTO)
         return params->classes == WHIT_CLASSES_ONE;
     return !params->many_pictures && !params->compile_async &&

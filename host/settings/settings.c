@@ -97,7 +97,7 @@ whit_renderer_params settings_picture(const struct settings *settings)
     params.camera = camera_of_text(settings->camera);
     params.count = params.count || settings->paint != PAINT_COLOR;
     if (settings->paint != PAINT_COLOR) /* costs are those of a fixed pattern */
-        params.adaptive = 0.0;
+        params.sampling.kind = WHIT_SAMPLING_FIXED;
     return params;
 }
 
@@ -172,7 +172,7 @@ bool settings_same_kernel(const struct settings *a, const struct settings *b)
 {
     const whit_renderer_params p = settings_picture(a), q = settings_picture(b);
     return settings_same_scene(a, b) && same_rows(a, b, is_of_kernel) && p.count == q.count &&
-           (p.depth == 0) == (q.depth == 0) && (p.adaptive > 0.0) == (q.adaptive > 0.0);
+           (p.depth == 0) == (q.depth == 0) && p.sampling.kind == q.sampling.kind;
 }
 
 bool settings_same_camera(const struct settings *a, const struct settings *b)

@@ -53,27 +53,26 @@ static bool read_aa(const struct setting *row, const char *text, void *record, c
         if (found == WHIT_NONE)
             return setting_refuse(why, " `%s`: one of %s is needed", text,
                                   value_list(row->values, ", ", list, sizeof list));
-        picture->adaptive = 0.0;
-        picture->samples = (uint32_t)row->values[found].value;
+        picture->sampling = (whit_sampling){.count = (uint32_t)row->values[found].value};
         return true;
     }
     double contrast = strtod(text + length, &end);
     if (end == text + length || *end || !(contrast > 0.0 && contrast <= 1.0))
         return setting_refuse(why, " `%s`: after adaptive: a number above 0, up to 1, is needed",
                               text);
-    picture->adaptive = contrast;
-    picture->samples = 1;
+    picture->sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = contrast};
     return true;
 }
 
 static bool write_aa(const void *record, char text[SETTING_VALUE_BYTES])
 {
     const whit_renderer_params *picture = &((const struct settings *)record)->picture;
-    if (picture->adaptive > 0.0) {
+    if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE) {
         strcpy(text, "adaptive:");
-        setting_write_number(picture->adaptive, text + strlen(text), 40);
+        setting_write_number(picture->sampling.contrast, text + strlen(text), 40);
     } else {
-        snprintf(text, SETTING_VALUE_BYTES, "%u", picture->samples ? picture->samples : 1);
+        snprintf(text, SETTING_VALUE_BYTES, "%u",
+                 picture->sampling.count ? picture->sampling.count : 1);
     }
     return true;
 }
@@ -119,7 +118,7 @@ static bool aa_tells(const void *record, bool recipe)
 {
     const struct settings *settings = record;
     (void)recipe;
-    return settings->paint == PAINT_COLOR || settings->picture.adaptive <= 0.0;
+    return settings->paint == PAINT_COLOR || settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
 /* Kernels with more in them draw the same picture. */

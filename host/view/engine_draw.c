@@ -13,7 +13,9 @@ static uint32_t samples_of(const struct settings *settings)
     const whit_renderer_params *p = &settings->picture;
     if (settings->paint != PAINT_COLOR)
         return 1;
-    return p->adaptive > 0.0 ? 8 : p->samples ? p->samples : 1; /* adaptive: 4 and some */
+    return p->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 8
+           : p->sampling.count                        ? p->sampling.count
+                                                      : 1; /* adaptive: 4 and some */
 }
 
 /* The largest picture of one sample within the budget. A larger one than the last has to be well
@@ -154,8 +156,8 @@ static whit_renderer_params task_params(const struct engine_task *task)
     params.height = (params.height + task->divisor - 1) / task->divisor;
     bool counts = task->settings.paint != PAINT_COLOR;
     if (task->quality != ENGINE_WHOLE || counts) {
-        params.samples = 1;
-        params.adaptive = 0.0;
+        params.sampling.count = 1;
+        params.sampling.kind = WHIT_SAMPLING_FIXED;
     }
     return params;
 }
@@ -170,9 +172,9 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
         .width = params.width,
         .height = params.height,
         .divisor = task->divisor,
-        .samples = params.adaptive > 0.0 ? 0
-                   : params.samples      ? params.samples
-                                         : 1,
+        .samples = params.sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 0
+                   : params.sampling.count                        ? params.sampling.count
+                                                                  : 1,
         .whole = task->quality == ENGINE_WHOLE,
         .moving = task->moving,
         .asked_ms = task->asked_ms,

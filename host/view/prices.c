@@ -101,8 +101,8 @@ static whit_renderer_params small_picture(const struct prices *prices)
         params.width = (width + by - 1) / by;
         params.height = (height + by - 1) / by;
     }
-    params.samples = 1;
-    params.adaptive = 0.0;
+    params.sampling.count = 1;
+    params.sampling.kind = WHIT_SAMPLING_FIXED;
     params.count = false;
     params.cancel = &prices->cancel;
     return params;

@@ -84,7 +84,7 @@ static whit_result warm_up(struct session *session)
     whit_renderer_params params = settings_picture(&session->settings);
     params.width = WARM_WIDTH;
     params.height = WARM_HEIGHT;
-    params.samples = 1;
+    params.sampling.count = 1;
     params.many_pictures = true;
     params.cancel = &session->cancel;
     params.progress = note_part;

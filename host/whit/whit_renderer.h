@@ -32,6 +32,19 @@ typedef enum whit_shadows {
     WHIT_SHADOWS_NONE,       /* light reaches everything */
 } whit_shadows;
 
+/* Which samples of the sequence each pixel gets. */
+typedef enum whit_sampling_kind {
+    WHIT_SAMPLING_FIXED = 0, /* `count` from `first` on */
+    WHIT_SAMPLING_ADAPTIVE,  /* 4; where a pixel differs from a neighbour by more than `contrast`
+                                16, and then 64 */
+} whit_sampling_kind;
+typedef struct whit_sampling {
+    whit_sampling_kind kind;
+    uint32_t count;  /* FIXED: a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
+    uint32_t first;  /* FIXED: a multiple of `count`; ids are of sample 0 alone */
+    double contrast; /* ADAPTIVE: above 0, up to 1 */
+} whit_sampling;
+
 /* How kernels read trees. */
 typedef enum whit_load_path {
     WHIT_LOAD_AUTO = 0, /* by the device */
@@ -44,14 +57,11 @@ typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
     whit_camera camera;     /* its name is borrowed by renderers */
     double time_s;          /* of the animation */
-    uint32_t samples;       /* a pixel: a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
-    uint32_t first_sample; /* of the sequence, a multiple of `samples`; ids are of sample 0 alone */
-    uint32_t depth;        /* most bounces; 0: what the camera ray sees, with its shadows */
-    double bailout;        /* rays that can add less than this to a pixel are not traced;
-                              0: all are */
+    whit_sampling sampling;
+    uint32_t depth; /* most bounces; 0: what the camera ray sees, with its shadows */
+    double bailout; /* rays that can add less than this to a pixel are not traced;
+                       0: all are */
     whit_shadows shadows;
-    double adaptive;        /* pixels that differ from a neighbour by more than this get 16 samples
-                               instead of 4, and then 64; `samples` is not read; 0: off */
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     double exposure_ev;     /* what is displayed (.png, FLIP, bytes) is times 2^this */
@@ -114,7 +124,7 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   samples, adaptive, light_samples, bailout, depth and exposure_ev, and nothing else. Its camera is
+   sampling, light_samples, bailout, depth and exposure_ev, and nothing else. Its camera is
    borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
    After an error there is nothing to render before a call that succeeds: WHIT_ERROR_USAGE and
    others as of whit_renderer_create. */

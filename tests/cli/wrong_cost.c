@@ -65,7 +65,7 @@ whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
     const whit_renderer_params *params = &renderer->renderer->params;
     bool slow = (is_wrong("slow") && params->depth >= 16) ||
                 (is_wrong("triangle") && by_medians(renderer->accel));
-    double samples = (double)params->width * params->height * params->samples;
+    double samples = (double)params->width * params->height * params->sampling.count;
     double start_ms = whit_clock_cpu_ms();
     whit_result result = __real_whit_renderer_render(renderer);
     turned_ms += samples * (SAMPLE_MS + (slow ? TENTH_MS : 0.0));

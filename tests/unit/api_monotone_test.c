@@ -52,7 +52,7 @@ static whit_image *reference_of(const struct opened *o, uint32_t samples)
     whit_renderer_params params = usual;
     whit_reference *reference = NULL;
     whit_image *image = NULL;
-    params.samples = samples;
+    params.sampling.count = samples;
     params.depth = DEPTH;
     params.bailout = BAILOUT;
     params.light_samples = LIGHT_SAMPLES;
@@ -133,7 +133,7 @@ static void check_knob(struct opened *o, const char *name, bool depth, struct ta
     struct error before = {.linear = INFINITY, .shown = INFINITY};
     for (size_t i = 0; i < (depth ? sizeof depths : sizeof samples) / sizeof *samples; ++i) {
         whit_renderer_params view = usual;
-        uint32_t *knob = depth ? &view.depth : &view.samples;
+        uint32_t *knob = depth ? &view.depth : &view.sampling.count;
         *knob = depth ? depths[i] : samples[i];
         const struct error error = measure(o, reference, &view);
         compare(tally, name, depth ? "depth" : "aa", *knob, &before, &error);

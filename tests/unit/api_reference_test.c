@@ -71,7 +71,10 @@ TEST(refuses_what_it_cannot_draw)
 {
     struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
     const whit_renderer_params refused[] = {
-        {.adaptive = 0.1}, {.effects_removed = 1}, {.camera = {.name = "nobody"}}, {.samples = 3}};
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}},
+        {.effects_removed = 1},
+        {.camera = {.name = "nobody"}},
+        {.sampling.count = 3}};
     whit_reference *reference = NULL;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
         assert_int_equal(whit_reference_create(o.accel, &refused[i], 0, &reference),

@@ -193,7 +193,7 @@ TEST(every_effect_agrees_with_the_device)
     struct reference_params params = {.picture = {.width = SIDE,
                                                   .height = SIDE,
                                                   .depth = 6,
-                                                  .samples = 4,
+                                                  .sampling.count = 4,
                                                   .schlick = true,
                                                   .light_samples = 4},
                                       .whole_stops = true};

@@ -296,7 +296,8 @@ static struct scene *crowded_scene(void)
 
 TEST(threads_draw_the_same_bytes)
 {
-    const whit_renderer_params picture = {.width = 37, .height = 41, .depth = 6, .samples = 4};
+    const whit_renderer_params picture = {
+        .width = 37, .height = 41, .depth = 6, .sampling.count = 4};
     struct drawn d = open_reference(crowded_scene(), &picture);
     struct image first = draw(&d);
     for (uint32_t threads = 1; threads < 4; ++threads) {
@@ -371,7 +372,8 @@ TEST(cameras_are_those_of_kernels)
         scene->cameras[0].height = 5.0f;
         scene->cameras[0].lens_radius = cameras[i].lens;
         add_object(scene, mesh_plane(10), material_plain("floor"), 0, 0, 0);
-        const whit_renderer_params picture = {.width = 13, .height = 9, .depth = 8, .samples = 4};
+        const whit_renderer_params picture = {
+            .width = 13, .height = 9, .depth = 8, .sampling.count = 4};
         struct drawn d = open_reference(scene, &picture);
         struct gpu_frame frame;
         struct scene_pose pose;

@@ -97,13 +97,13 @@ static void check_scene(struct scene *scene, const struct accel_params *accel,
     struct picture plain[3];
     struct fixture f = fixture_open(scene, accel, &params);
     for (int i = 0; i < 3; ++i) {
-        params.samples = 4u << (2 * i);
+        params.sampling.count = 4u << (2 * i);
         fixture_renew(&f, &params);
         plain[i] = render_picture(&f);
         assert_int_equal(plain[i].stats.pixels_by_samples[i + 1], PIXELS);
     }
     for (int i = 0; i < contrast_count; ++i) {
-        params.adaptive = contrasts[i];
+        params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = contrasts[i]};
         expect(plain, (float)contrasts[i], &e);
         print_message("  contrast %g: %u, %u and %u pixels of 4, 16 and 64\n", contrasts[i],
                       (unsigned)e.by_samples[1], (unsigned)e.by_samples[2],
@@ -178,7 +178,7 @@ TEST(progress_goes_on_to_the_end)
                                    .height = HEIGHT,
                                    .depth = 3,
                                    .camera = GLASS_CAMERA,
-                                   .adaptive = 0.05,
+                                   .sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.05},
                                    .progress = watch,
                                    .tile_size = 16};
     last_done = 0.0;
@@ -203,7 +203,13 @@ TEST(progress_goes_on_to_the_end)
 TEST(nonsense_is_refused)
 {
     const whit_renderer_params wrong[] = {
-        {.adaptive = -0.5}, {.adaptive = 1.5}, {.adaptive = NAN}, {.adaptive = 0.1, .count = true}};
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE + 1, .contrast = 0.5}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.5, .first = 4}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = -0.5}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 1.5}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = NAN}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}, .count = true}};
     struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
     fixture_refuses(&f, wrong, sizeof wrong / sizeof *wrong);
     fixture_close(&f);

@@ -184,8 +184,12 @@ static void check_picture(struct scene *scene, struct scene *again,
 TEST(pictures_equal_those_of_trees)
 {
     static const char *const names[] = {"layers", "glass-of-water", "whitted", "room"};
-    const whit_renderer_params counted = {
-        .width = 19, .height = 11, .depth = 5, .samples = 4, .camera = GLASS_CAMERA, .count = true};
+    const whit_renderer_params counted = {.width = 19,
+                                          .height = 11,
+                                          .depth = 5,
+                                          .sampling.count = 4,
+                                          .camera = GLASS_CAMERA,
+                                          .count = true};
     const whit_renderer_params params = {.width = 12, .height = 9, .depth = 6, .light_samples = 4};
     check_picture(glass_scene(), glass_scene(), &counted);
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i)

@@ -57,7 +57,7 @@ static struct image lens_picture(double z, float lens_radius, uint32_t samples, 
     scene->cameras[0].lens_radius = lens_radius;
     scene->cameras[0].focus_distance = 5.0f;
     add_marker(scene, size * z, 0, 0, -z);
-    const whit_renderer_params params = {.width = 75, .height = 75, .samples = samples};
+    const whit_renderer_params params = {.width = 75, .height = 75, .sampling.count = samples};
     return color_of(scene, NULL, &params);
 }
 
@@ -207,7 +207,7 @@ TEST(markers_are_where_they_should)
                                      sin(latitude) * above[i]);
         struct scene *scene = panorama_scene(eye, target);
         add_marker(scene, 0.5, at[0], at[1], at[2]); /* less than 3 degrees: no seam in between */
-        const whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .samples = 4};
+        const whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .sampling.count = 4};
         struct image image = color_of(scene, NULL, &params);
         if (places[p][0] > 170.0) /* across the seam the picture goes on */
             swap_halves(&image);
@@ -379,7 +379,7 @@ TEST(near_and_far_share_a_picture)
     /* Faces towards the eye at z = -1e-6 and -1e6; the near one left of x = 0. */
     add_object(scene, mesh_box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
     add_object(scene, mesh_box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
-    const whit_renderer_params params = {.width = 40, .height = 20, .samples = 4};
+    const whit_renderer_params params = {.width = 40, .height = 20, .sampling.count = 4};
     struct image image = color_of(scene, NULL, &params);
     for (uint32_t p = 0; p < 40 * 20; ++p)
         assert_near(image.pixels[4 * p], p % 40 < 20 ? 0.25 : 0.75, 0.0);

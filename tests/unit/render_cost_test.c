@@ -353,7 +353,7 @@ TEST(camera_rays_are_those_of_c)
     for (uint32_t kind = 0; kind < 4; ++kind) {
         for (uint32_t samples = 1; samples <= 64; samples *= kind == CAMERA_LENS ? 4 : 64) {
             whit_renderer_params params = {
-                .width = 90, .height = 70, .samples = samples, .count = true};
+                .width = 90, .height = 70, .sampling.count = samples, .count = true};
             struct fixture f =
                 fixture_open(seen_by(terrain_scene(), &cameras[kind]), NULL, &params);
             struct counted counted = render_counted(&f);
@@ -368,8 +368,12 @@ TEST(camera_rays_are_those_of_c)
 /* Sums are of all samples; pixels hold the first one, whatever came after it. */
 TEST(samples_add_up)
 {
-    whit_renderer_params params = {
-        .width = 40, .height = 24, .depth = 5, .camera = GLASS_CAMERA, .samples = 4, .count = true};
+    whit_renderer_params params = {.width = 40,
+                                   .height = 24,
+                                   .depth = 5,
+                                   .camera = GLASS_CAMERA,
+                                   .sampling.count = 4,
+                                   .count = true};
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct counted counted = render_counted(&f);
     const whit_stats first = counted.picture.stats;

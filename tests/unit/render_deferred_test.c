@@ -12,7 +12,7 @@ static whit_renderer_params exact_params(bool count)
     return (whit_renderer_params){.width = SIDE,
                                   .height = SIDE,
                                   .depth = 4,
-                                  .samples = 1,
+                                  .sampling.count = 1,
                                   .camera = GLASS_CAMERA,
                                   .numerics = NUMERICS_EXACT,
                                   .count = count};

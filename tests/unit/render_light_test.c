@@ -138,7 +138,7 @@ TEST(pixel_samples_smooth_shadows)
                                        (double[]){2, 0, 0}, (double[]){0, 0, 2}, 3.0f));
         whit_renderer_params params = {.width = 200,
                                        .height = 1,
-                                       .samples = i ? 16 : 1,
+                                       .sampling.count = i ? 16 : 1,
                                        .light_samples = 4,
                                        .camera =
                                            CAMERA_AT(-0.5, 1.4, 0, -0.5, 0, 0, 0, 0, -1, 0.2)};

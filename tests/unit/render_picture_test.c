@@ -128,7 +128,7 @@ static struct scene *plain_scene(void)
 TEST(tiles_do_not_matter)
 {
     whit_renderer_params params = {
-        .width = 75, .height = 51, .depth = 6, .samples = 4, .tile_size = 16};
+        .width = 75, .height = 51, .depth = 6, .sampling.count = 4, .tile_size = 16};
     struct picture small = picture_of(mixed_scene(), NULL, &params);
     assert_true(small.stats.tiles > 1);
     for (uint32_t tile = 32; tile <= 512; tile *= 4) {
@@ -415,7 +415,7 @@ TEST(nonsense_is_refused)
     const whit_renderer_params bad[] = {
         {.width = 0, .height = 4},
         {.width = 70000, .height = 4},
-        {.samples = 3},
+        {.sampling.count = 3},
         {.tile_size = 8},
         {.depth = 1000},
         {.camera = {.name = "nobody"}},

@@ -347,7 +347,7 @@ static void color_is_of_all_samples(void **state)
 {
     (void)state;
     whit_renderer_params params = small;
-    params.samples = 4;
+    params.sampling.count = 4;
     params.width = params.height = 4;
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
     struct sums four = probe_picture(&f);
@@ -355,8 +355,8 @@ static void color_is_of_all_samples(void **state)
     assert_int_equal(four.kinds[RAY_PRIMARY], 4 * 4);
     /* An adaptive picture begins with 4 samples. */
     struct image picture = color_of(glass_scene(), NULL, &params);
-    params.samples = 0;
-    params.adaptive = 1.0;
+    params.sampling.count = 0;
+    params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 1.0};
     f = fixture_open(glass_scene(), NULL, &params);
     struct probe_report report = probe(&f, 3, 2, 0);
     assert_int_equal(report.samples, 4);

@@ -11,12 +11,19 @@ static const whit_renderer_params steps[] = {
     {.width = 20, .height = 16, .depth = 4},
     {.width = 12, .height = 20, .depth = 4},
     {.width = 12, .height = 20, .depth = 4, .camera = ASIDE},
-    {.width = 12, .height = 20, .depth = 4, .camera = ASIDE, .samples = 4},
-    {.width = 31, .height = 17, .depth = 9, .samples = 1},
+    {.width = 12, .height = 20, .depth = 4, .camera = ASIDE, .sampling.count = 4},
+    {.width = 31, .height = 17, .depth = 9, .sampling.count = 1},
     {.width = 31, .height = 17, .depth = 0},
     {.width = 31, .height = 17, .depth = 2, .light_samples = 4},
-    {.width = 20, .height = 16, .depth = 4, .adaptive = 0.1},
-    {.width = 16, .height = 16, .depth = 4, .adaptive = 0.1, .time_s = 0.7},
+    {.width = 20,
+     .height = 16,
+     .depth = 4,
+     .sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}},
+    {.width = 16,
+     .height = 16,
+     .depth = 4,
+     .sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1},
+     .time_s = 0.7},
     {.width = 20, .height = 16, .depth = 4},
 };
 enum { STEPS = sizeof steps / sizeof *steps };
@@ -95,7 +102,7 @@ TEST(nonsense_is_refused)
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
     wrong = steps[0];
-    wrong.samples = 5;
+    wrong.sampling.count = 5;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_set_view(f.renderer, &steps[1]), WHIT_OK);
     check_same(&f, "after nonsense", &steps[1]);

@@ -46,8 +46,8 @@ static void draw(uint32_t first, uint32_t count, uint32_t tile_size, float *pixe
                                          .height = HEIGHT,
                                          .depth = 3,
                                          .light_samples = 4,
-                                         .first_sample = first,
-                                         .samples = count};
+                                         .sampling.first = first,
+                                         .sampling.count = count};
     f.renderer->params.tile_size = tile_size;
     assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
     struct image image = render(&f);
@@ -115,7 +115,7 @@ TEST(full_queues_do_not_matter)
 /* A buffer of the device holds one sample of all of it, but not the sums of more as well. */
 TEST(large_pictures_have_room_for_sums)
 {
-    const whit_renderer_params params = {.width = 4096, .height = 2048, .samples = 4096};
+    const whit_renderer_params params = {.width = 4096, .height = 2048, .sampling.count = 4096};
     const struct pixel_buffers *p = &f.renderer->picture.buffers;
     assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
     uint64_t limit = device_get_info(f.device)->max_storage_range_bytes;
@@ -127,22 +127,22 @@ TEST(large_pictures_have_room_for_sums)
 
 TEST(other_samples_are_refused)
 {
-    static const whit_renderer_params wrong[] = {{.samples = 2},
-                                                 {.samples = 8},
-                                                 {.samples = 3},
-                                                 {.samples = 16384},
-                                                 {.samples = ~0u},
+    static const whit_renderer_params wrong[] = {{.sampling.count = 2},
+                                                 {.sampling.count = 8},
+                                                 {.sampling.count = 3},
+                                                 {.sampling.count = 16384},
+                                                 {.sampling.count = ~0u},
                                                  {.light_samples = 256},
                                                  {.light_samples = 2},
-                                                 {.samples = 4, .first_sample = 2},
-                                                 {.samples = 4, .first_sample = 4096}};
+                                                 {.sampling.count = 4, .sampling.first = 2},
+                                                 {.sampling.count = 4, .sampling.first = 4096}};
     struct log silent = {.level = WHIT_LOG_ERROR};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
         whit_renderer_params params = wrong[i];
         assert_int_equal(params_check(&silent, &params), WHIT_ERROR_USAGE);
     }
     for (uint32_t n = 1; n <= WHIT_SAMPLES_MAX; n *= 4) {
-        whit_renderer_params params = {.samples = n, .first_sample = WHIT_SAMPLES_MAX - n};
+        whit_renderer_params params = {.sampling.count = n, .sampling.first = WHIT_SAMPLES_MAX - n};
         assert_int_equal(params_check(&silent, &params), WHIT_OK);
     }
 }

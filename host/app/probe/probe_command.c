@@ -49,7 +49,7 @@ static bool check_request(struct cli_reader *reader, const struct probe *probe)
                           "to %u,%u; --size asks for another one",
                           probe->x, probe->y, picture->width, picture->height, picture->width - 1,
                           picture->height - 1);
-    if (picture->adaptive > 0.0)
+    if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return cli_misuse(reader, "--aa adaptive: how many samples a pixel gets is a matter of its "
                                   "neighbours; say 4, 16 or 64");
     if (!cli_no_dash(reader, "--json", probe->json_path, "for a pipe give /dev/stdout"))

@@ -217,7 +217,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_put(root, "rays", rays_document(figures));
     document_put(root, "stages", stages_document(job, figures));
     document_put(root, "kernel", kernel_document(figures));
-    if (job->settings.picture.adaptive > 0.0)
+    if (job->settings.picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         document_put(root, "pixels_by_samples", pixels_document(figures));
     if (job->settings.paint != PAINT_COLOR || request->counters)
         document_put(root, "costs", costs_document(figures->render));
@@ -369,8 +369,8 @@ static int print_text(const struct job *job, const struct render_request *reques
            figures->scene.instance_count == 1 ? "" : "s");
     const whit_renderer_params *picture = &job->settings.picture;
     char samples[32] = "adaptive";
-    if (!(picture->adaptive > 0.0))
-        snprintf(samples, sizeof samples, "%u", picture->samples);
+    if (picture->sampling.kind == WHIT_SAMPLING_FIXED)
+        snprintf(samples, sizeof samples, "%u", picture->sampling.count);
     printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", cli_shown(request->output),
            picture->width, picture->height, samples, picture->depth);
     printf("device     %s (%s)\n", cli_shown(figures->device.name),
@@ -378,7 +378,7 @@ static int print_text(const struct job *job, const struct render_request *reques
     print_times(job, figures);
     print_rays(figures);
     print_stages(job, figures);
-    if (picture->adaptive > 0.0)
+    if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         print_samples(figures);
     print_kernel(figures);
     if (job->settings.paint != PAINT_COLOR || request->counters)

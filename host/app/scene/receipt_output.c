@@ -7,10 +7,11 @@ static void print_head(const struct receipt *receipt)
     whit_device_get_info(receipt->job->device, &device);
     printf("%s\n  picture   %u x %u, ", cli_shown(receipt->job->settings.scene), picture->width,
            picture->height);
-    if (picture->adaptive > 0.0)
+    if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         printf("adaptive samples, ");
     else
-        printf("%u sample%s a pixel, ", picture->samples, picture->samples == 1 ? "" : "s");
+        printf("%u sample%s a pixel, ", picture->sampling.count,
+               picture->sampling.count == 1 ? "" : "s");
     printf("depth %u\n", picture->depth);
     printf("  device    %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
     printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
