@@ -17,6 +17,7 @@
 #include <stb/stb_easy_font.h>
 
 #include "whit.h"
+#include "whit_program.h"
 
 enum { LABEL_ROWS = 24, FILES_MAX = 4096, LABEL_SCALE = 2, QUADS_MAX = 1024 };
 

@@ -5,6 +5,7 @@
 
 #include "api/handles.h"
 #include "base/threads.h"
+#include "whit/whit_program.h"
 
 static void describe(const struct device_info *from, whit_device_info *to)
 {

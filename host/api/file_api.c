@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/platform.h"
 #include "base/store.h"
+#include "whit/whit_program.h"
 
 whit_result whit_file_begin(const char *path, const whit_log *log, whit_file **out)
 {

@@ -56,4 +56,5 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
 install(EXPORT whitTargets NAMESPACE whit:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake DESTINATION ${package_dir})
+list(FILTER public_headers EXCLUDE REGEX whit_program)
 install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/whit)

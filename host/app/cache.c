@@ -11,6 +11,7 @@
 #include "app/cli.h"
 #include "app/document.h"
 #include "cost/cost.h"
+#include "whit/whit_program.h"
 
 /* Mesa's own limit holds in each of its folders. */
 enum { MESA_FOLDERS = 4, MESA_IN_USE_S = 3600 };

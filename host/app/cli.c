@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "app/document.h"
+#include "whit/whit_program.h"
 
 /* Time that interrupted work has to stop by itself; Ctrl+C takes 0.2 s at most. */
 enum { GRACE_MS = 80 };

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/describe.h"
+#include "whit/whit_program.h"
 
 /* ---- Completion ---- */
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "app/cli.h"
+#include "whit/whit_program.h"
 
 static void out_of_memory(void)
 {

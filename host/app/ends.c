@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "app/cli.h"
+#include "whit/whit_program.h"
 
 enum { STACK_BYTES = 64 << 10 };
 static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT};

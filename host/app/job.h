@@ -3,6 +3,7 @@
 #define APP_JOB_H
 
 #include "app/cli.h"
+#include "whit/whit_program.h"
 
 struct job {
     struct settings settings;

@@ -1,4 +1,5 @@
 #include "cost/measure.h"
+#include "whit/whit_program.h"
 
 #include <math.h>
 #include <stdio.h>

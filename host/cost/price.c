@@ -1,4 +1,5 @@
 #include "cost/cost.h"
+#include "whit/whit_program.h"
 
 #include <string.h>
 

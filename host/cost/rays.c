@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "cost/measure.h"
+#include "whit/whit_program.h"
 
 enum { TRACES = 3 };
 

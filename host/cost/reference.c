@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cost/measure.h"
+#include "whit/whit_program.h"
 
 /* Raised when pictures of the reference change: then those that are kept are of no use. */
 enum { KEPT_VERSION = 4, KEPT_CHANNELS = 4, SHRINK_MAX = 16, SHRINK_GOOD = 4, SIDE_MIN = 16 };

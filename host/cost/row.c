@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cost/measure.h"
+#include "whit/whit_program.h"
 
 enum { SHRINK_MAX = 16, BUILDS = 3, WARM_SIDE = 16, FULL_MIN = 6 };
 /* Below it what a dispatch costs by itself would count. */

@@ -7,6 +7,7 @@
 
 #include "base/platform.h"
 #include "view/engine_private.h"
+#include "whit/whit_program.h"
 
 enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MAX = 2 };
 static const uint64_t LARGE_SCENE = 1000000; /* triangles */

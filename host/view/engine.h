@@ -4,6 +4,7 @@
 #define VIEW_ENGINE_H
 
 #include "view/session.h"
+#include "whit/whit_program.h"
 
 struct engine;
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "view/engine_private.h"
+#include "whit/whit_program.h"
 
 static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
 enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };

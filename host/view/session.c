@@ -1,4 +1,5 @@
 #include "view/session.h"
+#include "whit/whit_program.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -18,7 +18,6 @@
 #include "whit_accel.h"
 #include "whit_compare.h"
 #include "whit_device.h"
-#include "whit_file.h"
 #include "whit_hard.h"
 #include "whit_image.h"
 #include "whit_probe.h"

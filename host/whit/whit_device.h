@@ -33,17 +33,6 @@ typedef struct whit_device_params {
    WHIT_ERROR_DEVICE where a call of Vulkan fails, or validation layers are missing. */
 WHIT_CHECK whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
                                           whit_device **out);
-/* The same in a thread of its own, while the caller does something else, such as loading a scene.
-   `params` is read, and its selector borrowed, until the end; what there is to say is logged at the
-   end, by the thread that asks for it. NULL when memory or threads run out: then whit_device_create
-   is left. */
-typedef struct whit_device_opening whit_device_opening;
-WHIT_CHECK whit_device_opening *whit_device_open_begin(const whit_device_params *params,
-                                                       const whit_log *log);
-/* Waits; gives what whit_device_create would have given, and frees `opening`. */
-WHIT_CHECK whit_result whit_device_open_end(whit_device_opening *opening, whit_device **out);
-/* Instead: nothing is logged, and a device is destroyed again. NULL is fine. */
-void whit_device_open_abandon(whit_device_opening *opening);
 void whit_device_destroy(whit_device *device);
 void whit_device_get_info(const whit_device *device, whit_device_info *info);
 uint32_t whit_device_validation_messages(const whit_device *device);

@@ -9,7 +9,7 @@ quietly() {
 }
 check "it installs" quietly "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix"
 cd "$OUT/prefix" || exit 1
-for file in bin/whit $(cd "$SOURCE/host" && ls whit/*.h | sed 's,^,include/,') \
+for file in bin/whit $(cd "$SOURCE/host" && ls whit/*.h | grep -v whit_program | sed 's,^,include/,') \
     share/doc/whit/LICENSE share/doc/whit/CHANGELOG.md share/doc/whit/docs/cli.md; do
     check "$file is installed" test -s "$file"
 done
@@ -25,12 +25,20 @@ check "the picture is there" test -s "$OUT/cube.png"
 library=$(find "$OUT/prefix" -name 'libwhit.so')
 nm -D --defined-only "$library" | awk '{ print $3 }' >"$OUT/names"
 check "libwhit.so exports nothing but whit_*" test "$(grep -vc '^whit_' "$OUT/names")" -eq 0
+# declared HEADER...: the functions that these declare.
+declared() {
+    grep -ohE '\bwhit_[a-z_]+\(' "$@" | tr -d '(' | sort -u
+}
 missing=
-for name in $(grep -ohE '\bwhit_[a-z_]+\(' include/whit/*.h | tr -d '(' | sort -u); do
+for name in $(declared include/whit/*.h); do
     grep -qx "$name" "$OUT/names" || grep -qhE "(typedef|define|inline).*\b$name\b" include/whit/*.h ||
         missing="$missing $name"
 done
 check "libwhit.so exports $(grep -c . "$OUT/names") names, all of whit.h$missing" test -z "$missing"
+declared "$SOURCE/host/whit/whit_program.h" >"$OUT/own"
+declared include/whit/*.h >"$OUT/public"
+check "and none that is for whit's own programs" \
+    test -s "$OUT/own" -a -z "$(comm -23 "$OUT/own" "$OUT/public" | grep -xFf - "$OUT/names")"
 by_pkg_config() {
     # shellcheck disable=SC2046
     "${CC:-cc}" -std=c11 "$SOURCE/tests/example/example.c" -o "$OUT/by_pkg_config" \

@@ -13,6 +13,7 @@
 
 #include "api/handles.h"
 #include "render/renderer.h"
+#include "whit_program.h"
 
 whit_result __real_whit_renderer_render(whit_renderer *renderer);
 whit_result __wrap_whit_renderer_render(whit_renderer *renderer);

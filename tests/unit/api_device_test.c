@@ -3,6 +3,7 @@
 
 #include "unit.h"
 #include "whit.h"
+#include "whit_program.h"
 
 struct heard {
     pthread_t thread; /* that may log */

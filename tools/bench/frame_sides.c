@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "bench/frame.h"
+#include "whit/whit_program.h"
 
 static whit_renderer_params params_of(const struct frame *frame)
 {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "bench/bench.h"
+#include "whit/whit_program.h"
 
 static whit_result (*const benches[BENCH_COUNT])(struct bench *) = {
     [BENCH_REPORT] = bench_report, [BENCH_BUILD] = bench_build, [BENCH_VIEW] = bench_view,

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "bench/bench.h"
+#include "whit/whit_program.h"
 
 extern char **environ;
 

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include "bench/rays.h"
+#include "whit/whit_program.h"
 
 const char *const rays_kind_names[RAYS_KINDS] = {"camera", "shadow", "bounce"};
 static const char *const ways[] = {"single", "packets", "stream"};

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "bench/table.h"
+#include "whit/whit_program.h"
 
 static const double WIDTH = 760.0, LEFT = 230.0, RIGHT = 150.0, TOP = 34.0, ROW = 22.0,
                     BOTTOM = 44.0;

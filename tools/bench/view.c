@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "bench/table.h"
+#include "whit/whit_program.h"
 
 enum { MOVES = 120, MOVES_QUICK = 8, STEP_MS = 16, IDLE_MS = 5000, IDLE_MS_QUICK = 300 };
 static const double BLINK_MS = 100.0; /* a frame that takes longer is seen to */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/cost/cost.h"
+#include "whit/whit_program.h"
 
 /* ---- Writing ---- */
 

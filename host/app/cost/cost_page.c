@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/cost/cost.h"
+#include "whit/whit_program.h"
 
 /* ---- Pictures ---- */
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/cost/cost.h"
+#include "whit/whit_program.h"
 
 const struct cost_column cost_columns[COST_COLUMNS] = {
     {"knob", false},    {"setting", false}, {"ms", true},   {"95 %", true},

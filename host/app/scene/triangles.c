@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "app/scene/listing.h"
+#include "whit/whit_program.h"
 
 enum { TRIANGLE_BATCH = 4096 };
 _Static_assert(sizeof(whit_triangle) == 44, "records of --triangles have no padding");

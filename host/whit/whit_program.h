@@ -1,12 +1,12 @@
-/* Part of whit.h: files that appear whole or not at all; clocks. */
-#ifndef WHIT_FILE_H
-#define WHIT_FILE_H
+/* What whit's own programs use of libwhit beside whit.h: files that appear whole or not at all,
+   clocks, what is kept from one run to the next. It is not installed, the shared library does not
+   have it, and it may change with every commit. */
+#ifndef WHIT_PROGRAM_H
+#define WHIT_PROGRAM_H
 
-#include "whit_types.h"
+#include "whit_device.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+/* ---- Files and clocks ---- */
 
 /* A file under construction, hidden beside `path`: commit renames it over `path`, abandon removes
    it. Exactly one of the two ends it. */
@@ -26,6 +26,20 @@ void whit_file_abandon_all(void);
 uint64_t whit_peak_memory_bytes(void);
 double whit_clock_ms(void);
 double whit_clock_cpu_ms(void); /* used by all threads of this process */
+
+/* ---- A device, opened beside other work ---- */
+
+/* What whit_device_create does, in a thread of its own, while the caller does something else, such
+   as loading a scene. `params` is read, and its selector borrowed, until the end; what there is to
+   say is logged at the end, by the thread that asks for it. NULL when memory or threads run out:
+   then whit_device_create is left. */
+typedef struct whit_device_opening whit_device_opening;
+WHIT_CHECK whit_device_opening *whit_device_open_begin(const whit_device_params *params,
+                                                       const whit_log *log);
+/* Waits; gives what whit_device_create would have given, and frees `opening`. */
+WHIT_CHECK whit_result whit_device_open_end(whit_device_opening *opening, whit_device **out);
+/* Instead: nothing is logged, and a device is destroyed again. NULL is fine. */
+void whit_device_open_abandon(whit_device_opening *opening);
 
 /* ---- What can be made again, kept from one run to the next ---- */
 
@@ -48,9 +62,5 @@ typedef struct whit_cache_info {
     uint64_t used_bytes, limit_bytes;
 } whit_cache_info;
 void whit_cache_get_info(whit_cache_info *info);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
