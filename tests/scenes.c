@@ -135,7 +135,7 @@ struct scene_material material_plain(const char *name)
 
 /* ---- Scenes ---- */
 
-struct scene *scene_begin(const struct log *log, const char *name)
+struct scene *scene_begin(const whit_log *log, const char *name)
 {
     struct scene *scene = scene_create(log, name);
     expect(scene, "no memory");

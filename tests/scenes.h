@@ -40,7 +40,7 @@ struct scene_material material_plain(const char *name);
 /* ---- Scenes ---- */
 
 /* Empty. `log` may be NULL. */
-struct scene *scene_begin(const struct log *log, const char *name);
+struct scene *scene_begin(const whit_log *log, const char *name);
 
 /* How an instance is put into a scene; all zeros, or NULL for a pointer to it: where its mesh is,
    under the mesh's own materials. Of matrix, node and at only one is meant at a time. */

@@ -275,7 +275,7 @@ static whit_result pose_at_start(struct accel *accel)
     return result;
 }
 
-whit_result accel_create(const struct log *log, const struct scene *scene,
+whit_result accel_create(const whit_log *log, const struct scene *scene,
                          const struct accel_params *params, struct accel **out)
 {
     double begin_ms = clock_ms();
@@ -286,7 +286,7 @@ whit_result accel_create(const struct log *log, const struct scene *scene,
         return WHIT_ERROR_MEMORY;
     }
     accel->scene = scene;
-    accel->log = log ? *log : (struct log){0};
+    accel->log = log_or_silence(log);
     accel->params = params ? *params : (struct accel_params){0};
     accel->params.instances.leaf_limit = 1;
     accel->no_trees = accel->params.mesh.builder == BVH_NONE;

@@ -52,7 +52,7 @@ struct accel_bvh8 {
    [0, instance_node_capacity); mesh trees follow. */
 struct accel {
     const struct scene *scene; /* borrowed */
-    struct log log;
+    whit_log log;
     struct accel_params params;
     struct gpu_bvh_node *nodes;
     struct gpu_triangle *triangles;
@@ -79,7 +79,7 @@ struct accel {
 };
 
 /* Builds the mesh trees and poses the instances at time 0. `scene` is frozen and outlives *out. */
-WHIT_CHECK whit_result accel_create(const struct log *log, const struct scene *scene,
+WHIT_CHECK whit_result accel_create(const whit_log *log, const struct scene *scene,
                                     const struct accel_params *params, struct accel **out);
 void accel_destroy(struct accel *accel);
 /* Whether `flatten` suits a frozen scene, which stands at `pose`: no mesh but a single ball is
@@ -112,7 +112,7 @@ uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uin
 /* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
    sizes, depth as stated. `boxes` may be NULL when only the structure is to be checked. Logs the
    first violation. */
-WHIT_CHECK whit_result bvh_validate(const struct log *log, const struct bvh *bvh,
+WHIT_CHECK whit_result bvh_validate(const whit_log *log, const struct bvh *bvh,
                                     const struct bvh_box *boxes, uint32_t leaf_limit);
 
 #endif

@@ -56,7 +56,7 @@ void accel_posing_destroy(struct accel_posing *posing);
 /* Checks a tree of valid structure: sample points all over each primitive must lie in the leaves
    that hold it, and all its records must be equal (bvh_validate_parts.c). `primitive` gives the
    primitive of the record in a slot of `triangles`. */
-WHIT_CHECK whit_result accel_validate_parts(const struct log *log, const char *name,
+WHIT_CHECK whit_result accel_validate_parts(const whit_log *log, const char *name,
                                             const struct gpu_bvh_node *nodes, uint32_t node_count,
                                             const struct gpu_triangle *triangles,
                                             uint32_t primitive_count,

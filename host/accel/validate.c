@@ -10,7 +10,7 @@
 
 /* One tree inside arrays that may hold others. */
 struct view {
-    const struct log *log;
+    const whit_log *log;
     const char *name;
     const struct gpu_bvh_node *nodes; /* the whole array */
     uint32_t first_node, node_count;  /* those of this tree; the first is the root */
@@ -311,7 +311,7 @@ static bool bvh_primitive_box(const void *user, uint32_t slot, struct bvh_box *b
     return true;
 }
 
-whit_result bvh_validate(const struct log *log, const struct bvh *bvh, const struct bvh_box *boxes,
+whit_result bvh_validate(const whit_log *log, const struct bvh *bvh, const struct bvh_box *boxes,
                          uint32_t leaf_limit)
 {
     struct bvh_user user = {bvh, boxes};

@@ -50,7 +50,7 @@ struct seen {
 };
 
 /* All records of a primitive must be equal: else a hit would depend on which one a ray meets. */
-static bool is_same_record(const struct log *log, const char *name,
+static bool is_same_record(const whit_log *log, const char *name,
                            const struct gpu_triangle *triangles, struct seen *seen, uint32_t slot)
 {
     if (seen->slot == 0)
@@ -61,7 +61,7 @@ static bool is_same_record(const struct log *log, const char *name,
     return false;
 }
 
-whit_result accel_validate_parts(const struct log *log, const char *name,
+whit_result accel_validate_parts(const whit_log *log, const char *name,
                                  const struct gpu_bvh_node *nodes, uint32_t node_count,
                                  const struct gpu_triangle *triangles, uint32_t primitive_count,
                                  uint32_t (*primitive)(const void *user, uint32_t slot),

@@ -13,7 +13,7 @@
 #define ALWAYS_VALIDATE true
 #endif
 
-static whit_result check_params(const struct log *log, const whit_accel_params *params)
+static whit_result check_params(const whit_log *log, const whit_accel_params *params)
 {
     if ((unsigned)params->build > WHIT_BUILD_NONE) {
         log_error(log, "there is no builder %d", (int)params->build);

@@ -42,17 +42,16 @@ static void mark_automatic(const struct device_info *from, whit_device_info *to,
 
 whit_result whit_device_list(const whit_log *log, whit_device_info **infos, uint32_t *count)
 {
-    struct log inner = log_from_public(log);
     struct device_info *found = NULL;
     *infos = NULL;
     *count = 0;
     uint32_t found_count = 0;
-    whit_result result = device_list(&inner, &found, &found_count);
+    whit_result result = device_list(log, &found, &found_count);
     if (result != WHIT_OK)
         return result;
     whit_device_info *described = calloc(found_count ? found_count : 1, sizeof *described);
     if (!described) {
-        log_error(&inner, "out of memory");
+        log_error(log, "out of memory");
         free(found);
         return WHIT_ERROR_MEMORY;
     }
@@ -65,7 +64,7 @@ whit_result whit_device_list(const whit_log *log, whit_device_info **infos, uint
     return WHIT_OK;
 }
 
-static whit_result open_device(const whit_device_params *params, const struct log *log,
+static whit_result open_device(const whit_device_params *params, const whit_log *log,
                                whit_device **out)
 {
     const whit_device_params defaults = {0};
@@ -77,12 +76,12 @@ static whit_result open_device(const whit_device_params *params, const struct lo
         log_error(log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    device->log = *log;
+    device->log = log_or_silence(log);
     const struct device_params wanted = {
         .selector = params->selector,
         .validation = params->validation,
     };
-    whit_result result = device_create(log, &wanted, &device->device);
+    whit_result result = device_create(&device->log, &wanted, &device->device);
     if (result != WHIT_OK) {
         whit_device_destroy(device);
         return result;
@@ -94,8 +93,7 @@ static whit_result open_device(const whit_device_params *params, const struct lo
 whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
                                whit_device **out)
 {
-    struct log inner = log_from_public(log);
-    return open_device(params, &inner, out);
+    return open_device(params, log, out);
 }
 
 /* ---- In a thread ---- */
@@ -109,7 +107,7 @@ struct held_message {
 /* Keeps messages until the caller's thread asks for them; from then on they pass. Calls of `fn` are
    one at a time (log_message). */
 struct log_relay {
-    struct log to;
+    whit_log to;
     bool passes, lost; /* lost: no memory to keep one */
     struct held_message *first, **end;
 };
@@ -134,7 +132,7 @@ static void relay_message(void *user, whit_log_level level, const char *text)
     relay->end = &held->next;
 }
 
-static struct log_relay *relay_create(const struct log *to)
+static struct log_relay *relay_create(const whit_log *to)
 {
     struct log_relay *relay = calloc(1, sizeof *relay);
     if (relay) {
@@ -166,7 +164,7 @@ static void relay_destroy(struct log_relay *relay)
 
 struct whit_device_opening {
     whit_device_params params;
-    struct log log; /* into the relay */
+    whit_log log; /* into the relay */
     struct log_relay *relay;
     struct thread *thread;
     whit_device *device; /* of the thread until it is joined, as is `result` */
@@ -181,14 +179,14 @@ static void open_in_thread(void *context)
 
 whit_device_opening *whit_device_open_begin(const whit_device_params *params, const whit_log *log)
 {
-    struct log to = log_from_public(log);
+    whit_log to = log_or_silence(log);
     whit_device_opening *opening = calloc(1, sizeof *opening);
     if (!opening)
         return NULL;
     if (params)
         opening->params = *params;
     opening->relay = relay_create(&to);
-    opening->log = (struct log){.fn = to.fn ? relay_message : NULL, .level = to.level};
+    opening->log = (whit_log){.fn = to.fn ? relay_message : NULL, .level = to.level};
     opening->log.user = opening->relay;
     if (opening->relay)
         opening->thread = thread_start(open_in_thread, opening);

@@ -10,15 +10,14 @@
 
 whit_result whit_file_begin(const char *path, const whit_log *log, whit_file **out)
 {
-    struct log inner = log_from_public(log);
     *out = NULL;
     whit_file *file = calloc(1, sizeof *file);
     if (!file) {
-        log_error(&inner, "%s: out of memory", path);
+        log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    file->log = inner;
-    whit_result result = file_write_begin(&inner, path, &file->write);
+    file->log = log_or_silence(log);
+    whit_result result = file_write_begin(log, path, &file->write);
     if (result != WHIT_OK) {
         free(file);
         return result;
@@ -89,29 +88,22 @@ double whit_clock_cpu_ms(void)
 
 bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes)
 {
-    const struct log inner = log_from_public(log);
-    return store_read(&inner, name, data, size_bytes);
+    return store_read(log, name, data, size_bytes);
 }
 
 void whit_cache_write(const char *name, const void *data, size_t size_bytes, const whit_log *log)
 {
-    const struct log inner = log_from_public(log);
-    store_write(&inner, name, data, size_bytes);
+    store_write(log, name, data, size_bytes);
 }
 
 char *whit_cache_folder(void)
 {
-    const struct log silent = {0};
-    return store_folder(&silent);
+    return store_folder(NULL);
 }
 
 void whit_cache_get_info(whit_cache_info *info)
 {
-    struct store_info inner;
-    store_get_info(&inner);
-    *info = (whit_cache_info){.used_bytes = inner.used_bytes, .limit_bytes = inner.limit_bytes};
-    memcpy(info->folder, inner.folder, sizeof info->folder);
-    memcpy(info->why_not, inner.why_not, sizeof info->why_not);
+    store_get_info(info);
 }
 
 void whit_memory_destroy(void *memory)

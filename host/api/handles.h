@@ -16,7 +16,7 @@ struct whit_scene {
     struct scene_pose pose; /* at time 0, for descriptions */
     struct scene_effects effects;
     bool one_tree; /* by WHIT_INSTANCES_AUTO */
-    struct log log;
+    whit_log log;
 };
 
 static inline bool api_one_tree(const struct whit_scene *scene, whit_instances instances)
@@ -26,14 +26,14 @@ static inline bool api_one_tree(const struct whit_scene *scene, whit_instances i
 
 struct whit_accel {
     struct accel *accel;
-    struct log log;
+    whit_log log;
 };
 
 struct log_relay; /* device_api.c */
 
 struct whit_device {
     struct device *device;
-    struct log log;
+    whit_log log;
     struct log_relay *relay; /* behind `log` of a device that a thread opened; else NULL */
 };
 
@@ -41,7 +41,7 @@ struct whit_renderer {
     struct renderer *renderer;   /* NULL: CPU only */
     struct accel *accel;         /* borrowed */
     whit_renderer_params params; /* of the picture; its strings are not read again */
-    struct log log;
+    whit_log log;
 };
 
 /* renderer_api.c: WHIT_ERROR_USAGE, logged, for a renderer that was made without one. */
@@ -53,31 +53,7 @@ struct whit_image {
 
 struct whit_file {
     struct file_write write;
-    struct log log;
+    whit_log log;
 };
-
-static inline struct log log_from_public(const whit_log *log)
-{
-    if (!log)
-        return (struct log){0};
-    return (struct log){.fn = log->fn, .user = log->user, .level = log->level};
-}
-
-static inline struct load_params load_from_public(const whit_load_params *params)
-{
-    if (!params)
-        return (struct load_params){0};
-    return (struct load_params){
-        .foreign = {.cpu_s = params->import_limit_s,
-                    .clock_s = params->time_limit_s,
-                    .require_sandbox = params->require_sandbox},
-        .memory_limit_bytes = params->memory_limit_bytes,
-        .texture_limit = params->texture_limit,
-        .cancel = params->cancel,
-        .allowed_folders = params->allowed_folders,
-        .allowed_count = params->allowed_count,
-        .refused = params->refused,
-    };
-}
 
 #endif

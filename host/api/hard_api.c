@@ -12,10 +12,9 @@ struct traced_on {
     const volatile bool *cancel;
 };
 
-static whit_result trace(const struct hard_device *device, const struct log *log,
-                         struct accel *accel, double time_s, uint32_t numerics,
-                         const struct gpu_ray *rays, uint64_t count, struct gpu_hit *hits,
-                         double *device_ms)
+static whit_result trace(const struct hard_device *device, const whit_log *log, struct accel *accel,
+                         double time_s, uint32_t numerics, const struct gpu_ray *rays,
+                         uint64_t count, struct gpu_hit *hits, double *device_ms)
 {
     const struct traced_on *on = device->user;
     const whit_renderer_params params = {.width = RENDERER_SIDE,
@@ -41,12 +40,11 @@ whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
                           whit_hard_report **out)
 {
     const whit_hard_params defaults = {0};
-    const struct log inner = log_from_public(log);
     params = params ? params : &defaults;
     struct traced_on on = {device ? device->device : NULL, params->cancel};
     const struct hard_device hard_device = {trace, &on};
     return hard_run(device ? &hard_device : NULL, scene ? scene->scene : NULL,
-                    scene && api_one_tree(scene, params->instances), params, &inner, out);
+                    scene && api_one_tree(scene, params->instances), params, log, out);
 }
 
 void whit_hard_report_destroy(whit_hard_report *report)
@@ -59,24 +57,23 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
                            uint64_t *wrong_pixels, uint64_t *other_pixels, whit_image **out)
 {
     whit_hard_view_params own = params ? *params : (whit_hard_view_params){0};
-    const struct log inner = log_from_public(log);
     struct traced_on on = {device ? device->device : NULL, NULL};
     const struct hard_device hard_device = {trace, &on};
     *out = NULL;
     own.width = own.width ? own.width : WIDTH_DEFAULT;
     own.height = own.height ? own.height : HEIGHT_DEFAULT;
     if (own.width > SIDE_MAX || own.height > SIDE_MAX) {
-        log_error(&inner, "%u x %u: at most %d on a side", own.width, own.height, SIDE_MAX);
+        log_error(log, "%u x %u: at most %d on a side", own.width, own.height, SIDE_MAX);
         return WHIT_ERROR_USAGE;
     }
     whit_image *image = calloc(1, sizeof *image);
     whit_result result =
         image ? image_init(&image->image, own.width, own.height, 3, false) : WHIT_ERROR_MEMORY;
     if (result != WHIT_OK)
-        log_error(&inner, "out of memory");
+        log_error(log, "out of memory");
     if (result == WHIT_OK)
         result = hard_view(device ? &hard_device : NULL, scene ? scene->scene : NULL,
-                           scene && api_one_tree(scene, own.instances), &own, &inner,
+                           scene && api_one_tree(scene, own.instances), &own, log,
                            image->image.pixels, wrong_pixels, other_pixels);
     if (result == WHIT_OK)
         *out = image;

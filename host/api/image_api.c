@@ -57,7 +57,7 @@ void whit_image_display_as(whit_image *image, const whit_renderer_params *params
 }
 
 /* Release with free(); NULL when memory runs out, which is logged. */
-static struct image_text *texts_from_public(const struct log *log, const char *path,
+static struct image_text *texts_from_public(const whit_log *log, const char *path,
                                             const whit_text *texts, uint32_t text_count)
 {
     struct image_text *copies = calloc(text_count ? text_count : 1, sizeof *copies);
@@ -71,11 +71,10 @@ static struct image_text *texts_from_public(const struct log *log, const char *p
 whit_result whit_image_save(const whit_image *image, const char *path, const whit_text *texts,
                             uint32_t text_count, const whit_log *log)
 {
-    struct log inner = log_from_public(log);
-    struct image_text *copies = texts_from_public(&inner, path, texts, text_count);
+    struct image_text *copies = texts_from_public(log, path, texts, text_count);
     if (!copies)
         return WHIT_ERROR_MEMORY;
-    whit_result result = image_save(&inner, &image->image, path, copies, text_count);
+    whit_result result = image_save(log, &image->image, path, copies, text_count);
     free(copies);
     return result;
 }
@@ -84,13 +83,11 @@ whit_result whit_image_encode_png(const whit_image *image, const whit_text *text
                                   uint32_t text_count, const whit_log *log, uint8_t **data,
                                   size_t *size_bytes)
 {
-    struct log inner = log_from_public(log);
-    struct image_text *copies = texts_from_public(&inner, "a PNG in memory", texts, text_count);
+    struct image_text *copies = texts_from_public(log, "a PNG in memory", texts, text_count);
     *data = NULL;
     if (!copies)
         return WHIT_ERROR_MEMORY;
-    whit_result result =
-        image_encode_png(&inner, &image->image, copies, text_count, data, size_bytes);
+    whit_result result = image_encode_png(log, &image->image, copies, text_count, data, size_bytes);
     free(copies);
     return result;
 }
@@ -98,16 +95,14 @@ whit_result whit_image_encode_png(const whit_image *image, const whit_text *text
 whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_image **out)
 {
-    struct log inner = log_from_public(log);
-    const struct load_params load = load_from_public(params);
-    const struct foreign_params foreign = load_foreign(&load);
+    const struct foreign_params foreign = load_foreign(params);
     *out = NULL;
     whit_image *image = calloc(1, sizeof *image);
     if (!image) {
-        log_error(&inner, "%s: out of memory", path);
+        log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = image_load_by(&inner, NULL, path, &foreign, &image->image);
+    whit_result result = image_load_by(log, NULL, path, &foreign, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;
@@ -163,13 +158,7 @@ whit_result whit_image_heat(const whit_image *values, const whit_heat_params *pa
     whit_image *image = calloc(1, sizeof *image);
     if (!image)
         return WHIT_ERROR_MEMORY;
-    const struct heat_params inner = {
-        .scale = params->scale,
-        .title = params->title,
-        .unit = params->unit,
-        .is_signed = params->is_signed,
-    };
-    whit_result result = image_heat(&values->image, &inner, &image->image);
+    whit_result result = image_heat(&values->image, params, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;
@@ -202,14 +191,13 @@ whit_result whit_image_compare(const whit_image *a, const whit_image *b,
                                whit_difference *out, whit_image **flip_map)
 {
     const whit_compare_params defaults = {0};
-    struct log inner = log_from_public(log);
     struct image_difference found;
     if (!params)
         params = &defaults;
     if (flip_map)
         *flip_map = NULL;
     *out = (whit_difference){0};
-    whit_result result = image_compare(&inner, &a->image, &b->image, &found);
+    whit_result result = image_compare(log, &a->image, &b->image, &found);
     if (result != WHIT_OK)
         return result;
     *out = (whit_difference){
@@ -232,12 +220,11 @@ whit_result whit_image_compare(const whit_image *a, const whit_image *b,
 whit_result whit_image_subtract(const whit_image *a, const whit_image *b, const whit_log *log,
                                 whit_image **out)
 {
-    struct log inner = log_from_public(log);
     *out = NULL;
     whit_image *image = calloc(1, sizeof *image);
     if (!image)
         return WHIT_ERROR_MEMORY;
-    whit_result result = image_subtract(&inner, &a->image, &b->image, &image->image);
+    whit_result result = image_subtract(log, &a->image, &b->image, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;

@@ -10,7 +10,7 @@
 enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SEED = 77 };
 
 struct whit_judge {
-    struct log log;
+    whit_log log;
     struct hard_scene hard;
     struct hard_topology topology;
     uint32_t threads;
@@ -100,7 +100,7 @@ whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *
     *out = NULL;
     if (!judge)
         return WHIT_ERROR_MEMORY;
-    judge->log = log_from_public(log);
+    judge->log = log_or_silence(log);
     whit_result result = fill(judge, scene, params ? params : &defaults);
     if (result != WHIT_OK) {
         whit_judge_destroy(judge);

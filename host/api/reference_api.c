@@ -9,7 +9,7 @@ struct whit_reference {
     struct reference *reference;
     whit_renderer_params params; /* its strings are not read again */
     const struct accel *accel;   /* borrowed */
-    struct log log;
+    whit_log log;
 };
 
 whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params *params,

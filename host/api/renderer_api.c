@@ -70,7 +70,7 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     if (!params)
         params = &defaults;
     *out = NULL;
-    struct log log = device ? device->log : accel->log;
+    whit_log log = device ? device->log : accel->log;
     whit_renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer) {
         log_error(&log, "out of memory");

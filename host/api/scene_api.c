@@ -10,15 +10,13 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
                             whit_scene **out)
 {
     *out = NULL;
-    struct log inner = log_from_public(log);
     whit_scene *scene = calloc(1, sizeof *scene);
     if (!scene) {
-        log_error(&inner, "%s: out of memory", path);
+        log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    scene->log = inner;
-    const struct load_params load = load_from_public(params);
-    whit_result result = load_scene(&inner, path, &load, &scene->scene);
+    scene->log = log_or_silence(log);
+    whit_result result = load_scene(&scene->log, path, params, &scene->scene);
     if (result != WHIT_OK)
         goto fail;
     result = scene_pose_init(scene->scene, 0.0, &scene->pose);

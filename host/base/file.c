@@ -63,7 +63,7 @@ void file_abandon_all(void)
     }
 }
 
-static whit_result read_all(const struct log *log, const char *path, int fd, uint8_t *data,
+static whit_result read_all(const whit_log *log, const char *path, int fd, uint8_t *data,
                             size_t size_bytes, size_t *read_bytes)
 {
     size_t done = 0;
@@ -83,7 +83,7 @@ static whit_result read_all(const struct log *log, const char *path, int fd, uin
     return WHIT_OK;
 }
 
-static whit_result check_readable(const struct log *log, const char *path, int fd,
+static whit_result check_readable(const whit_log *log, const char *path, int fd,
                                   uint64_t limit_bytes, size_t *size_bytes)
 {
     struct stat info;
@@ -104,7 +104,7 @@ static whit_result check_readable(const struct log *log, const char *path, int f
     return WHIT_OK;
 }
 
-whit_result file_read(const struct log *log, const struct roots *roots, const char *path,
+whit_result file_read(const whit_log *log, const struct roots *roots, const char *path,
                       uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
 {
     *data = NULL;
@@ -289,7 +289,7 @@ static int open_for_writing(struct file_write *file, const char *path)
     return fd;
 }
 
-whit_result file_write_begin(const struct log *log, const char *path, struct file_write *file)
+whit_result file_write_begin(const whit_log *log, const char *path, struct file_write *file)
 {
     *file = (struct file_write){0};
     int fd = open_for_writing(file, path);
@@ -334,7 +334,7 @@ static int flush_and_close(struct file_write *file)
     return reason;
 }
 
-whit_result file_write_commit(const struct log *log, struct file_write *file)
+whit_result file_write_commit(const whit_log *log, struct file_write *file)
 {
     if (!file->stream)
         return WHIT_OK;

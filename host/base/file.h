@@ -16,7 +16,7 @@
    path. Every file that whit did not make is opened here: with the roots that `path` may not lead
    out of, or NULL for what the user named. Refuses folders, devices and files over `limit_bytes`
    (0: no limit). */
-WHIT_CHECK whit_result file_read(const struct log *log, const struct roots *roots, const char *path,
+WHIT_CHECK whit_result file_read(const whit_log *log, const struct roots *roots, const char *path,
                                  uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
 
 /* A file under construction: `stream` writes to a hidden sibling of `path`. Commit renames it over
@@ -30,9 +30,9 @@ struct file_write {
     int slot;
 };
 
-WHIT_CHECK whit_result file_write_begin(const struct log *log, const char *path,
+WHIT_CHECK whit_result file_write_begin(const whit_log *log, const char *path,
                                         struct file_write *file);
-WHIT_CHECK whit_result file_write_commit(const struct log *log, struct file_write *file);
+WHIT_CHECK whit_result file_write_commit(const whit_log *log, struct file_write *file);
 void file_write_abandon(struct file_write *file);
 void file_abandon_all(void);
 

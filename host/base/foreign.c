@@ -84,7 +84,7 @@ static whit_result explain(enum child_end end, const struct child_limits *limits
     return WHIT_ERROR_INPUT;
 }
 
-whit_result foreign_run(const struct log *log, const struct child_limits *limits,
+whit_result foreign_run(const whit_log *log, const struct child_limits *limits,
                         int (*fn)(void *user, void *to, child_write write), void *user,
                         struct child_reply *reply, char reason[FOREIGN_REASON_BYTES])
 {
@@ -113,7 +113,7 @@ static int answer_question(void *user, void *to, child_write write)
     return write(to, &answer, sizeof answer) ? 0 : 1;
 }
 
-whit_result foreign_ask(const struct log *log, const struct child_limits *limits, foreign_fn fn,
+whit_result foreign_ask(const whit_log *log, const struct child_limits *limits, foreign_fn fn,
                         void *user, struct child_reply *reply, struct foreign_answer *answer)
 {
     struct question question = {fn, user};

@@ -24,7 +24,7 @@ enum { FOREIGN_REASON_BYTES = 768 };
 /* child_run. Not WHIT_OK: `reason` says why there is no reply, and nothing is logged:
    WHIT_ERROR_INPUT, or _MEMORY (no child), _CANCELLED, _USAGE (a sandbox is required and not to be
    had). That it ran without one is a warning, once in the life of this process. */
-WHIT_CHECK whit_result foreign_run(const struct log *log, const struct child_limits *limits,
+WHIT_CHECK whit_result foreign_run(const whit_log *log, const struct child_limits *limits,
                                    int (*fn)(void *user, void *to, child_write write), void *user,
                                    struct child_reply *reply, char reason[FOREIGN_REASON_BYTES]);
 
@@ -42,7 +42,7 @@ typedef whit_result (*foreign_fn)(void *user, void *to, child_write write,
 /* foreign_run for functions with answers. WHIT_OK: *reply is the data, `answer` what it says of
    them, neither to be believed but for the result and that the reason is text; else `answer` has
    the reason, and there is no reply. */
-WHIT_CHECK whit_result foreign_ask(const struct log *log, const struct child_limits *limits,
+WHIT_CHECK whit_result foreign_ask(const whit_log *log, const struct child_limits *limits,
                                    foreign_fn fn, void *user, struct child_reply *reply,
                                    struct foreign_answer *answer);
 

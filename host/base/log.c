@@ -6,7 +6,12 @@
 
 static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
 
-void log_message(const struct log *log, whit_log_level level, const char *format, ...)
+whit_log log_or_silence(const whit_log *log)
+{
+    return log ? *log : (whit_log){0};
+}
+
+void log_message(const whit_log *log, whit_log_level level, const char *format, ...)
 {
     if (!log || !log->fn || level > log->level)
         return;

@@ -4,14 +4,10 @@
 
 #include "whit/whit_base.h"
 
-/* Copied freely; a zeroed log is silent. Messages above `level` are not formatted. */
-struct log {
-    whit_log_fn fn;
-    void *user;
-    whit_log_level level;
-};
+whit_log log_or_silence(const whit_log *log);
 
-void log_message(const struct log *log, whit_log_level level, const char *format, ...)
+/* NULL is silent too. */
+void log_message(const whit_log *log, whit_log_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
 #define log_error(log, ...)   log_message((log), WHIT_LOG_ERROR, __VA_ARGS__)

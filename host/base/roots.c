@@ -258,7 +258,7 @@ whit_result roots_init(struct roots *roots, const char *named)
     return result == WHIT_ERROR_MEMORY ? result : WHIT_OK;
 }
 
-whit_result roots_allow(const struct log *log, struct roots *roots, const char *folder)
+whit_result roots_allow(const whit_log *log, struct roots *roots, const char *folder)
 {
     struct stat info;
     whit_result result = WHIT_ERROR_INPUT;

@@ -34,7 +34,7 @@ struct roots {
    reaches nothing. */
 WHIT_CHECK whit_result roots_init(struct roots *roots, const char *named);
 /* One more folder; logs why it cannot be had. */
-WHIT_CHECK whit_result roots_allow(const struct log *log, struct roots *roots, const char *folder);
+WHIT_CHECK whit_result roots_allow(const whit_log *log, struct roots *roots, const char *folder);
 void roots_finish(struct roots *roots);
 
 /* `relative`, as the file `from` names it, taken from the folder of `from`. Absolute names are

@@ -75,7 +75,7 @@ static const char *distrust(int fd)
 }
 
 /* A descriptor of it, or -1 and what is wrong. */
-static int open_folder(const struct log *log, const char *path, const char **why)
+static int open_folder(const whit_log *log, const char *path, const char **why)
 {
     static atomic_flag warned = ATOMIC_FLAG_INIT;
     *why = is_off() ? "WHIT_NO_CACHE is set" : "neither XDG_CACHE_HOME nor HOME names a folder";
@@ -86,7 +86,7 @@ static int open_folder(const struct log *log, const char *path, const char **why
     if (fd < 0) {
         log_debug(log, "%s: %s: nothing is kept", path, *why);
     } else if (*why) {
-        if (log->fn && log->level >= WHIT_LOG_WARNING && !atomic_flag_test_and_set(&warned))
+        if (log && log->fn && log->level >= WHIT_LOG_WARNING && !atomic_flag_test_and_set(&warned))
             log_warning(log, "%s: %s: nothing is kept there", path, *why);
         close(fd);
         fd = -1;
@@ -94,7 +94,7 @@ static int open_folder(const struct log *log, const char *path, const char **why
     return fd;
 }
 
-static int open_own(const struct log *log)
+static int open_own(const whit_log *log)
 {
     const char *why;
     char *path = make_folder();
@@ -103,7 +103,7 @@ static int open_own(const struct log *log)
     return fd;
 }
 
-char *store_folder(const struct log *log)
+char *store_folder(const whit_log *log)
 {
     const char *why;
     char *path = make_folder();
@@ -169,7 +169,7 @@ static void throw_away(int folder, const char *name)
         (void)unlinkat(folder, name, AT_REMOVEDIR);
 }
 
-bool store_read(const struct log *log, const char *name, uint8_t **data, size_t *size_bytes)
+bool store_read(const whit_log *log, const char *name, uint8_t **data, size_t *size_bytes)
 {
     struct stat info;
     int folder = open_own(log), fd = -1;
@@ -288,7 +288,7 @@ static bool replace(int folder, const char *name, const void *data, size_t size_
     return whole;
 }
 
-void store_write(const struct log *log, const char *name, const void *data, size_t size_bytes)
+void store_write(const whit_log *log, const char *name, const void *data, size_t size_bytes)
 {
     int folder = size_bytes < limit_bytes() ? open_own(log) : -1;
     if (folder < 0)
@@ -299,11 +299,11 @@ void store_write(const struct log *log, const char *name, const void *data, size
     close(folder);
 }
 
-void store_get_info(struct store_info *info)
+void store_get_info(whit_cache_info *info)
 {
-    const struct log silent = {0};
+    const whit_log silent = {0};
     const char *why;
-    *info = (struct store_info){.limit_bytes = limit_bytes()};
+    *info = (whit_cache_info){.limit_bytes = limit_bytes()};
     char *path = make_folder();
     int folder = open_folder(&silent, path, &why);
     snprintf(info->folder, sizeof info->folder, "%s", path ? path : "");

@@ -14,11 +14,11 @@
 /* Builders, called by bvh_build with at least one box and parameters in which no 0 stands for a
    default, but for `bins` of BVH_BINNED: 0 lets the number follow the size of the node. They fill
    *out up to build_complete; on failure the caller releases what is in it. */
-whit_result records_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
-whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                         const struct bvh_params *resolved, struct bvh *out);
-whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 
 /* bvh_complete by several threads: the same bits for any number of them. */
@@ -98,7 +98,7 @@ struct builder {
 /* Grows the tree over `count` records within `bounds`, with room for `spare` more behind them.
    Allocates out->order, for all of them, and gives out->nodes, of which leaves name runs of
    records: the order, and what follows from nodes, are the builder's to fill in. */
-whit_result topdown_grow(const struct log *log, const struct builder *builder,
+whit_result topdown_grow(const whit_log *log, const struct builder *builder,
                          const struct build_bounds *bounds, uint32_t count, uint32_t spare,
                          struct bvh *out);
 
@@ -108,7 +108,7 @@ void *build_alloc_lines(size_t count, size_t element_bytes);
 /* ---- Records (records.c) ---- */
 
 /* In the order of the input, zeros without sign, and room for `spare` more behind them. free() */
-whit_result records_make(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result records_make(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                          uint32_t spare, uint32_t thread_count, struct build_record **records,
                          struct build_bounds *bounds);
 

@@ -34,7 +34,7 @@ static void params_resolve(const struct bvh_params *in, struct bvh_params *out)
         out->spatial_budget = 0.0f;
 }
 
-static whit_result params_check(const struct log *log, const struct bvh_params *params)
+static whit_result params_check(const whit_log *log, const struct bvh_params *params)
 {
     whit_result result = WHIT_ERROR_USAGE;
     if (!builder_known(params->builder))
@@ -50,7 +50,7 @@ static whit_result params_check(const struct log *log, const struct bvh_params *
     return result;
 }
 
-static whit_result build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                          const struct bvh_params *params, struct bvh *out)
 {
     switch (params->builder) {
@@ -66,7 +66,7 @@ static whit_result build(const struct log *log, const struct bvh_box *boxes, uin
     return WHIT_ERROR_USAGE; /* params_check knows better */
 }
 
-whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                       const struct bvh_params *params, struct bvh *out)
 {
     double begin_ms = clock_ms();

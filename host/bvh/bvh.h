@@ -57,7 +57,7 @@ struct bvh {
 };
 
 /* Boxes must be finite with lo <= hi. Deterministic. */
-WHIT_CHECK whit_result bvh_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+WHIT_CHECK whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                                  const struct bvh_params *params, struct bvh *out);
 void bvh_finish(struct bvh *bvh);
 
@@ -90,7 +90,7 @@ void bvh_set_axis(struct gpu_bvh_node *first);
 /* Improves a finished tree by moving subtrees to where they cost less: Meister and Bittner 2018,
    "Parallel reinsertion for bounding volume hierarchy optimization". Keeps leaves as they are; the
    depth stays within BVH_DEPTH_MAX. Deterministic whatever the thread count. */
-WHIT_CHECK whit_result bvh_optimize(const struct log *log, uint32_t thread_count,
+WHIT_CHECK whit_result bvh_optimize(const whit_log *log, uint32_t thread_count,
                                     double traversal_cost, struct bvh *bvh);
 enum { BVH_DEPTH_MAX = 128 };
 

@@ -292,7 +292,7 @@ static void emit(const struct optimizer *o, struct bvh *bvh, uint32_t *order)
     }
 }
 
-whit_result bvh_optimize(const struct log *log, uint32_t thread_count, double traversal_cost,
+whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, double traversal_cost,
                          struct bvh *bvh)
 {
     double begin_ms = clock_ms();

@@ -65,7 +65,7 @@ static bool chunks_unite(const struct record_chunk *chunks, uint32_t count,
     return !bad;
 }
 
-whit_result records_make(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result records_make(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                          uint32_t spare, uint32_t thread_count, struct build_record **records,
                          struct build_bounds *bounds)
 {
@@ -135,7 +135,7 @@ static void grow_small(const struct builder *builder, const struct build_output 
         own[i] = moved[small.leaves[i]];
 }
 
-whit_result records_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out)
 {
     struct builder builder = {.params = resolved, .halve = split_median};

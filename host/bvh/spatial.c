@@ -120,7 +120,7 @@ static uint32_t budget(uint32_t count, float share)
     return (uint32_t)(max < room ? max : room);
 }
 
-whit_result spatial_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out)
 {
     if (!resolved->triangles) {

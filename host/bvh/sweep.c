@@ -242,7 +242,7 @@ static void grow_small(const struct builder *builder, const struct build_output 
 
 /* ---- The builder ---- */
 
-static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uint32_t count,
+static whit_result sweep_prepare(const whit_log *log, struct sweep *sweep, uint32_t count,
                                  uint32_t thread_count)
 {
     struct sorting sorting = {.sweep = sweep, .count = count};
@@ -261,7 +261,7 @@ static whit_result sweep_prepare(const struct log *log, struct sweep *sweep, uin
     return WHIT_ERROR_MEMORY;
 }
 
-whit_result sweep_build(const struct log *log, const struct bvh_box *boxes, uint32_t count,
+whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                         const struct bvh_params *resolved, struct bvh *out)
 {
     struct sweep sweep = {.mark = NULL};

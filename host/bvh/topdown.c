@@ -196,7 +196,7 @@ void *build_alloc_lines(size_t count, size_t element_bytes)
     return aligned_alloc(64, (count * element_bytes + 63) & ~(size_t)63);
 }
 
-static whit_result grow_alloc(const struct log *log, struct build *build, struct bvh *out)
+static whit_result grow_alloc(const whit_log *log, struct build *build, struct bvh *out)
 {
     size_t room = (size_t)build->count + build->spare;
     build->output.slots = array_alloc_zeroed(room, sizeof *build->output.slots);
@@ -209,7 +209,7 @@ static whit_result grow_alloc(const struct log *log, struct build *build, struct
     return WHIT_ERROR_MEMORY;
 }
 
-whit_result topdown_grow(const struct log *log, const struct builder *builder,
+whit_result topdown_grow(const whit_log *log, const struct builder *builder,
                          const struct build_bounds *bounds, uint32_t count, uint32_t spare,
                          struct bvh *out)
 {

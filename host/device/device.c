@@ -256,7 +256,7 @@ fail:
     return result;
 }
 
-whit_result device_create(const struct log *log, const struct device_params *params,
+whit_result device_create(const whit_log *log, const struct device_params *params,
                           struct device **out)
 {
     *out = NULL;
@@ -266,7 +266,7 @@ whit_result device_create(const struct log *log, const struct device_params *par
         return WHIT_ERROR_MEMORY;
     }
     if (log)
-        device->log = *log;
+        device->log = log_or_silence(log);
     const char *validation = getenv("WHIT_VALIDATION");
     bool asked = params && params->validation;
     device->validation = asked || environment_on("WHIT_VALIDATION");

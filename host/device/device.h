@@ -45,7 +45,7 @@ struct device_info {
 
 /* All physical devices, usable or not; *infos is one block, free() it. No loader or driver at all
    is WHIT_ERROR_NO_DEVICE, logged with what to install. */
-WHIT_CHECK whit_result device_list(const struct log *log, struct device_info **infos,
+WHIT_CHECK whit_result device_list(const whit_log *log, struct device_info **infos,
                                    uint32_t *count);
 const char *device_kind_name(enum device_kind kind);
 
@@ -73,7 +73,7 @@ struct device_params {
 /* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.
    Compiled pipelines are kept from one run to the next (base/store.h), unless WHIT_NO_CACHE=1 is in
    the environment. */
-WHIT_CHECK whit_result device_create(const struct log *log, const struct device_params *params,
+WHIT_CHECK whit_result device_create(const whit_log *log, const struct device_params *params,
                                      struct device **out);
 void device_destroy(struct device *device);
 const struct device_info *device_get_info(const struct device *device);

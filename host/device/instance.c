@@ -400,11 +400,11 @@ fail:
     return result;
 }
 
-whit_result device_list(const struct log *log, struct device_info **infos, uint32_t *count)
+whit_result device_list(const whit_log *log, struct device_info **infos, uint32_t *count)
 {
     struct device device = {0};
     if (log)
-        device.log = *log;
+        device.log = log_or_silence(log);
     device_read_fault(&device);
     VkPhysicalDevice *handles = NULL;
     *infos = NULL;

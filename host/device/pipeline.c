@@ -307,7 +307,7 @@ void pipeline_destroy(struct pipeline *pipeline)
 static whit_result check_buffers(const struct pipeline *pipeline, struct buffer *const *buffers,
                                  uint32_t count)
 {
-    const struct log *log = &pipeline->device->log;
+    const whit_log *log = &pipeline->device->log;
     if (count != pipeline->binding_count) {
         log_error(log, "pipeline \"%s\": %u buffers for %u bindings", pipeline->name, count,
                   pipeline->binding_count);

@@ -33,7 +33,7 @@ struct fault {
 };
 
 struct device {
-    struct log log;
+    whit_log log;
     struct fault fault;
     bool validation, staged, poisons;
     bool validation_of_shaders; /* GPU-assisted checks too */

@@ -79,13 +79,13 @@ struct hard_scene {
     enum hard_truth truth;
 };
 
-WHIT_CHECK whit_result hard_scene_init(const struct log *log, const struct hard_case *hard,
+WHIT_CHECK whit_result hard_scene_init(const whit_log *log, const struct hard_case *hard,
                                        struct hard_scene *out);
 /* A scene of the user's at one time; `scene` is borrowed. */
-WHIT_CHECK whit_result hard_scene_borrow(const struct log *log, const struct scene *scene,
+WHIT_CHECK whit_result hard_scene_borrow(const whit_log *log, const struct scene *scene,
                                          double time_s, bool flatten, struct hard_scene *out);
 /* A frozen scene of one mesh, which is taken over; `place` NULL: where it is. */
-WHIT_CHECK whit_result hard_scene_of_mesh(const struct log *log, const char *name,
+WHIT_CHECK whit_result hard_scene_of_mesh(const whit_log *log, const char *name,
                                           struct scene_mesh *mesh, const struct affine *place,
                                           struct scene **out);
 
@@ -98,7 +98,7 @@ struct hard_variant {
 };
 const struct hard_variant *hard_variants(uint32_t *count);
 /* out->scene is NULL where no triangle is left with an area. */
-WHIT_CHECK whit_result hard_scene_vary(const struct log *log, const struct hard_scene *given,
+WHIT_CHECK whit_result hard_scene_vary(const whit_log *log, const struct hard_scene *given,
                                        const struct hard_variant *variant, struct hard_scene *out);
 
 void hard_scene_finish(struct hard_scene *hard);

@@ -325,7 +325,7 @@ void hard_add_tally(whit_tally *sum, const whit_tally *more)
 whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
                        whit_tally *tally)
 {
-    const struct log *log = &judgement->hard->scene->log;
+    const whit_log *log = &judgement->hard->scene->log;
     uint32_t chunks = chunks_of(judgement->count);
     struct judging judging = {
         .judgement = judgement,

@@ -333,7 +333,7 @@ static whit_result weld(const struct maker *maker, struct scene_mesh *mesh)
     return WHIT_OK;
 }
 
-whit_result hard_scene_of_mesh(const struct log *log, const char *name, struct scene_mesh *mesh,
+whit_result hard_scene_of_mesh(const whit_log *log, const char *name, struct scene_mesh *mesh,
                                const struct affine *place, struct scene **out)
 {
     struct scene_instance instance = {.node = SCENE_NONE, .has_local = place != NULL};
@@ -361,8 +361,7 @@ whit_result hard_scene_of_mesh(const struct log *log, const char *name, struct s
     return result;
 }
 
-static whit_result make_scene(const struct log *log, const struct hard_case *hard,
-                              struct scene **out)
+static whit_result make_scene(const whit_log *log, const struct hard_case *hard, struct scene **out)
 {
     struct maker maker = {.hard = hard, .capacity = TRIANGLES_MAX};
     struct scene_mesh mesh = {0};
@@ -405,7 +404,7 @@ static void set_reach(const struct hard_case *hard, struct hard_scene *out)
    kernels serve them. */
 enum { STACK_FLOOR = 48 };
 
-static whit_result pose_and_build(const struct log *log, double time_s, struct hard_scene *hard)
+static whit_result pose_and_build(const whit_log *log, double time_s, struct hard_scene *hard)
 {
     const struct accel_params params = {.stack_floor = STACK_FLOOR, .flatten = hard->flatten};
     whit_result result = scene_pose_init(hard->scene, time_s, &hard->pose);
@@ -418,7 +417,7 @@ static whit_result pose_and_build(const struct log *log, double time_s, struct h
     return result;
 }
 
-whit_result hard_scene_init(const struct log *log, const struct hard_case *hard,
+whit_result hard_scene_init(const whit_log *log, const struct hard_case *hard,
                             struct hard_scene *out)
 {
     *out = (struct hard_scene){.rays = hard->rays, .truth = truth_of(hard)};
@@ -433,7 +432,7 @@ whit_result hard_scene_init(const struct log *log, const struct hard_case *hard,
 }
 
 /* What is known of any scene. */
-static whit_result take_scene(const struct log *log, double time_s, struct hard_scene *out)
+static whit_result take_scene(const whit_log *log, double time_s, struct hard_scene *out)
 {
     whit_result result = pose_and_build(log, time_s, out);
     for (int k = 0; k < 3; ++k) {
@@ -445,7 +444,7 @@ static whit_result take_scene(const struct log *log, double time_s, struct hard_
     return result;
 }
 
-whit_result hard_scene_borrow(const struct log *log, const struct scene *scene, double time_s,
+whit_result hard_scene_borrow(const whit_log *log, const struct scene *scene, double time_s,
                               bool flatten, struct hard_scene *out)
 {
     *out = (struct hard_scene){
@@ -496,7 +495,7 @@ static struct affine place_variant(const struct hard_variant *variant)
 }
 
 /* World triangles under `place`, or as they are. */
-static whit_result gather(const struct log *log, const struct hard_scene *given,
+static whit_result gather(const whit_log *log, const struct hard_scene *given,
                           const struct affine *place, struct scene_mesh *mesh)
 {
     const struct scene *scene = given->scene;
@@ -530,7 +529,7 @@ static whit_result gather(const struct log *log, const struct hard_scene *given,
     return WHIT_OK;
 }
 
-whit_result hard_scene_vary(const struct log *log, const struct hard_scene *given,
+whit_result hard_scene_vary(const whit_log *log, const struct hard_scene *given,
                             const struct hard_variant *variant, struct hard_scene *out)
 {
     struct affine place = place_variant(variant);

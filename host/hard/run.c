@@ -18,7 +18,7 @@ enum {
 
 struct hard_run {
     const whit_hard_params *params;
-    struct log log;
+    whit_log log;
     const struct hard_device *device; /* NULL: the twin alone */
     uint32_t levels;
     uint64_t ray_count; /* of a row */
@@ -81,7 +81,7 @@ static whit_result trace_on_device(struct hard_run *run, const struct hard_scene
                                    uint32_t numerics, double *device_ms, bool *cut)
 {
     struct held_log held = {""};
-    const struct log log = {.fn = hold_back, .user = &held};
+    const whit_log log = {.fn = hold_back, .user = &held};
     double ms = 0.0;
     whit_result result = run->device->trace(run->device, &log, hard->accel, 0.0, numerics,
                                             run->plain, run->piece, run->hits, &ms);
@@ -311,9 +311,9 @@ static whit_result check_params(const struct hard_run *run)
 }
 
 whit_result hard_run(const struct hard_device *device, const struct scene *scene, bool flatten,
-                     const whit_hard_params *params, const struct log *log, whit_hard_report **out)
+                     const whit_hard_params *params, const whit_log *log, whit_hard_report **out)
 {
-    struct hard_run run = {.params = params, .log = *log, .device = device};
+    struct hard_run run = {.params = params, .log = log_or_silence(log), .device = device};
     *out = NULL;
     run.levels = params->levels ? params->levels : (1u << LEVELS) - 1;
     run.ray_count = params->rays ? params->rays : RAYS_DEFAULT;

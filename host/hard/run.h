@@ -9,23 +9,22 @@ struct hard_device {
     /* Closest hits of `count` rays with `accel`, which is posed at `time_s`, at NUMERICS_*;
        *device_ms: what the traversals took. WHIT_ERROR_STATUS, logged like other errors, where the
        hits are not to be trusted. */
-    whit_result (*trace)(const struct hard_device *device, const struct log *log,
-                         struct accel *accel, double time_s, uint32_t numerics,
-                         const struct gpu_ray *rays, uint64_t count, struct gpu_hit *hits,
-                         double *device_ms);
+    whit_result (*trace)(const struct hard_device *device, const whit_log *log, struct accel *accel,
+                         double time_s, uint32_t numerics, const struct gpu_ray *rays,
+                         uint64_t count, struct gpu_hit *hits, double *device_ms);
     void *user;
 };
 
 /* As whit_hard_run; `device` and `scene` may be NULL; `flatten`: the scene as one tree. */
 WHIT_CHECK whit_result hard_run(const struct hard_device *device, const struct scene *scene,
-                                bool flatten, const whit_hard_params *params, const struct log *log,
+                                bool flatten, const whit_hard_params *params, const whit_log *log,
                                 whit_hard_report **out);
 void hard_report_destroy(whit_hard_report *report);
 
 /* As whit_hard_view: `pixels` are 3 floats for each of the rays of params->width x height. */
 WHIT_CHECK whit_result hard_view(const struct hard_device *device, const struct scene *scene,
                                  bool flatten, const whit_hard_view_params *params,
-                                 const struct log *log, float *pixels, uint64_t *wrong,
+                                 const whit_log *log, float *pixels, uint64_t *wrong,
                                  uint64_t *other);
 
 #endif

@@ -11,7 +11,7 @@ static const float red[3] = {1.0f, 0.0f, 0.0f}, yellow[3] = {1.0f, 0.7f, 0.0f};
 
 struct view {
     const whit_hard_view_params *params;
-    struct log log;
+    whit_log log;
     struct hard_scene hard;
     struct hard_topology topology;
     uint32_t width, height;
@@ -117,11 +117,13 @@ static void finish(struct view *view)
 }
 
 whit_result hard_view(const struct hard_device *device, const struct scene *scene, bool flatten,
-                      const whit_hard_view_params *params, const struct log *log, float *pixels,
+                      const whit_hard_view_params *params, const whit_log *log, float *pixels,
                       uint64_t *wrong, uint64_t *other)
 {
-    struct view view = {
-        .params = params, .log = *log, .width = params->width, .height = params->height};
+    struct view view = {.params = params,
+                        .log = log_or_silence(log),
+                        .width = params->width,
+                        .height = params->height};
     whit_result result = open_scene(&view, scene, flatten);
     if (result == WHIT_OK)
         result = prepare(&view);

@@ -30,7 +30,7 @@ static bool same_kind(const struct image *a, const struct image *b)
            !a->words == !b->words && (!a->words || a->channels == b->channels);
 }
 
-static whit_result refuse(const struct log *log, const struct image *a, const struct image *b)
+static whit_result refuse(const whit_log *log, const struct image *a, const struct image *b)
 {
     log_error(log, "the pictures cannot be compared: %u x %u with %u %s against %u x %u with %u %s",
               a->width, a->height, a->channels, a->words ? "integers" : "floats", b->width,
@@ -114,7 +114,7 @@ static void divide(const struct sums *sums, struct image_difference *out)
         out->mean[c] = sums->differences[c] / terms;
 }
 
-whit_result image_compare(const struct log *log, const struct image *a, const struct image *b,
+whit_result image_compare(const whit_log *log, const struct image *a, const struct image *b,
                           struct image_difference *out)
 {
     *out = (struct image_difference){0};
@@ -133,7 +133,7 @@ whit_result image_compare(const struct log *log, const struct image *a, const st
     return WHIT_OK;
 }
 
-whit_result image_subtract(const struct log *log, const struct image *a, const struct image *b,
+whit_result image_subtract(const whit_log *log, const struct image *a, const struct image *b,
                            struct image *out)
 {
     *out = (struct image){0};

@@ -114,7 +114,7 @@ static exr_result_t finish(exr_context_t *context)
     return code;
 }
 
-static whit_result report(const struct log *log, const char *path, const struct memory_file *file,
+static whit_result report(const whit_log *log, const char *path, const struct memory_file *file,
                           exr_result_t code, whit_result result)
 {
     log_error(log, "%s: EXR: %s", path,

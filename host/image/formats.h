@@ -13,7 +13,7 @@ enum { IMAGE_SIDE_MAX = 65535 };
 
 /* A picture file in memory; `path` is for messages. */
 struct image_source {
-    const struct log *log;
+    const whit_log *log;
     const char *path;
     const uint8_t *data;
     size_t size_bytes;
@@ -22,7 +22,7 @@ struct image_source {
 /* Where a picture goes. What `stream` has not taken is the caller's to notice: file_write_commit
    looks at its error flag. */
 struct image_target {
-    const struct log *log;
+    const whit_log *log;
     const char *path;
     FILE *stream;
     const struct image_text *texts;

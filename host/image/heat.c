@@ -191,13 +191,13 @@ static whit_result signed_scale(const struct image *values, double *scale)
     return WHIT_OK;
 }
 
-static bool can_paint(const struct image *values, const struct heat_params *params)
+static bool can_paint(const struct image *values, const whit_heat_params *params)
 {
     bool channels = values->channels == 1 || (params->is_signed && values->channels >= 3);
     return values->pixels && channels && params->scale >= 0.0 && isfinite(params->scale);
 }
 
-whit_result image_heat(const struct image *values, const struct heat_params *params,
+whit_result image_heat(const struct image *values, const whit_heat_params *params,
                        struct image *out)
 {
     *out = (struct image){0};

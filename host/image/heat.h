@@ -3,13 +3,7 @@
 #define IMAGE_HEAT_H
 
 #include "image/image.h"
-
-struct heat_params {
-    double scale;      /* of the brightest colour; 0: image_heat_scale */
-    bool is_signed;    /* from -scale to scale, in the colours of heat_signed_color */
-    const char *title; /* of the legend, or NULL; shortened when it does not fit */
-    const char *unit;  /* of the numbers, at the legend's right end, or NULL */
-};
+#include "whit/whit_image.h"
 
 /* Viridis: sRGB codes of `share`, 0 (dark) to 1 (bright), which is clamped. */
 void heat_color(double share, uint8_t codes[3]);
@@ -26,7 +20,7 @@ double image_heat_scale(const struct image *values);
    legend below; at least as wide as a short legend. Not finite stays so. With is_signed also of
    three or four channels: of the first three the one farthest from 0, and the scale by itself is
    that of the distances. WHIT_ERROR_USAGE for other pictures and scales below 0. */
-WHIT_CHECK whit_result image_heat(const struct image *values, const struct heat_params *params,
+WHIT_CHECK whit_result image_heat(const struct image *values, const whit_heat_params *params,
                                   struct image *out);
 
 #endif

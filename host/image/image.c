@@ -99,7 +99,7 @@ bool image_format_known(const char *path, bool integers)
     return format == FORMAT_EXR || (format != FORMAT_UNKNOWN && !integers);
 }
 
-static whit_result check_savable(const struct log *log, const struct image *image, const char *path)
+static whit_result check_savable(const whit_log *log, const struct image *image, const char *path)
 {
     bool integers = image->words != NULL;
     if (!image->pixels == !image->words || image->width == 0 || image->height == 0 ||
@@ -133,7 +133,7 @@ static uint64_t count_nonfinite(const struct image *image)
     return count;
 }
 
-static void warn_of_nonfinite(const struct log *log, const struct image *image, const char *path)
+static void warn_of_nonfinite(const whit_log *log, const struct image *image, const char *path)
 {
     uint64_t count = count_nonfinite(image);
     if (count)
@@ -142,7 +142,7 @@ static void warn_of_nonfinite(const struct log *log, const struct image *image, 
                     format_of_path(path) == FORMAT_PNG ? " and shown as magenta" : "");
 }
 
-whit_result image_save(const struct log *log, const struct image *image, const char *path,
+whit_result image_save(const whit_log *log, const struct image *image, const char *path,
                        const struct image_text *texts, uint32_t text_count)
 {
     whit_result result = check_savable(log, image, path);
@@ -175,7 +175,7 @@ whit_result image_save(const struct log *log, const struct image *image, const c
     return result;
 }
 
-whit_result image_encode_png(const struct log *log, const struct image *image,
+whit_result image_encode_png(const whit_log *log, const struct image *image,
                              const struct image_text *texts, uint32_t text_count, uint8_t **data,
                              size_t *size_bytes)
 {

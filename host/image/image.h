@@ -35,23 +35,22 @@ struct image_text {
 /* By extension: .png 8-bit sRGB (clamped, alpha kept with 4 channels, non-finite as magenta and
    counted in a warning), .exr 32-bit float (integers as UINT channels `instance`, `primitive`),
    .pfm 32-bit float RGB or grey. Atomic. Logs the path and the reason. */
-WHIT_CHECK whit_result image_save(const struct log *log, const struct image *image,
-                                  const char *path, const struct image_text *texts,
-                                  uint32_t text_count);
+WHIT_CHECK whit_result image_save(const whit_log *log, const struct image *image, const char *path,
+                                  const struct image_text *texts, uint32_t text_count);
 /* True for extensions that image_save writes; `integers`: that keep uint32 exactly (.exr). */
 bool image_format_known(const char *path, bool integers);
 
 /* PNG (sRGB to linear; palettes and 1 to 16 bits are converted), EXR (half, float or uint channels;
    scanlines or tiles), PFM, HDR; told apart by content. At most 65535 pixels a side and 1 GiB. A
    damaged file is one logged error; *image is then empty. */
-WHIT_CHECK whit_result image_load(const struct log *log, const char *path, struct image *image);
+WHIT_CHECK whit_result image_load(const whit_log *log, const char *path, struct image *image);
 /* `roots` that the path may not lead out of, or NULL, as for file_read. Decoders run in a child
    process; `params` are for that, and may be NULL. */
-WHIT_CHECK whit_result image_load_by(const struct log *log, const struct roots *roots,
+WHIT_CHECK whit_result image_load_by(const whit_log *log, const struct roots *roots,
                                      const char *path, const struct foreign_params *params,
                                      struct image *image);
 /* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
-WHIT_CHECK whit_result image_load_texts(const struct log *log, const char *path,
+WHIT_CHECK whit_result image_load_texts(const whit_log *log, const char *path,
                                         struct image_text **texts, uint32_t *text_count);
 
 /* Pixel `index` of floats as RGBA: grey fills three channels, alpha is 1 where there is none. */
@@ -75,15 +74,15 @@ struct image_difference {
    for differing_pixels and over_1_255. WHIT_ERROR_INPUT when sizes or kinds differ. Pixels that are
    not finite in one of the two count as differing and over_1_255 unless their bits are the same;
    they are left out of all means and of largest. */
-WHIT_CHECK whit_result image_compare(const struct log *log, const struct image *a,
+WHIT_CHECK whit_result image_compare(const whit_log *log, const struct image *a,
                                      const struct image *b, struct image_difference *out);
 /* b - a of each channel, RGB, linear; NAN in all three where either pixel is not finite.
  * WHIT_ERROR_INPUT as above, and for integers. */
-WHIT_CHECK whit_result image_subtract(const struct log *log, const struct image *a,
+WHIT_CHECK whit_result image_subtract(const whit_log *log, const struct image *a,
                                       const struct image *b, struct image *out);
 
 /* A PNG in memory; free() it. `texts` as for image_save. */
-WHIT_CHECK whit_result image_encode_png(const struct log *log, const struct image *image,
+WHIT_CHECK whit_result image_encode_png(const whit_log *log, const struct image *image,
                                         const struct image_text *texts, uint32_t text_count,
                                         uint8_t **data, size_t *size_bytes);
 

@@ -29,7 +29,7 @@ static whit_result answer_image(void *user, void *to, child_write write,
                                 struct foreign_answer *answer)
 {
     struct image_source source = *(const struct image_source *)user;
-    const struct log log = {.fn = keep_reason, .user = answer, .level = WHIT_LOG_ERROR};
+    const whit_log log = {.fn = keep_reason, .user = answer, .level = WHIT_LOG_ERROR};
     struct image image;
     source.log = &log;
     source.path = name;
@@ -50,7 +50,7 @@ static whit_result answer_texts(void *user, void *to, child_write write,
                                 struct foreign_answer *answer)
 {
     struct image_source source = *(const struct image_source *)user;
-    const struct log log = {.fn = keep_reason, .user = answer, .level = WHIT_LOG_ERROR};
+    const whit_log log = {.fn = keep_reason, .user = answer, .level = WHIT_LOG_ERROR};
     struct text_list list = {0};
     source.log = &log;
     source.path = name;
@@ -68,7 +68,7 @@ static whit_result answer_texts(void *user, void *to, child_write write,
 
 /* A file, and what a child made of it. */
 struct reading {
-    const struct log *log;
+    const whit_log *log;
     const struct roots *roots;
     const char *path;
     struct child_reply reply;
@@ -77,7 +77,7 @@ struct reading {
 
 static whit_result ask(struct reading *reading, const struct foreign_params *params, foreign_fn fn)
 {
-    const struct log *log = reading->log;
+    const whit_log *log = reading->log;
     uint8_t *data = NULL;
     struct image_source source = {0};
     whit_result result =
@@ -103,12 +103,12 @@ static whit_result no_good(struct reading *reading, whit_result result)
     return result;
 }
 
-whit_result image_load(const struct log *log, const char *path, struct image *image)
+whit_result image_load(const whit_log *log, const char *path, struct image *image)
 {
     return image_load_by(log, NULL, path, NULL, image);
 }
 
-whit_result image_load_by(const struct log *log, const struct roots *roots, const char *path,
+whit_result image_load_by(const whit_log *log, const struct roots *roots, const char *path,
                           const struct foreign_params *params, struct image *image)
 {
     struct reading reading = {.log = log, .roots = roots, .path = path};
@@ -154,7 +154,7 @@ static struct image_text *pack_texts(const struct reading *reading, bool *damage
     return packed;
 }
 
-whit_result image_load_texts(const struct log *log, const char *path, struct image_text **texts,
+whit_result image_load_texts(const whit_log *log, const char *path, struct image_text **texts,
                              uint32_t *text_count)
 {
     struct reading reading = {.log = log, .path = path};

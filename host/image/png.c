@@ -13,7 +13,7 @@
 /* libpng leaves its functions by longjmp. Whatever must survive that lives in here, outside the
    frame that calls setjmp. */
 struct job {
-    const struct log *log;
+    const whit_log *log;
     const char *path;
     const struct image_source *source;
     size_t read_bytes, taken_bytes;

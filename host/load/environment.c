@@ -17,7 +17,7 @@
 static whit_result read_image(const struct scene *scene, const char *path,
                               const struct foreign_params *foreign, struct picture *out)
 {
-    const struct log *log = &scene->log;
+    const whit_log *log = &scene->log;
     struct image image = {0};
     whit_result result = image_load_by(log, &scene->roots, path, foreign, &image);
     if (result != WHIT_OK)
@@ -44,7 +44,7 @@ done:
     return result;
 }
 
-static whit_result linearize(const struct log *log, const char *path, struct picture *picture)
+static whit_result linearize(const whit_log *log, const char *path, struct picture *picture)
 {
     float table[256];
     for (int i = 0; i < 256; ++i)
@@ -77,7 +77,7 @@ static bool afford(struct scene *scene, const char *path, const struct picture *
 static whit_result read_picture(struct scene *scene, const char *path,
                                 const struct foreign_params *foreign, struct picture *out)
 {
-    const struct log *log = &scene->log;
+    const whit_log *log = &scene->log;
     uint8_t *data = NULL;
     size_t size_bytes = 0;
     char reason[FOREIGN_REASON_BYTES];
@@ -103,11 +103,10 @@ static uint64_t bytes_of(const char *path)
     return stat(path, &info) == 0 ? (uint64_t)info.st_size : 0;
 }
 
-whit_result load_environment(struct scene *scene, const char *path,
-                             const struct load_params *params)
+whit_result load_environment(struct scene *scene, const char *path, const whit_load_params *params)
 {
     const struct foreign_params foreign = load_foreign(params);
-    const struct log *log = &scene->log;
+    const whit_log *log = &scene->log;
     char extension[16];
     struct picture picture = {0};
     whit_result result = WHIT_ERROR_MEMORY;

@@ -122,7 +122,7 @@ bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block 
 }
 
 /* assimp knows the file by the name that it was handed under. */
-static void log_reason(const struct log *log, const char *path, const char *handed_name,
+static void log_reason(const whit_log *log, const char *path, const char *handed_name,
                        const char *reason)
 {
     const char *at = handed_name[0] ? strstr(reason, handed_name) : NULL;
@@ -133,8 +133,8 @@ static void log_reason(const struct log *log, const char *path, const char *hand
         log_error(log, "%s: %s", path, reason);
 }
 
-whit_result importer_run(const struct log *log, const char *path,
-                         const struct import_request *request, const struct load_params *params,
+whit_result importer_run(const whit_log *log, const char *path,
+                         const struct import_request *request, const whit_load_params *params,
                          struct import_block *block)
 {
     *block = (struct import_block){0};

@@ -67,9 +67,9 @@ struct import_block {
 
 /* Runs the importer on `request`, with the limits of base/foreign.h. Errors are logged as
    `path: reason`. */
-WHIT_CHECK whit_result importer_run(const struct log *log, const char *path,
+WHIT_CHECK whit_result importer_run(const whit_log *log, const char *path,
                                     const struct import_request *request,
-                                    const struct load_params *params, struct import_block *block);
+                                    const whit_load_params *params, struct import_block *block);
 void importer_finish(struct import_block *block);
 
 /* The checks of importer_run, on any bytes: fills parts and counts of *block, or gives a reason.

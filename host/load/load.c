@@ -9,7 +9,7 @@
 
 /* Errors name what is loaded, also where they are about a file that it names. */
 struct named_log {
-    const struct log *to;
+    const whit_log *to;
     const char *path;
 };
 
@@ -27,8 +27,7 @@ static void name_error(void *user, whit_log_level level, const char *message)
     named->to->fn(named->to->user, level, message);
 }
 
-static whit_result read_into(struct scene *scene, const char *path,
-                             const struct load_params *params)
+static whit_result read_into(struct scene *scene, const char *path, const whit_load_params *params)
 {
     char extension[16];
     path_extension(path, extension, sizeof extension);
@@ -43,7 +42,7 @@ static whit_result read_into(struct scene *scene, const char *path,
     return WHIT_ERROR_INPUT;
 }
 
-static void tell_refused(const struct roots *roots, const struct load_params *params)
+static void tell_refused(const struct roots *roots, const whit_load_params *params)
 {
     if (!params || !params->refused)
         return;
@@ -52,7 +51,7 @@ static void tell_refused(const struct roots *roots, const struct load_params *pa
     snprintf(params->refused->folder, sizeof params->refused->folder, "%s", folder);
 }
 
-whit_result load_scene(const struct log *log, const char *path, const struct load_params *params,
+whit_result load_scene(const whit_log *log, const char *path, const whit_load_params *params,
                        struct scene **out)
 {
     *out = NULL;
@@ -77,11 +76,10 @@ whit_result load_scene(const struct log *log, const char *path, const struct loa
         result = roots_allow(log, &scene->roots, params->allowed_folders[i]);
     struct named_log named = {log, path};
     if (log && log->fn)
-        scene->log = (struct log){.fn = name_error, .user = &named, .level = log->level};
+        scene->log = (whit_log){.fn = name_error, .user = &named, .level = log->level};
     if (result == WHIT_OK)
         result = read_into(scene, path, params);
-    if (log)
-        scene->log = *log;
+    scene->log = log_or_silence(log);
     tell_refused(&scene->roots, params);
     if (result == WHIT_OK)
         result = scene_freeze(scene);

@@ -7,28 +7,17 @@
 #include "base/foreign.h"
 #include "scene/afford.h"
 #include "scene/scene.h"
-
-struct load_params {
-    /* Memory for the scene on host and device together; a foreign importer gets half of it. 0: half
-       of what the machine has. */
-    uint64_t memory_limit_bytes;
-    struct foreign_params foreign; /* for what is not whit's own: importers, decoders of pictures */
-    uint32_t texture_limit;        /* longest side of a texture, larger ones are halved; 0: 4096 */
-    const volatile bool *cancel;   /* polled; may be NULL */
-    /* Folders that the files of a scene may name files in, besides the scene's own. */
-    const char *const *allowed_folders;
-    uint32_t allowed_count;
-    whit_refused *refused; /* filled in, on failure too; may be NULL */
-};
+#include "whit/whit_scene.h"
 
 /* What foreign code gets by these params, which may be NULL. */
-static inline struct foreign_params load_foreign(const struct load_params *params)
+static inline struct foreign_params load_foreign(const whit_load_params *params)
 {
     struct foreign_params foreign = {0};
     if (params)
-        foreign = params->foreign;
-    if (params)
-        foreign.cancel = params->cancel;
+        foreign = (struct foreign_params){.cpu_s = params->import_limit_s,
+                                          .clock_s = params->time_limit_s,
+                                          .require_sandbox = params->require_sandbox,
+                                          .cancel = params->cancel};
     uint64_t memory_bytes = params ? params->memory_limit_bytes : 0;
     foreign.memory_bytes = (memory_bytes ? memory_bytes : scene_default_memory_limit()) / 2;
     return foreign;
@@ -42,27 +31,27 @@ bool load_is_model(const char *path);
 /* Reads any supported file into a frozen scene: .json scene files, and models by LOAD_MODELS. On
    failure *out is NULL and one error naming the file and the reason (and the line, where the format
    has lines) was logged. NULL params mean defaults. */
-WHIT_CHECK whit_result load_scene(const struct log *log, const char *path,
-                                  const struct load_params *params, struct scene **out);
+WHIT_CHECK whit_result load_scene(const whit_log *log, const char *path,
+                                  const whit_load_params *params, struct scene **out);
 
 /* The parts of load_scene, for scene files that place models: adds what the model holds to an
    unfrozen scene, its nodes below `parent` (SCENE_NONE: roots). Cameras, lights and environment of
    the model are added only when `with_lights` / `with_cameras`. */
 WHIT_CHECK whit_result load_model(struct scene *scene, const char *path, uint32_t parent,
                                   bool with_lights, bool with_cameras,
-                                  const struct load_params *params);
+                                  const whit_load_params *params);
 WHIT_CHECK whit_result load_scene_file(struct scene *scene, const char *path,
-                                       const struct load_params *params);
+                                       const whit_load_params *params);
 
 /* 8-bit texture from a file or from memory (`data` non-NULL; `path` then only names it). The name
    of an already loaded file gives the index it has. On failure a warning is noted in the scene and
    *index is a 1x1 magenta texture, unless `reason` is given: then nothing is noted or added,
    *reason says why and the result is WHIT_ERROR_INPUT. */
 WHIT_CHECK whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
-                                    size_t size_bytes, const struct load_params *params,
+                                    size_t size_bytes, const whit_load_params *params,
                                     uint32_t *index, const char **reason);
 /* Radiance .hdr, .exr, .pfm or an 8-bit picture (sRGB) into scene->environment. */
 WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path,
-                                        const struct load_params *params);
+                                        const whit_load_params *params);
 
 #endif

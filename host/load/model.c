@@ -15,7 +15,7 @@
 #define MODEL_LIMIT (UINT64_C(4) << 30)
 
 /* A line is known where the text is read by whit, too. */
-static void log_long_face(const struct log *log, const char *path, uint32_t line,
+static void log_long_face(const whit_log *log, const char *path, uint32_t line,
                           const struct import_counts *counts)
 {
     char place[32];
@@ -281,7 +281,7 @@ bool load_is_model(const char *path)
 }
 
 whit_result load_model(struct scene *scene, const char *path, uint32_t parent, bool with_lights,
-                       bool with_cameras, const struct load_params *params)
+                       bool with_cameras, const whit_load_params *params)
 {
     const struct model_request request = {path, parent, with_lights, with_cameras, params};
     size_t kind = find_kind(path);

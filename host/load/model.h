@@ -26,7 +26,7 @@ struct model_request {
     const char *path;
     uint32_t parent;
     bool with_lights, with_cameras;
-    const struct load_params *params;
+    const whit_load_params *params;
 };
 
 WHIT_CHECK whit_result model_load_obj(struct scene *scene, const struct model_request *request);

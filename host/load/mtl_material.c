@@ -119,7 +119,7 @@ static whit_result derive_texture(struct scene *scene, const struct mtl_texture 
 }
 
 static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, enum mtl_map kind,
-                           enum scene_slot slot, const struct load_params *params,
+                           enum scene_slot slot, const whit_load_params *params,
                            struct scene_material *out)
 {
     const struct mtl_texture *map = &entry->maps[kind];
@@ -359,7 +359,7 @@ static void note_ambient_map(struct scene *scene, const struct mtl_entry *entry)
 }
 
 whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, bool ambient_known,
-                         const struct load_params *params, struct scene_material *out)
+                         const whit_load_params *params, struct scene_material *out)
 {
     static const struct {
         enum mtl_map map;

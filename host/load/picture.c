@@ -188,7 +188,7 @@ static whit_result decode_file(void *user, void *to, child_write write,
     return result;
 }
 
-whit_result picture_read(const struct log *log, const struct foreign_params *params,
+whit_result picture_read(const whit_log *log, const struct foreign_params *params,
                          uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                          struct picture *out, char reason[FOREIGN_REASON_BYTES])
 {

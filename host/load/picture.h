@@ -22,7 +22,7 @@ struct picture {
 /* picture_decode() in a child process, whose reply becomes `rgba`. Not WHIT_OK: `reason` is filled
    and nothing is logged; as of foreign_ask(). Where the header tells of more than `pixels_most`
    nothing is decoded, the result is WHIT_ERROR_INPUT and `out` has the sides. */
-WHIT_CHECK whit_result picture_read(const struct log *log, const struct foreign_params *params,
+WHIT_CHECK whit_result picture_read(const whit_log *log, const struct foreign_params *params,
                                     uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                     struct picture *out, char reason[FOREIGN_REASON_BYTES]);
 

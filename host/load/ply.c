@@ -40,8 +40,7 @@ static bool read_count(const uint8_t *line, size_t bytes, unsigned long long *co
     return sscanf(text, " element %*s %llu", count) == 1;
 }
 
-whit_result ply_check(const struct log *log, const char *path, const uint8_t *data,
-                      size_t size_bytes)
+whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data, size_t size_bytes)
 {
     unsigned long long max = 0, count;
     uint32_t number = 1, max_number = 0;

@@ -302,7 +302,7 @@ static const struct element *find_element(const struct header *header, const cha
     return NULL;
 }
 
-static whit_result replace(const struct log *log, const char *path, const struct header *header,
+static whit_result replace(const whit_log *log, const char *path, const struct header *header,
                            const struct element *element, uint8_t **data, size_t *size_bytes)
 {
     const struct element *vertices = find_element(header, "vertex"), *at = header->elements;
@@ -327,7 +327,7 @@ static whit_result replace(const struct log *log, const char *path, const struct
     return outcome == READ ? WHIT_OK : outcome == DAMAGED ? WHIT_ERROR_INPUT : WHIT_ERROR_MEMORY;
 }
 
-whit_result ply_replace_strips(const struct log *log, const char *path, uint8_t **data,
+whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
                                size_t *size_bytes)
 {
     struct header header = {0};

@@ -357,7 +357,7 @@ static void reader_finish(struct reader *reader)
     free(reader->models);
 }
 
-whit_result load_scene_file(struct scene *scene, const char *path, const struct load_params *params)
+whit_result load_scene_file(struct scene *scene, const char *path, const whit_load_params *params)
 {
     uint8_t *text = NULL;
     size_t size_bytes = 0;

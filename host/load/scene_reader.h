@@ -26,7 +26,7 @@ struct scene_range {
 
 struct reader {
     struct scene *scene;
-    const struct load_params *params;
+    const whit_load_params *params;
     const char *path;
     const char *text; /* ends with a zero byte */
     size_t text_bytes;

@@ -22,12 +22,12 @@ struct key {
     uint64_t kind, damaged, limit, words[4];
 };
 
-static uint32_t limit_of(const struct load_params *params)
+static uint32_t limit_of(const whit_load_params *params)
 {
     return params && params->texture_limit ? params->texture_limit : SIDE_MAX;
 }
 
-static bool key_of_file(const char *path, const struct load_params *params, struct key *key)
+static bool key_of_file(const char *path, const whit_load_params *params, struct key *key)
 {
     struct stat info;
     if (stat(path, &info) != 0)
@@ -41,7 +41,7 @@ static bool key_of_file(const char *path, const struct load_params *params, stru
 }
 
 static struct key key_of_bytes(const uint8_t *data, size_t size_bytes,
-                               const struct load_params *params)
+                               const whit_load_params *params)
 {
     return (struct key){
         BY_BYTES,
@@ -102,7 +102,7 @@ static whit_result read_source(struct scene *scene, const char *path, struct sou
                                char reason[FOREIGN_REASON_BYTES])
 {
     struct unread unread = {path, reason};
-    const struct log silent = {.fn = keep_reason, .user = &unread, .level = WHIT_LOG_ERROR};
+    const whit_log silent = {.fn = keep_reason, .user = &unread, .level = WHIT_LOG_ERROR};
     whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MAX, &source->owned,
                                    &source->size_bytes);
     scene->file_bytes += source->size_bytes;
@@ -128,7 +128,7 @@ static whit_result decode_source(struct scene *scene, const char *name,
 }
 
 /* Decodes what no texture was made of yet; else *index is the one that was. */
-static whit_result decode(struct scene *scene, const char *name, const struct load_params *params,
+static whit_result decode(struct scene *scene, const char *name, const whit_load_params *params,
                           bool damaged_too, struct source *source, struct picture *picture,
                           uint32_t *index, char reason[FOREIGN_REASON_BYTES])
 {
@@ -164,7 +164,7 @@ static bool make_magenta(struct picture *picture)
     return picture->rgba != NULL;
 }
 
-static bool shrink(struct scene *scene, const char *name, const struct load_params *params,
+static bool shrink(struct scene *scene, const char *name, const whit_load_params *params,
                    struct picture *picture)
 {
     uint32_t width = picture->width, height = picture->height;
@@ -193,7 +193,7 @@ static bool add(struct scene *scene, char *name, const struct picture *picture, 
 }
 
 whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
-                         size_t size_bytes, const struct load_params *params, uint32_t *index,
+                         size_t size_bytes, const whit_load_params *params, uint32_t *index,
                          const char **reason)
 {
     static _Thread_local char why[FOREIGN_REASON_BYTES]; /* outlives the call */

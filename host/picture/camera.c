@@ -34,7 +34,7 @@ static bool is_index(const char *text, uint32_t count, uint32_t *index)
     return end != text && *end == '\0' && number < count;
 }
 
-static whit_result find_camera(const struct log *log, const struct scene_pose *pose,
+static whit_result find_camera(const whit_log *log, const struct scene_pose *pose,
                                const whit_camera *wanted, struct scene_camera *out)
 {
     uint32_t index = 0;
@@ -98,7 +98,7 @@ static double length3(const float v[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-static whit_result refuse(const struct log *log, const struct scene_camera *camera,
+static whit_result refuse(const whit_log *log, const struct scene_camera *camera,
                           const char *reason)
 {
     const char *name = camera->name ? camera->name : "by numbers";
@@ -142,7 +142,7 @@ static double focus_distance(const struct scene_camera *camera)
                : sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
 }
 
-whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
+whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
                          const whit_camera *wanted, uint32_t width, uint32_t height,
                          struct gpu_frame *frame, uint32_t *kind)
 {
@@ -299,7 +299,7 @@ void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32
     ray->t_max = INFINITY;
 }
 
-whit_result camera_all_rays(const struct log *log, const struct scene_pose *pose,
+whit_result camera_all_rays(const whit_log *log, const struct scene_pose *pose,
                             const whit_camera *camera, uint32_t width, uint32_t height,
                             struct gpu_ray *rays)
 {

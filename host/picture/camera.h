@@ -11,7 +11,7 @@
 
 /* The camera `wanted` in `pose`, and its CAMERA_*. WHIT_ERROR_USAGE, logged, where there is no such
    camera, or it sees nothing. */
-WHIT_CHECK whit_result camera_frame(const struct log *log, const struct scene_pose *pose,
+WHIT_CHECK whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
                                     const whit_camera *wanted, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
 
@@ -31,7 +31,7 @@ void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chu
 
 /* The first sample's camera ray of every pixel of a picture, row by row: those of the
    kernels, bit for bit. */
-WHIT_CHECK whit_result camera_all_rays(const struct log *log, const struct scene_pose *pose,
+WHIT_CHECK whit_result camera_all_rays(const whit_log *log, const struct scene_pose *pose,
                                        const whit_camera *camera, uint32_t width, uint32_t height,
                                        struct gpu_ray *rays);
 

@@ -158,8 +158,8 @@ static bool add_medium(const struct scene *scene, uint32_t material, uint32_t *l
     return true;
 }
 
-static whit_result fill_eye(const struct log *log, const struct scene *scene,
-                            struct surroundings *s, struct gpu_frame *frame)
+static whit_result fill_eye(const whit_log *log, const struct scene *scene, struct surroundings *s,
+                            struct gpu_frame *frame)
 {
     uint32_t list[MEDIA_MAX] = {0}, count = 0;
     if (s->count > 1)
@@ -193,7 +193,7 @@ static bool in_a_box(const struct bodies *bodies, const float eye[3], double mar
     return false;
 }
 
-whit_result media_frame(const struct log *log, const struct accel *accel,
+whit_result media_frame(const whit_log *log, const struct accel *accel,
                         const struct scene_pose *pose, struct bodies *bodies,
                         struct gpu_frame *frame)
 {
@@ -222,7 +222,7 @@ whit_result media_frame(const struct log *log, const struct accel *accel,
     return result;
 }
 
-whit_result media_view(const struct log *log, struct accel *accel, const struct scene_pose *pose,
+whit_result media_view(const whit_log *log, struct accel *accel, const struct scene_pose *pose,
                        const whit_camera *camera, uint32_t width, uint32_t height,
                        struct gpu_frame *frame, uint32_t *kind)
 {

@@ -11,7 +11,7 @@
    that `accel` has; `bodies` keeps what was found for the next call. WHIT_ERROR_USAGE for more
    materials than can be told apart, WHIT_ERROR_STATUS where the camera is in too many media;
    logged. */
-WHIT_CHECK whit_result media_frame(const struct log *log, const struct accel *accel,
+WHIT_CHECK whit_result media_frame(const whit_log *log, const struct accel *accel,
                                    const struct scene_pose *pose, struct bodies *bodies,
                                    struct gpu_frame *frame);
 /* Whether surfaces of two bodies may be at one place, for a frame that was filled in; in a scene
@@ -21,7 +21,7 @@ bool media_touch(const struct scene *scene, const struct bodies *bodies,
 
 /* Fills in the camera of *frame, the media that it is in, whether media meet, and `contact`; the
    rest is 0. `kind` gets CAMERA_*. `accel` has the pose. */
-WHIT_CHECK whit_result media_view(const struct log *log, struct accel *accel,
+WHIT_CHECK whit_result media_view(const whit_log *log, struct accel *accel,
                                   const struct scene_pose *pose, const whit_camera *camera,
                                   uint32_t width, uint32_t height, struct gpu_frame *frame,
                                   uint32_t *kind);

@@ -31,7 +31,7 @@ static bool is_known(const whit_renderer_params *params)
            (uint32_t)params->sampling.kind <= WHIT_SAMPLING_ADAPTIVE;
 }
 
-whit_result params_check(const struct log *log, whit_renderer_params *params)
+whit_result params_check(const whit_log *log, whit_renderer_params *params)
 {
     if (params->width == 0 && params->height == 0) {
         params->width = 640;

@@ -8,6 +8,6 @@
 enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of tiles, pixels */
 
 /* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
-WHIT_CHECK whit_result params_check(const struct log *log, whit_renderer_params *params);
+WHIT_CHECK whit_result params_check(const whit_log *log, whit_renderer_params *params);
 
 #endif

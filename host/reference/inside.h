@@ -14,7 +14,7 @@ struct placing {
 };
 
 struct reference {
-    struct log log;
+    whit_log log;
     struct accel *accel;
     const struct scene *scene;
     struct reference_params params;

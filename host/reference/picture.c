@@ -10,7 +10,7 @@
 
 enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
 
-static whit_result check_params(const struct log *log, const struct scene *scene,
+static whit_result check_params(const whit_log *log, const struct scene *scene,
                                 whit_renderer_params *params)
 {
     if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE || params->effects_removed) {
@@ -72,14 +72,14 @@ static whit_result create_parts(struct reference *r)
     return result;
 }
 
-whit_result reference_create(const struct log *log, struct accel *accel,
+whit_result reference_create(const whit_log *log, struct accel *accel,
                              const struct reference_params *params, struct reference **out)
 {
     *out = NULL;
     struct reference *r = calloc(1, sizeof *r);
     if (!r)
         return WHIT_ERROR_MEMORY;
-    r->log = *log;
+    r->log = log_or_silence(log);
     r->accel = accel;
     r->scene = accel->scene;
     r->params = *params;

@@ -71,7 +71,7 @@ bool render_effect_can_remove(enum scene_effect effect)
            (effect != SCENE_EFFECT_SPHERES && render_effect_can_add(effect));
 }
 
-whit_result effects_check(const struct log *log, const whit_renderer_params *params)
+whit_result effects_check(const whit_log *log, const whit_renderer_params *params)
 {
     for (uint32_t i = 0; i < 64; ++i) {
         enum scene_effect effect = (enum scene_effect)i;

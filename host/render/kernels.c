@@ -42,7 +42,7 @@ static whit_result list_stages(struct renderer *renderer, whit_kernel *kernels, 
     return result;
 }
 
-whit_result render_list_kernels(const struct log *log, struct device *device, struct accel *accel,
+whit_result render_list_kernels(const whit_log *log, struct device *device, struct accel *accel,
                                 const whit_renderer_params *params, whit_kernel *kernels,
                                 uint32_t *count)
 {

@@ -38,7 +38,7 @@ struct renderer;
 /* `device` and `accel` (with its scene) are borrowed until renderer_destroy. Poses `accel` at
    params->time_s. WHIT_ERROR_USAGE for a camera that does not exist, sizes out of range, or a
    scene whose pictures were dropped. */
-WHIT_CHECK whit_result renderer_create(const struct log *log, struct device *device,
+WHIT_CHECK whit_result renderer_create(const whit_log *log, struct device *device,
                                        struct accel *accel, const whit_renderer_params *params,
                                        struct renderer **out);
 void renderer_destroy(struct renderer *renderer);
@@ -64,7 +64,7 @@ WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer, whit
 
 /* Makes the kernels of a picture one after the other, and nothing else: no memory of the device is
    taken. `kernels`: WHIT_KERNELS_MAX. */
-WHIT_CHECK whit_result render_list_kernels(const struct log *log, struct device *device,
+WHIT_CHECK whit_result render_list_kernels(const whit_log *log, struct device *device,
                                            struct accel *accel, const whit_renderer_params *params,
                                            whit_kernel *kernels, uint32_t *count);
 

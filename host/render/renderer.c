@@ -49,12 +49,12 @@ whit_result renderer_compile(struct renderer *renderer)
     return result;
 }
 
-whit_result renderer_init(struct renderer *renderer, const struct log *log, struct device *device,
+whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct device *device,
                           struct accel *accel, const whit_renderer_params *params)
 {
     renderer->picture.renderer = renderer->probe.renderer = renderer;
     renderer->probe.probed = true;
-    renderer->log = *log;
+    renderer->log = log_or_silence(log);
     renderer->create_ms = clock_ms();
     renderer->device = device;
     renderer->accel = accel;
@@ -82,7 +82,7 @@ whit_result renderer_init(struct renderer *renderer, const struct log *log, stru
     return result;
 }
 
-whit_result renderer_create(const struct log *log, struct device *device, struct accel *accel,
+whit_result renderer_create(const whit_log *log, struct device *device, struct accel *accel,
                             const whit_renderer_params *params, struct renderer **out)
 {
     *out = NULL;

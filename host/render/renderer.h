@@ -150,7 +150,7 @@ struct target {
 };
 
 struct renderer {
-    struct log log;
+    whit_log log;
     struct device *device;
     struct accel *accel;
     const struct scene *scene;
@@ -189,7 +189,7 @@ bool renderer_bounces(const struct renderer *renderer);
 /* Fills in of a zeroed renderer what needs no memory of the device. Call renderer_finish in any
  * case.
  */
-WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const struct log *log,
+WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const whit_log *log,
                                      struct device *device, struct accel *accel,
                                      const whit_renderer_params *params);
 void renderer_finish(struct renderer *renderer);
@@ -259,7 +259,7 @@ uint32_t lights_samples(const struct renderer *renderer);
 /* environment.c */
 WHIT_CHECK whit_result upload_environment(struct renderer *renderer);
 /* effects.c: WHIT_ERROR_USAGE, logged, for effects that cannot be added or left out. */
-WHIT_CHECK whit_result effects_check(const struct log *log, const whit_renderer_params *params);
+WHIT_CHECK whit_result effects_check(const whit_log *log, const whit_renderer_params *params);
 /* What the scene calls for, as `effects` says, more and less what `params` say; what
    does nothing without something else that is off is off too. */
 void effects_choose(const whit_renderer_params *params, struct scene_effects *effects);

@@ -42,7 +42,7 @@ uint64_t scene_room(const struct scene *scene)
     return !limit ? UINT64_MAX : limit > taken ? limit - taken : 0;
 }
 
-bool scene_could_afford(const struct scene *scene, const struct log *log, uint64_t bytes,
+bool scene_could_afford(const struct scene *scene, const whit_log *log, uint64_t bytes,
                         const char *what)
 {
     uint64_t limit = scene->memory_limit, taken = scene->memory_taken;

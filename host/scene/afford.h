@@ -24,7 +24,7 @@ uint64_t scene_texel_cost(uint64_t width, uint64_t height);
    and nothing counted, when the scene would take more than its memory_limit. */
 bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...) WHIT_PRINTF(3, 4);
 /* The same without counting, for what is made of a scene that is whole; errors go to `log`. */
-bool scene_could_afford(const struct scene *scene, const struct log *log, uint64_t bytes,
+bool scene_could_afford(const struct scene *scene, const whit_log *log, uint64_t bytes,
                         const char *what);
 /* Bytes that it may take yet. */
 uint64_t scene_room(const struct scene *scene);

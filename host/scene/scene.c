@@ -8,13 +8,12 @@
 #include "base/array.h"
 #include "base/child.h"
 
-struct scene *scene_create(const struct log *log, const char *name)
+struct scene *scene_create(const whit_log *log, const char *name)
 {
     struct scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return NULL;
-    if (log)
-        scene->log = *log;
+    scene->log = log_or_silence(log);
     scene->name = string_copy(name ? name : "");
     if (!scene->name) {
         free(scene);

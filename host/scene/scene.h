@@ -238,7 +238,7 @@ struct scene_note {
 };
 
 struct scene {
-    struct log log;
+    whit_log log;
     char *name; /* path or label */
     struct scene_mesh *meshes;
     struct scene_node *nodes;
@@ -272,7 +272,7 @@ struct scene {
 };
 
 /* Never NULL fields afterwards but for arrays that are empty. NULL when memory runs out. */
-struct scene *scene_create(const struct log *log, const char *name);
+struct scene *scene_create(const whit_log *log, const char *name);
 void scene_destroy(struct scene *scene);
 /* Frees the texels of textures and environment, the one thing that may leave a frozen scene: for
    when every renderer that will be made from it has uploaded them. */

@@ -228,7 +228,7 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
            isfinite(event->x);
 }
 
-bool events_from_line(const struct log *log, const char *file, uint32_t line, const char *text,
+bool events_from_line(const whit_log *log, const char *file, uint32_t line, const char *text,
                       struct view_event events[EVENTS_A_LINE], int *count)
 {
     char verb[16] = "";
@@ -297,8 +297,7 @@ struct list {
 };
 
 /* `text` ends with a 0 and is taken apart. */
-static whit_result read_lines(const struct log *log, const char *path, char *text,
-                              struct list *list)
+static whit_result read_lines(const whit_log *log, const char *path, char *text, struct list *list)
 {
     uint32_t line = 1;
     for (char *at = text; at; ++line) {
@@ -340,7 +339,7 @@ static bool join(struct list *list, const char *text, size_t bytes)
     return true;
 }
 
-whit_result events_load(const struct log *log, const char *path, struct view_event **events,
+whit_result events_load(const whit_log *log, const char *path, struct view_event **events,
                         uint32_t *count)
 {
     struct list list = {0};

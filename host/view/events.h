@@ -92,13 +92,13 @@ const char *event_key_name(int key);
 /* One line, without the end; false, logged with file and line, for nonsense. Empty lines and
    comments are EVENT_NONE. `press` and `click` give several events. Paths point into `text`. */
 enum { EVENTS_A_LINE = 4 };
-bool events_from_line(const struct log *log, const char *file, uint32_t line, const char *text,
+bool events_from_line(const whit_log *log, const char *file, uint32_t line, const char *text,
                       struct view_event events[EVENTS_A_LINE], int *count);
 /* What events_from_line reads back; nothing for events that have no line. */
 void event_to_line(const struct view_event *event, FILE *to);
 
 /* All events of a file; *events is one block with all that they point to, free() it. */
-WHIT_CHECK whit_result events_load(const struct log *log, const char *path,
+WHIT_CHECK whit_result events_load(const whit_log *log, const char *path,
                                    struct view_event **events, uint32_t *count);
 
 #endif

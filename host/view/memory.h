@@ -11,6 +11,6 @@
 /* The text of --camera that was kept for this scene file; false: none. */
 bool memory_find(const char *scene, char *camera, size_t camera_bytes);
 /* Keeps it; "": forgets it. The last 200 scenes are kept. What goes wrong is a warning. */
-void memory_keep(const struct log *log, const char *scene, const char *camera);
+void memory_keep(const whit_log *log, const char *scene, const char *camera);
 
 #endif

@@ -82,7 +82,7 @@ static void forget_old(json_t *all)
         json_object_del(all, json_object_iter_key(json_object_iter(all)));
 }
 
-static void save(const struct log *log, const char *path, const json_t *all)
+static void save(const whit_log *log, const char *path, const json_t *all)
 {
     struct file_write file = {0};
     char *text = json_dumps(all, JSON_INDENT(1));
@@ -96,7 +96,7 @@ static void save(const struct log *log, const char *path, const json_t *all)
         log_warning(log, "%s: cameras are not remembered", path);
 }
 
-void memory_keep(const struct log *log, const char *scene, const char *camera)
+void memory_keep(const whit_log *log, const char *scene, const char *camera)
 {
     char *folder = state_folder(), *path = file_path(), *key = scene_key(scene);
     if (folder && path && key) {

@@ -403,7 +403,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     if (!view)
         return WHIT_ERROR_MEMORY;
     platform_share_heaps();
-    view->log = (struct log){log->fn, log->user, log->level};
+    view->log = (whit_log){log->fn, log->user, log->level};
     view->params = params;
     view->settings = params->settings;
     view->hud = HUD_SMALL;

@@ -70,7 +70,7 @@ struct view_time {
 };
 
 struct view {
-    struct log log;
+    whit_log log;
     const struct view_params *params;
     struct window *window;
     struct device *device;

@@ -12,7 +12,7 @@
 enum { EVENTS_HELD = 256 };
 
 struct window {
-    struct log log;
+    whit_log log;
     GLFWwindow *glfw;
     struct device_surface surface;
     bool fullscreen;
@@ -215,7 +215,7 @@ static whit_result make_window(struct window *window, const struct window_params
     return window->glfw ? WHIT_OK : fail(window, "the window cannot be opened");
 }
 
-whit_result window_create(const struct log *log, const struct window_params *params,
+whit_result window_create(const whit_log *log, const struct window_params *params,
                           struct window **out)
 {
     *out = NULL;

@@ -15,7 +15,7 @@ struct window_params {
 };
 
 /* WHIT_ERROR_NO_DEVICE, logged, where there is no display, or no Vulkan for its windows. */
-WHIT_CHECK whit_result window_create(const struct log *log, const struct window_params *params,
+WHIT_CHECK whit_result window_create(const whit_log *log, const struct window_params *params,
                                      struct window **out);
 void window_destroy(struct window *window); /* after the device; NULL is fine */
 

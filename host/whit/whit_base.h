@@ -52,6 +52,12 @@ typedef enum whit_log_level {
 /* `message` is one line without its newline, as whit_text_show shows it, valid during the call
    only. Called from any thread, one call at a time. */
 typedef void (*whit_log_fn)(void *user, whit_log_level level, const char *message);
+/* Where messages go. Zeroed, or NULL: nowhere. */
+typedef struct whit_log {
+    whit_log_fn fn;
+    void *user;
+    whit_log_level level; /* messages above it are not made */
+} whit_log;
 
 /* Files outside of the scene's folder that its files name, and that were not read. */
 typedef struct whit_refused {

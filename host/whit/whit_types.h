@@ -59,13 +59,6 @@ typedef enum whit_classes {
     WHIT_CLASSES_MANY,
 } whit_classes;
 
-/* Where messages go. Zeroed: nowhere. */
-typedef struct whit_log {
-    whit_log_fn fn;
-    void *user;
-    whit_log_level level; /* messages above it are not made */
-} whit_log;
-
 #ifdef __cplusplus
 }
 #endif

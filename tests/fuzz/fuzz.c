@@ -114,7 +114,7 @@ static void hear(void *user, whit_log_level level, const char *message)
     snprintf(errors.text, sizeof errors.text, "%s", message);
 }
 
-const struct log fuzz_log = {.fn = hear, .level = WHIT_LOG_DEBUG};
+const whit_log fuzz_log = {.fn = hear, .level = WHIT_LOG_DEBUG};
 
 void fuzz_log_clear(void)
 {

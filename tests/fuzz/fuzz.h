@@ -33,7 +33,7 @@ const char *fuzz_folder(void);
 const char *fuzz_file(const char *name, const void *data, size_t size_bytes);
 
 /* Counts errors and keeps the last one; every message is formatted. */
-extern const struct log fuzz_log;
+extern const whit_log fuzz_log;
 void fuzz_log_clear(void);
 const char *fuzz_log_last(void); /* "" when there was none since */
 /* A call that ended with `result` kept the promise about errors: none on success, else one, which

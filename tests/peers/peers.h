@@ -5,7 +5,7 @@
 #include "../random.h"
 #include "accel/accel.h"
 
-extern const struct log peers_log;
+extern const whit_log peers_log;
 
 /* ---- rays.c ---- */
 

@@ -10,7 +10,7 @@ static void print_log(void *user, whit_log_level level, const char *message)
     fprintf(stderr, "%s%s\n", level == WHIT_LOG_ERROR ? "error: " : "", message);
 }
 
-const struct log peers_log = {.fn = print_log, .level = WHIT_LOG_ERROR};
+const whit_log peers_log = {.fn = print_log, .level = WHIT_LOG_ERROR};
 
 struct gpu_ray ray_to(const double origin[3], const double target[3])
 {

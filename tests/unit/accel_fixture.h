@@ -34,7 +34,7 @@ static inline void keep_error(void *user, whit_log_level level, const char *mess
         snprintf(last_error, sizeof last_error, "%s", message);
 }
 
-static const struct log silent = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+static const whit_log silent = {.fn = keep_error, .level = WHIT_LOG_ERROR};
 
 /* ---- Random numbers ---- */
 

@@ -75,7 +75,7 @@ static bool exists(const char *name)
 }
 
 /* Silent; each test looks at messages where there may be some. */
-static const struct log silent;
+static const whit_log silent;
 enum { BYTES = 1000 };
 
 static void keep(const char *name, int seed)
@@ -281,7 +281,7 @@ static bool store_is_used(void)
 /* The first to be said is the only one of this process. */
 TEST_IN(folders_of_others_are_not_used, begin, folder_end)
 {
-    struct store_info info;
+    whit_cache_info info;
     struct stat about;
     owner_of_next = geteuid() + 1;
     assert_true(store_is_used());
@@ -330,7 +330,7 @@ TEST_IN(without_a_folder_nothing_is_kept, begin, folder_end)
         assert_false(store_is_used());
         assert_int_equal(messages.count, 0);
         assert_null(store_folder(&silent));
-        struct store_info info;
+        whit_cache_info info;
         store_get_info(&info);
         assert_true(info.why_not[0] != '\0');
         if (i < 2)
@@ -354,7 +354,7 @@ TEST_IN(without_a_folder_nothing_is_kept, begin, folder_end)
 
 static uint64_t used_bytes(void)
 {
-    struct store_info info;
+    whit_cache_info info;
     store_get_info(&info);
     return info.used_bytes;
 }
@@ -470,7 +470,7 @@ TEST_IN(the_oldest_go_first, begin, folder_end)
     assert_false(exists("much"));
     assert_true(is_kept("c", 5));
     setenv("WHIT_CACHE_LIMIT", "all", 1);
-    struct store_info info;
+    whit_cache_info info;
     store_get_info(&info);
     assert_int_equal(info.limit_bytes, 512 * mib);
 }

@@ -126,7 +126,7 @@ static void keep(void *user, whit_log_level level, const char *message)
 TEST(messages_are_shown)
 {
     char message[64];
-    const struct log log = {keep, message, WHIT_LOG_WARNING};
+    const whit_log log = {keep, message, WHIT_LOG_WARNING};
     log_error(&log, "%s: cannot be read", "a\n\x1b[2J\xff.obj");
     assert_string_equal(message, "a\\u000a\\u001b[2J\\xff.obj: cannot be read");
 }

@@ -53,7 +53,7 @@ static whit_result cycle_dispatch(struct cycle *cycle)
 
 static whit_result cycle_run(struct messages *messages, bool validation)
 {
-    struct log log = messages_log(messages);
+    whit_log log = messages_log(messages);
     struct device_params params = {.validation = validation};
     struct cycle cycle = {0};
     whit_result result = device_create(&log, &params, &cycle.device);
@@ -267,7 +267,7 @@ bool __wrap_threads_have_room(uint32_t count)
 TEST(no_device_without_room_for_its_threads)
 {
     struct messages messages;
-    struct log log = messages_log(&messages);
+    whit_log log = messages_log(&messages);
     struct device *device = device_open(&messages, false);
     bool on_cpu = device_get_info(device)->kind == DEVICE_CPU;
     device_close(device, &messages);

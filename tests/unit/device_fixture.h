@@ -30,16 +30,16 @@ static inline void messages_collect(void *user, whit_log_level level, const char
     snprintf(messages->text + used, sizeof messages->text - used, "%s\n", message);
 }
 
-static inline struct log messages_log(struct messages *messages)
+static inline whit_log messages_log(struct messages *messages)
 {
     *messages = (struct messages){0};
-    return (struct log){.fn = messages_collect, .user = messages, .level = WHIT_LOG_DEBUG};
+    return (whit_log){.fn = messages_collect, .user = messages, .level = WHIT_LOG_DEBUG};
 }
 
 /* No device fails the test, unless WHIT_TEST_NO_DEVICE=skip says that there is none. */
 static inline struct device *device_open(struct messages *messages, bool validation)
 {
-    struct log log = messages_log(messages);
+    whit_log log = messages_log(messages);
     struct device_params params = {.validation = validation};
     struct device *device;
     whit_result result = device_create(&log, &params, &device);

@@ -10,7 +10,7 @@ static int list_devices(void **state)
 {
     (void)state;
     struct messages messages;
-    struct log log = messages_log(&messages);
+    whit_log log = messages_log(&messages);
     whit_result result = device_list(&log, &infos, &info_count);
     const char *no_device = getenv("WHIT_TEST_NO_DEVICE");
     if (result == WHIT_ERROR_NO_DEVICE && no_device && strcmp(no_device, "skip") == 0)
@@ -28,7 +28,7 @@ static int free_list(void **state)
 static whit_result create_with(const char *selector, struct messages *messages,
                                struct device **device)
 {
-    struct log log = messages_log(messages);
+    whit_log log = messages_log(messages);
     struct device_params params = {.selector = selector};
     return device_create(&log, &params, device);
 }
@@ -127,7 +127,7 @@ static void refuses_what_is_not_there(void **state)
 static int without_driver(void)
 {
     struct messages messages;
-    struct log log = messages_log(&messages);
+    whit_log log = messages_log(&messages);
     struct device_info *list = NULL;
     uint32_t count = 1;
     struct device *device;

@@ -102,7 +102,7 @@ TEST(environment_turns_it_on)
 TEST(absence_is_an_error)
 {
     struct messages messages;
-    struct log log = messages_log(&messages);
+    whit_log log = messages_log(&messages);
     struct device_params params = {.validation = true};
     struct device *device;
     setenv("VK_LAYER_PATH", "/nonexistent", 1);

@@ -23,7 +23,7 @@ static inline void collect(void *user, whit_log_level level, const char *message
     snprintf(messages.last, sizeof messages.last, "%s", message);
 }
 
-static const struct log warnings_log = {.fn = collect, .level = WHIT_LOG_WARNING};
+static const whit_log warnings_log = {.fn = collect, .level = WHIT_LOG_WARNING};
 
 static inline int folder_begin(void **state)
 {

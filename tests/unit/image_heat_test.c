@@ -17,7 +17,7 @@ static struct image values_of(uint32_t width, uint32_t height, float value)
 static struct image heat_of(const struct image *values, double scale, const char *title)
 {
     struct image out;
-    const struct heat_params params = {.scale = scale, .title = title, .unit = "tests"};
+    const whit_heat_params params = {.scale = scale, .title = title, .unit = "tests"};
     assert_int_equal(image_heat(values, &params, &out), WHIT_OK);
     return out;
 }
@@ -106,7 +106,7 @@ TEST(signed_pictures_show_the_farthest_channel)
         values.pixels[3 * i + 1] = i == 8 ? 0.5f : -0.25f;
     values.pixels[0] = 0.375f;
     values.pixels[3 * 5 + 2] = NAN;
-    const struct heat_params params = {.is_signed = true, .title = "b - a"};
+    const whit_heat_params params = {.is_signed = true, .title = "b - a"};
     assert_int_equal(image_heat(&values, &params, &heat), WHIT_OK);
     const float *left = heat.pixels + 3 * (size_t)((heat.width - 200) / 2);
     assert_true(left[0] > left[2]); /* 0.375 */
@@ -236,7 +236,7 @@ TEST(what_is_not_finite_stays_so)
 TEST(other_pictures_are_refused)
 {
     struct image out, colors = fixture_floats(4, 4, 3), words;
-    struct heat_params params = {0};
+    whit_heat_params params = {0};
     assert_int_equal(image_init(&words, 4, 4, 1, true), WHIT_OK);
     assert_int_equal(image_heat(&colors, &params, &out), WHIT_ERROR_USAGE);
     assert_int_equal(image_heat(&words, &params, &out), WHIT_ERROR_USAGE);

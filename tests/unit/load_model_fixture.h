@@ -23,7 +23,7 @@ struct fixture {
     char *files[FIXTURE_FILES];
     uint32_t file_count, errors;
     char last_error[600];
-    struct log log;
+    whit_log log;
     struct scene *scene;
 };
 
@@ -42,7 +42,7 @@ static inline int fixture_begin(void **state)
     if (!fixture)
         return -1;
     strcpy(fixture->folder, "/tmp/whit-model-XXXXXX");
-    fixture->log = (struct log){.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_INFO};
+    fixture->log = (whit_log){.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_INFO};
     fixture->scene = scene_create(&fixture->log, "test");
     *state = fixture;
     if (!mkdtemp(fixture->folder) || !fixture->scene)

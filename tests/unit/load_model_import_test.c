@@ -434,7 +434,7 @@ TEST_IN(crashes_stay_in_the_child, fixture_begin, fixture_end)
 TEST_IN(time_limits_are_kept, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const struct load_params params = {.foreign.clock_s = 2.5e-3};
+    const whit_load_params params = {.time_limit_s = 2.5e-3};
     const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     importer_hangs = true;
     whit_result result = load_model(fixture->scene, path, SCENE_NONE, true, true, &params);
@@ -458,7 +458,7 @@ TEST_IN(cancelling_is_not_the_files_fault, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const bool cancel = true;
-    const struct load_params params = {.cancel = &cancel};
+    const whit_load_params params = {.cancel = &cancel};
     const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_int_equal(load_model(fixture->scene, path, SCENE_NONE, true, true, &params),
                      WHIT_ERROR_CANCELLED);

@@ -349,7 +349,7 @@ TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
 TEST_IN(a_sandbox_that_is_required_is_an_error, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const struct load_params params = {.foreign.require_sandbox = true};
+    const whit_load_params params = {.require_sandbox = true};
     struct bytes file = write_stb(95);
     const char *jpeg = fixture_write(fixture, "a.jpg", file.data, file.count);
     const char *sky = fixture_write(fixture, "a.hdr", hdr, sizeof hdr - 1);

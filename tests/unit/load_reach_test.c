@@ -85,7 +85,7 @@ char *__wrap_realpath(const char *path, char *resolved)
 struct place {
     char top[PATH_MAX], in[PATH_MAX];
     char heard[8192]; /* errors */
-    struct log log;
+    whit_log log;
 };
 
 static void hear(void *user, whit_log_level level, const char *message)
@@ -319,7 +319,7 @@ static void load(struct place *place, const char *path, const char *allowed, str
     struct scene *scene = NULL;
     *out = (struct outcome){0};
     place->heard[0] = 0;
-    const struct load_params params = {
+    const whit_load_params params = {
         .allowed_folders = &allowed, .allowed_count = allowed ? 1 : 0, .refused = &out->refused};
     out->result = load_scene(&place->log, path, &params, &scene);
     size_t used = (size_t)snprintf(out->text, sizeof out->text, "%s", place->heard);

@@ -54,7 +54,7 @@ static void write_file(const char *path, const void *data, size_t size_bytes)
 static whit_result load_text(struct heard *heard, const char *text, struct scene **out)
 {
     char path[128];
-    const struct log log = {hear, heard, WHIT_LOG_DEBUG};
+    const whit_log log = {hear, heard, WHIT_LOG_DEBUG};
     heard->error_count = 0;
     snprintf(path, sizeof path, "%s/test.json", heard->folder);
     write_file(path, text, strlen(text));
@@ -526,7 +526,7 @@ TEST_IN(large_textures_are_halved, open_folder, close_folder)
 {
     struct heard *heard = *state;
     struct scene *scene = scene_create(NULL, "test");
-    const struct load_params params = {.texture_limit = 1};
+    const whit_load_params params = {.texture_limit = 1};
     uint32_t index;
     const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
                            2, 0, 1, 0, 24, 0x20, 10, 20, 30, 20, 40, 61};
@@ -546,7 +546,7 @@ TEST_IN(unknown_files_are_refused, open_folder, close_folder)
     struct heard *heard = *state;
     struct scene *scene;
     char path[128];
-    const struct log log = {hear, heard, WHIT_LOG_DEBUG};
+    const whit_log log = {hear, heard, WHIT_LOG_DEBUG};
     heard->error_count = 0;
     snprintf(path, sizeof path, "%s/nothing.json", heard->folder);
     assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_ERROR_INPUT);
@@ -576,7 +576,7 @@ TEST_IN(shipped_scenes_have_their_sizes, open_folder, close_folder)
         {"atrium", 64616, 1},
     };
     struct heard *heard = *state;
-    const struct log log = {hear, heard, WHIT_LOG_DEBUG};
+    const whit_log log = {hear, heard, WHIT_LOG_DEBUG};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
         char path[512];
         struct scene *scene;

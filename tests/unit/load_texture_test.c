@@ -6,13 +6,13 @@
 
 static uint32_t decoded, file_reads;
 
-whit_result __real_picture_read(const struct log *log, const struct foreign_params *params,
+whit_result __real_picture_read(const whit_log *log, const struct foreign_params *params,
                                 uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                 struct picture *out, char reason[FOREIGN_REASON_BYTES]);
-whit_result __wrap_picture_read(const struct log *log, const struct foreign_params *params,
+whit_result __wrap_picture_read(const whit_log *log, const struct foreign_params *params,
                                 uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                 struct picture *out, char reason[FOREIGN_REASON_BYTES]);
-whit_result __wrap_picture_read(const struct log *log, const struct foreign_params *params,
+whit_result __wrap_picture_read(const whit_log *log, const struct foreign_params *params,
                                 uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                 struct picture *out, char reason[FOREIGN_REASON_BYTES])
 {
@@ -23,11 +23,11 @@ whit_result __wrap_picture_read(const struct log *log, const struct foreign_para
     return result;
 }
 
-whit_result __real_file_read(const struct log *log, const struct roots *roots, const char *path,
+whit_result __real_file_read(const whit_log *log, const struct roots *roots, const char *path,
                              uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
-whit_result __wrap_file_read(const struct log *log, const struct roots *roots, const char *path,
+whit_result __wrap_file_read(const whit_log *log, const struct roots *roots, const char *path,
                              uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
-whit_result __wrap_file_read(const struct log *log, const struct roots *roots, const char *path,
+whit_result __wrap_file_read(const whit_log *log, const struct roots *roots, const char *path,
                              uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
 {
     file_reads++;
@@ -130,7 +130,7 @@ TEST_IN(one_picture_in_many_places, begin, fixture_end)
 TEST_IN(limits_keep_pictures_apart, begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const struct load_params params = {.texture_limit = 1};
+    const whit_load_params params = {.texture_limit = 1};
     uint32_t whole, halved;
     assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &whole, NULL),
                      WHIT_OK);

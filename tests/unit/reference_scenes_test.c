@@ -127,7 +127,7 @@ static bool is_wanted(const char *name)
 
 TEST(default_scenes_agree)
 {
-    const struct load_params load = {.foreign.cpu_s = 60.0};
+    const whit_load_params load = {.import_limit_s = 60.0};
     glob_t paths;
     size_t compared = 0;
     assert_int_equal(glob(WHIT_SCENES_DIR "/*.json", 0, NULL, &paths), 0);

@@ -132,7 +132,7 @@ static void keep_error(void *user, whit_log_level level, const char *message)
 
 static void check_refused(struct scene *scene, const char *why)
 {
-    const struct log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+    const whit_log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
     struct accel *accel;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(accel_create(&log, scene, &no_trees, &accel), WHIT_ERROR_USAGE);
@@ -200,7 +200,7 @@ TEST(pictures_equal_those_of_trees)
    noticed by the kernel. */
 TEST(many_shadows_are_refused)
 {
-    const struct log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+    const whit_log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
     struct scene *scene = scene_begin(&fixture_log, "ground");
     scene_put(scene, mesh_terrain(8.0, 0.6, 120, 1), NULL);
     scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,

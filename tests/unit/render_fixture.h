@@ -29,7 +29,7 @@ static void fixture_message(void *user, whit_log_level level, const char *messag
     print_message("  %s\n", message);
 }
 
-static const struct log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
+static const whit_log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
 
 /* The one device of all checks of a program: layers and driver take longer to start than most
    pictures take to draw. */

@@ -136,7 +136,7 @@ TEST(other_samples_are_refused)
                                                  {.light_samples = 2},
                                                  {.sampling.count = 4, .sampling.first = 2},
                                                  {.sampling.count = 4, .sampling.first = 4096}};
-    struct log silent = {.level = WHIT_LOG_ERROR};
+    whit_log silent = {.level = WHIT_LOG_ERROR};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
         whit_renderer_params params = wrong[i];
         assert_int_equal(params_check(&silent, &params), WHIT_ERROR_USAGE);

@@ -31,7 +31,7 @@ static inline struct scene_mesh scattered_spheres(uint32_t count, double spread,
 }
 
 /* `placed`: the mesh as several instances of every kind; else once, as it is. Not frozen. */
-static inline struct scene *sphere_scene(const struct log *log, struct scene_mesh mesh, bool placed)
+static inline struct scene *sphere_scene(const whit_log *log, struct scene_mesh mesh, bool placed)
 {
     struct scene *scene = scene_begin(log, "spheres");
     scene_put(scene, mesh, NULL);

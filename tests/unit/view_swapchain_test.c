@@ -20,7 +20,7 @@ struct shop {
 
 static whit_result shop_open(struct shop *shop, bool validation, bool blit)
 {
-    struct log log = messages_log(&shop->messages);
+    whit_log log = messages_log(&shop->messages);
     const struct window_params window = {.title = "test", .width = WIDTH, .height = HEIGHT};
     const struct swapchain_params chain = {.spirv = kernels[KERNEL_PRESENT].words,
                                            .spirv_bytes = kernels[KERNEL_PRESENT].bytes,

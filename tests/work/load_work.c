@@ -55,7 +55,7 @@ static const char *write_file(struct fixture *fixture, const char *name, const c
 static uint64_t work_of(struct fixture *fixture, const char *path)
 {
     struct scene *scene;
-    const struct log log = {.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_ERROR};
+    const whit_log log = {.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_ERROR};
     branches = 0;
     if (load_scene(&log, path, NULL, &scene) != WHIT_OK)
         fail_msg("%s", fixture->last_error);
@@ -145,7 +145,7 @@ static void one_model_under_many_materials(void **state)
         FEW);
     struct scene *scene;
     children = 0;
-    assert_int_equal(load_scene(&(struct log){0}, path, NULL, &scene), WHIT_OK);
+    assert_int_equal(load_scene(&(whit_log){0}, path, NULL, &scene), WHIT_OK);
     assert_int_equal(children, 2); /* under materials, and under its own */
     assert_int_equal(scene->mesh_count, FEW + 1);
     assert_int_equal(scene->instance_count, FEW + 2);
@@ -177,7 +177,7 @@ static void one_model_with_lights_and_cameras(void **state)
                                   "\"repeat\":{\"count\":[2,1,1]}}]}",
                                   FEW);
     struct scene *scene;
-    assert_int_equal(load_scene(&(struct log){0}, path, NULL, &scene), WHIT_OK);
+    assert_int_equal(load_scene(&(whit_log){0}, path, NULL, &scene), WHIT_OK);
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instance_count, FEW + 2);
     assert_int_equal(scene->light_count, FEW + 1); /* not repeated */
