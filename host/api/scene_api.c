@@ -189,6 +189,9 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
         .made_by_whit = light->made_by_whit,
     };
     copy3_double(info->position, light->position);
+    /* Sampling begins at a corner; scene files name the centre. */
+    for (int i = 0; i < 3 && light->kind == SCENE_LIGHT_RECTANGLE; ++i)
+        info->position[i] += 0.5 * (light->edge_u[i] + light->edge_v[i]);
     copy3_double(info->direction, light->direction);
     copy3(info->color, light->color);
 }

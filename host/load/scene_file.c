@@ -369,8 +369,12 @@ whit_result load_scene_file(struct scene *scene, const char *path, const whit_lo
     scene->file_bytes += size_bytes;
     json_t *root = json_loadb((const char *)text, size_bytes, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
-        log_error(&scene->log, "%s:%d:%d: %s", path, error.line > 0 ? error.line : 1,
-                  error.column > 0 ? error.column : 1, error.text);
+        /* The parser names the bracket that it looked for, where most often a comma is missing. */
+        bool comma = strncmp(error.text, "'}' expected near", 17) == 0 ||
+                     strncmp(error.text, "']' expected near", 17) == 0;
+        log_error(&scene->log, "%s:%d:%d: %s%s", path, error.line > 0 ? error.line : 1,
+                  error.column > 0 ? error.column : 1, error.text,
+                  comma ? "; is a comma missing before it?" : "");
         free(text);
         return WHIT_ERROR_INPUT;
     }

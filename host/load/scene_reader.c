@@ -175,12 +175,33 @@ bool reader_no_memory(struct reader *reader)
     return false;
 }
 
+/* What other programs call it: the key of that meaning, where it is known here. */
+static const char *same_meaning(const char *word, const char *const *known)
+{
+    static const char *const meanings[][2] = {
+        {"mirror", "reflection"},     {"reflectivity", "reflection"},
+        {"reflective", "reflection"}, {"refraction", "ior"},
+        {"color", "diffuse"},         {"albedo", "diffuse"},
+        {"base_color", "diffuse"},    {"transparency", "transmission"},
+        {"glass", "transmission"},    {"emissive", "emission"},
+        {"emit", "emission"},         {"alpha", "opacity"},
+        {"glossiness", "shininess"},  {"position", "translation"},
+        {"translate", "translation"}, {"rotate", "rotation"},
+    };
+    for (size_t i = 0; i < sizeof meanings / sizeof *meanings; ++i)
+        for (size_t k = 0; strcmp(word, meanings[i][0]) == 0 && known[k]; ++k)
+            if (strcmp(known[k], meanings[i][1]) == 0)
+                return known[k];
+    return NULL;
+}
+
 const char *reader_nearest(const char *word, const char *const *known)
 {
     uint32_t count = 0;
     while (known[count])
         ++count;
-    return text_nearest(word, known, count);
+    const char *same = same_meaning(word, known);
+    return same ? same : text_nearest(word, known, count);
 }
 
 static bool listed(const char *key, const char *const *known)

@@ -125,7 +125,11 @@ static bool read_size(const char *text, uint32_t out[2], char *why)
     }
     for (int i = 0; i < 2; ++i)
         good = good && sides[i] >= 1 && sides[i] <= SIDE_MAX;
-    if (!good || (uint64_t)sides[0] * sides[1] > PIXELS_MAX)
+    if (good && (uint64_t)sides[0] * sides[1] > PIXELS_MAX)
+        return setting_refuse(why, " `%s`: %llu pixels are more than %llu, the most of a picture",
+                              text, (unsigned long long)sides[0] * sides[1],
+                              (unsigned long long)PIXELS_MAX);
+    if (!good)
         return setting_refuse(why, " `%s`: WxH is needed, each from 1 to %d, such as 1280x720",
                               text, SIDE_MAX);
     out[0] = (uint32_t)sides[0];

@@ -51,7 +51,7 @@ static bool read_aa(const struct setting *row, const char *text, void *record, c
     if (strncmp(text, prefix, length) != 0) {
         uint32_t found = value_find(row->values, text);
         if (found == WHIT_NONE)
-            return setting_refuse(why, " `%s`: one of %s is needed", text,
+            return setting_refuse(why, " `%s`: one of %s or adaptive:X is needed", text,
                                   value_list(row->values, ", ", list, sizeof list));
         picture->sampling = (whit_sampling){.count = (uint32_t)row->values[found].value};
         return true;

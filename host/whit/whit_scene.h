@@ -74,7 +74,8 @@ typedef struct whit_material_info {
 typedef struct whit_light_info {
     const char *name;
     const char *kind; /* "point", "directional", "spot", "area-sample", "rectangle", "triangle" */
-    double position[3], direction[3]; /* world, at time 0 */
+    /* World, at time 0. Of a rectangle the centre, of a triangle a corner. */
+    double position[3], direction[3];
     float color[3];
     bool made_by_whit;
 } whit_light_info;

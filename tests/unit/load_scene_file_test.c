@@ -89,6 +89,12 @@ static struct scene *load_fine(void **state, const char *text)
 TEST_IN(errors_name_line_and_column, open_folder, close_folder)
 {
     assert_error(state, "{\n  \"objects\": [,]\n}", "test.json:2:15: ");
+    assert_error(state, "{\"ambient\": 0.5\n \"objects\": [1 2]}",
+                 "test.json:2:10: '}' expected near '\"objects\"'; is a comma missing before it?");
+    assert_error(state, "{\"objects\": [\n1 2]}",
+                 "test.json:2:3: ']' expected near '2'; is a comma missing before it?");
+    assert_error(state, "{\"materials\": {\"a\": {\"mirror\": 1}}}",
+                 "test.json:1:22: materials.a.mirror: unknown key; did you mean `reflection`?");
     assert_error(state, "{\n  \"object\": []\n}",
                  "test.json:2:3: object: unknown key; did you mean `objects`?");
     assert_error(state, "{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",

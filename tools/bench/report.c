@@ -88,7 +88,7 @@ static const char *holds(const struct bench_case *faster, const struct bench_cas
     int found = compare(faster, slower);
     return found > 0   ? "holds here"
            : found < 0 ? "does NOT hold here"
-                       : "does NOT hold here, as there is no difference beyond the spread";
+                       : "cannot be told here, as there is no difference beyond the spread";
 }
 
 static void judge_trees(struct table *table, const struct bench_case *cases)
@@ -240,7 +240,9 @@ static whit_result run_section(struct bench *bench, const struct section *sectio
     }
     if (result == WHIT_OK)
         section->judge(&table, cases);
-    table_say(&table, "The report's figures are from another machine: only ratios compare.");
+    table_say(&table, "The report is that on the interactive Whitted ray tracer from which whit "
+                      "began. Its figures "
+                      "are from another machine: only ratios compare.");
     cases_finish(cases, count);
     return table_end(&table, section->title, result);
 }

@@ -33,13 +33,28 @@ static struct widths measure(const whit_hard_report *report)
     return widths;
 }
 
+static void print_verdict(const whit_hard_report *report)
+{
+    printf("promises   %u of %u rows broke one\n", report->broken, report->row_count);
+    if (report->unanswered)
+        printf("answers    none in %u rows\n", report->unanswered);
+    if (report->hash)
+        printf("hash       %016llx of the exact identities of 512 rays a case%s\n",
+               whole(report->hash),
+               report->hash_met == 0              ? ""
+               : report->hash_met == report->hash ? ", met by the device"
+                                                  : ", NOT met by the device");
+    putchar('\n');
+}
+
 static void print_heading(const struct hard *hard, struct widths widths)
 {
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
     printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
-    printf("scene      %s\n\n", hard->job.settings.scene[0] ? cli_shown(hard->job.settings.scene)
-                                                            : "the built-in cases");
+    printf("scene      %s\n", hard->job.settings.scene[0] ? cli_shown(hard->job.settings.scene)
+                                                          : "the built-in cases");
+    print_verdict(hard->report);
     printf("%-*s%-*s%-12s%9s%8s%7s%8s%8s%7s%8s%6s%10s%11s%10s%8s  %s\n", widths.name, "case",
            widths.place, "at", "numerics", "rays", "misses", "leaks", "false", "other", "wrong",
            "double", "self", "ulp", "device ms", "twin ms", "differ", "kept");
@@ -119,16 +134,10 @@ int hard_print(const struct hard *hard)
     putchar('\n');
     for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i)
         print_sum(report, levels[i], widths);
-    putchar('\n');
-    if (hard->job.settings.scene[0])
+    if (hard->job.settings.scene[0]) {
+        putchar('\n');
         print_surface(report);
-    if (report->hash)
-        printf("hash       %016llx of the exact identities of 512 rays a case%s\n",
-               whole(report->hash),
-               report->hash_met == 0              ? ""
-               : report->hash_met == report->hash ? ", met by the device"
-                                                  : ", NOT met by the device");
-    printf("promises   %u of %u rows broke one\n", report->broken, report->row_count);
+    }
     return cli_finish_stdout(EXIT_FINE);
 }
 
