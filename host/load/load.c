@@ -74,6 +74,7 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
     whit_result result = roots_init(&scene->roots, path);
     for (uint32_t i = 0; params && result == WHIT_OK && i < params->allowed_count; i++)
         result = roots_allow(log, &scene->roots, params->allowed_folders[i]);
+    scene->is_model = load_is_model(path);
     struct named_log named = {log, path};
     if (log && log->fn)
         scene->log = (whit_log){.fn = name_error, .user = &named, .level = log->level};

@@ -8,7 +8,10 @@
 #include "scene/freeze.h"
 #include "scene/viewpoint.h"
 
-/* What lights a scene whose file has no light. */
+/* Where less than this share of what is seen gets light, whit adds some. */
+static const double LIT_ENOUGH = 0.25;
+
+/* What lights a scene whose file has no light, or none that helps. */
 struct light_kinds {
     bool key, emitters, exposed;
 };
@@ -53,8 +56,9 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
 }
 
 /* Walls keep light from outside off a room: one lamp at the eye and one ahead of it, where the eye
-   sees that there is space. */
-static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint)
+   sees that there is space. `why`: as notes begin. */
+static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint,
+                                   const char *why)
 {
     const struct {
         const char *name;
@@ -80,8 +84,8 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
         if (scene_add_light(scene, light) == SCENE_NONE)
             return WHIT_ERROR_MEMORY;
     }
-    scene_note(scene, SCENE_NOTE_INFO,
-               "no light in the file: two lamps were added, at the camera and ahead of it");
+    scene_note(scene, SCENE_NOTE_INFO, "%s: two lamps were added, at the camera and ahead of it",
+               why);
     return WHIT_OK;
 }
 
@@ -167,24 +171,75 @@ static whit_result add_emitters(struct scene *scene, const struct scene_pose *po
     return WHIT_OK;
 }
 
+/* A light by whit, which suits the view. */
+static whit_result add_own_light(struct scene *scene, const struct scene_pose *pose,
+                                 const struct viewpoint *viewpoint, const char *why)
+{
+    if (viewpoint->kind == VIEWPOINT_INSIDE)
+        return add_room_lights(scene, viewpoint, why);
+    struct scene_camera camera = pose->camera_count ? pose->cameras[0] : scene->cameras[0];
+    scene_note(scene, SCENE_NOTE_INFO,
+               "%s: a directional one was added, over the camera's left shoulder", why);
+    return add_key_light(scene, &camera, viewpoint->kind);
+}
+
+/* What keeps all light from outside off what a camera of the file sees. */
+static whit_result add_lamp_at_eye(struct scene *scene, const struct scene_pose *pose, double share)
+{
+    const struct scene_camera *camera = pose->camera_count ? pose->cameras : scene->cameras;
+    struct scene_light light = {
+        .name = scene_text(scene, "default lamp"),
+        .kind = SCENE_LIGHT_POINT,
+        .node = SCENE_NONE,
+        .direction = {0, -1, 0},
+        .color = {0.6f, 0.59f, 0.56f},
+        .made_by_whit = true,
+    };
+    memcpy(light.position, camera->eye, sizeof light.position);
+    scene_note(scene, SCENE_NOTE_INFO,
+               "light from outside reaches %.0f %% of what is seen: a lamp was added at the camera",
+               100.0 * share);
+    return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+}
+
+/* Lights of a model count if they light what is seen; where they do not, there are whit's too. */
+static whit_result help_lights(struct scene *scene, const struct scene_pose *pose,
+                               const struct viewpoint *viewpoint, struct light_kinds *found)
+{
+    double share = 1.0;
+    char why[96];
+    whit_result result = WHIT_OK;
+    if (!found->key)
+        result = freeze_lit_share(scene, &share);
+    if (result == WHIT_OK && share < LIT_ENOUGH) {
+        snprintf(why, sizeof why, "the file's light reaches %.0f %% of what is seen",
+                 100.0 * share);
+        found->key = true;
+        result = add_own_light(scene, pose, viewpoint, why);
+    }
+    /* Whit's own camera is not in a box, or has lamps there. */
+    bool boxed = found->key && !scene->cameras[0].made_by_whit;
+    if (result == WHIT_OK && boxed)
+        result = freeze_lit_share(scene, &share);
+    if (result == WHIT_OK && boxed && share < LIT_ENOUGH)
+        result = add_lamp_at_eye(scene, pose, share);
+    return result;
+}
+
 static whit_result add_lights(struct scene *scene, const struct scene_pose *pose,
                               const struct viewpoint *viewpoint, struct light_kinds *found)
 {
+    whit_result result = WHIT_OK;
     if (scene->light_count)
-        return expose_stated_lights(scene);
-    whit_result result = add_emitters(scene, pose, found);
-    if (result != WHIT_OK || found->emitters)
-        return result;
-    found->key = true;
-    if (viewpoint->kind == VIEWPOINT_INSIDE)
-        return add_room_lights(scene, viewpoint);
-    struct scene_camera camera = pose->camera_count ? pose->cameras[0] : scene->cameras[0];
-    result = add_key_light(scene, &camera, viewpoint->kind);
-    if (result == WHIT_OK)
-        scene_note(scene, SCENE_NOTE_INFO,
-                   "no light in the file: a directional one was added, over the camera's left "
-                   "shoulder");
-    return result;
+        result = expose_stated_lights(scene);
+    else
+        result = add_emitters(scene, pose, found);
+    if (result == WHIT_OK && scene->light_count == 0) {
+        found->key = true;
+        result = add_own_light(scene, pose, viewpoint, "no light in the file");
+    }
+    return result == WHIT_OK && scene->is_model ? help_lights(scene, pose, viewpoint, found)
+                                                : result;
 }
 
 static void add_ambient(struct scene *scene, const struct light_kinds *lights)

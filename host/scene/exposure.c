@@ -99,27 +99,26 @@ static double brightness_of_emitter(const struct scene_light *light, const doubl
     return luminance(light->color) * area / PI * sum;
 }
 
-/* What a white surface shows at `point`. */
+double freeze_brightness(const struct scene_light *light, const double point[3],
+                         const double normal[3])
+{
+    double way[3];
+    if (scene_light_is_flat(light))
+        return brightness_of_emitter(light, point, normal);
+    for (int k = 0; k < 3; ++k)
+        way[k] = light->kind == SCENE_LIGHT_DIRECTIONAL ? light->direction[k]
+                                                        : point[k] - light->position[k];
+    double distance = double3_length(way);
+    double3_unit(way);
+    return distance > 0.0 ? arriving(light, way, distance) * fabs(double3_dot(way, normal)) : 0.0;
+}
+
 static double brightness_at(const struct scene_pose *pose, const double point[3],
                             const double normal[3])
 {
     double sum = 0.0;
-    for (uint32_t i = 0; i < pose->light_count; ++i) {
-        const struct scene_light *light = &pose->lights[i];
-        double way[3], distance = 1.0;
-        if (scene_light_is_flat(light)) {
-            sum += brightness_of_emitter(light, point, normal);
-            continue;
-        }
-        for (int k = 0; k < 3; ++k)
-            way[k] = light->kind == SCENE_LIGHT_DIRECTIONAL ? light->direction[k]
-                                                            : point[k] - light->position[k];
-        distance = sqrt(double3_dot(way, way));
-        for (int k = 0; distance > 0.0 && k < 3; ++k)
-            way[k] /= distance;
-        if (distance > 0.0)
-            sum += arriving(light, way, distance) * fabs(double3_dot(way, normal));
-    }
+    for (uint32_t i = 0; i < pose->light_count; ++i)
+        sum += freeze_brightness(&pose->lights[i], point, normal);
     return sum;
 }
 

@@ -17,6 +17,16 @@ WHIT_CHECK whit_result freeze_sample_emitters(struct scene *scene, const struct 
    they neither burn the picture out nor leave it black. *factor is what by. */
 WHIT_CHECK whit_result freeze_expose(struct scene *scene, bool emitters, double *factor);
 
+/* What a white surface shows of one light at `point`, if nothing is between; `normal` is unit, and
+   both its sides count. */
+double freeze_brightness(const struct scene_light *light, const double point[3],
+                         const double normal[3]);
+
+/* lit.c: which share of what the first camera sees is reached by light, 0..1, by a few hundred rays
+   through all triangles. 1 where that cannot be told: by a camera that sees all around, or where
+   nothing is seen. */
+WHIT_CHECK whit_result freeze_lit_share(const struct scene *scene, double *share);
+
 /* defaults.c: camera, lights, ambient light and environment where the file has none. */
 WHIT_CHECK whit_result freeze_add_defaults(struct scene *scene);
 

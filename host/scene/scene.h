@@ -266,6 +266,7 @@ struct scene {
     struct table texture_keys;             /* their names, and what loaders know them by */
     struct roots roots;                    /* what the files that it is loaded from may name */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
+    bool is_model;                         /* of another program: its lights may need help */
     bool lacks_memory;                     /* for a name or a note: scene_freeze fails */
     bool frozen;
     bool pictures_dropped; /* by scene_drop_pictures */

@@ -298,3 +298,78 @@ TEST(stated_lights_change_only_where_nothing_is_seen)
         scene_destroy(scene);
     }
 }
+
+/* ---- Lights that light nothing of what is seen ---- */
+
+static uint32_t lights_by_whit(const struct scene *scene, enum scene_light_kind kind)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        count += scene->lights[i].made_by_whit && scene->lights[i].kind == kind;
+    return count;
+}
+
+/* A block with a glowing plate on the side that nobody sees: headlights. */
+static struct scene *block_with_lamp(bool is_model, bool in_front)
+{
+    struct scene *scene = empty_scene();
+    struct scene_material glow = material_plain("glow");
+    for (int i = 0; i < 3; ++i)
+        glow.emission[i] = 5.0f;
+    scene_put(scene, mesh_box(2, 2, 2), NULL);
+    scene_put(scene, mesh_box(1, 1, 0.01),
+              &(struct put){.material = &glow, .at = {0, 0, in_front ? 3 : -1.1}});
+    scene_put_camera(scene, (const double[]){1, 1, 9}, (const double[]){0, 0, 0}, 0.5);
+    scene->is_model = is_model;
+    return scene_ready(scene);
+}
+
+TEST(lamps_that_nobody_sees_get_help)
+{
+    struct scene *scene = block_with_lamp(true, false);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 1);
+    assert_true(scene_noted(scene, "the file's light reaches 0 % of what is seen: a directional "
+                                   "one was added, over the camera's left shoulder"));
+    assert_true(scene_noted(scene, "no environment in the file: a sky was added"));
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_POINT), 0);
+    scene_destroy(scene);
+
+    scene = block_with_lamp(true, true);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 0);
+    scene_destroy(scene);
+
+    /* Whit's own scene files mean what they say. */
+    scene = block_with_lamp(false, false);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 0);
+    scene_destroy(scene);
+}
+
+/* The camera stands in a box under the sun. `open`: as for walls(). `glass`: of the top. */
+static struct scene *box_under_sun(unsigned open, bool glass)
+{
+    struct scene *scene = empty_scene();
+    struct scene_material pane = material_plain("pane");
+    for (int i = 0; i < 3; ++i)
+        pane.transmission[i] = 0.9f;
+    scene_put(scene, walls((const float[]){2, 2, 2}, open | (glass ? 8u : 0u), false), NULL);
+    if (glass)
+        scene_put(scene, mesh_plane(4), &(struct put){.material = &pane, .at = {0, 2, 0}});
+    scene_put_sun(scene, 0.1, -1, 0.2, 1.0f);
+    scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.8, 0}, 1.2);
+    scene->is_model = true;
+    return scene_ready(scene);
+}
+
+TEST(boxes_that_shut_the_sun_out_get_a_lamp)
+{
+    struct scene *scene = box_under_sun(0, false);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_POINT), 1);
+    assert_true(scene_noted(scene, "light from outside reaches 0 % of what is seen: a lamp was "
+                                   "added at the camera"));
+    scene_destroy(scene);
+    for (int glass = 0; glass < 2; ++glass) {
+        scene = box_under_sun(8, glass);
+        assert_int_equal(scene->light_count, 1);
+        scene_destroy(scene);
+    }
+}
