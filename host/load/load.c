@@ -1,10 +1,14 @@
 #include "load/load.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/color.h"
 #include "base/file.h"
+#include "base/path.h"
+#include "load/up.h"
 #include "scene/afford.h"
 
 /* Errors name what is loaded, also where they are about a file that it names. */
@@ -27,6 +31,53 @@ static void name_error(void *user, whit_log_level level, const char *message)
     named->to->fn(named->to->user, level, message);
 }
 
+static bool has_no_axes(const char *path)
+{
+    char extension[8];
+    path_extension(path, extension, sizeof extension);
+    return strcmp(extension, "obj") == 0 || strcmp(extension, "ply") == 0 ||
+           strcmp(extension, "stl") == 0;
+}
+
+static whit_result read_model(struct scene *scene, const char *path, const whit_load_params *params)
+{
+    whit_up up = params ? params->up : WHIT_UP_AUTO;
+    uint32_t parent = SCENE_NONE;
+    if (up != WHIT_UP_AUTO && up != WHIT_UP_Y)
+        parent = up_add_node(scene, up);
+    if (up != WHIT_UP_AUTO && up != WHIT_UP_Y && parent == SCENE_NONE)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = load_model(scene, path, parent, true, true, params);
+    return result == WHIT_OK && up == WHIT_UP_AUTO && has_no_axes(path)
+               ? up_turn_by_shape(scene, path)
+               : result;
+}
+
+/* What the user says in place of the file. */
+static whit_result replace_sky(struct scene *scene, const whit_load_params *params)
+{
+    struct scene_environment *sky = &scene->environment;
+    if (params->environment) {
+        /* The user named it, wherever it lies; the scene has been read. */
+        char *folder = path_folder(params->environment);
+        whit_result result = folder
+                                 ? roots_allow(&scene->log, &scene->roots, folder[0] ? folder : ".")
+                                 : WHIT_ERROR_MEMORY;
+        free(folder);
+        return result == WHIT_OK ? load_environment(scene, params->environment, params) : result;
+    }
+    if (!params->has_background)
+        return WHIT_OK;
+    free(sky->rgb);
+    free(sky->name);
+    *sky = (struct scene_environment){.kind = SCENE_ENVIRONMENT_GRADIENT, .scale = {1, 1, 1}};
+    for (int i = 0; i < 3; ++i)
+        sky->zenith[i] = sky->horizon[i] = sky->ground[i] =
+            (float)linear_from_srgb(params->background[i] / 255.0);
+    scene->has_environment = true;
+    return WHIT_OK;
+}
+
 static whit_result read_into(struct scene *scene, const char *path, const whit_load_params *params)
 {
     char extension[16];
@@ -34,7 +85,7 @@ static whit_result read_into(struct scene *scene, const char *path, const whit_l
     if (strcmp(extension, "json") == 0)
         return load_scene_file(scene, path, params);
     if (load_is_model(path))
-        return load_model(scene, path, SCENE_NONE, true, true, params);
+        return read_model(scene, path, params);
     log_error(&scene->log,
               "%s: the extension `.%s` is not known; whit reads .json scenes and " LOAD_MODELS
               " models",
@@ -64,6 +115,11 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
         log_error(log, "%s: this is a folder, not a scene or a model", path);
         return WHIT_ERROR_INPUT;
     }
+    if (params &&
+        ((uint32_t)params->up > WHIT_UP_MINUS_Z || (uint32_t)params->lights > WHIT_LIGHTS_KEY)) {
+        log_error(log, "%s: up or lights: a value of an enumeration that there is none of", path);
+        return WHIT_ERROR_USAGE;
+    }
     struct scene *scene = scene_create(log, path);
     if (!scene) {
         log_error(log, "%s: out of memory", path);
@@ -80,6 +136,11 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
         scene->log = (whit_log){.fn = name_error, .user = &named, .level = log->level};
     if (result == WHIT_OK)
         result = read_into(scene, path, params);
+    if (result == WHIT_OK && params)
+        result = replace_sky(scene, params);
+    scene->lights_wanted = params ? params->lights : WHIT_LIGHTS_AUTO;
+    if (scene->lights_wanted == WHIT_LIGHTS_NONE || scene->lights_wanted == WHIT_LIGHTS_KEY)
+        scene_drop_lights(scene);
     scene->log = log_or_silence(log);
     tell_refused(&scene->roots, params);
     if (result == WHIT_OK)

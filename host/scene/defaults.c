@@ -229,17 +229,24 @@ static whit_result help_lights(struct scene *scene, const struct scene_pose *pos
 static whit_result add_lights(struct scene *scene, const struct scene_pose *pose,
                               const struct viewpoint *viewpoint, struct light_kinds *found)
 {
+    bool own = scene->lights_wanted == WHIT_LIGHTS_KEY;
     whit_result result = WHIT_OK;
+    if (scene->lights_wanted == WHIT_LIGHTS_NONE)
+        return WHIT_OK;
     if (scene->light_count)
         result = expose_stated_lights(scene);
-    else
+    else if (!own)
         result = add_emitters(scene, pose, found);
+    if (scene->lights_wanted == WHIT_LIGHTS_FILE)
+        return result;
     if (result == WHIT_OK && scene->light_count == 0) {
         found->key = true;
-        result = add_own_light(scene, pose, viewpoint, "no light in the file");
+        result = add_own_light(scene, pose, viewpoint,
+                               own ? "in place of the file's light" : "no light in the file");
     }
-    return result == WHIT_OK && scene->is_model ? help_lights(scene, pose, viewpoint, found)
-                                                : result;
+    return result == WHIT_OK && (scene->is_model || own)
+               ? help_lights(scene, pose, viewpoint, found)
+               : result;
 }
 
 static void add_ambient(struct scene *scene, const struct light_kinds *lights)

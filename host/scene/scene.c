@@ -251,6 +251,12 @@ bool scene_find_texture(const struct scene *scene, const char *name, uint32_t *i
     return table_find(&scene->texture_keys, name, strlen(name), index);
 }
 
+void scene_drop_lights(struct scene *scene)
+{
+    while (scene->light_count)
+        finish_light(&scene->lights[--scene->light_count]);
+}
+
 uint32_t scene_add_light(struct scene *scene, struct scene_light light)
 {
     if (ARRAY_PUSH(scene->lights, scene->light_count, scene->light_capacity, light))

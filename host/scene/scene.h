@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/roots.h"
 #include "base/table.h"
+#include "whit/whit_scene.h"
 
 #define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
 
@@ -267,7 +268,8 @@ struct scene {
     struct roots roots;                    /* what the files that it is loaded from may name */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool is_model;                         /* of another program: its lights may need help */
-    bool lacks_memory;                     /* for a name or a note: scene_freeze fails */
+    whit_lights lights_wanted;
+    bool lacks_memory; /* for a name or a note: scene_freeze fails */
     bool frozen;
     bool pictures_dropped; /* by scene_drop_pictures */
 };
@@ -275,6 +277,8 @@ struct scene {
 /* Never NULL fields afterwards but for arrays that are empty. NULL when memory runs out. */
 struct scene *scene_create(const whit_log *log, const char *name);
 void scene_destroy(struct scene *scene);
+/* Takes all lights out, before scene_freeze. */
+void scene_drop_lights(struct scene *scene);
 /* Frees the texels of textures and environment, the one thing that may leave a frozen scene: for
    when every renderer that will be made from it has uploaded them. */
 void scene_drop_pictures(struct scene *scene);

@@ -105,6 +105,7 @@ whit_load_params settings_load(const struct settings *settings,
                                const char *folders[SETTING_FOLDERS_MAX])
 {
     whit_load_params params = settings->load;
+    params.environment = settings->environment[0] ? settings->environment : NULL;
     params.allowed_folders = folders;
     while (params.allowed_count < SETTING_FOLDERS_MAX &&
            settings->allowed[params.allowed_count][0]) {

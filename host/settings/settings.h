@@ -26,6 +26,7 @@ struct settings {
     uint64_t given;                 /* bits of rows that options named: see settings_given */
 
     whit_load_params load;                                 /* without pointers */
+    char environment[SETTING_TEXT_BYTES];                  /* "": the file's */
     char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]; /* folders; "" behind the last */
     whit_accel_params trees;
     whit_renderer_params picture;    /* without camera and pointers: see settings_picture */

@@ -27,6 +27,11 @@ static const struct setting_value steps_aa[] = {{"1", 0, "1 a pixel"},
                                                 {"64", 0, "64 a pixel"},
                                                 {"adaptive:0.05", 0, "adaptive"},
                                                 {0}};
+static const struct setting_value steps_background[] = {{"env", 0, "sky"},
+                                                        {"#ffffff", 0, "white"},
+                                                        {"#808080", 0, "grey"},
+                                                        {"#000000", 0, "black"},
+                                                        {0}};
 static const struct setting_value steps_bailout[] = {{"0", 0, "0: every ray"},
                                                      {"0.000244140625", 0, "1/4096"},
                                                      {"0.0009765625", 0, "1/1024"},
@@ -110,6 +115,33 @@ static bool write_scale(const void *record, char text[SETTING_VALUE_BYTES])
         setting_write_number(scale, text, SETTING_VALUE_BYTES);
     else
         strcpy(text, "auto");
+    return true;
+}
+
+static bool read_background(const struct setting *row, const char *text, void *record, char *why)
+{
+    whit_load_params *load = &((struct settings *)record)->load;
+    unsigned rgb[3];
+    int length = 0;
+    (void)row;
+    bool plain = strcmp(text, "env") == 0;
+    if (!plain && (sscanf(text, "#%2x%2x%2x%n", &rgb[0], &rgb[1], &rgb[2], &length) != 3 ||
+                   length != 7 || text[length] || strspn(text + 1, "0123456789abcdefABCDEF") != 6))
+        return setting_refuse(why, " `%s`: env or a colour such as #ffcc88 is needed", text);
+    load->has_background = !plain;
+    for (int i = 0; i < 3; ++i)
+        load->background[i] = plain ? 0 : (uint8_t)rgb[i];
+    return true;
+}
+
+static bool write_background(const void *record, char text[SETTING_VALUE_BYTES])
+{
+    const whit_load_params *load = &((const struct settings *)record)->load;
+    const uint8_t *rgb = load->background;
+    if (load->has_background)
+        snprintf(text, SETTING_VALUE_BYTES, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    else
+        strcpy(text, "env");
     return true;
 }
 
@@ -256,6 +288,23 @@ const struct setting settings_table[] = {
     {"threads", 0, "N", "threads on the CPU, 0: one a core", AT(COUNT, trees.threads), .max = 1024,
      .commands = IN_RENDER | IN_PROBE | IN_TRACE | IN_HARD},
 
+    {"up", 0, NULL,
+     "the axis of a model that points up; auto: as its format\n"
+     "says; of OBJ, PLY and STL by their shape",
+     AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
+     .need = SETTING_NEEDS_SCENE, .title = "up"},
+    {"light", 0, NULL,
+     "what lights the scene: what the file has, and whit's own\n"
+     "where that lights nothing; nothing but the file's; no\n"
+     "light; whit's in place of the file's",
+     AT(CHOICE, load.lights), .values = values_lights, .commands = IN_PICTURES | IN_COST | IN_SCENE,
+     .change = SETTING_LIGHT, .need = SETTING_NEEDS_SCENE, .title = "light"},
+    {"environment", 0, "FILE", "a picture all around, in place of the file's sky", "",
+     AT(TEXT, environment), .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_SCENE, .trusted = true},
+    {"background", 0, "#rrggbb|env", "one colour in place of the sky; env: the sky",
+     AT_OWN(background), .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_SCENE, .title = "background", .steps = steps_background},
     {"texture-limit", 0, "N", "halve textures with a longer side", AT(COUNT, load.texture_limit),
      .min = 1, .max = 16384, .commands = IN_PICTURES | IN_SCENE | IN_BVH, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_SCENE},

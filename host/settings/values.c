@@ -35,6 +35,16 @@ const struct setting_value values_classes[] = {{"auto", WHIT_CLASSES_AUTO, NULL}
                                                {"one", WHIT_CLASSES_ONE, NULL},
                                                {"many", WHIT_CLASSES_MANY, NULL},
                                                {0}};
+const struct setting_value values_up[] = {
+    {"auto", WHIT_UP_AUTO, NULL},  {"x", WHIT_UP_X, NULL},
+    {"y", WHIT_UP_Y, NULL},        {"z", WHIT_UP_Z, NULL},
+    {"-x", WHIT_UP_MINUS_X, NULL}, {"-y", WHIT_UP_MINUS_Y, NULL},
+    {"-z", WHIT_UP_MINUS_Z, NULL}, {0}};
+const struct setting_value values_lights[] = {{"auto", WHIT_LIGHTS_AUTO, NULL},
+                                              {"file", WHIT_LIGHTS_FILE, NULL},
+                                              {"none", WHIT_LIGHTS_NONE, NULL},
+                                              {"key", WHIT_LIGHTS_KEY, NULL},
+                                              {0}};
 const struct setting_value values_shadows[] = {{"tinted", WHIT_SHADOWS_TINTED, NULL},
                                                {"opaque", WHIT_SHADOWS_OPAQUE, NULL},
                                                {"none", WHIT_SHADOWS_NONE, NULL},

@@ -21,6 +21,8 @@ extern const struct setting_value values_numerics[];        /* whit_numerics */
 extern const struct setting_value values_load_path[];       /* whit_load_path */
 extern const struct setting_value values_packets[];         /* whit_packets */
 extern const struct setting_value values_classes[];         /* whit_classes */
+extern const struct setting_value values_up[];              /* whit_up */
+extern const struct setting_value values_lights[];          /* whit_lights */
 extern const struct setting_value values_shadows[];         /* whit_shadows */
 extern const struct setting_value values_fresnel[];         /* whit_renderer_params.schlick */
 extern const struct setting_value values_effects[];         /* what the text begins with */

@@ -125,7 +125,7 @@ uint32_t choice_changes(const struct settings *a, const struct settings *b,
                         struct choice_change changes[CHOICE_CHANGES_MAX])
 {
     uint32_t count = 0;
-    if (!settings_same_scene(a, b)) {
+    if (strcmp(a->scene, b->scene) != 0 || a->reload != b->reload) {
         changes[count].name = "scene";
         changes[count].painted = false;
         say_scene(a, changes[count].a);

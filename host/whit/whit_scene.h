@@ -8,7 +8,33 @@
 extern "C" {
 #endif
 
+/* Which axis of a model points up. */
+typedef enum whit_up {
+    WHIT_UP_AUTO = 0, /* as the format says; OBJ, PLY and STL by their shape */
+    WHIT_UP_X,
+    WHIT_UP_Y,
+    WHIT_UP_Z,
+    WHIT_UP_MINUS_X,
+    WHIT_UP_MINUS_Y,
+    WHIT_UP_MINUS_Z,
+} whit_up;
+
+/* What lights a scene. */
+typedef enum whit_lights {
+    WHIT_LIGHTS_AUTO = 0, /* the file's; whit's where they light nothing of what is seen */
+    WHIT_LIGHTS_FILE,     /* the file's, emissive surfaces among them, and no other */
+    WHIT_LIGHTS_NONE,     /* no light but the ambient one */
+    WHIT_LIGHTS_KEY,      /* whit's in place of the file's */
+} whit_lights;
+
 typedef struct whit_load_params {
+    whit_up up; /* of a model; scene files say how they place theirs */
+    whit_lights lights;
+    /* What rays see that meet nothing, in place of what the file says: a picture all around, as of
+       scene files (NULL: none), or one colour of sRGB. */
+    const char *environment;
+    bool has_background;
+    uint8_t background[3];
     /* For each importer and decoder of pictures that is not whit's own: */
     double import_limit_s; /* of the processor; 0: 8, and 4 for each 10 MB, at most 60 */
     double time_limit_s;   /* by the clock; 0: ten times that */

@@ -90,6 +90,64 @@ refuse 2 "a folder that is not there" "nowhere: cannot be allowed: No such file"
     scene "$OUT/model/a.obj" --allow-path "$OUT/nowhere"
 refuse 2 "an empty folder name" "--allow-path takes a folder" scene "$CUBE" --allow-path ""
 
+# ---- What lights a model, which way it is up, and what is behind it ----
+
+# A tall slab with a lamp on top.
+cat >"$OUT/slab.gltf" <<'JSON'
+{ "asset": { "version": "2.0" }, "scene": 0, "scenes": [ { "nodes": [ 0, 1 ] } ],
+  "nodes": [ { "mesh": 0 }, { "translation": [0, 5, 1], "extensions": { "KHR_lights_punctual": { "light": 0 } } } ],
+  "extensionsUsed": [ "KHR_lights_punctual" ],
+  "extensions": { "KHR_lights_punctual": { "lights": [ { "type": "point", "intensity": 9 } ] } },
+  "meshes": [ { "primitives": [ { "attributes": { "POSITION": 0 } } ] } ],
+  "accessors": [ { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+    "min": [0, 0, 0], "max": [1, 4, 0] } ],
+  "bufferViews": [ { "buffer": 0, "byteLength": 36 } ],
+  "buffers": [ { "byteLength": 36, "uri":
+    "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgEAAAAAA" } ] }
+JSON
+# lights_are NAMES OPTION...: the scene's lights by kind, `+` behind those that whit made.
+lights_are() {
+    names=$1
+    shift
+    expect 0 "$*" scene "$OUT/slab.gltf" --json "$@"
+    check "has the lights $names" jq -e --arg names "$names" \
+        '[.lights[] | .kind + if .made_by_whit then "+" else "" end] | join(" ") == $names' "$OUT/stdout"
+}
+lights_are point --light auto
+lights_are point --light file
+lights_are "" --light none
+lights_are directional+ --light key
+# bounds_are Y Z OPTION...: how high and how deep it is.
+bounds_are() {
+    high=$1 deep=$2
+    shift 2
+    expect 0 "$*" scene "$OUT/slab.gltf" --triangles "$T" --quiet "$@"
+    check "is $high high and $deep deep" test "$(od -An -tf4 -w4 -v "$T" | awk -v high="$high" -v deep="$deep" '
+        (NR - 1) % 11 < 9 { n = (NR - 1) % 11 % 3; if ($1 > most[n]) most[n] = $1; if ($1 < least[n]) least[n] = $1 }
+        END { print most[1] - least[1] == high && most[2] - least[2] == deep }')" -eq 1
+    rm "$T"
+}
+bounds_are 4 0 --up auto
+bounds_are 4 0 --up=-y
+bounds_are 0 4 --up z
+bounds_are 1 0 --up x
+refuse 2 "no such axis" "auto, x, y, z" scene "$OUT/slab.gltf" --up w
+sky="--camera 0,0,9,0,0,99,0,1,0,40 --size 8x8 --quiet"
+# shellcheck disable=SC2086
+{
+    expect 0 "a background" render "$OUT/slab.gltf" -o "$OUT/behind.pfm" $sky --background '#ff8000'
+    expect 0 "a picture of it" render "$OUT/slab.gltf" -o "$OUT/all.pfm" $sky --environment "$OUT/behind.pfm"
+    expect 0 "is the same all around" compare "$OUT/behind.pfm" "$OUT/all.pfm" --metric largest --tolerance 1e-6
+    expect 0 "the sky" render "$OUT/slab.gltf" -o "$OUT/sky.pfm" $sky --background env
+    check "is another" sh -c '! cmp -s "$1/sky.pfm" "$1/behind.pfm"' - "$OUT"
+    refuse 2 "a sky that is not there" "nowhere.hdr" render "$OUT/slab.gltf" -o "$OUT/never.pfm" $sky \
+        --environment "$OUT/nowhere.hdr"
+    for color in '#ff80' '#ff80000' ff8000 '#gg8000' '# 12345' ''; do
+        refuse 2 "the colour '$color'" "background" render "$OUT/slab.gltf" -o "$OUT/never.pfm" $sky \
+            --background "$color"
+    done
+}
+
 refuse 2 "an import limit of nothing" "import-limit" scene "$OUT/model/a.obj" --import-limit 0
 expect 0 "an import limit that is not reached" scene "$OUT/model/a.obj" --import-limit 30
 run scene "$OUT/model/a.obj" --require-sandbox

@@ -7,6 +7,7 @@
 ROWS=$3
 mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 "$ROWS" rows >rows
+expect 0 "a sky" render "$CUBE" -o sky.pfm --size 16x8 --quiet
 TAB=$(printf '\t')
 IN_RUN=0 IN_COST=1 # of enum setting_change
 has() { test $((commands >> $1 & 1)) -eq 1; } # of enum settings_command
@@ -18,6 +19,8 @@ has_json() {
         'if $key == "size" then "\(.width)x\(.height)" == $value
             else has($key) and (.[$key] | tostring) == $value end' "$1" >/dev/null
 }
+# quoted VALUE: as a shell needs it.
+quoted() { case $1 in '#'*) echo "'$1'" ;; *) echo "$1" ;; esac; }
 command_of() { grep -a -o 'whit render [^"]* -o whit\.png' "$1"; }
 
 # All rows together, but for those of costs, which are pictures of their own.
@@ -31,7 +34,7 @@ for pass in colours costs; do
         of=$(expr "$name" : view >/dev/null && echo costs || echo colours)
         [ $of = $pass ] || [ "$name" = size ] || continue
         count=$((count + 1))
-        if has $VIEW && [ "$held" -eq 0 ] && [ $of = $pass ]; then echo "--$name $value"; fi >>all.view
+        if has $VIEW && [ "$held" -eq 0 ] && [ $of = $pass ]; then echo "--$name $(quoted "$value")"; fi >>all.view
         has $RENDER && render="$render --$name=$value"
         has $PROBE && probe="$probe --$name=$value"
         has $PRICES && prices="$prices --$name=$value"
@@ -49,7 +52,7 @@ jq .picture probe.json >probe.options
 jq .picture cost.json >cost.options
 while IFS=$TAB read -r name value commands change _ _ json _; do
     if [ "$change" -eq $IN_RUN ] || [ "$name" = device ]; then continue; fi
-    words="--$name $value"
+    words="--$name $(quoted "$value")"
     pass=$(expr "$name" : view >/dev/null && echo costs || echo colours)
     command_of $pass.png >command
     grep -a -o '{"width":[^}]*}' $pass.png >options

@@ -27,7 +27,7 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
         strcpy(text, "24x17");
         return;
     case SETTING_TEXT:
-        strcpy(text, "0");
+        strcpy(text, strcmp(row->name, "environment") == 0 ? "sky.pfm" : "0");
         return;
     case SETTING_FOLDERS:
         strcpy(text, "/tmp");
@@ -35,7 +35,9 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
     default:
         break;
     }
-    strcpy(text, strcmp(row->name, "effects") == 0 ? "-textures" : "12");
+    strcpy(text, strcmp(row->name, "effects") == 0      ? "-textures"
+                 : strcmp(row->name, "background") == 0 ? "#ffcc88"
+                                                        : "12");
     for (const struct setting_value *value = row->values;
          value && value->word && strcmp(text, "-textures") != 0; ++value) {
         strcpy(text, value->word);
@@ -140,7 +142,7 @@ TEST(needs_are_kept)
 
 TEST(each_kind_of_text_that_is_none_is_refused)
 {
-    static const char *const texts[] = {"",   "x",   "1x",      "-1", "nan", "99999999999999999999",
+    static const char *const texts[] = {"",   "?",   "1x",      "-1", "nan", "99999999999999999999",
                                         "0x", "1,2", "4x4junk", "\n"};
     char why[SETTING_WHY_BYTES];
     for (const struct setting *row = next_row(NULL); row; row = next_row(row)) {

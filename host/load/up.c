@@ -1,0 +1,127 @@
+#include "load/up.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/vec.h"
+
+/* A model stands on an end where flat surface within SLAB of its extent covers this share of the
+   ground below it. */
+static const double SLAB = 0.02, STANDS = 0.15, HARDLY = 0.02;
+/* And this share is a floor, whose sides nothing else reaches. */
+static const double FLOOR = 0.5;
+/* What is thinner than this share of its other sides is a board, which may stand on an edge. */
+static const double BOARD = 0.15;
+
+/* Exact: numbers change places and signs, and are not rounded. */
+static const double turns[][9] = {
+    [WHIT_UP_X] = {0, -1, 0, 1, 0, 0, 0, 0, 1},
+    [WHIT_UP_Y] = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+    [WHIT_UP_Z] = {1, 0, 0, 0, 0, 1, 0, -1, 0},
+    [WHIT_UP_MINUS_X] = {0, 1, 0, -1, 0, 0, 0, 0, 1},
+    [WHIT_UP_MINUS_Y] = {1, 0, 0, 0, -1, 0, 0, 0, -1},
+    [WHIT_UP_MINUS_Z] = {1, 0, 0, 0, 0, -1, 0, 1, 0},
+};
+
+uint32_t up_add_node(struct scene *scene, whit_up up)
+{
+    struct scene_node node;
+    scene_node_init(&node, "up", SCENE_NONE);
+    node.has_matrix = true;
+    node.matrix = affine_identity();
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            node.matrix.m[4 * row + column] = turns[up][3 * row + column];
+    return scene_add_node(scene, node);
+}
+
+struct shape {
+    double lo[3], hi[3];
+};
+
+static void corners_of(const struct scene_mesh *mesh, uint32_t triangle, double out[3][3])
+{
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t k = 0; k < 3; ++k)
+            out[i][k] =
+                (double)mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + i] + k];
+}
+
+static struct shape measure(const struct scene *scene)
+{
+    struct shape shape = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t m = 0; m < scene->mesh_count; ++m)
+        for (size_t i = 0; i < 3 * (size_t)scene->meshes[m].vertex_count; ++i) {
+            double value = (double)scene->meshes[m].positions[i];
+            shape.lo[i % 3] = fmin(shape.lo[i % 3], value);
+            shape.hi[i % 3] = fmax(shape.hi[i % 3], value);
+        }
+    return shape;
+}
+
+/* What is at the lower end of an axis. */
+struct ending {
+    double flat; /* the share of the ground below it that flat surface covers */
+    double rest; /* the share that the box around everything else takes; 0: nothing else */
+};
+
+static struct ending look_below(const struct scene *scene, const struct shape *shape, int axis)
+{
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    double ground = (shape->hi[u] - shape->lo[u]) * (shape->hi[v] - shape->lo[v]), area = 0.0;
+    struct shape rest = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    double top = shape->lo[axis] + SLAB * (shape->hi[axis] - shape->lo[axis]);
+    for (uint32_t m = 0; m < scene->mesh_count; ++m)
+        for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t) {
+            double p[3][3];
+            corners_of(&scene->meshes[m], t, p);
+            if (p[0][axis] <= top && p[1][axis] <= top && p[2][axis] <= top)
+                area += 0.5 * fabs((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) -
+                                   (p[2][u] - p[0][u]) * (p[1][v] - p[0][v]));
+            else
+                for (int i = 0; i < 9; ++i) {
+                    rest.lo[i % 3] = fmin(rest.lo[i % 3], p[i / 3][i % 3]);
+                    rest.hi[i % 3] = fmax(rest.hi[i % 3], p[i / 3][i % 3]);
+                }
+        }
+    double taken = fmax(rest.hi[u] - rest.lo[u], 0.0) * fmax(rest.hi[v] - rest.lo[v], 0.0);
+    return ground > 0.0 ? (struct ending){area / ground, taken / ground} : (struct ending){0};
+}
+
+whit_up up_guess(const struct scene *scene, bool z_usual)
+{
+    const struct shape shape = measure(scene);
+    double extent[3];
+    for (int k = 0; k < 3; ++k)
+        extent[k] = shape.hi[k] - shape.lo[k];
+    if (!(extent[0] >= 0.0) || !isfinite(extent[0] + extent[1] + extent[2]))
+        return WHIT_UP_Y;
+    struct ending y = look_below(scene, &shape, 1), z = look_below(scene, &shape, 2);
+    if (z_usual)
+        return y.flat >= STANDS && z.flat < HARDLY ? WHIT_UP_Y : WHIT_UP_Z;
+    /* A floor with something in its middle, which is no picture in a frame. */
+    if (z.flat >= FLOOR && z.rest > 0.0 && z.rest < FLOOR && y.flat < HARDLY)
+        return WHIT_UP_Z;
+    bool board = extent[2] < BOARD * fmin(extent[0], extent[1]);
+    /* Programs that mean z put the ground at z = 0. */
+    bool grounded = fabs(shape.lo[2]) <= SLAB * extent[2] && fabs(shape.lo[1]) > SLAB * extent[1];
+    return !board && grounded && z.flat >= STANDS && y.flat < HARDLY ? WHIT_UP_Z : WHIT_UP_Y;
+}
+
+whit_result up_turn_by_shape(struct scene *scene, const char *path)
+{
+    char extension[8];
+    path_extension(path, extension, sizeof extension);
+    whit_up up = up_guess(scene, strcmp(extension, "stl") == 0);
+    if (up == WHIT_UP_Y)
+        return WHIT_OK;
+    uint32_t node = up_add_node(scene, up);
+    if (node == SCENE_NONE)
+        return WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        if (scene->instances[i].node == SCENE_NONE)
+            scene->instances[i].node = node;
+    scene_note(scene, SCENE_NOTE_INFO, "the file does not say which axis is up: by its shape z is");
+    return WHIT_OK;
+}

@@ -1,0 +1,104 @@
+/* Which way models are up whose files do not say. */
+#include <math.h>
+
+#include "../scenes.h"
+#include "load/up.h"
+#include "unit.h"
+
+/* A scene of one model; `turn`: +y of what is made points there. */
+static struct scene *lying(struct scene_mesh mesh, bool along_z)
+{
+    struct scene *scene = scene_begin(NULL, "test");
+    for (uint32_t i = 0; along_z && i < mesh.vertex_count; ++i) {
+        float *p = mesh.positions + 3 * (size_t)i, y = p[1];
+        p[1] = -p[2];
+        p[2] = y;
+    }
+    scene_put(scene, mesh, NULL);
+    return scene;
+}
+
+static struct scene_mesh raised(struct scene_mesh mesh, float by)
+{
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i)
+        mesh.positions[3 * (size_t)i + 1] += by;
+    return mesh;
+}
+
+/* A pyramid that stands on the square around the origin. */
+static struct scene_mesh pyramid(float at)
+{
+    static const float corners[] = {-1, 0, -1, 1, 0, -1, 1,  0, 1,  -1, 0, -1, 1, 0, 1, -1, 0, 1,
+                                    -1, 0, -1, 0, 3, 0,  1,  0, -1, 1,  0, -1, 0, 3, 0, 1,  0, 1,
+                                    1,  0, 1,  0, 3, 0,  -1, 0, 1,  -1, 0, 1,  0, 3, 0, -1, 0, -1};
+    return raised(mesh_triangles(corners, 6), at);
+}
+
+static whit_up guess(struct scene_mesh mesh, bool along_z, bool z_usual)
+{
+    struct scene *scene = lying(mesh, along_z);
+    whit_up up = up_guess(scene, z_usual);
+    scene_destroy(scene);
+    return up;
+}
+
+TEST(what_stands_on_z_is_turned)
+{
+    assert_int_equal(guess(pyramid(0), false, false), WHIT_UP_Y);
+    assert_int_equal(guess(pyramid(0), true, false), WHIT_UP_Z);
+    /* Elsewhere than on the ground it may be a relief that looks at who sees it. */
+    assert_int_equal(guess(pyramid(-1), true, false), WHIT_UP_Y);
+    assert_int_equal(guess(mesh_box(1, 1, 1), true, false), WHIT_UP_Y);
+    assert_int_equal(guess(mesh_icosphere(1, 3), true, false), WHIT_UP_Y);
+}
+
+TEST(boards_keep_standing_and_floors_lie)
+{
+    assert_int_equal(guess(mesh_plane(4), true, false), WHIT_UP_Y);
+    assert_int_equal(guess(raised(mesh_box(4, 0.1, 4), 0.05f), true, false), WHIT_UP_Y);
+    struct scene *scene = lying(mesh_plane(20), true);
+    struct scene_mesh mesh = raised(mesh_box(1, 1, 1), 0.6f);
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        float *p = mesh.positions + 3 * (size_t)i, y = p[1];
+        p[1] = -p[2];
+        p[2] = y;
+    }
+    scene_put(scene, mesh, NULL);
+    assert_int_equal(up_guess(scene, false), WHIT_UP_Z);
+    scene_destroy(scene);
+}
+
+TEST(stl_is_of_machines_that_print)
+{
+    assert_int_equal(guess(mesh_icosphere(1, 3), false, true), WHIT_UP_Z);
+    assert_int_equal(guess(pyramid(-1), true, true), WHIT_UP_Z);
+    assert_int_equal(guess(pyramid(0), false, true), WHIT_UP_Y);
+}
+
+TEST(nothing_and_odd_numbers_stay)
+{
+    struct scene *scene = scene_begin(NULL, "test");
+    assert_int_equal(up_guess(scene, true), WHIT_UP_Y);
+    scene_destroy(scene);
+    struct scene_mesh mesh = mesh_box(1, 1, 1);
+    mesh.positions[4] = (float)INFINITY;
+    assert_int_equal(guess(mesh, false, true), WHIT_UP_Y);
+}
+
+/* Exact, and what points along the axis points up. */
+TEST(turns_are_of_whole_numbers)
+{
+    static const double axes[][3] = {
+        [WHIT_UP_X] = {1, 0, 0},        [WHIT_UP_Y] = {0, 1, 0},
+        [WHIT_UP_Z] = {0, 0, 1},        [WHIT_UP_MINUS_X] = {-1, 0, 0},
+        [WHIT_UP_MINUS_Y] = {0, -1, 0}, [WHIT_UP_MINUS_Z] = {0, 0, -1}};
+    struct scene *scene = scene_begin(NULL, "test");
+    for (uint32_t up = WHIT_UP_X; up <= WHIT_UP_MINUS_Z; ++up) {
+        uint32_t node = up_add_node(scene, (whit_up)up);
+        double out[3];
+        affine_vector(&scene->nodes[node].matrix, axes[up], out);
+        assert_true(out[0] == 0.0 && out[1] == 1.0 && out[2] == 0.0);
+        assert_true(affine_determinant(&scene->nodes[node].matrix) == 1.0);
+    }
+    scene_destroy(scene);
+}
