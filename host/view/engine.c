@@ -422,9 +422,12 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     engine->brief = task->brief;
     pthread_mutex_unlock(&engine->lock);
     whit_result result = engine_draw(task, &frame);
-    if (result == WHIT_OK && frame.whole && lane == &engine->lanes[0])
+    bool kept = result == WHIT_OK && frame.whole && lane == &engine->lanes[0];
+    if (kept)
         note_change(engine, &frame);
     pthread_mutex_lock(&engine->lock);
+    if (kept)
+        engine_refine_begin(&engine->refine, &frame);
     engine->busy = false;
     engine->drawing = NULL;
     if (result == WHIT_OK) {
@@ -488,6 +491,48 @@ static void probe_one(struct engine *engine)
     wake_window(engine);
 }
 
+/* ---- At rest ---- */
+
+/* Whether the window has the whole picture, and nothing else is to be done. */
+static bool can_refine(const struct engine *engine)
+{
+    const struct engine_lane *lane = &engine->lanes[0];
+    const struct engine_refine *refine = &engine->refine;
+    return engine->params.refine && refine->samples > 0 && !refine->done && lane->session &&
+           is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0 &&
+           !engine->lanes[1].wanted && !engine->job && !engine->probe_wanted;
+}
+
+static void refine_one(struct engine *engine)
+{
+    struct engine_lane *lane = &engine->lanes[0];
+    struct session *session = lane->session;
+    struct engine_frame frame;
+    uint64_t asked = lane->asked;
+    session->cancel = false;
+    engine->drawing = session;
+    engine->drawing_since_ms = whit_clock_ms();
+    engine->refining = true;
+    engine->brief = false;
+    pthread_mutex_unlock(&engine->lock);
+    whit_result result = engine_refine_draw(session, &engine->refine, &engine->last, &frame);
+    pthread_mutex_lock(&engine->lock);
+    engine->drawing = NULL;
+    engine->refining = false;
+    if (result == WHIT_ERROR_DEVICE)
+        lose_device(engine, session);
+    if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
+        engine->refine.done = true; /* the picture that there is stays */
+    if (frame.color && lane->asked == asked) {
+        frame.number = ++lane->frames;
+        frame.first = lane->first;
+        lane->frame = frame;
+    } else {
+        engine_frame_finish(&frame);
+    }
+    wake_window(engine);
+}
+
 /* Drivers make kernels of millions of small blocks: the gaps that these leave fit nothing else, and
    add up from session to session. */
 static void tidy_up(struct engine *engine)
@@ -519,6 +564,10 @@ static void run_engine(void *context)
             probe_one(engine);
             drew = true;
         }
+        if (!drew && !engine->quit && can_refine(engine)) {
+            refine_one(engine);
+            drew = true;
+        }
         if (!drew && !engine->quit && engine->littered)
             tidy_up(engine);
         else if (!drew && !engine->quit && !(engine->job && engine->job->done))
@@ -528,6 +577,22 @@ static void run_engine(void *context)
 }
 
 /* ---- The window's thread ---- */
+
+void engine_set_refine(struct engine *engine, bool on)
+{
+    pthread_mutex_lock(&engine->lock);
+    engine->params.refine = on;
+    pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+bool engine_is_refined(struct engine *engine)
+{
+    pthread_mutex_lock(&engine->lock);
+    bool refined = !engine->refining && engine->lanes[0].frame.number == 0 && !can_refine(engine);
+    pthread_mutex_unlock(&engine->lock);
+    return refined;
+}
 
 void engine_set_budget(struct engine *engine, double budget_ms)
 {
@@ -583,6 +648,7 @@ uint32_t engine_destroy(struct engine *engine)
     for (int i = 0; i < ENGINE_LANES; ++i)
         engine_frame_finish(&engine->lanes[i].frame);
     engine_kept_finish(&engine->last);
+    engine_refine_stop(&engine->refine);
     engine_probe_finish(&engine->probe);
     pthread_cond_destroy(&engine->work);
     pthread_cond_destroy(&engine->news);
@@ -591,12 +657,20 @@ uint32_t engine_destroy(struct engine *engine)
     return validation;
 }
 
+/* What is asked for comes first; the part is drawn again later. */
+static void stop_refining(struct engine *engine)
+{
+    if (engine->refining)
+        engine->drawing->cancel = true;
+}
+
 static void ask(struct engine *engine, struct engine_lane *lane, const struct settings *settings,
                 bool moving)
 {
     bool same = lane->wanted && settings_same(&lane->settings, settings);
     if (same && lane->moving == moving)
         return;
+    stop_refining(engine);
     if (!same) {
         ++lane->asked;
         lane->asked_ms = whit_clock_ms();
@@ -669,6 +743,7 @@ bool engine_take(struct engine *engine, bool other, struct engine_frame *frame)
         engine_frame_finish(frame);
         *frame = lane->frame;
         lane->frame = (struct engine_frame){0};
+        pthread_cond_signal(&engine->work); /* it may be refined now */
     }
     pthread_mutex_unlock(&engine->lock);
     return newer;
@@ -680,6 +755,7 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y)
     engine->probe_wanted = true;
     engine->probe_x = x;
     engine->probe_y = y;
+    stop_refining(engine);
     pthread_cond_signal(&engine->work);
     pthread_mutex_unlock(&engine->lock);
 }

@@ -10,6 +10,7 @@ struct engine;
 
 struct engine_params {
     double budget_ms;         /* of a picture while something moves; 0: 1000 / 30 */
+    bool refine;              /* see engine_set_refine */
     uint32_t sessions;        /* kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* from any thread: there is something to take. May be NULL. */
     void *wake_user;
@@ -44,6 +45,7 @@ struct engine_frame {
     uint8_t *rgba;            /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
+    bool refined;                    /* of more samples than the settings say; no `ids` */
     bool whole;                      /* full size and all samples: what `whit render` makes */
     bool moving;                     /* more was to follow */
     double asked_ms;                 /* by whit_clock_ms: when engine_ask first asked for it */
@@ -112,6 +114,12 @@ bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
 /* True when nothing is left to do: the whole picture of what was last asked for was taken, or there
    is an error, and memory that is free was given back. Never while something moves. */
 bool engine_is_still(struct engine *engine);
+
+/* While it is on, a picture at rest that was taken is refined: 4, 16, 64 ... times the samples of
+   the settings, until nothing changes that is displayed. Off at first. */
+void engine_set_refine(struct engine *engine, bool on);
+/* True when that has come to its end, or cannot begin. */
+bool engine_is_refined(struct engine *engine);
 
 /* Waits for the next thing to take, at most `ms`. For tests and replays. */
 void engine_wait(struct engine *engine, double ms);

@@ -61,8 +61,20 @@ struct engine_kept {
     uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
 };
 
+/* The window's picture on its way to more samples (engine_refine.c); of the drawing thread. */
+struct engine_refine {
+    struct engine_frame base; /* the whole picture of the settings, without what it owns */
+    uint32_t samples;         /* of each part, and so far; 0: there is nothing to refine */
+    uint32_t part;            /* that comes next, 1..3 */
+    bool done;
+    float *sum, *held; /* RGBA: of the parts so far; part 2 while part 3 is drawn */
+    uint8_t *rgba;     /* what was displayed last */
+};
+
 struct engine {
     struct engine_params params;
+    struct engine_refine refine;
+    bool refining; /* something of it is being drawn */
     pthread_mutex_t lock;
     pthread_cond_t work, news;
     struct thread *thread;
@@ -108,6 +120,17 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
                  struct engine_task *task);
 /* Draws; of the drawing thread, without the lock. *frame is the caller's to finish. */
 WHIT_CHECK whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame);
+/* engine_refine.c. Begins with a whole picture of the window; one that cannot be refined, by costs
+   or adaptive samples, ends it. */
+void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame);
+void engine_refine_stop(struct engine_refine *refine);
+/* Draws one part; of the drawing thread, without the lock. After every third part *frame is a
+   picture of four times the samples, without hit identities; else it is zeroed. `kept`: the picture
+   that it began with. */
+WHIT_CHECK whit_result engine_refine_draw(struct session *session, struct engine_refine *refine,
+                                          const struct engine_kept *kept,
+                                          struct engine_frame *frame);
+
 /* engine_change.c: what differs between two whole pictures of one place; *change stays where they
    are none, or differ in nothing that has a name. */
 void engine_compare(const struct engine_kept *before, const struct engine_frame *after,

@@ -178,8 +178,10 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
     static const struct {
         const char *verb;
         enum view_event_kind kind;
-    } bare[] = {{"still", EVENT_STILL},       {"picture", EVENT_PICTURE}, {"priced", EVENT_PRICED},
-                {"minimise", EVENT_MINIMISE}, {"restore", EVENT_RESTORE}, {"close", EVENT_CLOSE}};
+    } bare[] = {{"still", EVENT_STILL},       {"picture", EVENT_PICTURE},
+                {"priced", EVENT_PRICED},     {"refined", EVENT_REFINED},
+                {"minimise", EVENT_MINIMISE}, {"restore", EVENT_RESTORE},
+                {"close", EVENT_CLOSE}};
     struct view_event *event = &events[0];
     *count = 1;
     for (size_t i = 0; i < sizeof bare / sizeof *bare; ++i) {

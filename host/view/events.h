@@ -39,6 +39,7 @@ enum view_event_kind {
     EVENT_STILL,
     EVENT_PICTURE,
     EVENT_PRICED,
+    EVENT_REFINED,
     EVENT_UNTIL,
     EVENT_AWAIT,
     EVENT_CHOOSE,

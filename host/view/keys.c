@@ -363,7 +363,8 @@ static void save_picture(struct view *view)
         return;
     }
     view_free_name("png", path);
-    const struct view_shot shot = {.settings = &frame->settings,
+    const struct settings drawn = view_drawn(view, &frame->settings);
+    const struct view_shot shot = {.settings = &drawn,
                                    .color = frame->color,
                                    .scene = frame->scene->scene,
                                    .device = &frame->device,
@@ -377,7 +378,8 @@ static void save_picture(struct view *view)
 static void copy_line(struct view *view)
 {
     char line[2048];
-    settings_write_render(scenes_shown(view), SETTINGS_LINE, "picture.png", line, sizeof line);
+    const struct settings drawn = view_drawn(view, scenes_shown(view));
+    settings_write_render(&drawn, SETTINGS_LINE, "picture.png", line, sizeof line);
     window_copy(view->window, line);
     view_say(view, "copied: %s", line);
 }

@@ -107,6 +107,8 @@ static bool is_there(struct view *view, const struct view_event *event)
         return is_still(view);
     case EVENT_PICTURE:
         return is_shown(view);
+    case EVENT_REFINED:
+        return engine_is_refined(view->engine) && is_still(view);
     case EVENT_PRICED:
         return prices_are_still(view->panels.measured);
     case EVENT_UNTIL:
@@ -189,6 +191,13 @@ static bool replay_event(struct view *view, const struct view_event *event)
     case EVENT_STILL:
         let_stand(view);
         return is_there(view, event);
+    case EVENT_REFINED:
+        let_stand(view);
+        engine_set_refine(view->engine, true);
+        if (!is_there(view, event))
+            return false;
+        engine_set_refine(view->engine, false);
+        return true;
     case EVENT_PICTURE:
     case EVENT_PRICED:
     case EVENT_UNTIL:

@@ -270,7 +270,8 @@ static json_t *state_json(struct view *view, const char *name)
     json_t *root = json_object();
     put_text(root, "at", name);
     settings_write(&view->settings, SETTINGS_STATE, " ", words, sizeof words);
-    settings_write_render(scenes_shown(view), SETTINGS_LINE, "picture.png", line, sizeof line);
+    const struct settings drawn = view_drawn(view, scenes_shown(view));
+    settings_write_render(&drawn, SETTINGS_LINE, "picture.png", line, sizeof line);
     swapchain_get_info(view->swapchain, &chain);
     put_text(root, "scene", view->settings.scene);
     put_text(root, "words", words);

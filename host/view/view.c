@@ -81,12 +81,24 @@ static void count_picture(struct view *view)
     rate->fps = n > 1 && now_ms > first_ms ? 1e3 * (n - 1) / (now_ms - first_ms) : 0.0;
 }
 
+struct settings view_drawn(const struct view *view, const struct settings *settings)
+{
+    struct settings drawn = *settings;
+    if (view->frame.refined && settings_same(&view->frame.settings, settings))
+        drawn.picture.sampling.count = view->frame.samples;
+    return drawn;
+}
+
 static void take_frame(struct view *view)
 {
     struct engine_frame *frame = &view->frame, next = {.number = view->frame.number};
     if (!engine_take(view->engine, false, &next))
         return;
     compare_leave(&view->compare, frame);
+    if (next.refined) { /* of the same hits */
+        next.ids = frame->ids;
+        frame->ids = NULL;
+    }
     engine_frame_finish(frame);
     *frame = next;
     bool other_scene = view->scene != frame->scene;
@@ -358,6 +370,7 @@ static whit_result open_all(struct view *view)
                                          .height = picture->height,
                                          .fullscreen = params->fullscreen};
     const struct engine_params engine = {
+        .refine = !params->replay,
         .budget_ms = 1e3 / params->settings.fps_goal,
         .wake = window_wake,
         .log = {view->log.fn, view->log.user, view->log.level},

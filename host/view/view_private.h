@@ -145,6 +145,8 @@ void view_changed(struct view *view);
 /* The camera was moved by hand: its text, and quick pictures for a moment. */
 void view_moved(struct view *view);
 /* Whether quick pictures are wanted, as more will follow. */
+/* `settings`, with the samples of the picture that is shown where that is refined. */
+struct settings view_drawn(const struct view *view, const struct settings *settings);
 bool view_is_moving(const struct view *view);
 /* When that ends, where nothing is moved any more. */
 double view_stands_ms(const struct view *view);

@@ -122,6 +122,44 @@ TEST(large_trees_are_drawn_in_packets)
     close_engine(engine, &frame);
 }
 
+/* ---- At rest ---- */
+
+/* What is asked for while the picture is refined comes next, and is refined in its turn. */
+TEST(whoever_moves_on_does_not_wait_for_refining)
+{
+    struct engine_frame frame;
+    struct settings settings = settings_of("cube.json");
+    struct engine *engine = engine_of(&(struct engine_params){.refine = true}, &settings, &frame);
+    double start_ms = clock_ms();
+    while (!frame.refined || frame.samples < 16) {
+        engine_wait(engine, 20.0);
+        (void)engine_take(engine, false, &frame);
+        assert_true(frame.refined ? !frame.ids && frame.samples > 1 : frame.samples == 1);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS);
+    }
+    for (uint32_t depth = 0; depth < 3; ++depth) {
+        uint64_t before = frame.number;
+        settings.picture.depth = depth + 1;
+        engine_ask(engine, &settings, false);
+        while (frame.number == before || frame.refined) {
+            engine_wait(engine, 20.0);
+            (void)engine_take(engine, false, &frame);
+            assert_true(clock_ms() - start_ms < PATIENCE_MS);
+        }
+        assert_int_equal(frame.settings.picture.depth, depth + 1);
+        assert_int_equal(frame.samples, 1);
+        while (!frame.refined) {
+            engine_wait(engine, 20.0);
+            (void)engine_take(engine, false, &frame);
+            assert_true(clock_ms() - start_ms < PATIENCE_MS);
+        }
+        assert_int_equal(frame.settings.picture.depth, depth + 1);
+    }
+    assert_false(engine_is_refined(engine));
+    engine_set_refine(engine, false);
+    close_engine(engine, &frame);
+}
+
 /* ---- Memory ---- */
 
 static pthread_t window_thread;

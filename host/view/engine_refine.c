@@ -1,0 +1,152 @@
+/* The window's picture at rest gets better by itself: 4, 16, 64 ... samples of each pixel. Samples
+   are one nested sequence, summed pairwise in blocks of four: so a picture of 4n samples is the one
+   of n and three more parts of n, bit by bit what `--aa 4n` gives, and no ray is traced twice. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/engine_private.h"
+
+/* More samples change nothing that is seen where at most one pixel in so many changes by more than
+   this code of 255 in some channel. */
+enum { CODE_SAME = 4, PIXELS_A_CHANGE = 1000, PARTS = 4 };
+
+static size_t floats_of(const struct engine_refine *refine)
+{
+    return (size_t)refine->base.width * refine->base.height * 4;
+}
+
+void engine_refine_stop(struct engine_refine *refine)
+{
+    free(refine->sum);
+    free(refine->held);
+    free(refine->rgba);
+    *refine = (struct engine_refine){0};
+}
+
+void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame)
+{
+    engine_refine_stop(refine);
+    const whit_sampling *sampling = &frame->settings.picture.sampling;
+    if (frame->settings.paint != PAINT_COLOR || sampling->kind != WHIT_SAMPLING_FIXED)
+        return;
+    refine->base = *frame;
+    refine->base.color = refine->base.ids = NULL;
+    refine->base.boxes = NULL;
+    refine->base.rgba = NULL;
+    refine->base.scene = NULL;
+    refine->samples = frame->samples;
+    refine->part = 1;
+}
+
+/* What is there to begin with: the whole picture that was kept. */
+static whit_result begin_sum(struct engine_refine *refine, const struct engine_kept *kept)
+{
+    const whit_renderer_params params = settings_picture(&refine->base.settings);
+    size_t count = floats_of(refine);
+    whit_image *image = NULL;
+    if (refine->sum)
+        return WHIT_OK;
+    if (!kept->color || kept->width != refine->base.width || kept->height != refine->base.height)
+        return WHIT_ERROR_MEMORY; /* it could not be kept */
+    refine->sum = malloc(count * sizeof *refine->sum);
+    refine->held = malloc(count * sizeof *refine->held);
+    refine->rgba = malloc(count);
+    if (!refine->sum || !refine->held || !refine->rgba)
+        return WHIT_ERROR_MEMORY;
+    memcpy(refine->sum, kept->color, count * sizeof *refine->sum);
+    whit_result result = whit_image_create(kept->width, kept->height, 4, kept->color, &image);
+    if (result == WHIT_OK) {
+        whit_image_display_as(image, &params);
+        whit_image_display_bytes(image, refine->rgba);
+    }
+    whit_image_destroy(image);
+    return result;
+}
+
+/* Draws the part that comes next; the renderer is set to the picture of the settings again. */
+static whit_result draw_part(struct session *session, const struct engine_refine *refine,
+                             whit_image **out)
+{
+    session->settings = refine->base.settings; /* the renderer borrows the camera's name */
+    const whit_renderer_params usual = settings_picture(&session->settings);
+    whit_renderer_params params = usual;
+    params.sampling.count = refine->samples;
+    params.sampling.first = refine->part * refine->samples;
+    whit_result result = whit_renderer_set_view(session->renderer, &params);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(session->renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(session->renderer, WHIT_AOV_COLOR, out);
+    whit_result back = whit_renderer_set_view(session->renderer, &usual);
+    return result == WHIT_OK ? back : result;
+}
+
+/* (0 + 1) + (2 + 3), as resolve.comp adds up. */
+static void add_part(struct engine_refine *refine, const whit_image *image)
+{
+    const float *part = whit_image_floats(image);
+    size_t count = floats_of(refine);
+    float *sum = refine->sum, *held = refine->held;
+    if (refine->part == 1)
+        for (size_t i = 0; i < count; ++i)
+            sum[i] += part[i];
+    else if (refine->part == 2)
+        memcpy(held, part, count * sizeof *held);
+    else
+        for (size_t i = 0; i < count; ++i)
+            sum[i] = 0.25f * (sum[i] + (held[i] + part[i]));
+    ++refine->part;
+}
+
+static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
+{
+    size_t changed = 0;
+    for (size_t i = 0; i < pixels; ++i, a += 4, b += 4)
+        changed += abs(a[0] - b[0]) > CODE_SAME || abs(a[1] - b[1]) > CODE_SAME ||
+                   abs(a[2] - b[2]) > CODE_SAME;
+    return changed * PIXELS_A_CHANGE <= pixels;
+}
+
+/* The picture of four times as many samples. */
+static whit_result finish_round(struct engine_refine *refine, struct engine_frame *frame)
+{
+    const whit_renderer_params params = settings_picture(&refine->base.settings);
+    size_t bytes = floats_of(refine);
+    *frame = refine->base;
+    frame->rgba = malloc(bytes);
+    whit_result result =
+        frame->rgba ? whit_image_create(frame->width, frame->height, 4, refine->sum, &frame->color)
+                    : WHIT_ERROR_MEMORY;
+    if (result != WHIT_OK)
+        return result;
+    whit_image_display_as(frame->color, &params);
+    whit_image_display_bytes(frame->color, frame->rgba);
+    refine->samples *= PARTS;
+    refine->part = 1;
+    frame->samples = refine->samples;
+    frame->refined = true;
+    refine->done = refine->samples * PARTS > WHIT_SAMPLES_MAX ||
+                   looks_same(refine->rgba, frame->rgba, bytes / 4);
+    memcpy(refine->rgba, frame->rgba, bytes);
+    return WHIT_OK;
+}
+
+whit_result engine_refine_draw(struct session *session, struct engine_refine *refine,
+                               const struct engine_kept *kept, struct engine_frame *frame)
+{
+    whit_image *image = NULL;
+    *frame = (struct engine_frame){0};
+    whit_result result = begin_sum(refine, kept);
+    if (result == WHIT_OK)
+        result = draw_part(session, refine, &image);
+    if (result == WHIT_OK)
+        add_part(refine, image);
+    whit_image_destroy(image);
+    if (result == WHIT_OK && refine->part == PARTS) {
+        frame->scene = scene_ref_take(session->scene);
+        struct scene_ref *scene = frame->scene;
+        result = finish_round(refine, frame);
+        frame->scene = scene;
+    }
+    return result;
+}

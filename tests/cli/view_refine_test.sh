@@ -1,0 +1,36 @@
+#!/bin/sh
+# At rest the window's picture gets better by itself: it is, byte for byte, that of `whit render` with as many samples.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+mkdir "$OUT/work" && cd "$OUT/work" || exit 1
+SCENES=$(realpath "$SCENES")
+
+play "refined" "$SCENES/cube.json" --size 48x36 --aa 4 <<END
+start: | frame.samples = 4
+refined
+better: | frame.samples > 4 | frame.pixels not as start | frame.ids as start | words as start | frame.whole = true
+    | frame.number > 2
+press F12
+copied: press Ctrl+C | frame.pixels as better
+stays: press T | frame.samples = 4 | frame.pixels as start
+back: press Shift+T | frame.pixels as start
+picked: click 24 18 | picked = true
+refined
+again: | frame.pixels as better | frame.samples as better
+depth: press B | frame.samples = 1
+refined
+costs: | frame.pixels as depth | frame.samples = 1
+END
+samples=$(value better frame.samples)
+expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 --aa "$samples" -o same.png --quiet
+expect 0 "F12 saved it" compare same.png whit-0001.png --metric largest --tolerance 0
+check "with its samples in the recipe" grep -aq -- "whit render .*--aa $samples " whit-0001.png
+check "the line of Ctrl+C names them" grep -q -- "--aa $samples -o" <<END
+$(value copied render)
+END
+# As often as four times the samples were shown, no more: 4 16 64 ...
+rounds=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 4; k++ } print k }')
+check "a picture for each step ($rounds)" \
+    test $(($(value better frame.number) - $(value start frame.number))) -eq "$rounds"
+
+finish
