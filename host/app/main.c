@@ -1,5 +1,7 @@
 /* whit: the command line over libwhit. */
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "app/commands.h"
 #include "app/describe.h"
@@ -16,14 +18,17 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_usage(FILE *to)
 {
-    fputs("usage: whit COMMAND [options]\n\nA Whitted ray tracer on Vulkan compute.\n\ncommands:\n",
+    fputs("usage: whit COMMAND [options]\n       whit FILE [options]\n\nA Whitted ray tracer on "
+          "Vulkan compute.\n\ncommands:\n",
           to);
     for (uint32_t i = 0; i < COMMAND_COUNT; ++i)
         fprintf(to, "  %-9s %s\n", commands[i]->name, commands[i]->summary);
-    fputs("\noptions:\n"
-          "  -h, --help     print this help; `whit COMMAND --help` explains a command\n"
-          "      --version  print the version\n",
-          to);
+    fputs(
+        "\nA scene or model alone is shown where there is a display, and rendered to a .png where "
+        "there\nis none.\n\noptions:\n"
+        "  -h, --help     print this help; `whit COMMAND --help` explains a command\n"
+        "      --version  print the version\n",
+        to);
 }
 
 static const struct cli_command *find_command(const char *name)
@@ -50,6 +55,66 @@ static int refuse(const char *word)
     return EXIT_USAGE;
 }
 
+/* ---- A file in place of a command ---- */
+
+static bool is_file(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
+}
+
+static bool has_display(void)
+{
+#ifdef WHIT_VIEWER
+    const char *x = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
+    return (x && x[0]) || (wayland && wayland[0]);
+#else
+    return false;
+#endif
+}
+
+/* model.png in the working folder, of `folder/model.glb`; false: there is such a file. */
+static bool name_picture(const char *path, char *out, size_t bytes)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+    snprintf(out, bytes, "%.*s.png", length, name);
+    return !is_file(out);
+}
+
+/* `whit FILE [options]` looks at it where there is a display, and makes a picture where there is
+   none. */
+static int open_file(int argc, char **argv)
+{
+    char picture[4096], render[] = "render", output[] = "-o", view[] = "view";
+    char **words = calloc((size_t)argc + 4, sizeof *words);
+    int count = 0;
+    if (!words)
+        return cli_exit_of(WHIT_ERROR_MEMORY);
+    const struct cli_command *command = find_command(has_display() ? view : render);
+    words[count++] = has_display() ? view : render;
+    for (int i = 1; i < argc; ++i)
+        words[count++] = argv[i];
+    if (!has_display()) {
+        if (!name_picture(argv[1], picture, sizeof picture)) {
+            cli_error(
+                "there is no display, and `%s` is there already: name another by `whit render "
+                "%s -o FILE`",
+                picture, argv[1]);
+            free(words);
+            return EXIT_USAGE;
+        }
+        cli_note("there is no display: rendering %s", picture);
+        words[count++] = output;
+        words[count++] = picture;
+    }
+    cli_catch_interrupts();
+    int status = command->run(command, count, words);
+    free(words);
+    return status;
+}
+
 int main(int argc, char **argv)
 {
     const char *word = argc > 1 ? argv[1] : NULL;
@@ -72,6 +137,8 @@ int main(int argc, char **argv)
     if (strcmp(word, "--manual") == 0 && argc == 3)
         return describe_manual(commands, COMMAND_COUNT, argv[2]);
     const struct cli_command *command = find_command(word);
+    if (!command && is_file(word))
+        return open_file(argc, argv);
     if (!command)
         return refuse(word);
     cli_catch_interrupts();

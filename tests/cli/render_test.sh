@@ -55,7 +55,7 @@ expect 0 "all options of a recipe" render "$SCENES/default.json" -o all.png --si
     --instances on --numerics fast
 listed=$(sed -n 's/^| `whit:options` | //p' "$SCENES/../docs/cli.md")
 options=$(grep -a -o '{"width":8,[^}]*}' all.png)
-check "the recipe has fifteen keys" test "$(echo "$options" | jq 'keys | length')" -eq 15
+check "the recipe has nineteen keys" test "$(echo "$options" | jq 'keys | length')" -eq 19
 for key in $(echo "$options" | jq -r 'keys[]'); do
     check "docs/cli.md names $key" sh -c 'echo "$1" | grep -q "\b$2\b"' - "$listed" "$key"
 done
@@ -114,4 +114,21 @@ echo old >keep.png
 refuse 2 "a render that fails" "there is no camera" render "$CUBE" -o keep.png --camera nobody
 check "leaves the old file alone" test "$(cat keep.png)" = old
 check "no hidden file is left" test -z "$(find . -name '.*' -type f)"
+
+# A file in place of a command.
+mkdir "$OUT/alone" && cp "$CUBE" "$OUT/alone/some.cube.json"
+alone() {
+    (cd "$OUT/alone" && env -u DISPLAY -u WAYLAND_DISPLAY "$WHIT" "$@") >"$OUT/stdout" 2>"$OUT/stderr"
+    status=$?
+}
+alone some.cube.json --size 8x8
+check "without a display it is rendered (got $status)" test "$status" -eq 0 -a -s "$OUT/alone/some.cube.png"
+check "and said" grep -q "there is no display: rendering some.cube.png" "$OUT/stderr"
+cp "$OUT/alone/some.cube.png" "$OUT/alone/kept"
+alone some.cube.json --size 9x9
+check "what is there is kept (got $status)" \
+    sh -c 'test "$1" -eq 2 && cmp "$2/kept" "$2/some.cube.png"' - "$status" "$OUT/alone"
+alone nothing.json
+check "what is no file is no command (got $status)" test "$status" -eq 2
+check "and said" grep -q "there is no command .nothing.json." "$OUT/stderr"
 finish
