@@ -276,6 +276,30 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
     return result;
 }
 
+/* Where no prediction holds: of the rows that are measured and do, the one with the least error, or
+   for an error the cheapest. */
+static void take_measured(const struct cost_report *report, struct cost_answer *answer)
+{
+    const struct cost_goal *goal = &answer->goal;
+    double best = INFINITY;
+    for (uint32_t i = 0; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        double error = cost_error_of(&row->error, goal->metric);
+        double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
+        /* What other hits get wrong is not told by one picture. */
+        if (!row->measured || row->broken || row->change == SETTING_HITS || !is_kept(goal, row) ||
+            !(rank < best))
+            continue;
+        best = rank;
+        *answer = (struct cost_answer){.goal = answer->goal,
+                                       .found = true,
+                                       .kept = true,
+                                       .row = i,
+                                       .ms = row->ms[COST_WALL],
+                                       .error = error};
+    }
+}
+
 /* What is measured teaches how far off the prediction is: then once more with a narrower limit. */
 static whit_result answer_goal(struct measure *measure, const struct cost_goal *goal)
 {
@@ -306,6 +330,8 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
             break;
         aim.limit *= 0.8;
     }
+    if (result == WHIT_OK && !answer->kept)
+        take_measured(report, answer);
     return result;
 }
 

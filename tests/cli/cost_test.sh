@@ -133,6 +133,12 @@ refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
 
 # ---- What is wrong is found, in its row ----
 
+# By the slowest of ten pictures nothing is predicted to keep 150 ms; the row of the usual settings does.
+export WHIT_TEST_WRONG=noisy
+expect 0 "--within what only a row of the table keeps" cost "$CUBE" $small --reference-samples 4 \
+    --knobs aa,numerics --within 150 --json "$J"
+check "gets that row" grep -q "^Best picture within 150 ms: the usual settings. .*: kept" "$OUT/stdout"
+check "as the JSON says" jq -e '.answers[0] | .kept and .row == 0 and .predicted_ms < 150' "$J"
 export WHIT_TEST_WRONG=schlick
 run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
 unset WHIT_TEST_WRONG
