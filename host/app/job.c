@@ -9,6 +9,7 @@ enum { NOTES_SHOWN = 20 };
 void job_init(struct job *job, const struct cli_command *command)
 {
     *job = (struct job){.settings = settings_usual(), .start_ms = whit_clock_ms()};
+    job->keeps_axes = (command->settings & (IN_TRACE | IN_BVH | IN_HARD)) != 0;
     if (command->usual)
         command->usual(&job->settings);
 }
@@ -48,6 +49,9 @@ whit_result job_load(struct job *job)
     double limit_s = job->settings.time_limit_s, start_ms = whit_clock_ms();
     params.time_limit_s = limit_s > 0.0 && limit_s < 60.0 ? cli_time_left_s() : 0.0;
     params.cancel = &cli_cancel;
+    /* What names places in the model takes it as the file has it. */
+    if (job->keeps_axes && !settings_given(&job->settings, "up"))
+        params.up = WHIT_UP_Y;
     whit_result result =
         whit_scene_load(job->settings.scene, &params, &cli_log_errors, &job->scene);
     job->load_ms = whit_clock_ms() - start_ms;

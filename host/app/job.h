@@ -11,6 +11,7 @@ struct job {
     whit_accel *accel;
     whit_device *device;
     whit_device_opening *opening;
+    bool keeps_axes;                               /* `--up auto` is y */
     double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
 };
 

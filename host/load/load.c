@@ -41,7 +41,7 @@ static bool has_no_axes(const char *path)
 
 static whit_result read_model(struct scene *scene, const char *path, const whit_load_params *params)
 {
-    whit_up up = params ? params->up : WHIT_UP_AUTO;
+    whit_up up = params ? params->up : WHIT_UP_Y;
     uint32_t parent = SCENE_NONE;
     if (up != WHIT_UP_AUTO && up != WHIT_UP_Y)
         parent = up_add_node(scene, up);
@@ -116,7 +116,7 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
         return WHIT_ERROR_INPUT;
     }
     if (params &&
-        ((uint32_t)params->up > WHIT_UP_MINUS_Z || (uint32_t)params->lights > WHIT_LIGHTS_KEY)) {
+        ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY)) {
         log_error(log, "%s: up or lights: a value of an enumeration that there is none of", path);
         return WHIT_ERROR_USAGE;
     }

@@ -138,12 +138,6 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
     memcpy(out->reflection, m->reflection, sizeof out->reflection);
     memcpy(out->transmission, m->transmission, sizeof out->transmission);
     memcpy(out->absorption, m->absorption, sizeof out->absorption);
-    /* Without refraction what would go through is scattered, so that glass is not black. */
-    for (int c = 0; c < 3 && !up->renderer->effects.called[SCENE_EFFECT_REFRACTION]; ++c) {
-        if (m->model != SCENE_MODEL_METAL_ROUGH && m->transmission[c] > 0.0f)
-            out->diffuse[c] = fminf(m->diffuse[c] + m->transmission[c], 1.0f);
-        out->transmission[c] = 0.0f;
-    }
     out->model = model_code(m->model);
     out->flags = material_flags(m);
     out->shininess = m->shininess;

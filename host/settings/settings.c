@@ -29,7 +29,7 @@ bool settings_given(const struct settings *settings, const char *name)
 
 struct settings settings_usual(void)
 {
-    return (struct settings){.load = {.texture_limit = 4096},
+    return (struct settings){.load = {.up = WHIT_UP_AUTO, .texture_limit = 4096},
                              .trees = {.leaf_limit = 4},
                              .picture = whit_renderer_defaults(),
                              .fps = 24.0,

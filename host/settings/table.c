@@ -290,7 +290,8 @@ const struct setting settings_table[] = {
 
     {"up", 0, NULL,
      "the axis of a model that points up; auto: as its format\n"
-     "says; of OBJ, PLY and STL by their shape",
+     "says, and of OBJ, PLY and STL by their shape; trace, bvh,\n"
+     "hard and --triangles take it as it is unless told",
      AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
      .need = SETTING_NEEDS_SCENE, .title = "up"},
     {"light", 0, NULL,

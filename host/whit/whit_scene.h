@@ -10,13 +10,13 @@ extern "C" {
 
 /* Which axis of a model points up. */
 typedef enum whit_up {
-    WHIT_UP_AUTO = 0, /* as the format says; OBJ, PLY and STL by their shape */
+    WHIT_UP_Y = 0, /* numbers stay as the file has them, or as its format turns them */
     WHIT_UP_X,
-    WHIT_UP_Y,
     WHIT_UP_Z,
     WHIT_UP_MINUS_X,
     WHIT_UP_MINUS_Y,
     WHIT_UP_MINUS_Z,
+    WHIT_UP_AUTO, /* y; of OBJ, PLY and STL, which do not say, by their shape */
 } whit_up;
 
 /* What lights a scene. */

@@ -18,14 +18,6 @@ refuse 3 "no such device" "." scene "$CUBE" --effects --device "no such device"
 
 small="--size 48x36 --quiet"
 expect 0 "auto" render "$CUBE" -o "$OUT/auto.pfm" $small
-# Glass that is a whole floor: black where what it lets through went nowhere.
-cat >"$OUT/pane.json" <<'JSON'
-{ "camera": { "eye": [0, 3, 0.1], "target": [0, 0, 0] }, "lights": [ { "position": [0, 4, 0], "intensity": 8 } ],
-  "materials": { "glass": { "transmission": 1, "diffuse": 0, "specular": 0 } },
-  "objects": [ { "shape": "plane", "size": 100, "material": "glass" } ] }
-JSON
-expect 0 "glass without refraction" probe "$OUT/pane.json" --size 33x33 --pixel 16,16 --effects -refraction
-check "is not black" grep -qE "^colour +0\.[1-9]" "$OUT/stdout"
 expect 0 "all" render "$CUBE" -o "$OUT/all.pfm" $small --effects all
 check "auto is all" cmp "$OUT/auto.pfm" "$OUT/all.pfm"
 expect 0 "one more" render "$CUBE" -o "$OUT/more.pfm" $small --effects +textures,+environment-map

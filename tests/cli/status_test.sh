@@ -70,7 +70,7 @@ awk 'BEGIN {
         printf "v -1 -1 %d\nv 1 -1 %d\nv 0 1 %d\n", i, i, i
     for (i = 0; i < n; ++i)
         printf "f %d %d %d\n", 3 * i + 1, 3 * i + 2, 3 * i + 3 }' >"$OUT/pile.obj"
-camera="--camera 0,0,99999,0,0,0,0,1,0,0.0001"
+camera="--camera 0,0,99999,0,0,0,0,1,0,0.0001 --up y"
 distrust "too many nodes" "a traversal was cut short" \
     "$OUT/pile.obj" --size 8x8 --leaf 1 --traversal basic --shadows none $camera
 expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --shadows none $camera --quiet

@@ -93,7 +93,7 @@ TEST(turns_are_of_whole_numbers)
         [WHIT_UP_Z] = {0, 0, 1},        [WHIT_UP_MINUS_X] = {-1, 0, 0},
         [WHIT_UP_MINUS_Y] = {0, -1, 0}, [WHIT_UP_MINUS_Z] = {0, 0, -1}};
     struct scene *scene = scene_begin(NULL, "test");
-    for (uint32_t up = WHIT_UP_X; up <= WHIT_UP_MINUS_Z; ++up) {
+    for (uint32_t up = WHIT_UP_Y; up <= WHIT_UP_MINUS_Z; ++up) {
         uint32_t node = up_add_node(scene, (whit_up)up);
         double out[3];
         affine_vector(&scene->nodes[node].matrix, axes[up], out);

@@ -31,6 +31,7 @@ static const struct setting options[] = {
 static int work(struct job *job, const struct scene_request *request)
 {
     whit_scene_info info;
+    job->keeps_axes = request->triangles != NULL;
     whit_result result = job_load(job);
     if (result == WHIT_OK && request->triangles)
         result = triangles_write(job->scene, job->settings.picture.time_s, request->triangles);
