@@ -702,7 +702,11 @@ void engine_ask_other(struct engine *engine, const struct settings *settings)
 {
     pthread_mutex_lock(&engine->lock);
     struct engine_lane *other = &engine->lanes[1];
+    const struct engine_refine *refine = &engine->refine;
     if (settings) {
+        /* What stands beside each other has as many samples. */
+        if (!other->wanted && refine->samples > refine->base.samples && is_done(&engine->lanes[0]))
+            engine->lanes[0].quality = ENGINE_FULL;
         ask(engine, other, settings, engine->lanes[0].moving);
     } else {
         other->wanted = false;

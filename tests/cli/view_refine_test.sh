@@ -17,10 +17,16 @@ back: press Shift+T | frame.pixels as start
 picked: click 24 18 | picked = true
 refined
 again: | frame.pixels as better | frame.samples as better
+split: press C | frame.samples = 4 | frame.pixels as start | compare.known = true
+    | compare.other_colors = 0
+alone: press C | compare.mode = off
+refined
+third: | frame.pixels as better
 depth: press B | frame.samples = 1
 refined
 costs: | frame.pixels as depth | frame.samples = 1
 END
+check "A and B have as many samples" test "$(value split compare.b.pixels)" = "$(value start frame.pixels)"
 samples=$(value better frame.samples)
 expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 --aa "$samples" -o same.png --quiet
 expect 0 "F12 saved it" compare same.png whit-0001.png --metric largest --tolerance 0
