@@ -729,7 +729,7 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         .device_lost = engine->device_lost,
         .change = engine->change,
     };
-    if (engine->drawing) {
+    if (engine->drawing && !engine->refining) { /* that is no work that anybody waits for */
         status->drawing_ms = whit_clock_ms() - engine->drawing_since_ms;
         status->part = atomic_load(&engine->drawing->part);
     }
