@@ -11,7 +11,7 @@ struct job {
     whit_accel *accel;
     whit_device *device;
     whit_device_opening *opening;
-    bool keeps_axes;                               /* `--up auto` is y */
+    bool keeps_axes;                               /* `--up auto` turns no model: see job_load */
     double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
 };
 

@@ -222,8 +222,9 @@ struct cost_finding {
     uint32_t value_count;
     double values[COST_FINDING_VALUES];
 };
-/* What more time buys, bounces, exact hits, what is free, and what takes most of the time: those of
-   them that the measured rows tell. Gives their number. */
+/* Fills up to five findings, in this order: what more time buys, which bounces are seen, what exact
+   hits cost, which setting is cheaper and as right, which effect takes most of the time. A finding
+   whose rows were not measured is left out. Gives their number. */
 uint32_t cost_findings(const struct cost_report *report,
                        struct cost_finding findings[COST_FINDINGS_MAX]);
 /* The first ones as one sentence. */

@@ -1,4 +1,4 @@
-/* What a report says first: sentences made of its figures. */
+/* The sentences that open a report of `whit cost`, made of its figures. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>

@@ -276,8 +276,8 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
     return result;
 }
 
-/* Where no prediction holds: of the rows that are measured and do, the one with the least error, or
-   for an error the cheapest. */
+/* Takes a measured row that keeps the limit, where no predicted combination does: the one with the
+   least error for a limit of time, the cheapest for a limit of error. */
 static void take_measured(const struct cost_report *report, struct cost_answer *answer)
 {
     const struct cost_goal *goal = &answer->goal;
@@ -286,7 +286,7 @@ static void take_measured(const struct cost_report *report, struct cost_answer *
         const struct cost_row *row = &report->rows[i];
         double error = cost_error_of(&row->error, goal->metric);
         double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
-        /* What other hits get wrong is not told by one picture. */
+        /* The error of one picture does not tell which rays miss: settings of hits stay usual. */
         if (!row->measured || row->broken || row->change == SETTING_HITS || !is_kept(goal, row) ||
             !(rank < best))
             continue;

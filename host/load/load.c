@@ -53,7 +53,7 @@ static whit_result read_model(struct scene *scene, const char *path, const whit_
                : result;
 }
 
-/* What the user says in place of the file. */
+/* Puts --environment or --background in the place of the file's environment. */
 static whit_result replace_sky(struct scene *scene, const whit_load_params *params)
 {
     struct scene_environment *sky = &scene->environment;

@@ -175,7 +175,7 @@ bool reader_no_memory(struct reader *reader)
     return false;
 }
 
-/* What other programs call it: the key of that meaning, where it is known here. */
+/* The key of `known` that means what other programs call `word`; NULL: there is none. */
 static const char *same_meaning(const char *word, const char *const *known)
 {
     static const char *const meanings[][2] = {

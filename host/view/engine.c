@@ -578,11 +578,21 @@ static void run_engine(void *context)
 
 /* ---- The window's thread ---- */
 
+/* What is asked for comes first; the part is drawn again later. */
+static void stop_refining(struct engine *engine)
+{
+    if (engine->refining)
+        engine->drawing->cancel = true;
+}
+
 void engine_set_refine(struct engine *engine, bool on)
 {
     pthread_mutex_lock(&engine->lock);
+    if (!on)
+        stop_refining(engine);
+    if (on != engine->params.refine)
+        pthread_cond_signal(&engine->work);
     engine->params.refine = on;
-    pthread_cond_signal(&engine->work);
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -655,13 +665,6 @@ uint32_t engine_destroy(struct engine *engine)
     pthread_mutex_destroy(&engine->lock);
     free(engine);
     return validation;
-}
-
-/* What is asked for comes first; the part is drawn again later. */
-static void stop_refining(struct engine *engine)
-{
-    if (engine->refining)
-        engine->drawing->cancel = true;
 }
 
 static void ask(struct engine *engine, struct engine_lane *lane, const struct settings *settings,

@@ -45,7 +45,8 @@ struct engine_frame {
     uint8_t *rgba;            /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
-    bool refined;                    /* of more samples than the settings say; no `ids` */
+    bool refined;                    /* of more samples than the settings say; ids and
+                                        boxes are those of the picture before, and NULL here */
     bool whole;                      /* full size and all samples: what `whit render` makes */
     bool moving;                     /* more was to follow */
     double asked_ms;                 /* by whit_clock_ms: when engine_ask first asked for it */
@@ -116,7 +117,7 @@ bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
 bool engine_is_still(struct engine *engine);
 
 /* While it is on, a picture at rest that was taken is refined: 4, 16, 64 ... times the samples of
-   the settings, until nothing changes that is displayed. Off at first. */
+   the settings, until hardly a displayed pixel changes (engine_refine.c says how few). */
 void engine_set_refine(struct engine *engine, bool on);
 /* True when that has come to its end, or cannot begin. */
 bool engine_is_refined(struct engine *engine);

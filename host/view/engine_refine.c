@@ -38,7 +38,7 @@ void engine_refine_begin(struct engine_refine *refine, const struct engine_frame
     refine->part = 1;
 }
 
-/* What is there to begin with: the whole picture that was kept. */
+/* The first part is the whole picture that engine_keep copied. */
 static whit_result begin_sum(struct engine_refine *refine, const struct engine_kept *kept)
 {
     const whit_renderer_params params = settings_picture(&refine->base.settings);

@@ -95,9 +95,11 @@ static void take_frame(struct view *view)
     if (!engine_take(view->engine, false, &next))
         return;
     compare_leave(&view->compare, frame);
-    if (next.refined) { /* of the same hits */
+    if (next.refined) { /* hits and trees are those of the picture before */
         next.ids = frame->ids;
+        next.boxes = frame->boxes;
         frame->ids = NULL;
+        frame->boxes = NULL;
     }
     engine_frame_finish(frame);
     *frame = next;
@@ -300,6 +302,11 @@ static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
         engine_ask(view->engine, &view->settings, view_is_moving(view));
+    /* Refining takes all cores: measurements beside the window come first. Replays ask for it. */
+    if (!view->params->replay)
+        engine_set_refine(view->engine, prices_are_still(view->prices) &&
+                                            prices_are_still(view->panels.measured) &&
+                                            wish_is_still(view));
 }
 
 static whit_result step(struct view *view)

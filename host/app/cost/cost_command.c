@@ -109,7 +109,7 @@ static void complete(struct cost *cost)
             (struct cost_goal){.kind = COST_WITHIN,
                                .metric = (enum cost_metric)cost->metric,
                                .limit = cost->within_ms};
-    /* What the page shows side by side. */
+    /* The page shows crops of the best picture within each of these multiples of the usual time. */
     static const double steps[] = {0.25, 4.0, 16.0};
     for (size_t i = 0; cost->html && i < sizeof steps / sizeof *steps; ++i)
         request->goals[request->goal_count++] =
