@@ -78,13 +78,14 @@ whit_result device_check(struct device *device, VkResult vk, const char *express
         return WHIT_ERROR_TIME_LIMIT;
     if (vk >= 0)
         return WHIT_OK;
-    if (device->lost)
+    /* Of threads that make kernels at the same time each sees the loss, and the first tells of it.
+     */
+    bool told = vk == VK_ERROR_DEVICE_LOST ? atomic_exchange(&device->lost, true) : device->lost;
+    if (told)
         return WHIT_ERROR_DEVICE;
     const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
     log_error(&device->log, "%s (%d) from %s at %s:%d%s%s", result_text(vk), (int)vk, expression,
               path_name(file), line, lacks ? ": " : "", lacks ? lacks : "");
-    if (vk == VK_ERROR_DEVICE_LOST)
-        device->lost = true;
     return lacks ? WHIT_ERROR_MEMORY : result_map(vk);
 }
 

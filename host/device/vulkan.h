@@ -37,7 +37,7 @@ struct device {
     struct fault fault;
     bool validation, staged, poisons;
     bool validation_of_shaders; /* GPU-assisted checks too */
-    bool lost;                  /* every later call fails at once */
+    atomic_bool lost;           /* every later call fails at once, in every thread */
     bool abandoned;             /* a library broke off: what it left behind is not complained of */
     atomic_uint validation_messages;
 
