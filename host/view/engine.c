@@ -9,247 +9,16 @@
 #include "view/engine_private.h"
 #include "whit/whit_program.h"
 
-enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MAX = 2 };
-static const uint64_t LARGE_SCENE = 1000000; /* triangles */
+/* ---- The drawing thread ---- */
 
-static void wake_window(struct engine *engine)
+void engine_wake(struct engine *engine)
 {
     pthread_cond_broadcast(&engine->news);
     if (engine->params.wake)
         engine->params.wake(engine->params.wake_user);
 }
 
-/* ---- Sessions in the making ---- */
-
-static void keep_error(char error[ENGINE_MESSAGE], whit_log_level level, const char *message)
-{
-    if (level == WHIT_LOG_ERROR && !error[0])
-        snprintf(error, ENGINE_MESSAGE, "%s", message);
-}
-
-/* The first error is the reason; what follows from it is not. One that nobody wants any more, as
-   its scene was left, keeps its errors. The validation layers speak to whoever asked for them. */
-static void session_message(void *user, whit_log_level level, const char *message)
-{
-    struct session *session = user;
-    struct engine *engine = session->owner;
-    const whit_log *log = &engine->params.log;
-    if (strncmp(message, "validation: ", 12) == 0) {
-        if (log->fn)
-            log->fn(log->user, level, message);
-        return;
-    }
-    pthread_mutex_lock(&engine->lock);
-    keep_error(session->ready ? engine->error : session->error, level, message);
-    pthread_mutex_unlock(&engine->lock);
-}
-
-/* The log of a scene. A scene outlives the session that it was loaded for, so trees of other
-   sessions log here as well while they are built. */
-static void scene_message(void *user, whit_log_level level, const char *message)
-{
-    struct engine *engine = user;
-    pthread_mutex_lock(&engine->lock);
-    keep_error(engine->job ? engine->job->session->error : engine->error, level, message);
-    pthread_mutex_unlock(&engine->lock);
-}
-
-static void run_job(void *context)
-{
-    struct engine_job *job = context;
-    struct engine *engine = job->engine;
-    whit_result result =
-        session_open(job->session, &job->settings, job->scene,
-                     &(whit_log){session_message, job->session, WHIT_LOG_WARNING},
-                     &(whit_log){scene_message, engine, WHIT_LOG_WARNING}, &job->progress);
-    pthread_mutex_lock(&engine->lock);
-    job->result = result;
-    job->done = true;
-    pthread_cond_signal(&engine->work);
-    pthread_mutex_unlock(&engine->lock);
-}
-
-/* Without the lock. */
-static void drop_session(struct engine *engine, struct session *session)
-{
-    uint32_t messages = session_close(session);
-    free(session);
-    pthread_mutex_lock(&engine->lock);
-    engine->validation += messages;
-    engine->littered = true;
-    pthread_mutex_unlock(&engine->lock);
-}
-
-static void job_destroy(struct engine_job *job)
-{
-    if (!job)
-        return;
-    thread_join(job->thread);
-    if (job->session)
-        drop_session(job->engine, job->session);
-    scene_ref_drop(job->scene);
-    free(job);
-}
-
-/* A scene that some session has loaded already, held; NULL: none. */
-static struct scene_ref *find_scene(const struct engine *engine, const struct settings *settings)
-{
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-        const struct session *session = engine->sessions[i];
-        if (session && settings_same_scene(&session->scene->settings, settings))
-            return scene_ref_take(session->scene);
-    }
-    return NULL;
-}
-
-static bool start_job(struct engine *engine, const struct settings *settings)
-{
-    struct engine_job *job = calloc(1, sizeof *job);
-    struct session *session = calloc(1, sizeof *session);
-    if (job && session) {
-        job->session = session;
-        job->settings = *settings;
-        job->engine = engine;
-        session->owner = engine;
-        job->start_ms = whit_clock_ms();
-        job->scene = find_scene(engine, settings);
-        job->thread = thread_start(run_job, job);
-        if (job->thread) {
-            engine->job = job;
-            return true;
-        }
-        scene_ref_drop(job->scene);
-    }
-    free(job);
-    free(session);
-    snprintf(engine->error, sizeof engine->error, "out of memory");
-    engine->result = WHIT_ERROR_MEMORY;
-    return false;
-}
-
-/* ---- The sessions that there are ---- */
-
-static void forget_session(struct engine *engine, uint32_t index)
-{
-    struct session *session = engine->sessions[index];
-    engine->sessions[index] = NULL;
-    for (int i = 0; i < ENGINE_LANES; ++i) {
-        if (engine->lanes[i].session == session)
-            engine->lanes[i].session = NULL;
-    }
-    pthread_mutex_unlock(&engine->lock);
-    drop_session(engine, session);
-    pthread_mutex_lock(&engine->lock);
-}
-
-static void forget_if(struct engine *engine, const struct session *session)
-{
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-        if (engine->sessions[i] == session && session)
-            forget_session(engine, i);
-    }
-}
-
-static bool is_shown(const struct engine *engine, const struct session *session)
-{
-    const struct engine_lane *other = &engine->lanes[1];
-    return engine->lanes[0].session == session || (other->wanted && other->session == session);
-}
-
-static uint32_t sessions_max(const struct engine *engine, const struct session *newest)
-{
-    uint32_t max = engine->params.sessions ? engine->params.sessions : SESSIONS_DEFAULT;
-    bool large = newest->scene->info.triangle_count > LARGE_SCENE;
-    return large && max > SESSIONS_LARGE ? SESSIONS_LARGE : max;
-}
-
-/* Makes room for one more: scenes that nobody looks at go first, then what was not used longest. */
-static void make_room(struct engine *engine, const struct session *newest)
-{
-    for (;;) {
-        uint32_t count = 0, oldest = ENGINE_SESSIONS_MAX;
-        for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-            const struct session *session = engine->sessions[i];
-            count += session != NULL;
-            if (!session || is_shown(engine, session))
-                continue;
-            if (oldest == ENGINE_SESSIONS_MAX ||
-                session->last_use < engine->sessions[oldest]->last_use)
-                oldest = i;
-        }
-        if (count < sessions_max(engine, newest) || oldest == ENGINE_SESSIONS_MAX)
-            return;
-        forget_session(engine, oldest);
-    }
-}
-
-static struct session *find_session(const struct engine *engine, const struct settings *settings)
-{
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-        struct session *session = engine->sessions[i];
-        if (session && settings_same_kernel(&session->settings, settings))
-            return session;
-    }
-    return NULL;
-}
-
-static void keep_session(struct engine *engine, struct session *session)
-{
-    make_room(engine, session);
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-        if (!engine->sessions[i]) {
-            engine->sessions[i] = session;
-            return;
-        }
-    }
-}
-
-/* Clears the error of the window, unless the other side of a comparison has failed as well. */
-static void forget_error(struct engine *engine)
-{
-    for (int i = 0; i < ENGINE_LANES; ++i) {
-        if (engine->lanes[i].wanted && engine->lanes[i].failed)
-            return;
-    }
-    engine->error[0] = '\0';
-}
-
-/* Takes what a finished job made. */
-static void reap_job(struct engine *engine)
-{
-    struct engine_job *job = engine->job;
-    if (!job || !job->done)
-        return;
-    engine->job = NULL;
-    if (!job->scene)
-        memcpy(engine->refused, job->session->refused, sizeof engine->refused);
-    if (job->result == WHIT_OK) {
-        job->session->ready = true;
-        keep_session(engine, job->session);
-        forget_error(engine);
-    } else if (job->result != WHIT_ERROR_CANCELLED) {
-        memcpy(engine->error, job->session->error, sizeof engine->error);
-        engine->result = job->result;
-        if (!engine->error[0])
-            snprintf(engine->error, sizeof engine->error, "out of memory");
-        for (int i = 0; i < ENGINE_LANES; ++i) {
-            struct engine_lane *lane = &engine->lanes[i];
-            if (lane->wanted && settings_same_kernel(&lane->settings, &job->settings))
-                lane->failed = true;
-        }
-    }
-    wake_window(engine);
-    if (job->result == WHIT_OK)
-        job->session = NULL; /* kept */
-    engine->littered = true; /* compilers leave more than they take */
-    pthread_mutex_unlock(&engine->lock);
-    job_destroy(job);
-    pthread_mutex_lock(&engine->lock);
-}
-
-/* ---- The drawing thread ---- */
-
-static bool is_done(const struct engine_lane *lane)
+bool engine_is_done(const struct engine_lane *lane)
 {
     bool best = lane->quality == ENGINE_WHOLE || lane->moving;
     return !lane->wanted || lane->failed || (lane->drawn == lane->asked && best && !lane->stale);
@@ -260,8 +29,8 @@ static void make_session_for(struct engine *engine, struct engine_lane *lane)
 {
     if (engine->job)
         return;
-    lane->failed = !start_job(engine, &lane->settings);
-    wake_window(engine);
+    lane->failed = !engine_start_job(engine, &lane->settings);
+    engine_wake(engine);
 }
 
 /* A session in the making that nobody wants any more. */
@@ -310,18 +79,18 @@ static bool shows_it(const struct engine *engine, const struct engine_lane *lane
 /* What to draw for a lane now; false: nothing. With the lock. */
 static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
-    if (is_done(lane))
+    if (engine_is_done(lane))
         return false;
     if (shows_it(engine, lane)) {
         lane->drawn = lane->asked;
-        forget_error(engine);
-        wake_window(engine);
+        engine_forget_error(engine);
+        engine_wake(engine);
         return false;
     }
     *task = (struct engine_task){.settings = lane->settings};
     if (lane != engine->lanes && !follow_place(engine, lane, task))
         return false;
-    task->session = find_session(engine, &lane->settings);
+    task->session = engine_find_session(engine, &lane->settings);
     if (task->session) {
         if (task->session != lane->session)
             lane->ms_per_sample = 0.0;
@@ -389,15 +158,8 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
     lane->frame = *frame;
     if (!lane->wanted) /* any more: nobody would take it */
         engine_frame_finish(&lane->frame);
-    forget_error(engine);
+    engine_forget_error(engine);
     engine->lost = 0;
-}
-
-/* The device is gone: everything on it is made again, unless that happens again and again. */
-static void lose_device(struct engine *engine, struct session *session)
-{
-    engine->device_lost = ++engine->lost > LOST_MAX;
-    forget_if(engine, session);
 }
 
 /* With the lock. Where memory ran out often nobody said a word. */
@@ -435,14 +197,14 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     } else {
         engine_frame_finish(&frame);
         if (result == WHIT_ERROR_DEVICE)
-            lose_device(engine, session);
+            engine_lose_device(engine, session);
         if (result != WHIT_ERROR_CANCELLED &&
             (result != WHIT_ERROR_DEVICE || engine->device_lost)) {
             lane->failed = lane->asked == asked;
             say_failure(engine, result);
         }
     }
-    wake_window(engine);
+    engine_wake(engine);
 }
 
 /* ---- Pixels ---- */
@@ -485,52 +247,10 @@ static void probe_one(struct engine *engine)
     if (result == WHIT_ERROR_CANCELLED)
         engine->probe_wanted = true; /* of the next picture */
     else if (result == WHIT_ERROR_DEVICE)
-        lose_device(engine, session);
+        engine_lose_device(engine, session);
     else if (result != WHIT_OK)
         say_failure(engine, result);
-    wake_window(engine);
-}
-
-/* ---- At rest ---- */
-
-/* Whether the window has the whole picture, and nothing else is to be done. */
-static bool can_refine(const struct engine *engine)
-{
-    const struct engine_lane *lane = &engine->lanes[0];
-    const struct engine_refine *refine = &engine->refine;
-    return engine->params.refine && refine->samples > 0 && !refine->done && lane->session &&
-           is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0 &&
-           !engine->lanes[1].wanted && !engine->job && !engine->probe_wanted;
-}
-
-static void refine_one(struct engine *engine)
-{
-    struct engine_lane *lane = &engine->lanes[0];
-    struct session *session = lane->session;
-    struct engine_frame frame;
-    uint64_t asked = lane->asked;
-    session->cancel = false;
-    engine->drawing = session;
-    engine->drawing_since_ms = whit_clock_ms();
-    engine->refining = true;
-    engine->brief = false;
-    pthread_mutex_unlock(&engine->lock);
-    whit_result result = engine_refine_draw(session, &engine->refine, &engine->last, &frame);
-    pthread_mutex_lock(&engine->lock);
-    engine->drawing = NULL;
-    engine->refining = false;
-    if (result == WHIT_ERROR_DEVICE)
-        lose_device(engine, session);
-    if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
-        engine->refine.done = true; /* the picture that there is stays */
-    if (frame.color && lane->asked == asked) {
-        frame.number = ++lane->frames;
-        frame.first = lane->first;
-        lane->frame = frame;
-    } else {
-        engine_frame_finish(&frame);
-    }
-    wake_window(engine);
+    engine_wake(engine);
 }
 
 /* Drivers make kernels of millions of small blocks: the gaps that these leave fit nothing else, and
@@ -543,7 +263,7 @@ static void tidy_up(struct engine *engine)
     platform_trim_heaps();
     pthread_mutex_lock(&engine->lock);
     engine->busy = false;
-    wake_window(engine);
+    engine_wake(engine);
 }
 
 static void run_engine(void *context)
@@ -553,7 +273,7 @@ static void run_engine(void *context)
     while (!engine->quit) {
         struct engine_task task;
         bool drew = false;
-        reap_job(engine);
+        engine_reap_job(engine);
         for (int i = 0; i < ENGINE_LANES && !engine->quit; ++i) {
             if (plan_lane(engine, &engine->lanes[i], &task)) {
                 draw_one(engine, &engine->lanes[i], &task);
@@ -564,8 +284,8 @@ static void run_engine(void *context)
             probe_one(engine);
             drew = true;
         }
-        if (!drew && !engine->quit && can_refine(engine)) {
-            refine_one(engine);
+        if (!drew && !engine->quit && engine_can_refine(engine)) {
+            engine_refine_one(engine);
             drew = true;
         }
         if (!drew && !engine->quit && engine->littered)
@@ -577,32 +297,6 @@ static void run_engine(void *context)
 }
 
 /* ---- The window's thread ---- */
-
-/* What is asked for comes first; the part is drawn again later. */
-static void stop_refining(struct engine *engine)
-{
-    if (engine->refining)
-        engine->drawing->cancel = true;
-}
-
-void engine_set_refine(struct engine *engine, bool on)
-{
-    pthread_mutex_lock(&engine->lock);
-    if (!on)
-        stop_refining(engine);
-    if (on != engine->params.refine)
-        pthread_cond_signal(&engine->work);
-    engine->params.refine = on;
-    pthread_mutex_unlock(&engine->lock);
-}
-
-bool engine_is_refined(struct engine *engine)
-{
-    pthread_mutex_lock(&engine->lock);
-    bool refined = !engine->refining && engine->lanes[0].frame.number == 0 && !can_refine(engine);
-    pthread_mutex_unlock(&engine->lock);
-    return refined;
-}
 
 void engine_set_budget(struct engine *engine, double budget_ms)
 {
@@ -649,10 +343,10 @@ uint32_t engine_destroy(struct engine *engine)
     pthread_cond_broadcast(&engine->work);
     pthread_mutex_unlock(&engine->lock);
     thread_join(engine->thread);
-    job_destroy(engine->job);
+    engine_job_destroy(engine->job);
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         if (engine->sessions[i])
-            drop_session(engine, engine->sessions[i]);
+            engine_drop_session(engine, engine->sessions[i]);
     }
     uint32_t validation = engine->validation;
     for (int i = 0; i < ENGINE_LANES; ++i)
@@ -673,7 +367,7 @@ static void ask(struct engine *engine, struct engine_lane *lane, const struct se
     bool same = lane->wanted && settings_same(&lane->settings, settings);
     if (same && lane->moving == moving)
         return;
-    stop_refining(engine);
+    engine_refine_pause(engine);
     if (!same) {
         ++lane->asked;
         lane->asked_ms = whit_clock_ms();
@@ -708,7 +402,8 @@ void engine_ask_other(struct engine *engine, const struct settings *settings)
     const struct engine_refine *refine = &engine->refine;
     if (settings) {
         /* What stands beside each other has as many samples. */
-        if (!other->wanted && refine->samples > refine->base.samples && is_done(&engine->lanes[0]))
+        if (!other->wanted && refine->samples > refine->base.samples &&
+            engine_is_done(&engine->lanes[0]))
             engine->lanes[0].quality = ENGINE_FULL;
         ask(engine, other, settings, engine->lanes[0].moving);
     } else {
@@ -726,7 +421,7 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
     *status = (struct engine_status){
         .stage = job ? (enum session_stage)atomic_load(&job->progress.stage) : SESSION_DONE,
         .stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0,
-        .drawing = !is_done(&engine->lanes[0]) || !is_done(&engine->lanes[1]),
+        .drawing = !engine_is_done(&engine->lanes[0]) || !engine_is_done(&engine->lanes[1]),
         .failed = engine->lanes[0].failed,
         .result = engine->result,
         .device_lost = engine->device_lost,
@@ -762,7 +457,7 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y)
     engine->probe_wanted = true;
     engine->probe_x = x;
     engine->probe_y = y;
-    stop_refining(engine);
+    engine_refine_pause(engine);
     pthread_cond_signal(&engine->work);
     pthread_mutex_unlock(&engine->lock);
 }
@@ -783,7 +478,7 @@ bool engine_take_probe(struct engine *engine, struct engine_probe *probe)
 static bool is_still(const struct engine_lane *lane)
 {
     bool waits = lane->wanted && lane->moving && !lane->failed;
-    return is_done(lane) && !waits && lane->frame.number == 0;
+    return engine_is_done(lane) && !waits && lane->frame.number == 0;
 }
 
 bool engine_is_still(struct engine *engine)

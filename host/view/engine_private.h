@@ -115,6 +115,22 @@ struct engine_task {
     double asked_ms;
 };
 
+/* engine.c, with the lock. */
+void engine_wake(struct engine *engine);
+bool engine_is_done(const struct engine_lane *lane);
+
+/* engine_sessions.c, of the drawing thread, with the lock but for drop and destroy. */
+WHIT_CHECK bool engine_start_job(struct engine *engine, const struct settings *settings);
+/* Takes what a finished job made. */
+void engine_reap_job(struct engine *engine);
+void engine_job_destroy(struct engine_job *job);
+struct session *engine_find_session(const struct engine *engine, const struct settings *settings);
+void engine_drop_session(struct engine *engine, struct session *session);
+/* The device is gone: everything on it is made again, unless that happens again and again. */
+void engine_lose_device(struct engine *engine, struct session *session);
+/* Clears the error of the window, unless the other side of a comparison has failed as well. */
+void engine_forget_error(struct engine *engine);
+
 /* engine_draw.c: how good the next picture of a lane is to be, and how large. */
 void engine_plan(const struct engine *engine, const struct engine_lane *lane,
                  struct engine_task *task);
@@ -124,12 +140,12 @@ WHIT_CHECK whit_result engine_draw(const struct engine_task *task, struct engine
    or adaptive samples, ends it. */
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame);
 void engine_refine_stop(struct engine_refine *refine);
-/* Draws one part; of the drawing thread, without the lock. After every third part *frame is a
-   picture of four times the samples, without hit identities; else it is zeroed. `kept`: the picture
-   that it began with. */
-WHIT_CHECK whit_result engine_refine_draw(struct session *session, struct engine_refine *refine,
-                                          const struct engine_kept *kept,
-                                          struct engine_frame *frame);
+/* With the lock: whether the window has the whole picture, and nothing else is to be done. */
+bool engine_can_refine(const struct engine *engine);
+/* Draws some of it. With the lock, which it gives back meanwhile. */
+void engine_refine_one(struct engine *engine);
+/* With the lock. What is asked for comes first; what was being drawn is drawn again later. */
+void engine_refine_pause(struct engine *engine);
 
 /* engine_change.c: what differs between two whole pictures of one place; *change stays where they
    are none, or differ in nothing that has a name. */

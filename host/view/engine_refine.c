@@ -131,8 +131,10 @@ static whit_result finish_round(struct engine_refine *refine, struct engine_fram
     return WHIT_OK;
 }
 
-whit_result engine_refine_draw(struct session *session, struct engine_refine *refine,
-                               const struct engine_kept *kept, struct engine_frame *frame)
+/* Draws one part; without the lock. After every third part *frame is a picture of four times the
+   samples, without hit identities; else it is zeroed. `kept`: the picture that it began with. */
+static whit_result draw_next(struct session *session, struct engine_refine *refine,
+                             const struct engine_kept *kept, struct engine_frame *frame)
 {
     whit_image *image = NULL;
     *frame = (struct engine_frame){0};
@@ -149,4 +151,71 @@ whit_result engine_refine_draw(struct session *session, struct engine_refine *re
         frame->scene = scene;
     }
     return result;
+}
+
+/* ---- When ---- */
+
+bool engine_can_refine(const struct engine *engine)
+{
+    const struct engine_lane *lane = &engine->lanes[0];
+    const struct engine_refine *refine = &engine->refine;
+    return engine->params.refine && refine->samples > 0 && !refine->done && lane->session &&
+           engine_is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0 &&
+           !engine->lanes[1].wanted && !engine->job && !engine->probe_wanted;
+}
+
+void engine_refine_one(struct engine *engine)
+{
+    struct engine_lane *lane = &engine->lanes[0];
+    struct session *session = lane->session;
+    struct engine_frame frame;
+    uint64_t asked = lane->asked;
+    session->cancel = false;
+    engine->drawing = session;
+    engine->drawing_since_ms = whit_clock_ms();
+    engine->refining = true;
+    engine->brief = false;
+    pthread_mutex_unlock(&engine->lock);
+    whit_result result = draw_next(session, &engine->refine, &engine->last, &frame);
+    pthread_mutex_lock(&engine->lock);
+    engine->drawing = NULL;
+    engine->refining = false;
+    if (result == WHIT_ERROR_DEVICE)
+        engine_lose_device(engine, session);
+    if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
+        engine->refine.done = true; /* the picture that there is stays */
+    if (frame.color && lane->asked == asked) {
+        frame.number = ++lane->frames;
+        frame.first = lane->first;
+        lane->frame = frame;
+    } else {
+        engine_frame_finish(&frame);
+    }
+    engine_wake(engine);
+}
+
+void engine_refine_pause(struct engine *engine)
+{
+    if (engine->refining)
+        engine->drawing->cancel = true;
+}
+
+void engine_set_refine(struct engine *engine, bool on)
+{
+    pthread_mutex_lock(&engine->lock);
+    if (!on)
+        engine_refine_pause(engine);
+    if (on != engine->params.refine)
+        pthread_cond_signal(&engine->work);
+    engine->params.refine = on;
+    pthread_mutex_unlock(&engine->lock);
+}
+
+bool engine_is_refined(struct engine *engine)
+{
+    pthread_mutex_lock(&engine->lock);
+    bool refined =
+        !engine->refining && engine->lanes[0].frame.number == 0 && !engine_can_refine(engine);
+    pthread_mutex_unlock(&engine->lock);
+    return refined;
 }

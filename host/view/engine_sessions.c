@@ -1,0 +1,242 @@
+/* The sessions that the engine has, and the one in the making. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/engine_private.h"
+#include "whit/whit_program.h"
+
+enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MAX = 2 };
+static const uint64_t LARGE_SCENE = 1000000; /* triangles */
+
+/* ---- Sessions in the making ---- */
+
+static void keep_error(char error[ENGINE_MESSAGE], whit_log_level level, const char *message)
+{
+    if (level == WHIT_LOG_ERROR && !error[0])
+        snprintf(error, ENGINE_MESSAGE, "%s", message);
+}
+
+/* The first error is the reason; what follows from it is not. One that nobody wants any more, as
+   its scene was left, keeps its errors. The validation layers speak to whoever asked for them. */
+static void session_message(void *user, whit_log_level level, const char *message)
+{
+    struct session *session = user;
+    struct engine *engine = session->owner;
+    const whit_log *log = &engine->params.log;
+    if (strncmp(message, "validation: ", 12) == 0) {
+        if (log->fn)
+            log->fn(log->user, level, message);
+        return;
+    }
+    pthread_mutex_lock(&engine->lock);
+    keep_error(session->ready ? engine->error : session->error, level, message);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+/* The log of a scene. A scene outlives the session that it was loaded for, so trees of other
+   sessions log here as well while they are built. */
+static void scene_message(void *user, whit_log_level level, const char *message)
+{
+    struct engine *engine = user;
+    pthread_mutex_lock(&engine->lock);
+    keep_error(engine->job ? engine->job->session->error : engine->error, level, message);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+static void run_job(void *context)
+{
+    struct engine_job *job = context;
+    struct engine *engine = job->engine;
+    whit_result result =
+        session_open(job->session, &job->settings, job->scene,
+                     &(whit_log){session_message, job->session, WHIT_LOG_WARNING},
+                     &(whit_log){scene_message, engine, WHIT_LOG_WARNING}, &job->progress);
+    pthread_mutex_lock(&engine->lock);
+    job->result = result;
+    job->done = true;
+    pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+/* Without the lock. */
+void engine_drop_session(struct engine *engine, struct session *session)
+{
+    uint32_t messages = session_close(session);
+    free(session);
+    pthread_mutex_lock(&engine->lock);
+    engine->validation += messages;
+    engine->littered = true;
+    pthread_mutex_unlock(&engine->lock);
+}
+
+void engine_job_destroy(struct engine_job *job)
+{
+    if (!job)
+        return;
+    thread_join(job->thread);
+    if (job->session)
+        engine_drop_session(job->engine, job->session);
+    scene_ref_drop(job->scene);
+    free(job);
+}
+
+/* A scene that some session has loaded already, held; NULL: none. */
+static struct scene_ref *find_scene(const struct engine *engine, const struct settings *settings)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        const struct session *session = engine->sessions[i];
+        if (session && settings_same_scene(&session->scene->settings, settings))
+            return scene_ref_take(session->scene);
+    }
+    return NULL;
+}
+
+bool engine_start_job(struct engine *engine, const struct settings *settings)
+{
+    struct engine_job *job = calloc(1, sizeof *job);
+    struct session *session = calloc(1, sizeof *session);
+    if (job && session) {
+        job->session = session;
+        job->settings = *settings;
+        job->engine = engine;
+        session->owner = engine;
+        job->start_ms = whit_clock_ms();
+        job->scene = find_scene(engine, settings);
+        job->thread = thread_start(run_job, job);
+        if (job->thread) {
+            engine->job = job;
+            return true;
+        }
+        scene_ref_drop(job->scene);
+    }
+    free(job);
+    free(session);
+    snprintf(engine->error, sizeof engine->error, "out of memory");
+    engine->result = WHIT_ERROR_MEMORY;
+    return false;
+}
+
+/* ---- The sessions that there are ---- */
+
+static void forget_session(struct engine *engine, uint32_t index)
+{
+    struct session *session = engine->sessions[index];
+    engine->sessions[index] = NULL;
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        if (engine->lanes[i].session == session)
+            engine->lanes[i].session = NULL;
+    }
+    pthread_mutex_unlock(&engine->lock);
+    engine_drop_session(engine, session);
+    pthread_mutex_lock(&engine->lock);
+}
+
+static void forget_if(struct engine *engine, const struct session *session)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        if (engine->sessions[i] == session && session)
+            forget_session(engine, i);
+    }
+}
+
+static bool is_shown(const struct engine *engine, const struct session *session)
+{
+    const struct engine_lane *other = &engine->lanes[1];
+    return engine->lanes[0].session == session || (other->wanted && other->session == session);
+}
+
+static uint32_t sessions_max(const struct engine *engine, const struct session *newest)
+{
+    uint32_t max = engine->params.sessions ? engine->params.sessions : SESSIONS_DEFAULT;
+    bool large = newest->scene->info.triangle_count > LARGE_SCENE;
+    return large && max > SESSIONS_LARGE ? SESSIONS_LARGE : max;
+}
+
+/* Makes room for one more: scenes that nobody looks at go first, then what was not used longest. */
+static void make_room(struct engine *engine, const struct session *newest)
+{
+    for (;;) {
+        uint32_t count = 0, oldest = ENGINE_SESSIONS_MAX;
+        for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+            const struct session *session = engine->sessions[i];
+            count += session != NULL;
+            if (!session || is_shown(engine, session))
+                continue;
+            if (oldest == ENGINE_SESSIONS_MAX ||
+                session->last_use < engine->sessions[oldest]->last_use)
+                oldest = i;
+        }
+        if (count < sessions_max(engine, newest) || oldest == ENGINE_SESSIONS_MAX)
+            return;
+        forget_session(engine, oldest);
+    }
+}
+
+struct session *engine_find_session(const struct engine *engine, const struct settings *settings)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        struct session *session = engine->sessions[i];
+        if (session && settings_same_kernel(&session->settings, settings))
+            return session;
+    }
+    return NULL;
+}
+
+static void keep_session(struct engine *engine, struct session *session)
+{
+    make_room(engine, session);
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        if (!engine->sessions[i]) {
+            engine->sessions[i] = session;
+            return;
+        }
+    }
+}
+
+void engine_forget_error(struct engine *engine)
+{
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        if (engine->lanes[i].wanted && engine->lanes[i].failed)
+            return;
+    }
+    engine->error[0] = '\0';
+}
+
+void engine_reap_job(struct engine *engine)
+{
+    struct engine_job *job = engine->job;
+    if (!job || !job->done)
+        return;
+    engine->job = NULL;
+    if (!job->scene)
+        memcpy(engine->refused, job->session->refused, sizeof engine->refused);
+    if (job->result == WHIT_OK) {
+        job->session->ready = true;
+        keep_session(engine, job->session);
+        engine_forget_error(engine);
+    } else if (job->result != WHIT_ERROR_CANCELLED) {
+        memcpy(engine->error, job->session->error, sizeof engine->error);
+        engine->result = job->result;
+        if (!engine->error[0])
+            snprintf(engine->error, sizeof engine->error, "out of memory");
+        for (int i = 0; i < ENGINE_LANES; ++i) {
+            struct engine_lane *lane = &engine->lanes[i];
+            if (lane->wanted && settings_same_kernel(&lane->settings, &job->settings))
+                lane->failed = true;
+        }
+    }
+    engine_wake(engine);
+    if (job->result == WHIT_OK)
+        job->session = NULL; /* kept */
+    engine->littered = true; /* compilers leave more than they take */
+    pthread_mutex_unlock(&engine->lock);
+    engine_job_destroy(job);
+    pthread_mutex_lock(&engine->lock);
+}
+
+void engine_lose_device(struct engine *engine, struct session *session)
+{
+    engine->device_lost = ++engine->lost > LOST_MAX;
+    forget_if(engine, session);
+}
