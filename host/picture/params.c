@@ -86,6 +86,11 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
         log_error(log, "what rays cost is not counted with adaptive samples");
         return WHIT_ERROR_USAGE;
     }
+    n = params->step_spacing;
+    if (n != 0 && n != 2 && n != 4 && n != 8) {
+        log_error(log, "steps of every %u-th pixel: must be 2, 4 or 8", n);
+        return WHIT_ERROR_USAGE;
+    }
     if (params->depth > DEPTH_LARGEST) {
         log_error(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
         return WHIT_ERROR_USAGE;

@@ -44,6 +44,7 @@ static whit_result trace_pixel(struct target *target, struct probe_report *repor
     struct gpu_chunk chunk = {.first_block =
                                   block_y * pixels_blocks_across(params->width) + report->x / 8,
                               .block_count = 1,
+                              .blocks_x = pixels_blocks_across(params->width),
                               .band_y = block_y * 8,
                               .band_rows = rows < 8 ? rows : 8,
                               .listed = 1};

@@ -120,8 +120,16 @@ struct trace_state {
     uint32_t deferred_count; /* rays of the last batch that floats left open */
 };
 
-/* What one picture in the making knows. An adaptive one is made in several passes. */
+/* The pixels of a picture that a pass draws: every `spacing`-th of rows and columns. */
+struct lattice {
+    uint32_t spacing, x, y; /* 1, 2, 4, 8; the first pixel */
+    uint32_t width, height; /* how many */
+};
+
+/* What one picture in the making knows. An adaptive one, or one in steps, is made in several
+   passes. */
 struct progress {
+    struct lattice lattice; /* of the pass */
     double start_ms;
     uint32_t tile;
     uint64_t work_done, work_total; /* block samples of the pass */
@@ -411,7 +419,19 @@ WHIT_CHECK whit_result adaptive_list(struct target *target, const struct progres
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* tiles.c: sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
+/* steps.c */
+struct lattice lattice_whole(const whit_renderer_params *params);
+/* gpu_chunk.lattice */
+uint32_t lattice_word(const struct lattice *lattice);
+bool steps_are_wanted(const struct renderer *renderer);
+/* The picture in steps, with params.step after each but the last. */
+WHIT_CHECK whit_result steps_render(struct renderer *renderer, struct progress *progress);
+
+/* tiles.c: `samples` of all pixels of progress->lattice, or of those of them that progress->levels
+   gives so many. */
+WHIT_CHECK whit_result render_pass(struct renderer *renderer, uint32_t samples,
+                                   struct progress *progress);
+/* Sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
 void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
                         struct gpu_chunk *chunk);
 

@@ -10,6 +10,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.camera = from->camera;
     params.time_s = from->time_s;
     params.sampling = from->sampling;
+    params.step_spacing = from->step_spacing;
     params.light_samples = from->light_samples;
     params.bailout = from->bailout;
     params.depth = from->depth;

@@ -223,11 +223,11 @@ static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk
 static whit_result render_band(struct renderer *renderer, uint32_t band_y,
                                struct progress *progress)
 {
-    const whit_renderer_params *params = &renderer->params;
-    uint32_t left = params->height - band_y;
+    const struct lattice *lattice = &progress->lattice;
+    uint32_t left = lattice->height - band_y;
     uint32_t rows =
         left < renderer->picture.buffers.band_rows ? left : renderer->picture.buffers.band_rows;
-    uint32_t across = pixels_blocks_across(params->width);
+    uint32_t across = pixels_blocks_across(lattice->width);
     renderer->picture.buffers.band_y = band_y;
     uint32_t block = band_y / 8 * across, end = block + pixels_blocks_across(rows) * across;
     while (block < end) {
@@ -238,8 +238,10 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
         blocks = max && max < blocks ? max : blocks;
         struct gpu_chunk chunk = {.first_block = block,
                                   .block_count = end - block < blocks ? end - block : blocks,
+                                  .blocks_x = across,
+                                  .lattice = lattice_word(lattice),
                                   .band_y = band_y,
-                                  .band_rows = rows};
+                                  .band_rows = lattice->spacing * rows};
         whit_result result = pass_chunk(renderer, &chunk, progress);
         if (result != WHIT_OK)
             return result;
@@ -249,17 +251,15 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
     return readback_band(renderer, progress, band_y, rows);
 }
 
-/* `samples` for all pixels, or for those that progress->levels gives so many. */
-static whit_result render_pass(struct renderer *renderer, uint32_t samples,
-                               struct progress *progress)
+whit_result render_pass(struct renderer *renderer, uint32_t samples, struct progress *progress)
 {
-    const whit_renderer_params *params = &renderer->params;
+    const struct lattice *lattice = &progress->lattice;
     whit_result result = WHIT_OK;
     progress->samples = samples;
     progress->work_done = 0;
-    progress->work_total = (uint64_t)pixels_blocks_across(params->width) *
-                           pixels_blocks_across(params->height) * samples;
-    for (uint32_t y = 0; result == WHIT_OK && y < params->height;
+    progress->work_total = (uint64_t)pixels_blocks_across(lattice->width) *
+                           pixels_blocks_across(lattice->height) * samples;
+    for (uint32_t y = 0; result == WHIT_OK && y < lattice->height;
          y += renderer->picture.buffers.band_rows)
         result = render_band(renderer, y, progress);
     progress->before += progress->share;
@@ -308,6 +308,8 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
     while (1u << (2 * level) < params->sampling.count)
         ++level;
     renderer->picture.stats.pixels_by_samples[level] = pixels;
+    if (steps_are_wanted(renderer))
+        return steps_render(renderer, progress);
     return render_pass(renderer, params->sampling.count, progress);
 }
 
@@ -334,6 +336,7 @@ whit_result renderer_render(struct renderer *renderer)
     material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
     struct progress progress = {
+        .lattice = lattice_whole(params),
         .start_ms = clock_ms(),
         .tile = params->tile_size                             ? params->tile_size
                 : renderer->accel->no_trees                   ? TILE_MIN

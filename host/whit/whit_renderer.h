@@ -52,6 +52,14 @@ typedef enum whit_load_path {
     WHIT_LOAD_TEXEL,    /* texel buffers */
 } whit_load_path;
 
+/* A picture in the making: every `spacing`-th pixel of its rows and columns, beginning near the
+   middle of the first square of so many. */
+typedef struct whit_step {
+    uint32_t spacing;       /* 8, 4 or 2 */
+    uint32_t width, height; /* the picture's by `spacing`, rounded up */
+    const float *rgba; /* linear, row by row from above; while whit_renderer_params.step runs */
+} whit_step;
+
 /* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
@@ -81,6 +89,13 @@ typedef struct whit_renderer_params {
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);
     void *progress_user;
+    /* With `step` a picture of at least 16 x 16 pixels and a fixed number of samples, which fits
+       one buffer of the device and whose costs are not counted, is drawn in steps: first every
+       `step_spacing`-th pixel of rows and columns, then what half of that asks for, and so on. Each
+       pixel is drawn once, and the picture is the same. It is called from the rendering thread with
+       progress_user after each step but the last. */
+    uint32_t step_spacing; /* 2, 4 or 8; 0: at once */
+    void (*step)(void *user, const whit_step *step);
     double time_limit_s; /* from whit_renderer_create on; 0: none */
     whit_load_path load_path;
     whit_traversal traversal;

@@ -192,9 +192,16 @@ struct gpu_chunk {
     gpu_uint light_index; /* of the sequence: the sample's first point of flat emitters */
     gpu_uint summed, samples; /* of a pixel in this pass: before this one, and all */
     gpu_uint sums_row, sums_step; /* of the pixels: slot 0's first partial sum, from one to the next */
-    gpu_uint pad0, pad1;
+    gpu_uint blocks_x; /* in a row of what is drawn */
+    gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 96)
+
+/* Every so-many-th pixel of rows and columns, as a power of two, and the first one; 0: all. */
+#define LATTICE_SHIFT_MASK 15u
+#define LATTICE_X_SHIFT    8u
+#define LATTICE_Y_SHIFT    16u
+#define LATTICE_FIRST_MASK 255u
 
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 

@@ -29,10 +29,10 @@ uint own_slot()
     return group * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
 }
 
-// Pixel of a slot: blocks row by row over the picture; within a block 4 x 2 pixels a subgroup of 8.
+// Pixel of a slot: blocks row by row over what is drawn of the picture; within a block 4 x 2 pixels a subgroup of 8.
 uvec2 slot_pixel(uint slot)
 {
-    uint blocks_x = (frame.width + 7u) / 8u, first_y = chunk.first_block / blocks_x;
+    uint blocks_x = chunk.blocks_x, first_y = chunk.first_block / blocks_x;
     // From the start of that row less than 2^14 blocks on: floats divide them right, and lavapipe divides
     // integers lane by lane.
     uint place = chunk.first_block - first_y * blocks_x + slot / BLOCK_PIXELS;
@@ -41,7 +41,8 @@ uvec2 slot_pixel(uint slot)
     uint i = slot % BLOCK_PIXELS;
     uint x = (i & 3u) | ((i >> 1) & 4u);
     uint y = ((i >> 2) & 1u) | ((i >> 3) & 6u);
-    return block * 8u + uvec2(x, y);
+    uvec2 first = uvec2(chunk.lattice >> LATTICE_X_SHIFT, chunk.lattice >> LATTICE_Y_SHIFT);
+    return ((block * 8u + uvec2(x, y)) << (chunk.lattice & LATTICE_SHIFT_MASK)) + (first & LATTICE_FIRST_MASK);
 }
 
 bool is_in_picture(uvec2 at)

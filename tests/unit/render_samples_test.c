@@ -112,6 +112,82 @@ TEST(full_queues_do_not_matter)
     assert_memory_equal(smaller, whole, sizeof whole);
 }
 
+/* ---- Steps ---- */
+
+static uint32_t steps, steps_wrong;
+
+/* Every pixel of a step is one of the whole picture, in its own square, but in squares that the
+   picture cuts off. */
+static void look_at_step(void *user, const whit_step *step)
+{
+    const struct picture *all = user;
+    uint32_t first = step->spacing == 8 ? 5 : 1;
+    steps_wrong += step->spacing != 8u >> steps++ ||
+                   step->width != (WIDTH + step->spacing - 1) / step->spacing ||
+                   step->height != (HEIGHT + step->spacing - 1) / step->spacing;
+    for (uint32_t i = 0; i < step->width * step->height; ++i) {
+        uint32_t x = i % step->width * step->spacing + first,
+                 y = i / step->width * step->spacing + first;
+        x -= x < WIDTH ? 0 : step->spacing;
+        y -= y < HEIGHT ? 0 : step->spacing;
+        steps_wrong += memcmp(&step->rgba[4 * i], &all->color.pixels[4 * (y * WIDTH + x)], 16) != 0;
+    }
+}
+
+static uint64_t all_rays(const whit_stats *s)
+{
+    return s->rays_primary + s->rays_shadow + s->rays_reflected + s->rays_refracted;
+}
+
+static void check_steps(uint32_t spacing, uint32_t samples, uint32_t ray_capacity)
+{
+    whit_renderer_params params = {.width = WIDTH,
+                                   .height = HEIGHT,
+                                   .depth = 3,
+                                   .light_samples = 4,
+                                   .sampling.count = samples};
+    assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
+    struct picture all = render_picture(&f);
+    f.renderer->params.step = look_at_step;
+    f.renderer->params.progress_user = &all;
+    params.step_spacing = spacing;
+    steps = spacing == 8 ? 0 : spacing == 4 ? 1 : 2;
+    steps_wrong = 0;
+    assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
+    if (ray_capacity)
+        f.renderer->picture.buffers.queues.ray_capacity = ray_capacity;
+    const struct pixel_buffers *p = &f.renderer->picture.buffers;
+    assert_int_equal(buffer_write(p->pixels, 0, parts, sizeof *parts), WHIT_OK);
+    assert_int_equal(buffer_write(p->ids, 0, parts, sizeof *parts / 2), WHIT_OK);
+    struct picture stepped = render_picture(&f);
+    assert_int_equal(steps_wrong, 0);
+    assert_int_equal(steps, 3);
+    assert_memory_equal(stepped.color.pixels, all.color.pixels, FLOATS * sizeof(float));
+    assert_memory_equal(stepped.ids.words, all.ids.words, WIDTH * HEIGHT * 2 * sizeof(uint32_t));
+    assert_int_equal(all_rays(&stepped.stats), all_rays(&all.stats));
+    f.renderer->params.step = NULL;
+    picture_finish(&stepped);
+    picture_finish(&all);
+}
+
+TEST(steps_draw_each_pixel_once)
+{
+    check_steps(8, 1, 0);
+    check_steps(4, 1, 0);
+    check_steps(2, 4, 0);
+    check_steps(8, 1, 640);
+}
+
+TEST(other_steps_are_refused)
+{
+    whit_log silent = {.level = WHIT_LOG_ERROR};
+    for (uint32_t spacing = 0; spacing <= 16; ++spacing) {
+        whit_renderer_params params = {.step_spacing = spacing};
+        bool right = spacing == 0 || spacing == 2 || spacing == 4 || spacing == 8;
+        assert_int_equal(params_check(&silent, &params), right ? WHIT_OK : WHIT_ERROR_USAGE);
+    }
+}
+
 /* A buffer of the device holds one sample of all of it, but not the sums of more as well. */
 TEST(large_pictures_have_room_for_sums)
 {
