@@ -161,6 +161,11 @@ static bool is_of_picture(const struct setting *row)
     return row->change != SETTING_RUN && row->commands & IN_RENDER;
 }
 
+static bool decides_pixels(const struct setting *row)
+{
+    return is_of_picture(row) && row->change != SETTING_COST;
+}
+
 bool settings_same_scene(const struct settings *a, const struct settings *b)
 {
     return strcmp(a->scene, b->scene) == 0 && a->reload == b->reload &&
@@ -199,6 +204,11 @@ bool settings_same_light(const struct settings *a, const struct settings *b)
 void settings_set_light(struct settings *settings, const struct settings *from)
 {
     copy_rows(settings, from, is_light);
+}
+
+bool settings_same_pixels(const struct settings *a, const struct settings *b)
+{
+    return settings_same_scene(a, b) && same_rows(a, b, decides_pixels) && a->paint == PAINT_COLOR;
 }
 
 bool settings_same(const struct settings *a, const struct settings *b)

@@ -98,6 +98,9 @@ bool settings_same_place(const struct settings *a, const struct settings *b);
 /* What changes colours alone, trees and scene left as they are. */
 bool settings_same_light(const struct settings *a, const struct settings *b);
 void settings_set_light(struct settings *settings, const struct settings *from);
+/* Whether ids and pixels of both pictures are the same bytes; what is left may change their time.
+ */
+bool settings_same_pixels(const struct settings *a, const struct settings *b);
 /* All that a picture shows. */
 bool settings_same(const struct settings *a, const struct settings *b);
 

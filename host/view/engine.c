@@ -112,19 +112,21 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
     return true;
 }
 
-/* Without the lock. */
-static void note_change(struct engine *engine, const struct engine_frame *frame)
+/* Without the lock. Whether the picture came to the same bytes as the one before. */
+static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
     struct engine_change change = engine->change; /* which no other thread writes */
+    bool same = engine_is_same(&engine->last, frame);
     engine_compare(&engine->last, frame, &change);
     engine_keep(&engine->last, frame);
     pthread_mutex_lock(&engine->lock);
     engine->change = change;
     pthread_mutex_unlock(&engine->lock);
+    return same;
 }
 
-static void take_picture(struct engine *engine, struct engine_lane *lane,
-                         const struct engine_task *task, uint64_t asked, struct engine_frame *frame)
+/* Of pictures, to plan the next ones. */
+static void note_speed(struct engine_lane *lane, const struct engine_frame *frame)
 {
     double pixels = (double)frame->width * frame->height;
     double samples = frame->samples ? frame->samples : 8;
@@ -134,19 +136,28 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
         lane->ms_per_sample = ms;
     else
         lane->ms_per_sample = 0.75 * lane->ms_per_sample + 0.25 * ms;
+}
+
+/* A picture of a lane, or a step on its way: `quality` of it. */
+static void take_picture(const struct engine_task *task, enum engine_quality quality,
+                         struct engine_frame *frame)
+{
+    struct engine *engine = task->engine;
+    struct engine_lane *lane = task->lane;
     bool own = settings_same_kernel(&task->settings, &lane->settings);
     lane->session = task->session;
     bool there = settings_same_camera(&task->settings, &lane->settings);
-    lane->drawn = there || lane == engine->lanes ? asked : 0; /* 0: once more, elsewhere */
+    lane->drawn = there || lane == engine->lanes ? task->asked : 0; /* 0: once more, elsewhere */
     if (lane == engine->lanes) {
         engine->place = task->settings;
         engine->place_divisor = task->divisor;
         ++engine->places;
     }
     lane->place = engine->places;
-    lane->quality = task->quality;
+    lane->quality = quality;
     lane->stale = !own;
     lane->last = task->settings;
+    lane->shown = frame->divisor;
     if (task->brief)
         lane->divisor = task->divisor;
     task->session->last_use = ++engine->uses;
@@ -162,6 +173,26 @@ static void take_picture(struct engine *engine, struct engine_lane *lane,
     engine->lost = 0;
 }
 
+/* On the drawing thread, in engine_draw. Who asks for something else waits for the first step, and
+   for no other. */
+void engine_show_step(void *user, const whit_step *step)
+{
+    struct engine_task *task = user;
+    struct engine *engine = task->engine;
+    struct engine_frame frame;
+    whit_result result = engine_draw_step(task, step, &frame);
+    pthread_mutex_lock(&engine->lock);
+    if (result == WHIT_OK)
+        take_picture(task, ENGINE_QUICK, &frame);
+    else
+        engine_frame_finish(&frame);
+    task->brief = engine->brief = false;
+    if (task->lane->asked != task->asked)
+        task->session->cancel = true;
+    engine_wake(engine);
+    pthread_mutex_unlock(&engine->lock);
+}
+
 /* With the lock. Where memory ran out often nobody said a word. */
 static void say_failure(struct engine *engine, whit_result result)
 {
@@ -175,7 +206,9 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
 {
     struct engine_frame frame;
     struct session *session = task->session;
-    uint64_t asked = lane->asked;
+    task->engine = engine;
+    task->lane = lane;
+    task->asked = lane->asked;
     session->cancel = false;
     engine->busy = true;
     engine->drawing = session;
@@ -185,22 +218,23 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     pthread_mutex_unlock(&engine->lock);
     whit_result result = engine_draw(task, &frame);
     bool kept = result == WHIT_OK && frame.whole && lane == &engine->lanes[0];
-    if (kept)
-        note_change(engine, &frame);
+    bool same = kept && note_change(engine, &frame);
     pthread_mutex_lock(&engine->lock);
-    if (kept)
+    if (result == WHIT_OK)
+        note_speed(lane, &frame);
+    if (kept && !(same && !engine->lanes[1].wanted && engine_refine_keep(&engine->refine, &frame)))
         engine_refine_begin(&engine->refine, &frame);
     engine->busy = false;
     engine->drawing = NULL;
     if (result == WHIT_OK) {
-        take_picture(engine, lane, task, asked, &frame);
+        take_picture(task, task->quality, &frame);
     } else {
         engine_frame_finish(&frame);
         if (result == WHIT_ERROR_DEVICE)
             engine_lose_device(engine, session);
         if (result != WHIT_ERROR_CANCELLED &&
             (result != WHIT_ERROR_DEVICE || engine->device_lost)) {
-            lane->failed = lane->asked == asked;
+            lane->failed = lane->asked == task->asked;
             say_failure(engine, result);
         }
     }

@@ -45,8 +45,8 @@ struct engine_frame {
     uint8_t *rgba;            /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
-    bool refined;                    /* of more samples than the settings say; ids and
-                                        boxes are those of the picture before, and NULL here */
+    bool refined;                    /* of more samples than the settings say; without ids, these
+                                        and boxes are those of the picture before */
     bool whole;                      /* full size and all samples: what `whit render` makes */
     bool moving;                     /* more was to follow */
     double asked_ms;                 /* by whit_clock_ms: when engine_ask first asked for it */

@@ -73,6 +73,16 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
     memcpy(change->what, what, sizeof what);
 }
 
+bool engine_is_same(const struct engine_kept *before, const struct engine_frame *after)
+{
+    size_t pixels = (size_t)after->width * after->height;
+    return before->ids && before->color && after->ids && after->settings.paint == PAINT_COLOR &&
+           before->width == after->width && before->height == after->height &&
+           settings_same_place(&before->settings, &after->settings) &&
+           memcmp(before->ids, whit_image_words(after->ids), pixels * 2 * sizeof(uint32_t)) == 0 &&
+           memcmp(before->color, whit_image_floats(after->color), pixels * 4 * sizeof(float)) == 0;
+}
+
 void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
 {
     size_t pixels = (size_t)frame->width * frame->height;

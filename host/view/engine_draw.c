@@ -39,21 +39,45 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
     return divisors[DIVISORS - 1];
 }
 
+/* The spacing of the first step, none of which is to be coarser than what is shown of the same
+   picture, or than what can be drawn in the time of a quick one; 0: at once. */
+static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t divisor)
+{
+    uint32_t spacing = 8, finest = first ? divisor : lane->shown / 2;
+    if (lane->moving || lane->settings.paint != PAINT_COLOR)
+        return 0;
+    if (first && lane->ms_per_sample <= 0.0)
+        return spacing;
+    while (spacing > 1 && spacing / 2 >= finest)
+        spacing /= 2;
+    return spacing > 1 ? spacing : 0;
+}
+
+/* Whether the picture that is shown looks as the next one will. */
+static bool looks_same(const struct engine_lane *lane)
+{
+    return lane->frames > 0 && lane->quality == ENGINE_WHOLE &&
+           settings_same_pixels(&lane->last, &lane->settings);
+}
+
 void engine_plan(const struct engine *engine, const struct engine_lane *lane,
                  struct engine_task *task)
 {
     uint32_t divisor = choose_divisor(engine, lane);
     uint32_t samples = samples_of(&lane->settings);
     bool first = lane->drawn != lane->asked || lane->stale;
+    bool color = lane->settings.paint == PAINT_COLOR;
     enum engine_quality quality = first ? ENGINE_QUICK : lane->quality + 1;
-    if (quality == ENGINE_QUICK && divisor == 1)
-        quality = ENGINE_FULL; /* all pixels are quick */
-    if (quality == ENGINE_FULL && samples == 1)
-        quality = ENGINE_WHOLE; /* one sample is all there is */
+    if (quality == ENGINE_QUICK && (divisor == 1 || (color && !lane->moving)))
+        quality = ENGINE_FULL; /* all pixels are quick, or come in steps */
+    if (quality == ENGINE_FULL && (samples == 1 || (first && looks_same(lane))))
+        quality = ENGINE_WHOLE; /* one sample is all there is, or nothing else is to be seen */
     if (lane->moving && quality == ENGINE_WHOLE && samples > 1)
         quality = ENGINE_FULL;
     task->quality = quality;
     task->divisor = quality == ENGINE_QUICK ? divisor : 1;
+    if (!(first && looks_same(lane)) && (first || lane->quality == ENGINE_QUICK))
+        task->step_spacing = choose_step(lane, first, divisor);
     task->brief = first;
     task->moving = lane->moving;
     task->asked_ms = lane->asked_ms;
@@ -160,30 +184,62 @@ static whit_renderer_params task_params(const struct engine_task *task)
         params.sampling.count = 1;
         params.sampling.kind = WHIT_SAMPLING_FIXED;
     }
+    params.step_spacing = task->step_spacing;
     return params;
 }
 
-whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame)
+/* A picture of the task, without its pixels. */
+static struct engine_frame begin_frame(const struct engine_task *task, uint32_t width,
+                                       uint32_t height)
 {
-    struct session *session = task->session;
-    whit_renderer_params params = task_params(task);
-    *frame = (struct engine_frame){
+    const struct session *session = task->session;
+    return (struct engine_frame){
         .settings = task->settings,
         .scene = scene_ref_take(session->scene),
-        .width = params.width,
-        .height = params.height,
+        .width = width,
+        .height = height,
         .divisor = task->divisor,
-        .samples = params.sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 0
-                   : params.sampling.count                        ? params.sampling.count
-                                                                  : 1,
-        .whole = task->quality == ENGINE_WHOLE,
+        .samples = 1,
         .moving = task->moving,
         .asked_ms = task->asked_ms,
         .accel = session->accel_info,
         .device = session->device_info,
         .build_ms = session->build_ms,
         .compile_ms = session->compile_ms,
+        .visits = -1.0,
     };
+}
+
+whit_result engine_draw_step(const struct engine_task *task, const whit_step *step,
+                             struct engine_frame *frame)
+{
+    const whit_renderer_params params = settings_picture(&task->settings);
+    *frame = begin_frame(task, step->width, step->height);
+    frame->divisor = step->spacing;
+    frame->rgba = malloc((size_t)step->width * step->height * 4);
+    if (!frame->rgba)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = whit_image_create(step->width, step->height, 4, step->rgba, &frame->color);
+    if (result == WHIT_OK) {
+        whit_image_display_as(frame->color, &params);
+        whit_image_display_bytes(frame->color, frame->rgba);
+        whit_renderer_get_stats(task->session->renderer, &frame->stats);
+    }
+    return result;
+}
+
+whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame)
+{
+    struct session *session = task->session;
+    whit_renderer_params params = task_params(task);
+    *frame = begin_frame(task, params.width, params.height);
+    if (params.sampling.count > 1)
+        frame->samples = params.sampling.count;
+    if (params.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
+        frame->samples = 0;
+    frame->whole = task->quality == ENGINE_WHOLE;
+    session->step = engine_show_step;
+    session->step_user = (void *)task;
     double start_ms = whit_clock_ms();
     whit_result result = whit_renderer_set_view(session->renderer, &params);
     if (result == WHIT_OK)

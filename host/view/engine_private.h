@@ -48,6 +48,7 @@ struct engine_lane {
     uint64_t first;       /* of them, of what is asked for */
     uint64_t place;       /* engine.places, when it drew */
     uint32_t divisor;     /* of the last quick one; 0: none */
+    uint32_t shown;       /* divisor of the last picture */
     double ms_per_sample; /* of pictures of its session; 0: not known */
 };
 
@@ -67,8 +68,9 @@ struct engine_refine {
     uint32_t samples;         /* of each part, and so far; 0: there is nothing to refine */
     uint32_t part;            /* that comes next, 1..3 */
     bool done;
-    float *sum, *held; /* RGBA: of the parts so far; part 2 while part 3 is drawn */
-    uint8_t *rgba;     /* what was displayed last */
+    float *sum;     /* RGBA: what was displayed last, the mean of `samples` */
+    float *held[2]; /* RGBA: of the parts after it, the first two */
+    uint8_t *rgba;  /* what was displayed last */
 };
 
 struct engine {
@@ -111,8 +113,12 @@ struct engine_task {
     struct settings settings;
     enum engine_quality quality;
     uint32_t divisor;
-    bool moving, brief; /* brief: within the budget, so let it be finished */
+    uint32_t step_spacing; /* of the first step; 0: at once */
+    bool moving, brief;    /* brief: within the budget, so let it be finished */
     double asked_ms;
+    struct engine *engine; /* that shows the steps, in `lane` */
+    struct engine_lane *lane;
+    uint64_t asked; /* of the lane */
 };
 
 /* engine.c, with the lock. */
@@ -136,10 +142,18 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
                  struct engine_task *task);
 /* Draws; of the drawing thread, without the lock. *frame is the caller's to finish. */
 WHIT_CHECK whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame);
+/* A step on the way to it. WHIT_ERROR_MEMORY: there is nothing to show. */
+WHIT_CHECK whit_result engine_draw_step(const struct engine_task *task, const whit_step *step,
+                                        struct engine_frame *frame);
+/* engine.c: shows a step of the picture that is being drawn. */
+void engine_show_step(void *user, const whit_step *step);
 /* engine_refine.c. Begins with a whole picture of the window; one that cannot be refined, by costs
    or adaptive samples, ends it. */
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame);
 void engine_refine_stop(struct engine_refine *refine);
+/* Goes on from where it was, as a whole picture of the window came to the same pixels as the one
+   that it began with: *frame then shows as many samples as the picture before. False: it cannot. */
+WHIT_CHECK bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame);
 /* With the lock: whether the window has the whole picture, and nothing else is to be done. */
 bool engine_can_refine(const struct engine *engine);
 /* Draws some of it. With the lock, which it gives back meanwhile. */
@@ -151,6 +165,8 @@ void engine_refine_pause(struct engine *engine);
    are none, or differ in nothing that has a name. */
 void engine_compare(const struct engine_kept *before, const struct engine_frame *after,
                     struct engine_change *change);
+/* Whether both are of one place, with the same ids and colours. */
+bool engine_is_same(const struct engine_kept *before, const struct engine_frame *after);
 /* In place of what was kept. Keeps nothing where memory runs out. */
 void engine_keep(struct engine_kept *kept, const struct engine_frame *frame);
 void engine_kept_finish(struct engine_kept *kept);

@@ -18,9 +18,19 @@ static size_t floats_of(const struct engine_refine *refine)
 void engine_refine_stop(struct engine_refine *refine)
 {
     free(refine->sum);
-    free(refine->held);
+    free(refine->held[0]);
+    free(refine->held[1]);
     free(refine->rgba);
     *refine = (struct engine_refine){0};
+}
+
+static void set_base(struct engine_refine *refine, const struct engine_frame *frame)
+{
+    refine->base = *frame;
+    refine->base.color = refine->base.ids = NULL;
+    refine->base.boxes = NULL;
+    refine->base.rgba = NULL;
+    refine->base.scene = NULL;
 }
 
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame)
@@ -29,11 +39,7 @@ void engine_refine_begin(struct engine_refine *refine, const struct engine_frame
     const whit_sampling *sampling = &frame->settings.picture.sampling;
     if (frame->settings.paint != PAINT_COLOR || sampling->kind != WHIT_SAMPLING_FIXED)
         return;
-    refine->base = *frame;
-    refine->base.color = refine->base.ids = NULL;
-    refine->base.boxes = NULL;
-    refine->base.rgba = NULL;
-    refine->base.scene = NULL;
+    set_base(refine, frame);
     refine->samples = frame->samples;
     refine->part = 1;
 }
@@ -49,9 +55,10 @@ static whit_result begin_sum(struct engine_refine *refine, const struct engine_k
     if (!kept->color || kept->width != refine->base.width || kept->height != refine->base.height)
         return WHIT_ERROR_MEMORY; /* it could not be kept */
     refine->sum = malloc(count * sizeof *refine->sum);
-    refine->held = malloc(count * sizeof *refine->held);
+    refine->held[0] = malloc(count * sizeof *refine->sum);
+    refine->held[1] = malloc(count * sizeof *refine->sum);
     refine->rgba = malloc(count);
-    if (!refine->sum || !refine->held || !refine->rgba)
+    if (!refine->sum || !refine->held[0] || !refine->held[1] || !refine->rgba)
         return WHIT_ERROR_MEMORY;
     memcpy(refine->sum, kept->color, count * sizeof *refine->sum);
     whit_result result = whit_image_create(kept->width, kept->height, 4, kept->color, &image);
@@ -84,17 +91,14 @@ static whit_result draw_part(struct session *session, const struct engine_refine
 /* (0 + 1) + (2 + 3), as resolve.comp adds up. */
 static void add_part(struct engine_refine *refine, const whit_image *image)
 {
-    const float *part = whit_image_floats(image);
+    const float *part = whit_image_floats(image), *first = refine->held[0],
+                *second = refine->held[1];
     size_t count = floats_of(refine);
-    float *sum = refine->sum, *held = refine->held;
-    if (refine->part == 1)
-        for (size_t i = 0; i < count; ++i)
-            sum[i] += part[i];
-    else if (refine->part == 2)
-        memcpy(held, part, count * sizeof *held);
+    if (refine->part < PARTS - 1)
+        memcpy(refine->held[refine->part - 1], part, count * sizeof *part);
     else
         for (size_t i = 0; i < count; ++i)
-            sum[i] = 0.25f * (sum[i] + (held[i] + part[i]));
+            refine->sum[i] = 0.25f * ((refine->sum[i] + first[i]) + (second[i] + part[i]));
     ++refine->part;
 }
 
@@ -107,28 +111,57 @@ static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
     return changed * PIXELS_A_CHANGE <= pixels;
 }
 
+/* The sum as a picture, and as it is displayed. */
+static whit_result show_sum(const struct engine_refine *refine, struct engine_frame *frame)
+{
+    const whit_renderer_params params = settings_picture(&refine->base.settings);
+    whit_image *color = NULL;
+    uint8_t *rgba = malloc(floats_of(refine));
+    whit_result result =
+        rgba ? whit_image_create(frame->width, frame->height, 4, refine->sum, &color)
+             : WHIT_ERROR_MEMORY;
+    if (result != WHIT_OK) {
+        free(rgba);
+        return result;
+    }
+    whit_image_display_as(color, &params);
+    whit_image_display_bytes(color, rgba);
+    whit_image_destroy(frame->color);
+    free(frame->rgba);
+    frame->color = color;
+    frame->rgba = rgba;
+    frame->samples = refine->samples;
+    frame->refined = true;
+    return WHIT_OK;
+}
+
 /* The picture of four times as many samples. */
 static whit_result finish_round(struct engine_refine *refine, struct engine_frame *frame)
 {
-    const whit_renderer_params params = settings_picture(&refine->base.settings);
     size_t bytes = floats_of(refine);
     *frame = refine->base;
-    frame->rgba = malloc(bytes);
-    whit_result result =
-        frame->rgba ? whit_image_create(frame->width, frame->height, 4, refine->sum, &frame->color)
-                    : WHIT_ERROR_MEMORY;
-    if (result != WHIT_OK)
-        return result;
-    whit_image_display_as(frame->color, &params);
-    whit_image_display_bytes(frame->color, frame->rgba);
     refine->samples *= PARTS;
     refine->part = 1;
-    frame->samples = refine->samples;
-    frame->refined = true;
+    whit_result result = show_sum(refine, frame);
+    if (result != WHIT_OK)
+        return result;
     refine->done = refine->samples * PARTS > WHIT_SAMPLES_MAX ||
                    looks_same(refine->rgba, frame->rgba, bytes / 4);
     memcpy(refine->rgba, frame->rgba, bytes);
     return WHIT_OK;
+}
+
+bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame)
+{
+    const whit_sampling *sampling = &frame->settings.picture.sampling;
+    bool goes_on = refine->sum && refine->samples > refine->base.samples &&
+                   sampling->kind == WHIT_SAMPLING_FIXED &&
+                   frame->samples == refine->base.samples &&
+                   settings_same_pixels(&refine->base.settings, &frame->settings);
+    if (!goes_on)
+        return false;
+    set_base(refine, frame);
+    return show_sum(refine, frame) == WHIT_OK;
 }
 
 /* Draws one part; without the lock. After every third part *frame is a picture of four times the

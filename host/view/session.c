@@ -79,6 +79,13 @@ static void note_part(void *user, double done)
     atomic_store(&session->part, (float)done);
 }
 
+static void note_step(void *user, const whit_step *step)
+{
+    const struct session *session = user;
+    if (session->step)
+        session->step(session->step_user, step);
+}
+
 /* A small picture: drivers compile when a kernel is run for the first time. */
 static whit_result warm_up(struct session *session)
 {
@@ -89,6 +96,7 @@ static whit_result warm_up(struct session *session)
     params.many_pictures = true;
     params.cancel = &session->cancel;
     params.progress = note_part;
+    params.step = note_step;
     params.progress_user = session;
     double start_ms = whit_clock_ms();
     whit_result result =

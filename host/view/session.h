@@ -28,6 +28,8 @@ enum session_stage {
 const char *session_stage_name(enum session_stage stage);
 
 struct session {
+    void (*step)(void *user, const whit_step *step); /* of the picture that is drawn; or NULL */
+    void *step_user;
     struct settings settings; /* of scene, trees and kernel; of the picture: last drawn */
     struct scene_ref *scene;
     whit_accel *accel;

@@ -95,7 +95,7 @@ static void take_frame(struct view *view)
     if (!engine_take(view->engine, false, &next))
         return;
     compare_leave(&view->compare, frame);
-    if (next.refined) { /* hits and trees are those of the picture before */
+    if (next.refined && !next.ids) { /* hits and trees are those of the picture before */
         next.ids = frame->ids;
         next.boxes = frame->boxes;
         frame->ids = NULL;

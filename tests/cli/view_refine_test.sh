@@ -12,9 +12,11 @@ better: | frame.samples > 4 | frame.pixels not as start | frame.ids as start | w
     | frame.number > 2
 press F12
 copied: press Ctrl+C | frame.pixels as better
-stays: press T | frame.samples = 4 | frame.pixels as start
-back: press Shift+T | frame.pixels as start
+sharp: press T | frame.samples as better | frame.pixels as better | frame.ids as start | change.other_colors = 0
+back: press Shift+T | frame.pixels as better
 picked: click 24 18 | picked = true
+other: press Equal | frame.samples = 4
+less: press Minus | frame.samples = 4 | frame.pixels as start
 refined
 again: | frame.pixels as better | frame.samples as better
 split: press C | frame.samples = 4 | frame.pixels as start | compare.known = true

@@ -124,6 +124,25 @@ TEST(large_trees_are_drawn_in_packets)
 
 /* ---- At rest ---- */
 
+/* Every 8th, 4th and 2nd pixel are shown before all of them, but where that is quick. */
+TEST(a_picture_comes_in_steps)
+{
+    struct engine_frame frame;
+    struct settings settings = settings_of("cube.json");
+    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    assert_int_equal(frame.number, 4);
+    assert_int_equal(frame.first, 1);
+    assert_int_equal(frame.divisor, 1);
+    close_engine(engine, &frame);
+    engine = engine_of(&(struct engine_params){.budget_ms = 1e9}, &settings, &frame);
+    uint64_t before = frame.number;
+    settings.picture.exposure_ev = 1.0;
+    engine_ask(engine, &settings, false);
+    take_all(engine, &frame);
+    assert_int_equal(frame.number, before + 1);
+    close_engine(engine, &frame);
+}
+
 /* What is asked for while the picture is refined comes next, and is refined in its turn. */
 TEST(whoever_moves_on_does_not_wait_for_refining)
 {
