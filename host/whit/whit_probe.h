@@ -79,6 +79,18 @@ WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t 
                                   uint32_t max_rays, whit_probe_report **out);
 void whit_probe_report_destroy(whit_probe_report *report);
 
+/* A ray of a report, or several shadow rays from where it ended to one light that ended alike: the
+   same end, at the same instance, with the same share of the light. */
+typedef struct whit_probe_row {
+    uint32_t ray; /* the first one */
+    uint32_t count;
+} whit_probe_row;
+/* The rows of a report, which hold each ray once: a ray is followed by its shadow rays, those that
+   reach their light first, then by its branches, what brought most first. *rows is the caller's,
+   for whit_memory_destroy. WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_probe_rows(const whit_probe_report *report, whit_probe_row **rows,
+                                       uint32_t *count);
+
 #ifdef __cplusplus
 }
 #endif

@@ -102,14 +102,17 @@ static void print_head(const struct probe *probe)
     printf("exact      differs in %u of %u\n\n", exact_other, exact);
 }
 
-static void ray_text(const struct probe *probe, const whit_probe_ray *ray, char text[TEXT_MAX])
+static void ray_text(const struct probe *probe, const whit_probe_ray *ray, uint32_t count,
+                     char text[TEXT_MAX])
 {
     int indent = (int)(ray->generation < 20 ? ray->generation : 20) * 2;
     char name[34];
     if (ray->kind == WHIT_RAY_SHADOW)
-        snprintf(text, TEXT_MAX, "%*sshadow, %s, point %u", indent, "",
-                 whit_text_show(light_of(probe, ray->light).name, name, sizeof name),
-                 ray->light_sample);
+        whit_text_show(light_of(probe, ray->light).name, name, sizeof name);
+    if (count > 1)
+        snprintf(text, TEXT_MAX, "%*s%u shadow, %s", indent, "", count, name);
+    else if (ray->kind == WHIT_RAY_SHADOW)
+        snprintf(text, TEXT_MAX, "%*sshadow, %s, point %u", indent, "", name, ray->light_sample);
     else
         snprintf(text, TEXT_MAX, "%*s%s%s", indent, "", value_word(values_rays, (int)ray->kind),
                  ray->straight ? ", straight on" : "");
@@ -123,28 +126,29 @@ static void hit_text(const whit_probe_hit *hit, char text[TEXT_MAX])
         snprintf(text, TEXT_MAX, "nothing");
 }
 
-static void end_text(const whit_probe_ray *ray, char text[TEXT_MAX])
+static void end_text(const whit_probe_ray *ray, uint32_t count, char text[TEXT_MAX])
 {
-    const char *name = whit_probe_end_name(ray->end);
+    const char *name = whit_probe_end_name(ray->end), *all = count > 1 ? "all " : "";
     if (ray->passed)
-        snprintf(text, TEXT_MAX, "%s, passed %u", name, ray->passed);
+        snprintf(text, TEXT_MAX, "%s%s, passed %u", all, name, ray->passed);
     else
-        snprintf(text, TEXT_MAX, "%s", name);
+        snprintf(text, TEXT_MAX, "%s%s", all, name);
 }
 
 /* What the table says of a ray, column by column. */
 enum { COLUMN_RAY, COLUMN_END, COLUMN_DEVICE, COLUMN_TWIN, COLUMN_EXACT, COLUMNS };
 
-static void cell_text(const struct probe *probe, const whit_probe_ray *ray, int column,
+static void cell_text(const struct probe *probe, const whit_probe_row *row, int column,
                       char text[TEXT_MAX])
 {
+    const whit_probe_ray *ray = &probe->report->rays[row->ray];
     bool equal = column == COLUMN_TWIN ? ray->equal : ray->exact_equal;
     const whit_probe_hit *hit = column == COLUMN_TWIN ? &ray->twin : &ray->exact;
     snprintf(text, TEXT_MAX, "-");
     if (column == COLUMN_RAY)
-        ray_text(probe, ray, text);
+        ray_text(probe, ray, row->count, text);
     else if (column == COLUMN_END)
-        end_text(ray, text);
+        end_text(ray, row->count, text);
     else if (!was_traced(ray) || (column == COLUMN_EXACT && !ray->exact_known))
         return;
     else if (column == COLUMN_DEVICE)
@@ -171,31 +175,42 @@ static void print_row_end(const struct probe *probe, const whit_probe_ray *ray)
     putchar('\n');
 }
 
-int probe_print(const struct probe *probe)
+static void print_rows(const struct probe *probe, const whit_probe_row *rows, uint32_t count)
 {
     static const char *const heads[COLUMNS] = {"ray", "ended", "device: t at instance/primitive",
                                                "twin", "exact"};
-    const whit_probe_report *report = probe->report;
     char text[TEXT_MAX];
     int widths[COLUMNS];
-    print_head(probe);
     for (int c = 0; c < COLUMNS; ++c) {
         size_t width = strlen(heads[c]);
-        for (uint32_t i = 0; i < report->ray_count; ++i) {
-            cell_text(probe, &report->rays[i], c, text);
+        for (uint32_t i = 0; i < count; ++i) {
+            cell_text(probe, &rows[i], c, text);
             width = strlen(text) > width ? strlen(text) : width;
         }
         widths[c] = (int)width;
         printf("%-*s  ", widths[c], heads[c]);
     }
     printf("weight, added, what it met\n");
-    for (uint32_t i = 0; i < report->ray_count; ++i) {
+    for (uint32_t i = 0; i < count; ++i) {
         for (int c = 0; c < COLUMNS; ++c) {
-            cell_text(probe, &report->rays[i], c, text);
+            cell_text(probe, &rows[i], c, text);
             printf("%-*s  ", widths[c], text);
         }
-        print_row_end(probe, &report->rays[i]);
+        print_row_end(probe, &probe->report->rays[rows[i].ray]);
     }
+}
+
+int probe_print(const struct probe *probe)
+{
+    whit_probe_row *rows;
+    uint32_t count;
+    if (whit_probe_rows(probe->report, &rows, &count) != WHIT_OK) {
+        cli_error("out of memory");
+        return EXIT_USAGE;
+    }
+    print_head(probe);
+    print_rows(probe, rows, count);
+    whit_memory_destroy(rows);
     return cli_finish_stdout(EXIT_FINE);
 }
 

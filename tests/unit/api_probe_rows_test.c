@@ -1,0 +1,86 @@
+/* Ray trees in rows: what brought most first, shadow rays that ended alike in one row. */
+#include <string.h>
+
+#include "unit.h"
+#include "whit.h"
+
+enum { RAYS = 12 };
+
+static whit_probe_ray rays[RAYS];
+static whit_probe_report report = {.rays = rays, .ray_count = RAYS};
+
+static void put(uint32_t i, whit_ray_kind kind, uint32_t parent, whit_probe_end end, float added)
+{
+    rays[i] = (whit_probe_ray){.kind = kind,
+                               .parent = parent,
+                               .end = end,
+                               .added = {added, added, added},
+                               .light = kind == WHIT_RAY_SHADOW ? 0 : WHIT_NONE,
+                               .equal = true};
+}
+
+/* A camera ray; 4 shadow rays, of which 2 are blocked by one instance; a dim mirror whose own
+   branch brings light, and a refracted ray that brings more. */
+static int make_report(void **state)
+{
+    (void)state;
+    put(0, WHIT_RAY_PRIMARY, WHIT_NONE, WHIT_PROBE_DIVIDED, 0.1f);
+    put(1, WHIT_RAY_SHADOW, 0, WHIT_PROBE_BLOCKED, 0.0f);
+    put(2, WHIT_RAY_SHADOW, 0, WHIT_PROBE_REACHED, 1.0f);
+    put(3, WHIT_RAY_SHADOW, 0, WHIT_PROBE_BLOCKED, 0.0f);
+    put(4, WHIT_RAY_SHADOW, 0, WHIT_PROBE_REACHED, 1.0f);
+    put(5, WHIT_RAY_SHADOW, 0, WHIT_PROBE_BLOCKED, 0.0f);
+    put(6, WHIT_RAY_REFLECTED, 0, WHIT_PROBE_DIVIDED, 0.0f);
+    put(7, WHIT_RAY_SHADOW, 6, WHIT_PROBE_REACHED, 1.0f);
+    put(8, WHIT_RAY_REFLECTED, 6, WHIT_PROBE_MISSED, 0.2f);
+    put(9, WHIT_RAY_REFLECTED, 0, WHIT_PROBE_BAILOUT, 0.0f);
+    put(10, WHIT_RAY_REFRACTED, 0, WHIT_PROBE_OPAQUE, 0.3f);
+    put(11, WHIT_RAY_SHADOW, 10, WHIT_PROBE_REACHED, 1.0f);
+    rays[5].device.instance = 3; /* another blocker than that of 1 and 3 */
+    return 0;
+}
+
+static void check_rows(const whit_probe_row *expected, uint32_t expected_count)
+{
+    whit_probe_row *rows;
+    uint32_t count;
+    assert_int_equal(whit_probe_rows(&report, &rows, &count), WHIT_OK);
+    assert_int_equal(count, expected_count);
+    for (uint32_t i = 0; i < count; ++i) {
+        assert_int_equal(rows[i].ray, expected[i].ray);
+        assert_int_equal(rows[i].count, expected[i].count);
+    }
+    whit_memory_destroy(rows);
+}
+
+TEST(what_brought_most_comes_first)
+{
+    static const whit_probe_row expected[] = {{0, 1},  {2, 2}, {1, 2}, {5, 1}, {10, 1},
+                                              {11, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}};
+    check_rows(expected, 10);
+}
+
+/* A difference between device, twin and exact arithmetic is never folded away. */
+TEST(what_differs_stands_alone)
+{
+    static const whit_probe_row expected[] = {{0, 1},  {2, 1}, {4, 1}, {1, 2}, {5, 1}, {10, 1},
+                                              {11, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}};
+    rays[4].equal = false;
+    check_rows(expected, 11);
+    rays[4].equal = true;
+    rays[4].light = 1;
+    check_rows(expected, 11);
+    rays[4].light = 0;
+}
+
+TEST(a_report_without_rays_has_no_rows)
+{
+    report.ray_count = 0;
+    check_rows(NULL, 0);
+    report.ray_count = RAYS;
+}
+
+int main(void)
+{
+    return unit_run(make_report, NULL);
+}
