@@ -91,6 +91,7 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
         info->mesh_triangle_count += scene->meshes[i].triangle_count;
     copy3_double(info->lo, handle->pose.lo);
     copy3_double(info->hi, handle->pose.hi);
+    scene_pose_objects(scene, &handle->pose, info->objects_lo, info->objects_hi);
 }
 
 void whit_scene_get_mesh(const whit_scene *handle, uint32_t index, whit_mesh_info *info)

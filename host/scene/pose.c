@@ -255,7 +255,7 @@ static struct affine instance_matrix(const struct scene_instance *instance,
     return affine_multiply(&nodes[instance->node], &instance->local);
 }
 
-static void grow_bounds(struct scene_pose *pose, const struct affine *matrix,
+static void grow_bounds(double lo[3], double hi[3], const struct affine *matrix,
                         const struct scene_mesh *mesh)
 {
     if (mesh->lo[0] > mesh->hi[0])
@@ -266,10 +266,57 @@ static void grow_bounds(struct scene_pose *pose, const struct affine *matrix,
             p[i] = (double)(corner >> i & 1 ? mesh->hi[i] : mesh->lo[i]);
         affine_point(matrix, p, p);
         for (int i = 0; i < 3; ++i) {
-            pose->lo[i] = fmin(pose->lo[i], p[i]);
-            pose->hi[i] = fmax(pose->hi[i], p[i]);
+            lo[i] = fmin(lo[i], p[i]);
+            hi[i] = fmax(hi[i], p[i]);
         }
     }
+}
+
+/* A floor is flat, and wider than what stands on it. */
+static const double FLAT = 0.02, WIDER = 1.5;
+
+/* The longest side of a box; *thin: the shortest one. */
+static double box_sides(const double lo[3], const double hi[3], double *thin)
+{
+    double longest = 0.0;
+    *thin = INFINITY;
+    for (int i = 0; i < 3; ++i) {
+        longest = fmax(longest, hi[i] - lo[i]);
+        *thin = fmin(*thin, hi[i] - lo[i]);
+    }
+    return longest;
+}
+
+/* Grows the box by the instances that are flat, up to so wide, or by those that are not. */
+static void grow_objects(const struct scene *scene, const struct scene_pose *pose, bool flat,
+                         double max, double lo[3], double hi[3])
+{
+    for (uint32_t i = 0; i < scene->instance_count; ++i) {
+        double own_lo[3] = {INFINITY, INFINITY, INFINITY}, thin;
+        double own_hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        grow_bounds(own_lo, own_hi, &pose->instances[i], mesh);
+        double longest = box_sides(own_lo, own_hi, &thin);
+        if (flat == (thin < FLAT * longest) && longest <= max)
+            grow_bounds(lo, hi, &pose->instances[i], mesh);
+    }
+}
+
+void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose, double lo[3],
+                        double hi[3])
+{
+    double thin;
+    for (int i = 0; i < 3; ++i) {
+        lo[i] = INFINITY;
+        hi[i] = -INFINITY;
+    }
+    grow_objects(scene, pose, false, INFINITY, lo, hi);
+    if (lo[0] <= hi[0]) {
+        grow_objects(scene, pose, true, WIDER * box_sides(lo, hi, &thin), lo, hi);
+        return;
+    }
+    memcpy(lo, pose->lo, 3 * sizeof *lo);
+    memcpy(hi, pose->hi, 3 * sizeof *hi);
 }
 
 /* Transforms end in floats on the device, so must their inverses. */
@@ -300,7 +347,7 @@ static whit_result pose_instances(const struct scene *scene, const struct affine
             return WHIT_ERROR_INPUT;
         }
         pose->instances[i] = matrix;
-        grow_bounds(pose, &matrix, &scene->meshes[instance->mesh]);
+        grow_bounds(pose->lo, pose->hi, &matrix, &scene->meshes[instance->mesh]);
     }
     return WHIT_OK;
 }

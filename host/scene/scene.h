@@ -335,6 +335,10 @@ bool scene_can_place(const struct affine *matrix);
    that time (named in the log), WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
                                        struct scene_pose *pose);
+/* World bounds of what stands on floors, without these: all there is where there is nothing else.
+ */
+void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose, double lo[3],
+                        double hi[3]);
 void scene_pose_finish(struct scene_pose *pose);
 
 /* Effects, and why the scene calls for them: the receipt of `whit scene` and the source of the

@@ -197,7 +197,7 @@ const struct setting settings_table[] = {
      "more than X 16, and then 64",
      AT_OWN(aa), .values = values_samples, .commands = IN_PICTURES | IN_SCENE,
      .change = SETTING_LIGHT, .always = true, .tells = aa_tells, .title = "anti-aliasing",
-     .steps = steps_aa, .key = 'A'},
+     .steps = steps_aa, .key = 'Y'},
     {"depth", 0, "N", "most bounces; 0: only what is seen directly", AT(COUNT, picture.depth),
      .max = DEPTH_MAX, .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .always = true,
      .title = "bounces", .step = 1.0, .shown_max = 32.0, .key = '=', .key_back = '-'},
@@ -222,7 +222,7 @@ const struct setting settings_table[] = {
      "EXR and PFM stay as they are",
      AT(NUMBER, picture.exposure_ev), .min = -32.0, .max = 32.0, .commands = IN_PICTURES | IN_COST,
      .change = SETTING_LIGHT, .title = "exposure", .step = 0.5, .shown_min = -8.0, .shown_max = 8.0,
-     .key = 'E', .json = "exposure_ev"},
+     .key = 'Z', .json = "exposure_ev"},
     {"effects", 0, "auto|all|+NAME,-NAME",
      "compile what the scene calls for, or everything: the\n"
      "picture is the same; or more and less by name: less\n"

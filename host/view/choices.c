@@ -13,6 +13,12 @@ const struct setting *choice_next(const struct setting *row)
     return NULL;
 }
 
+bool choice_is_for_experts(const struct setting *row)
+{
+    return row->change == SETTING_COST || row->change == SETTING_HITS ||
+           row->change == SETTING_PAINT;
+}
+
 static uint32_t count_of(const struct setting_value *steps)
 {
     return steps ? value_count(steps) : 0;

@@ -7,6 +7,8 @@
 
 /* The row behind `row`, or with NULL the first; NULL: there is none. */
 const struct setting *choice_next(const struct setting *row);
+/* Whether it is about how rays find what they hit, or about what that costs; it comes last. */
+bool choice_is_for_experts(const struct setting *row);
 /* The steps in words, CHOICE_WORDS_MAX at most; 0: it is a number. */
 enum { CHOICE_WORDS_MAX = 16 };
 uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MAX]);

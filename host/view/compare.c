@@ -106,6 +106,10 @@ static void subtract(const whit_image *a, const whit_image *b, float *out)
     }
 }
 
+/* Of colours: what a display can show. Less than that is no difference to be looked at, and is not
+   stretched until it looks like one. */
+static const double STEP_SHOWN = 1.0 / 255.0;
+
 static void run_heat(void *context)
 {
     struct compare_job *job = context;
@@ -123,7 +127,7 @@ static void run_heat(void *context)
         subtract(heat->pair.color[0], heat->pair.color[1], numbers);
         if (heat->scale <= 0.0 &&
             whit_image_create(heat->width, heat->height, 1, numbers, &values) == WHIT_OK)
-            heat->scale = whit_image_heat_scale(values);
+            heat->scale = fmax(whit_image_heat_scale(values), info.channels < 3 ? 0.0 : STEP_SHOWN);
         palette_paint(job->palette, numbers, pixels, heat->scale > 0.0 ? heat->scale : 1.0,
                       heat->rgba);
     }

@@ -49,6 +49,10 @@ static void draw_difference(const struct compare_figures *figures)
 {
     const struct difference *d = &figures->difference;
     ui_text("A %.2f ms, B %.2f ms", figures->ms[0], figures->ms[1]);
+    if (d->other_ids == 0 && d->other_colors == 0) {
+        ui_text_color(0xFFD0E090u, "identical");
+        return;
+    }
     ui_text_color(d->other_ids ? 0xFF40C0FFu : 0xFFD0E090u, "%llu of %llu pixels",
                   (unsigned long long)d->other_ids, (unsigned long long)d->pixels);
     ui_text("hit something else,");

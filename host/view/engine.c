@@ -246,6 +246,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
 void engine_probe_finish(struct engine_probe *probe)
 {
     whit_probe_report_destroy(probe->report);
+    whit_memory_destroy(probe->rows);
     scene_ref_drop(probe->scene);
     *probe = (struct engine_probe){0};
 }
@@ -271,6 +272,8 @@ static void probe_one(struct engine *engine)
     pthread_mutex_unlock(&engine->lock);
     double start_ms = whit_clock_ms();
     whit_result result = whit_probe(session->renderer, x, y, 0, &probe.report);
+    if (result == WHIT_OK)
+        result = whit_probe_rows(probe.report, &probe.rows, &probe.row_count);
     probe.ms = whit_clock_ms() - start_ms;
     pthread_mutex_lock(&engine->lock);
     engine->busy = false;

@@ -69,10 +69,11 @@ double engine_drawn_ms(const whit_stats *stats);
 /* What another kernel, tree or setting changed, from the last whole picture before to the first one
    after, of the same place. */
 struct engine_change {
-    uint64_t number;    /* counts up; 0: none yet */
-    char what[128];     /* "traversal distance -> sign" */
-    uint64_t pixels;    /* of both pictures */
-    uint64_t other_ids; /* pixels that hit something else */
+    uint64_t number;          /* counts up; 0: none yet */
+    struct settings settings; /* after it */
+    char what[128];           /* "traversal distance -> sign" */
+    uint64_t pixels;          /* of both pictures */
+    uint64_t other_ids;       /* pixels that hit something else */
     uint64_t other_colors;
     double largest, mean;       /* difference of a channel, linear */
     double before_ms, after_ms; /* of drawing, on the device where it measures */
@@ -103,6 +104,8 @@ struct engine_probe {
     struct settings settings;  /* of the picture */
     struct scene_ref *scene;   /* held */
     whit_probe_report *report; /* NULL where it failed: see engine_status.error */
+    whit_probe_row *rows;      /* of the report */
+    uint32_t row_count;
     double ms;
 };
 void engine_probe_finish(struct engine_probe *probe);

@@ -62,6 +62,7 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
     difference_measure(&a, &b, 4, (uint64_t)after->width * after->height, &difference);
     *change = (struct engine_change){
         .number = change->number + 1,
+        .settings = after->settings,
         .pixels = difference.pixels,
         .other_ids = difference.other_ids,
         .other_colors = difference.other_colors,

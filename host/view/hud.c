@@ -36,17 +36,12 @@ static void draw_figures(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
     const whit_stats *s = &frame->stats;
-    struct swapchain_info chain;
-    swapchain_get_info(view->swapchain, &chain);
     double ms = engine_drawn_ms(s);
     char fps[24] = "still";
     if (view->rate.fps > 0.0 && view_is_moving(view))
         snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
     ui_text("%9s  render %.2f ms", fps, ms);
-    ui_text_beside(COLOR_TEXT, " present %.2f ms", chain.present_ms);
-    ui_text("%.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
-    if (frame->visits >= 0.0)
-        ui_text_beside(COLOR_TEXT, " %.1f visits a camera ray", frame->visits);
+    ui_text_beside(COLOR_TEXT, " %.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
 }
 
 static void draw_names(const struct view *view)
@@ -112,14 +107,17 @@ static void draw_more(const struct view *view)
             frame->accel.depth, (double)frame->accel.bytes / 1048576.0, s->kernel_instructions,
             frame->compile_ms);
     ui_text("%s", frame->device.name);
-    ui_text_dim("over the picture %.2f ms, image after %.2f ms", chain.draw_ms, chain.wait_ms);
+    if (frame->visits >= 0.0)
+        ui_text("%.1f visits a camera ray", frame->visits);
+    ui_text_dim("present %.2f ms, over the picture %.2f ms, image after %.2f ms", chain.present_ms,
+                chain.draw_ms, chain.wait_ms);
 }
 
 /* "traversal distance -> sign", one change a line; then what that did. */
 static void draw_change(const struct view *view)
 {
     const struct engine_change *c = &view->status.change;
-    if (c->number == 0)
+    if (c->number == 0 || !settings_same(&c->settings, &view->settings))
         return;
     ui_separator();
     for (const char *at = c->what; *at;) {
@@ -128,7 +126,11 @@ static void draw_change(const struct view *view)
         ui_text("%.*s", length < 46 ? length : 46, at);
         at += length + (end ? 2 : 0);
     }
-    ui_text("%.2f -> %.2f ms", c->before_ms, c->after_ms);
+    ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
+    if (c->other_ids == 0 && c->other_colors == 0) {
+        ui_text_color(COLOR_GOOD, "same picture");
+        return;
+    }
     ui_text_color(c->other_ids ? COLOR_WARNING : COLOR_GOOD, "%llu of %llu pixels changed",
                   (unsigned long long)c->other_ids, (unsigned long long)c->pixels);
     ui_text_beside(COLOR_TEXT, "what they hit,");
@@ -172,7 +174,7 @@ static void draw_hud(const struct view *view)
 
 /* Keys, what they do and their state, once or twice across the window; the widths in characters.
  */
-enum { SHEET_CELLS = 3, SHEET_KEYS = 10, SHEET_NAME = 23, SHEET_STATE = 22, SHEET_STATE_MIN = 11 };
+enum { SHEET_CELLS = 3, SHEET_KEYS = 12, SHEET_NAME = 23, SHEET_STATE = 22, SHEET_STATE_MIN = 11 };
 
 static int lay_out_sheet(int widths[2 * SHEET_CELLS])
 {
@@ -225,9 +227,10 @@ static void draw_help(struct view *view)
 {
     static const char *const mouse[][2] = {
         {"left", "drag: around; click: what is there"},
-        {"right", "drag: look; held with W A S D Q E: fly"},
+        {"right", "drag: look"},
         {"middle", "drag: aside"},
         {"wheel", "nearer"},
+        {"W A S D Q E", "fly; with Shift faster"},
         {"drop", "open a file; a .view: its settings"},
     };
     const int widths[2] = {SHEET_KEYS,
@@ -235,7 +238,6 @@ static void draw_help(struct view *view)
     if (!view->help)
         return;
     if (ui_panel_begin("Keys", 0.5f, 0.0f, UI_PANEL_HOLD)) {
-        draw_keys(view);
         if (ui_table_begin("mouse", 2)) {
             ui_table_widths(widths, 2);
             for (size_t i = 0; i < sizeof mouse / sizeof *mouse; ++i) {
@@ -244,8 +246,19 @@ static void draw_help(struct view *view)
             }
             ui_table_end();
         }
+        draw_keys(view);
     }
     ui_panel_end();
+}
+
+/* "drawing 35 %, 2 s left": as long as what is done took, for what is not. */
+static void say_drawing(const struct engine_status *status, char *text, size_t bytes)
+{
+    double part = (double)status->part, left_s = status->drawing_ms * 1e-3 * (1.0 / part - 1.0);
+    if (part < 0.05)
+        snprintf(text, bytes, "drawing %.0f %%", part * 1e2);
+    else
+        snprintf(text, bytes, "drawing %.0f %%, %.*f s left", part * 1e2, left_s < 9.95, left_s);
 }
 
 /* Draws the panel of what takes long: a session being made, or a picture being drawn. */
@@ -262,8 +275,7 @@ static void draw_work(const struct view *view)
             snprintf(text, sizeof text, "%s %.1f s", session_stage_name(status->stage),
                      status->stage_ms * 1e-3);
         else
-            snprintf(text, sizeof text, "drawing %.0f %%, %.1f s", (double)status->part * 1e2,
-                     status->drawing_ms * 1e-3);
+            say_drawing(status, text, sizeof text);
         ui_progress(making ? (float)((double)status->stage + 0.5) / (float)SESSION_DONE
                            : status->part,
                     text);

@@ -30,10 +30,11 @@ static enum ui_key ui_key_of(int key)
 
 /* ---- Keys ---- */
 
-/* Those that move the camera while the right button is held; letters do other things else. */
-static bool flies(const struct view *view, int key)
+/* Those that move the camera, and do nothing else. */
+static bool flies(const struct view_event *event)
 {
-    return view->input.buttons[1] && key < 128 && strchr("WASDQE", key) && key;
+    return !(event->mods & EVENT_CTRL) && event->key < 128 && event->key &&
+           strchr("WASDQE", event->key);
 }
 
 static void on_key(struct view *view, const struct view_event *event)
@@ -43,7 +44,7 @@ static void on_key(struct view *view, const struct view_event *event)
         view->input.down[event->key] = event->down;
     if (own != UI_KEY_COUNT)
         ui_key_event(view->ui, own, event->down);
-    if (!event->down || ui_has_keys(view->ui) || flies(view, event->key))
+    if (!event->down || ui_has_keys(view->ui) || flies(event))
         return;
     if (key_act(view, event->key, event->mods))
         view->dirty = true;
@@ -52,7 +53,7 @@ static void on_key(struct view *view, const struct view_event *event)
 static bool fly(struct view *view, double seconds)
 {
     const bool *down = view->input.down;
-    if (!view->input.buttons[1] || !view->camera_known)
+    if (!view->camera_known || down[KEY_CTRL] || ui_has_keys(view->ui))
         return false;
     double step = FLY_A_SECOND * seconds * (down[KEY_SHIFT] ? 4.0 : 1.0);
     double right = (down['D'] - down['A']) * step, up = (down['E'] - down['Q']) * step;

@@ -444,83 +444,115 @@ static void say_prices(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, view->prices_open ? "shown" : "not shown");
 }
 
+/* In the order of the sheet, by groups; keys of settings come first in theirs. */
 static const struct key_binding bindings[] = {
-    {'K', 0, "K", NULL, "tree builder", next_builder, .state = say_builder},
-    {'G', 0, "G", NULL, "trees", switch_trees, .state = say_trees},
-    {'B', 0, "B Shift+B", "depth, next cost", "depth view", .act = switch_depth_view},
-    {'B', EVENT_SHIFT, NULL, NULL, "next cost view", .act = next_cost_view},
-    {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", less_scale, .state = say_scale},
-    {']', 0, NULL, NULL, "twice the scale", more_scale, .state = say_scale},
-    {'\\', 0, NULL, NULL, "scale by the picture", .act = own_scale},
-    {'F', 0, "F", "look under mouse", "look at what is under the mouse", .act = pick_focus},
-    {'N', 0, "N", NULL, "boxes of trees", next_boxes, .state = say_boxes},
-    {'J', 0, "J Shift+J", "deeper, higher", "a level deeper", deeper_boxes, .state = say_level},
-    {'J', EVENT_SHIFT, NULL, NULL, "a level higher", higher_boxes, .state = say_level},
-    {'C', 0, "C", "A beside B", "A beside B, frozen now", switch_split, .state = say_split},
-    {'D', 0, "D", NULL, "A minus B", switch_difference, .state = say_difference},
-    {'P', 0, "P", "what knobs cost", "prices of this view", price_switch, .state = say_prices},
-    {'X', 0, "X", "effects, prices", "effects and prices", switch_effects, .state = say_effects},
-    {KEY_TAB, 0, "Tab", "settings", "settings by mouse", switch_settings, .state = say_settings},
-    {'S', EVENT_CTRL, "Ctrl+S", "save settings", "save these settings", .act = panels_save},
-    {KEY_HOME, 0, "Home", NULL, "all of the scene", .act = fit_scene},
+    {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
+    {'F', 0, "F", "look under mouse", "look at what is under the mouse", pick_focus,
+     .group = KEYS_CAMERA},
+    {'1', 0, "1 2 3", "front right above", "from the front", look_front, .group = KEYS_CAMERA},
+    {'2', 0, NULL, NULL, "from the right", look_right, .group = KEYS_CAMERA},
+    {'3', 0, NULL, NULL, "from above", look_top, .group = KEYS_CAMERA},
+    {'4', 0, "4 5 6", "back left below", "from behind", look_back, .group = KEYS_CAMERA},
+    {'5', 0, NULL, NULL, "from the left", look_left, .group = KEYS_CAMERA},
+    {'6', 0, NULL, NULL, "from below", look_bottom, .group = KEYS_CAMERA},
     {'0', 0, "0", "file's cameras", "next camera of the file", next_file_camera,
-     .state = say_camera},
-    {'1', 0, "1 2 3", "front right above", "from the front", .act = look_front},
-    {'2', 0, NULL, NULL, "from the right", .act = look_right},
-    {'3', 0, NULL, NULL, "from above", .act = look_top},
-    {'4', 0, "4 5 6", "back left below", "from behind", .act = look_back},
-    {'5', 0, NULL, NULL, "from the left", .act = look_left},
-    {'6', 0, NULL, NULL, "from below", .act = look_bottom},
-    {KEY_SPACE, 0, "Space", NULL, "animation", switch_playing, .state = say_playing},
-    {',', 0, ", .", "a frame back, on", "a frame back", .act = step_back},
-    {'.', 0, NULL, NULL, "a frame on", .act = step_forward},
-    {'L', 0, "L", NULL, "animation runs", switch_loop, .state = say_loop},
-    {'9', 0, "9 Shift+9", "slower, faster", "half speed", slower, .state = say_speed},
-    {'9', EVENT_SHIFT, NULL, NULL, "double speed", faster, .state = say_speed},
-    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", last_scene, .state = say_scene},
-    {KEY_RIGHT, 0, NULL, NULL, "scene after", next_scene, .state = say_scene},
-    {'R', 0, "R", "read it again", "read the scene again", .act = scenes_read_again},
-    {KEY_F12, 0, "F12", NULL, "save the picture", .act = save_picture},
-    {'C', EVENT_CTRL, "Ctrl+C", "copy command", "copy the `whit render` line", .act = copy_line},
-    {'H', 0, "H F1", NULL, "this list", .act = switch_help},
-    {KEY_F1, 0, NULL, NULL, "this list", .act = switch_help},
-    {KEY_F1 + 1, 0, "F2", NULL, "figures", next_hud, .state = say_hud},
-    {KEY_F1 + 10, 0, "F11", NULL, "full screen", switch_fullscreen, .state = say_fullscreen},
-    {KEY_ESCAPE, 0, "Escape", NULL, "twice: quit", .act = escape},
+     .state = say_camera, .group = KEYS_CAMERA},
+    {KEY_TAB, 0, "Tab", "settings", "settings by mouse", switch_settings, .state = say_settings,
+     .group = KEYS_PICTURE},
+    {'X', 0, "X", "effects, prices", "effects and prices", switch_effects, .state = say_effects,
+     .group = KEYS_PICTURE},
+    {'P', 0, "P", "what knobs cost", "prices of this view", price_switch, .state = say_prices,
+     .group = KEYS_PICTURE},
+    {KEY_SPACE, 0, "Space", NULL, "animation", switch_playing, .state = say_playing,
+     .group = KEYS_PICTURE},
+    {',', 0, ", .", "a frame back, on", "a frame back", step_back, .group = KEYS_PICTURE},
+    {'.', 0, NULL, NULL, "a frame on", step_forward, .group = KEYS_PICTURE},
+    {'L', 0, "L", NULL, "animation runs", switch_loop, .state = say_loop, .group = KEYS_PICTURE},
+    {'9', 0, "9 Shift+9", "slower, faster", "half speed", slower, .state = say_speed,
+     .group = KEYS_PICTURE},
+    {'9', EVENT_SHIFT, NULL, NULL, "double speed", faster, .state = say_speed,
+     .group = KEYS_PICTURE},
+    {KEY_F12, 0, "F12", NULL, "save the picture", save_picture, .group = KEYS_FILES},
+    {'C', EVENT_CTRL, "Ctrl+C", "copy command", "copy the `whit render` line", copy_line,
+     .group = KEYS_FILES},
+    {'S', EVENT_CTRL, "Ctrl+S", "save settings", "save these settings", panels_save,
+     .group = KEYS_FILES},
+    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", last_scene, .state = say_scene,
+     .group = KEYS_FILES},
+    {KEY_RIGHT, 0, NULL, NULL, "scene after", next_scene, .state = say_scene, .group = KEYS_FILES},
+    {'R', 0, "R", "read it again", "read the scene again", scenes_read_again, .group = KEYS_FILES},
+    {'H', 0, "H F1", NULL, "this list", switch_help, .group = KEYS_FILES},
+    {KEY_F1, 0, NULL, NULL, "this list", switch_help, .group = KEYS_FILES},
+    {KEY_F1 + 1, 0, "F2", NULL, "figures", next_hud, .state = say_hud, .group = KEYS_FILES},
+    {KEY_F1 + 10, 0, "F11", NULL, "full screen", switch_fullscreen, .state = say_fullscreen,
+     .group = KEYS_FILES},
+    {KEY_ESCAPE, 0, "Escape", NULL, "twice: quit", escape, .group = KEYS_FILES},
+    {'I', 0, "I", "A beside B", "A beside B, frozen now", switch_split, .state = say_split,
+     .group = KEYS_EXPERTS},
+    {'U', 0, "U", NULL, "A minus B", switch_difference, .state = say_difference,
+     .group = KEYS_EXPERTS},
+    {'B', 0, "B Shift+B", "depth, next cost", "depth view", switch_depth_view,
+     .group = KEYS_EXPERTS},
+    {'B', EVENT_SHIFT, NULL, NULL, "next cost view", next_cost_view, .group = KEYS_EXPERTS},
+    {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", less_scale, .state = say_scale,
+     .group = KEYS_EXPERTS},
+    {']', 0, NULL, NULL, "twice the scale", more_scale, .state = say_scale, .group = KEYS_EXPERTS},
+    {'\\', 0, NULL, NULL, "scale by the picture", own_scale, .group = KEYS_EXPERTS},
+    {'K', 0, "K", NULL, "tree builder", next_builder, .state = say_builder, .group = KEYS_EXPERTS},
+    {'G', 0, "G", NULL, "trees", switch_trees, .state = say_trees, .group = KEYS_EXPERTS},
+    {'N', 0, "N", NULL, "boxes of trees", next_boxes, .state = say_boxes, .group = KEYS_EXPERTS},
+    {'J', 0, "J Shift+J", "deeper, higher", "a level deeper", deeper_boxes, .state = say_level,
+     .group = KEYS_EXPERTS},
+    {'J', EVENT_SHIFT, NULL, NULL, "a level higher", higher_boxes, .state = say_level,
+     .group = KEYS_EXPERTS},
 };
 
 enum { SETTING_KEYS_MAX = 32, KEY_NAME = 8 };
 
-/* All keys: those of settings that have keys, and then the others. */
+/* All keys, group by group. */
 static struct key_binding all[SETTING_KEYS_MAX + sizeof bindings / sizeof *bindings];
 static uint32_t all_count;
 
-static void add_setting(const struct setting *row)
+static void add_setting(const struct setting *row, enum key_group group)
 {
     static char names[SETTING_KEYS_MAX][KEY_NAME];
-    char *name = names[all_count];
+    static uint32_t named;
+    if (named == SETTING_KEYS_MAX)
+        return;
+    char *name = names[named];
+    named += 2;
     if (row->key_back)
         snprintf(name, KEY_NAME, "%c %c", row->key_back, row->key);
     else
         snprintf(name, KEY_NAME, "%c", row->key);
     all[all_count++] = (struct key_binding){
-        .key = row->key, .keys = name, .name = row->title, .setting = row, .by = 1};
+        .key = row->key, .keys = name, .name = row->title, .setting = row, .by = 1, .group = group};
     all[all_count++] = (struct key_binding){.key = row->key_back ? row->key_back : row->key,
                                             .mods = row->key_back ? 0 : EVENT_SHIFT,
                                             .name = row->title,
                                             .setting = row,
-                                            .by = -1};
+                                            .by = -1,
+                                            .group = group};
+}
+
+static void add_group(enum key_group group)
+{
+    for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
+        enum key_group own = choice_is_for_experts(row) ? KEYS_EXPERTS : KEYS_PICTURE;
+        if (row->key && own == group)
+            add_setting(row, group);
+    }
+    for (size_t i = 0; i < sizeof bindings / sizeof *bindings; ++i) {
+        if (bindings[i].group == group)
+            all[all_count++] = bindings[i];
+    }
 }
 
 const struct key_binding *key_bindings(uint32_t *count)
 {
     if (all_count == 0) {
-        for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
-            if (row->key && all_count + 2 <= SETTING_KEYS_MAX)
-                add_setting(row);
-        }
-        memcpy(all + all_count, bindings, sizeof bindings);
-        all_count += sizeof bindings / sizeof *bindings;
+        for (int group = 0; group < KEY_GROUPS; ++group)
+            add_group((enum key_group)group);
     }
     *count = all_count;
     return all;

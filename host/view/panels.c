@@ -149,18 +149,26 @@ static void draw_files(struct view *view)
         panels_load(view, names[value]);
 }
 
+static void draw_choices(struct view *view, bool for_experts)
+{
+    for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
+        bool rays = strcmp(row->name, "view-rays") == 0;
+        if (choice_is_for_experts(row) == for_experts &&
+            (!rays || view->settings.paint != PAINT_COLOR))
+            draw_choice(view, row);
+    }
+}
+
 static void draw_settings(struct view *view)
 {
     double fps = view->settings.fps_goal;
     if (ui_panel_begin("Settings", 0.0f, 0.0f, UI_PANEL_HOLD)) {
-        for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
-            bool rays = strcmp(row->name, "view-rays") == 0;
-            if (!rays || view->settings.paint != PAINT_COLOR)
-                draw_choice(view, row);
-        }
+        draw_choices(view, false);
         if (ui_slider("fps goal", &fps, FPS_MIN, FPS_MAX, true))
             set_fps_goal(view, fps);
         draw_hud_choice(view);
+        ui_separator();
+        draw_choices(view, true);
         if (view->wish.stage != WISH_NONE && ui_button("choose again"))
             wish_again(view);
         draw_files(view);

@@ -122,14 +122,25 @@ static void draw_other(const whit_probe_hit *hit, bool known, bool equal)
         ui_text_color(COLOR_DIFFERS, "%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
 }
 
-static void draw_ray(const struct view *view, const whit_probe_ray *ray)
+/* "6 shadow": so many ended alike. */
+static void draw_kind(const whit_probe_ray *ray, uint32_t count)
 {
+    const char *kind = value_word(values_rays, (int)ray->kind);
+    uint32_t color = kind_colors[ray->kind % WHIT_RAY_KINDS];
+    if (count > 1)
+        ui_text_color(color, "%*s%u %s", (int)ray->generation, "", count, kind);
+    else
+        ui_text_color(color, "%*s%s", (int)ray->generation, "", kind);
+}
+
+static void draw_row(const struct view *view, const whit_probe_row *row)
+{
+    const whit_probe_ray *ray = &view->probe.report->rays[row->ray];
     whit_material_info material = {0};
     if (ray->material != WHIT_NONE)
         whit_scene_get_material(view->probe.scene->scene, ray->material, &material);
     ui_table_next();
-    ui_text_color(kind_colors[ray->kind % WHIT_RAY_KINDS], "%*s%s", (int)ray->generation, "",
-                  value_word(values_rays, (int)ray->kind));
+    draw_kind(ray, row->count);
     ui_table_next();
     draw_hit(&ray->device);
     ui_table_next();
@@ -152,16 +163,16 @@ static void draw_tree(const struct view *view)
 {
     static const char *const columns[] = {"ray",      "t  inst/prim", "ends", "weight",
                                           "material", "twin",         "exact"};
-    const whit_probe_report *r = view->probe.report;
-    uint32_t shown = r->ray_count < RAYS_SHOWN ? r->ray_count : RAYS_SHOWN;
+    const struct engine_probe *probe = &view->probe;
+    uint32_t shown = probe->row_count < RAYS_SHOWN ? probe->row_count : RAYS_SHOWN;
     if (ui_table_begin("rays", 7)) {
         ui_table_header(columns, 7);
         for (uint32_t i = 0; i < shown; ++i)
-            draw_ray(view, &r->rays[i]);
+            draw_row(view, &probe->rows[i]);
         ui_table_end();
     }
-    if (shown < r->ray_count || r->dropped > 0)
-        ui_text_dim("%u rays more: `whit probe` lists them", r->ray_count - shown + r->dropped);
+    if (shown < probe->row_count || probe->report->dropped > 0)
+        ui_text_dim("`whit probe` lists the other rays");
 }
 
 static bool has_moved_on(const struct view *view)
@@ -172,8 +183,13 @@ static bool has_moved_on(const struct view *view)
 static void draw_panel(struct view *view)
 {
     const whit_probe_report *r = view->probe.report;
-    float rows = r->ray_count < ROWS_AT_FIRST ? (float)r->ray_count : (float)ROWS_AT_FIRST;
-    if (ui_window_begin("Pixel", 1.0f, 1.0f, 590.0f, 158.0f + 17.0f * rows, &view->picked)) {
+    uint32_t count = view->probe.row_count;
+    float rows = count < ROWS_AT_FIRST ? (float)count : (float)ROWS_AT_FIRST;
+    /* Never over the pixel, where there is room beside it. */
+    float side = 2 * r->x < view->settings.picture.width ? 1.0f : 0.0f;
+    bool moves = side != view->pick_side;
+    view->pick_side = side;
+    if (ui_window_begin("Pixel", side, 1.0f, 590.0f, 158.0f + 17.0f * rows, moves, &view->picked)) {
         draw_place(view);
         ui_separator();
         ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME,

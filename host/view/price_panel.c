@@ -129,7 +129,7 @@ void price_draw(struct view *view)
         ++view->prices_drawn; /* a table finds its columns in the draws after its first */
         view->dirty = true;
     }
-    if (ui_window_begin("Prices", 1.0f, 0.0f, 420.0f, 380.0f, &open)) {
+    if (ui_window_begin("Prices", 1.0f, 0.0f, 420.0f, 380.0f, false, &open)) {
         if (!settings_same_place(&state.settings, &view->settings))
             ui_text_color(COLOR_WARNING, "of another view: press P twice");
         if (!state.finished) {

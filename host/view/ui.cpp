@@ -519,13 +519,14 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
     return open;
 }
 
-bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open)
+bool ui_window_begin(const char *title, float x, float y, float width, float height, bool moves,
+                     bool *open)
 {
     int flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                 ImGuiWindowFlags_HorizontalScrollbar;
     layout.current = find_panel(title);
     layout.wraps = false;
-    place(x, y, ImGuiCond_Appearing);
+    place(x, y, moves ? ImGuiCond_Always : ImGuiCond_Appearing);
     ImVec2 window = ImGui::GetIO().DisplaySize;
     float w = width * line_scale, h = height * line_scale, high = window.y - 2.0f * inside();
     ImGui::SetNextWindowSize(ImVec2(w < panel_width() ? w : panel_width(), h < high ? h : high),

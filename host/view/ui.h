@@ -72,8 +72,10 @@ enum ui_panel {
                            too small */
 };
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
-/* The same with a cross that sets *open to false. */
-bool ui_window_begin(const char *title, float x, float y, float width, float height, bool *open);
+/* The same with a cross that sets *open to false. Whoever dragged it finds it there, unless it
+   `moves`. */
+bool ui_window_begin(const char *title, float x, float y, float width, float height, bool moves,
+                     bool *open);
 void ui_panel_end(void);
 
 /* What these say is shown by whit_text_show, and so is one line; labels and titles are whit's own.

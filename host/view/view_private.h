@@ -89,6 +89,7 @@ struct view {
     struct engine_frame frame;
     struct engine_status status;
     struct engine_probe probe; /* the picked pixel; number 0: none */
+    float pick_side;           /* of the window, where the panel of the pixel is: 0 left, 1 right */
     bool picked;               /* its panel is open */
     bool focus;                /* look at it when it is there */
     struct scene_ref *scene;   /* of `frame` */
@@ -216,6 +217,9 @@ void input_event(struct view *view, const struct view_event *event);
 bool input_step(struct view *view, double now_ms);
 
 /* keys.c: what keys do, with the state of it. */
+/* Of the cheat sheet, in its order. */
+enum key_group { KEYS_CAMERA, KEYS_PICTURE, KEYS_FILES, KEYS_EXPERTS, KEY_GROUPS };
+
 struct key_binding {
     int key;
     unsigned mods;
@@ -226,6 +230,7 @@ struct key_binding {
     void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: none */
     const struct setting *setting; /* that it turns, in place of `act` and `state`; NULL: none */
     int by;
+    enum key_group group;
 };
 const struct key_binding *key_bindings(uint32_t *count);
 /* False where there is nothing to say. */

@@ -75,8 +75,10 @@ typedef struct whit_scene_info {
                       nothing moves with time, objects are no farther from the origin than 256 of
                       their longest sides, spheres are not turned, mirrored or stretched, memory is
                       enough, and it is not one instance that is where its mesh is */
-    double lo[3], hi[3];     /* world bounds at time 0; lo > hi when empty */
-    const char *environment; /* "gradient" or "map": what rays that miss see */
+    double lo[3], hi[3];                 /* world bounds at time 0; lo > hi when empty */
+    double objects_lo[3], objects_hi[3]; /* the same, without a floor that is much wider than what
+                                            stands on it */
+    const char *environment;             /* "gradient" or "map": what rays that miss see */
     bool environment_made_by_whit;
 } whit_scene_info;
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);

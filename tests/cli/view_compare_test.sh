@@ -15,10 +15,10 @@ columns() {
 
 play "A beside B" "$BALLS" --size 96x64 <<END
 start: press F2 x2 | compare.mode = off
-same: shot b.pfm, press C | compare.mode = split | compare.other_ids = 0 | compare.other_colors = 0 | compare.flip = 0
+same: shot b.pfm, press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors = 0 | compare.flip = 0
 sign: press T | compare.other_colors = 0 | compare.count = 6144 | words = --size 96x64 --traversal sign
 flat: press T x2, press Minus x8, still, wait 4200 | compare.other_ids = 0 | compare.other_colors > 100
-ended: shot split.pfm, press C | compare.mode = off | frame.pixels as flat
+ended: shot split.pfm, press I | compare.mode = off | frame.pixels as flat
 shot a.pfm
 END
 check "half of one and half of the other are the picture" \
@@ -56,12 +56,12 @@ check "as many pixels differ" test "$(jq .differing_pixels c.json)" = "$(value f
 # ---- Difference, and the divider ----
 
 play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
-one: still, press C, press Equal
-difference: press D | compare.mode = difference | compare.scale > 0
+one: still, press I, press Equal
+difference: press U | compare.mode = difference | compare.scale > 0
 scaled: press ] | compare.heat not as difference | words as one
 own: press \\ | compare.heat as difference
 order: press T | compare.heat as difference
-dragged: press D, move 48 32, button left down, move 24 32, button left up | compare.divider = 0.25 | words as order
+dragged: press U, move 48 32, button left down, move 24 32, button left up | compare.divider = 0.25 | words as order
 turned: move 80 20, button left down, move 90 25, button left up | words not as dragged | frame.pixels not as dragged
     | compare.other_ids = 0
 END
@@ -70,8 +70,8 @@ check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned fram
 
 # Costs are numbers, not colours; and there is nothing between the two.
 play "costs of A and B" "$SCENES/8k.json" --size 96x64 --view visits <<END
-costs: still, press C, press T x2 | compare.has_flip = false | compare.other_ids = 0 | compare.other_colors > 0
-mixed: press V x3, still, press D | keys.view = stack | compare.known = true
+costs: still, press I, press T x2 | compare.has_flip = false | compare.other_ids = 0 | compare.other_colors > 0
+mixed: press V x3, still, press U | keys.view = stack | compare.known = true
 END
 
 # ---- Effects ----
@@ -87,10 +87,10 @@ is off prices.highlights "(no prices.highlights)" # of what was switched alone
 
 # ---- Settings by mouse: what their keys do ----
 
-play "by mouse" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
+play "by mouse" "$CUBE" --size 320x400 --ui-scale 0.5 <<END
 key: press F2 x2, press T
 mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose sign | words as key
-    | keys.traversal as key | words = --size 320x240 --traversal sign
+    | keys.traversal as key | words = --size 320x400 --traversal sign
 END
 
 # ---- Files of settings ----
@@ -98,7 +98,7 @@ END
 play "saved" "$SCENES/8k.json" --size 96x64 <<END
 still
 move 40 30
-saved! button left down, move 49 33, button left up, press T, press M, press K, press A, press Minus, press O, press V, still, press Ctrl+S
+saved! button left down, move 49 33, button left up, press T, press M, press K, press Y, press Minus, press O, press V, still, press Ctrl+S
 press Ctrl+S
 END
 check "Ctrl+S saves" test -s whit-0001.view
@@ -110,7 +110,7 @@ cp "$OUT/values" saved.values
 echo "--numerics exactly" >bad.view
 play "loaded" "$SCENES/8k.json" --state whit-0001.view <<END
 loaded:
-dropped: press Ctrl+S, press T, press A, press V, still, drop whit-0001.view
+dropped: press Ctrl+S, press T, press Y, press V, still, drop whit-0001.view
 bad! drop bad.view
 END
 cat saved.values >>"$OUT/values"

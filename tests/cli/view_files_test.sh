@@ -29,13 +29,13 @@ stood: press Space | frame.pixels as stepped | render as stepped | frame.pixels 
 dropped: drop $SCENES/cube.json | scene = $SCENES/cube.json | frame.ids as a
 large! drop $SCENES/atrium.json, until error | scene = $SCENES/cube.json | error has (--memory-limit)
 nowhere: drop $OUT/nowhere.obj | frame.ids as dropped | render as dropped | error has nowhere.obj
-turned: press C, move 40 30, button left down, move 49 33, button left up | scene = $SCENES/cube.json
+turned: press I, move 40 30, button left down, move 49 33, button left up | scene = $SCENES/cube.json
     | frame.ids not as nowhere | error as nowhere | compare.count = 6144 | compare.other_colors = 0
 picked: click 24 32 | picked = true | probe.rays > 0
 closed! press Escape | error =
 plain: drop plain.view | compare.other_ids = 0 | compare.other_colors > 0
 copied! press Ctrl+C | toast has copied: whit render $SCENES/cube.json | toast has -highlights
-mended: press F12, press C, drop start.view, drop list/b.json | error = | frame.ids as b
+mended: press F12, press I, drop start.view, drop list/b.json | error = | frame.ids as b
 END
 check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
     "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
@@ -138,7 +138,7 @@ button left up
 press T
 press M
 press Minus
-shown! press A, press K, press Period, still, press Ctrl+C, press F12, still, wait 4200, still, shot shown.png
+shown! press Y, press K, press Period, still, press Ctrl+C, press F12, still, wait 4200, still, shot shown.png
 END
 check "F12 saves" test -s whit-0001.png
 check "Ctrl+C copies the line" test "$(value shown frame.whole)" = true

@@ -90,10 +90,10 @@ one: press Minus x6 | keys.bounces = 1
 zero: press Minus | keys.bounces = 0 | change.what = bounces 1 -> 0 | frame.ids as start | frame.pixels not as start
 lowest: press Minus | keys.bounces = 0
 up: press Equal | keys.bounces = 1 | frame.pixels as one
-four: press A | frame.samples = 4
-sixtyfour: press A x2 | frame.samples = 64 | frame.pixels not as four
-adaptive: press A | keys.anti-aliasing = adaptive | words = --size 48x32 --aa adaptive:0.05 --depth 1
-single: press A | frame.samples = 1 | frame.pixels as up
+four: press Y | frame.samples = 4
+sixtyfour: press Y x2 | frame.samples = 64 | frame.pixels not as four
+adaptive: press Y | keys.anti-aliasing = adaptive | words = --size 48x32 --aa adaptive:0.05 --depth 1
+single: press Y | frame.samples = 1 | frame.pixels as up
 END
 
 for at in "start color" "depth depth" "visits visits" "stack stack" "again depth" "color color" "v depth"; do

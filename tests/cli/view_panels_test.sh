@@ -39,15 +39,15 @@ size $1 $2
 still
 press F2
 state $1x$2-full
-$1x$2-split: press F2 x2, press T, press C, press M x2, press B
+$1x$2-split: press F2 x2, press T, press I, press M x2, press B
 $1x$2-settings: press Tab
 press X
 priced
 $1x$2-effects:
-$1x$2-difference: press D, press X
+$1x$2-difference: press U, press X
 $1x$2-boxes: press N
 $1x$2-help: press H
-$1x$2-pixel: press H, press D, press C, click 60 50
+$1x$2-pixel: press H, press U, press I, click 60 50
 press Escape
 wait 5000
 press N

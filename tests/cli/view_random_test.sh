@@ -17,10 +17,10 @@ events() {
             return int(state / 2147483647 * n)
         }
         # The same at each mark, so that only what the viewer did not give back can differ: the
-        # settings it began with, no panels, B gone (after D there is one in any case), and only
+        # settings it began with, no panels, B gone (after U there is one in any case), and only
         # one scene in the sessions that are kept.
         function mark() {
-            print "press Escape\npress D\npress C\ndrop start.view"
+            print "press Escape\npress U\npress I\ndrop start.view"
             print "drop", scenes "/cube.json\nsize 240 160"
             for (i = 0; i < 5; ++i) print "press R\nstill"
             print "state mark" ++marks

@@ -19,9 +19,9 @@ other: press Equal | frame.samples = 4
 less: press Minus | frame.samples = 4 | frame.pixels as start
 refined
 again: | frame.pixels as better | frame.samples as better
-split: press C | frame.samples = 4 | frame.pixels as start | compare.known = true
+split: press I | frame.samples = 4 | frame.pixels as start | compare.known = true
     | compare.other_colors = 0
-alone: press C | compare.mode = off
+alone: press I | compare.mode = off
 refined
 third: | frame.pixels as better
 depth: press B | frame.samples = 1

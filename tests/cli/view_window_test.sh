@@ -145,7 +145,7 @@ done
 export WHIT_TEST_SLOW=picture
 play "a slow picture" "$CUBE" $SMALL <<END
 start:
-slow! press G, picture, until part, until panels.work | keys.trees = off | frame.whole = false
+slow! press G, until part, until panels.work | keys.trees = off | frame.ids as start
 back: press G | frame.ids as start
 END
 unset WHIT_TEST_SLOW
