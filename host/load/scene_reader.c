@@ -178,20 +178,27 @@ bool reader_no_memory(struct reader *reader)
 /* The key of `known` that means what other programs call `word`; NULL: there is none. */
 static const char *same_meaning(const char *word, const char *const *known)
 {
-    static const char *const meanings[][2] = {
-        {"mirror", "reflection"},     {"reflectivity", "reflection"},
-        {"reflective", "reflection"}, {"refraction", "ior"},
-        {"color", "diffuse"},         {"albedo", "diffuse"},
-        {"base_color", "diffuse"},    {"transparency", "transmission"},
-        {"glass", "transmission"},    {"emissive", "emission"},
-        {"emit", "emission"},         {"alpha", "opacity"},
-        {"glossiness", "shininess"},  {"position", "translation"},
-        {"translate", "translation"}, {"rotate", "rotation"},
+    static const char *const meanings[][4] = {
+        {"reflection", "mirror", "reflectivity", "reflective"},
+        {"ior", "refraction"},
+        {"diffuse", "color", "albedo", "base_color"},
+        {"transmission", "transparency", "glass"},
+        {"emission", "emissive", "emit"},
+        {"opacity", "alpha"},
+        {"shininess", "glossiness"},
+        {"translation", "position", "translate"},
+        {"rotation", "rotate"},
+        {"eye", "position", "from"},
+        {"target", "lookat", "look_at", "at"},
+        {"shape", "type"},
+        {"kind", "type"},
+        {"outer", "angle"},
     };
     for (size_t i = 0; i < sizeof meanings / sizeof *meanings; ++i)
-        for (size_t k = 0; strcmp(word, meanings[i][0]) == 0 && known[k]; ++k)
-            if (strcmp(known[k], meanings[i][1]) == 0)
-                return known[k];
+        for (size_t j = 1; j < 4 && meanings[i][j]; ++j)
+            for (size_t k = 0; strcmp(word, meanings[i][j]) == 0 && known[k]; ++k)
+                if (strcmp(known[k], meanings[i][0]) == 0)
+                    return known[k];
     return NULL;
 }
 

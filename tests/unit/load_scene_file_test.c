@@ -95,6 +95,16 @@ TEST_IN(errors_name_line_and_column, open_folder, close_folder)
                  "test.json:2:3: ']' expected near '2'; is a comma missing before it?");
     assert_error(state, "{\"materials\": {\"a\": {\"mirror\": 1}}}",
                  "test.json:1:22: materials.a.mirror: unknown key; did you mean `reflection`?");
+    assert_error(state, "{\"camera\": {\"position\": [0, 1, 5]}}",
+                 "test.json:1:13: camera.position: unknown key; did you mean `eye`?");
+    assert_error(state, "{\"camera\": {\"lookat\": [0, 1, 0]}}",
+                 "test.json:1:13: camera.lookat: unknown key; did you mean `target`?");
+    assert_error(state, "{\"objects\": [{\"type\": \"box\"}]}",
+                 "test.json:1:15: objects[0].type: unknown key; did you mean `shape`?");
+    assert_error(state, "{\"lights\": [{\"type\": \"spot\"}]}",
+                 "test.json:1:14: lights[0].type: unknown key; did you mean `kind`?");
+    assert_error(state, "{\"lights\": [{\"kind\": \"spot\", \"angle\": 30}]}",
+                 "test.json:1:30: lights[0].angle: unknown key; did you mean `outer`?");
     assert_error(state, "{\n  \"object\": []\n}",
                  "test.json:2:3: object: unknown key; did you mean `objects`?");
     assert_error(state, "{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",
