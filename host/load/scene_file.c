@@ -357,6 +357,20 @@ static void reader_finish(struct reader *reader)
     free(reader->models);
 }
 
+/* The parser names the bracket that it looked for and what it met in its place. This is what most
+ * often is wrong. */
+static const char *syntax_hint(const char *error)
+{
+    if (strstr(error, "near '/"))
+        return "; JSON has no comments, but any object may have a \"comment\"";
+    if (strstr(error, "or '}' expected near '}'") || strstr(error, "unexpected token near ']'"))
+        return "; is the comma before it one too many?";
+    if (strncmp(error, "'}' expected near", 17) == 0 ||
+        strncmp(error, "']' expected near", 17) == 0)
+        return "; is a comma missing before it?";
+    return "";
+}
+
 whit_result load_scene_file(struct scene *scene, const char *path, const whit_load_params *params)
 {
     uint8_t *text = NULL;
@@ -369,12 +383,8 @@ whit_result load_scene_file(struct scene *scene, const char *path, const whit_lo
     scene->file_bytes += size_bytes;
     json_t *root = json_loadb((const char *)text, size_bytes, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
-        /* The parser names the bracket that it looked for, where most often a comma is missing. */
-        bool comma = strncmp(error.text, "'}' expected near", 17) == 0 ||
-                     strncmp(error.text, "']' expected near", 17) == 0;
         log_error(&scene->log, "%s:%d:%d: %s%s", path, error.line > 0 ? error.line : 1,
-                  error.column > 0 ? error.column : 1, error.text,
-                  comma ? "; is a comma missing before it?" : "");
+                  error.column > 0 ? error.column : 1, error.text, syntax_hint(error.text));
         free(text);
         return WHIT_ERROR_INPUT;
     }

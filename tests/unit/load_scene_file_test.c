@@ -93,6 +93,15 @@ TEST_IN(errors_name_line_and_column, open_folder, close_folder)
                  "test.json:2:10: '}' expected near '\"objects\"'; is a comma missing before it?");
     assert_error(state, "{\"objects\": [\n1 2]}",
                  "test.json:2:3: ']' expected near '2'; is a comma missing before it?");
+    assert_error(
+        state, "{\"objects\": [],\n}",
+        "test.json:2:1: string or '}' expected near '}'; is the comma before it one too many?");
+    assert_error(state, "{\"objects\": [\n{},\n]}",
+                 "test.json:3:1: unexpected token near ']'; is the comma before it one too many?");
+    assert_error(state, "{ // white\n\"ambient\": 1}",
+                 "test.json:1:3: string or '}' expected near '/'; JSON has no comments, but");
+    assert_error(state, "{\"ambient\": 1 // white\n}",
+                 "test.json:1:15: '}' expected near '/'; JSON has no comments, but");
     assert_error(state, "{\"materials\": {\"a\": {\"mirror\": 1}}}",
                  "test.json:1:22: materials.a.mirror: unknown key; did you mean `reflection`?");
     assert_error(state, "{\"camera\": {\"position\": [0, 1, 5]}}",
