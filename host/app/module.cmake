@@ -60,4 +60,4 @@ install(FILES app/completion/_whit DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site
 install(FILES app/completion/whit.fish
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/whit
-  FILES_MATCHING PATTERN "*.json")
+  FILES_MATCHING PATTERN "*.json" PATTERN "*.png")

@@ -50,4 +50,5 @@ if command -v pkg-config >/dev/null && [ -z "${CFLAGS_EXTRA:-}" ]; then
     check "the same picture" cmp "$OUT/cube.png" "$OUT/shared.png"
 fi
 check "the installed program runs" bin/whit --version
+check "an installed scene has its map" quietly bin/whit scene share/whit/scenes/gallery/normal-map.json
 finish

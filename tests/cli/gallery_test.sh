@@ -1,0 +1,103 @@
+#!/bin/sh
+# docs/gallery.md and docs/scenes.md: their scenes render and show what they are there for, their pictures are there,
+# and tools/gallery makes each of them.
+#     gallery_test.sh WHIT SCENES CONTACT_SHEET
+. "$(dirname "$0")/common.sh"
+needs jq
+SHEET=$3
+ROOT=$SCENES/..
+GALLERY=$ROOT/docs/gallery.md
+PAGE=$ROOT/docs/scenes.md
+SCHEMA=$ROOT/docs/scene.schema.json
+
+# ---- Each picture has a command, and each command a picture ----
+
+# A tree of its own, and a whit that says what it is asked for.
+mkdir "$OUT/tree" "$OUT/tree/tools" "$OUT/tree/docs" "$OUT/tree/scenes"
+cp "$ROOT/tools/gallery" "$OUT/tree/tools"
+cp "$GALLERY" "$PAGE" "$OUT/tree/docs"
+cp -r "$SCENES/gallery" "$OUT/tree/scenes"
+# shellcheck disable=SC2016
+printf '#!/bin/sh\necho "$*" >>"%s"\n' "$OUT/asked" >"$OUT/says"
+chmod +x "$OUT/says"
+check "tools/gallery runs" "$OUT/tree/tools/gallery" "$OUT/says"
+sed -n 's/.* -o \(docs[^ ]*\) .*/\1/p' "$OUT/asked" | sort >"$OUT/made"
+sed -n 's/.*!\[[^]]*\](\(images[^)]*\)).*/docs\/\1/p' "$GALLERY" "$PAGE" | sort >"$OUT/shown"
+check "it makes the $(grep -c . "$OUT/shown") pictures that the pages show" cmp "$OUT/made" "$OUT/shown"
+check "of which none is missing" test -z "$(cd "$ROOT" && xargs ls <"$OUT/shown" 2>&1 >/dev/null)"
+sed -n 's/^    whit \(.*\)/\1 --quiet/p' "$GALLERY" | grep -v NAME >"$OUT/printed"
+check "the commands are those that are printed" test -z "$(grep -vxFf "$OUT/asked" "$OUT/printed")"
+
+# ---- Scenes and their effects ----
+
+# A line for each effect: its name, and the scene of the picture.
+awk '/^## / { effect = "" } match($0, /effect `[a-z-]+`/) { effect = substr($0, RSTART + 8, RLENGTH - 9) }
+    /^    whit render/ && effect && /docs\/images/ { print effect, $3 }' "$GALLERY" >"$OUT/effects"
+check "eleven effects or more" test "$(grep -c . "$OUT/effects")" -ge 11
+# described FILE: whit describes it without a warning; the JSON is added to $OUT/described.
+described() {
+    expect 0 "$1" scene "$1" --json
+    cat "$OUT/stdout" >>"$OUT/described"
+}
+no_warnings='[.[].notes[] | select(.level != "info")] == []'
+cd "$ROOT" || exit 1
+set --
+while read -r _ scene; do
+    described "$scene"
+    set -- "$@" "$scene"
+done <"$OUT/effects"
+missing=$(jq -r -s --rawfile names "$OUT/effects" '[., ($names | split("\n") | map(split(" ")[0]))] | transpose[] |
+    . as [$scene, $name] | select($scene and all($scene.effects[]; .name != $name or (.called | not))) |
+    $scene.file + " " + $name' "$OUT/described")
+check "each calls for the effect that it is there for $missing" test -z "$missing"
+check "none has warnings" jq -e -s "$no_warnings" "$OUT/described"
+# shellcheck disable=SC2016
+check "all render" sh -c '"$@" >"$0" 2>&1' "$OUT/stderr" "$SHEET" "$@" -o "$OUT/sheet.png" --size 64x48 --aa 1
+
+# The maps are what the commands make.
+mv "$OUT/tree/scenes/gallery"/*.png "$OUT"
+# shellcheck disable=SC2016
+check "tools/gallery makes the maps" sh -c '"$@" >"$0" 2>&1' "$OUT/stderr" \
+    "$OUT/tree/tools/gallery" "$WHIT" gallery/lattice gallery/studs
+for map in lattice studs; do
+    expect 0 "$map is as it was" compare "$OUT/$map.png" "$OUT/tree/scenes/gallery/$map.png" \
+        --metric largest --tolerance 0.01
+done
+# shellcheck disable=SC2016
+check "a picture that no command makes is refused" sh -c '! "$@" 2>"$0"' "$OUT/stderr" \
+    "$OUT/tree/tools/gallery" "$WHIT" nowhere
+
+# ---- Shapes and materials ----
+
+sed -n 's/^| !\[\([a-z]*\)\](images\/shapes\/\1.png) | `\1` |.*/"\1"/p' "$PAGE" >"$OUT/shapes"
+check "every shape has a picture, by a camera that looks at it" jq -e -n --slurpfile schema "$SCHEMA" \
+    --slurpfile scene "$SCENES/gallery/shapes.json" '[inputs] as $rows |
+    [$schema[] | .. | .shape? | .const? // empty] | length > 10 and . - $rows == [] and all(.[]; . as $name |
+        [$scene[0].cameras[] | select(.name == $name).target[0]] as [$x] |
+        any($scene[0].objects[]; .shape == $name and ((.translation[0] // -9) - $x | fabs) < 3))' "$OUT/shapes"
+# A line of JSON for each row: name, material.
+sed -n 's/^| !\[\([a-z-]*\)\](images\/materials\/\1.png) | `\(.*\)` | .*|$/["\1", \2]/p' "$PAGE" >"$OUT/rows"
+check "materials are as they are in materials.json" jq -e -n --slurpfile scene "$SCENES/gallery/materials.json" \
+    '[inputs] | length > 15 and all(.[]; . as [$name, $is] | $scene[0].materials[$name] == $is and
+        any($scene[0].cameras[]; .name == $name))' "$OUT/rows"
+# A kind is told by the keys that no other has.
+check "every kind of material has a picture" jq -e -n --slurpfile schema "$SCHEMA" \
+    '[inputs[1] | keys] as $rows | [$schema[0]["$defs"].material.anyOf[].properties | keys] as $kinds |
+    all(range($kinds | length); . as $n | ($kinds[$n] - ($kinds[:$n] + $kinds[$n + 1:] | add)) as $own |
+        any($rows[]; . - (. - $own) != []))' "$OUT/rows"
+
+# ---- Recipes ----
+
+mkdir "$OUT/recipes" && cd "$OUT/recipes" || exit 1
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >mine.obj
+cp "$OUT/studs.png" photo.png
+awk '/^## / { recipe = /Recipes/ } /^```/ { file = 0 } recipe && file { print >("recipe" count ".json") }
+    /^```json/ { file = 1; ++count }' "$PAGE"
+set -- *.json
+check "seven recipes or more" test $# -ge 7
+rm "$OUT/described"
+for recipe in "$@"; do
+    described "$recipe"
+done
+check "none has warnings" jq -e -s "$no_warnings" "$OUT/described"
+finish
