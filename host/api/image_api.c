@@ -54,6 +54,7 @@ void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params)
 {
     image->image.display_scale = (float)exp2(params->exposure_ev);
+    image->image.display_soft = params->soft_highlights;
 }
 
 /* Release with free(); NULL when memory runs out, which is logged. */

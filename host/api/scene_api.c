@@ -86,6 +86,7 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
         .one_tree = handle->one_tree,
         .environment = scene->environment.kind == SCENE_ENVIRONMENT_MAP ? "map" : "gradient",
         .environment_made_by_whit = scene->environment.made_by_whit,
+        .exposure_ev = scene->exposure_ev,
     };
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         info->mesh_triangle_count += scene->meshes[i].triangle_count;

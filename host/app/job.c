@@ -56,6 +56,11 @@ whit_result job_load(struct job *job)
     whit_result result =
         whit_scene_load(job->settings.scene, &params, &cli_log_errors, &job->scene);
     job->load_ms = whit_clock_ms() - start_ms;
+    if (result == WHIT_OK) {
+        whit_scene_info info;
+        whit_scene_get_info(job->scene, &info);
+        settings_expose(&job->settings, &info);
+    }
     return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 

@@ -48,6 +48,7 @@ void settings_describe(const struct settings *settings, enum settings_command co
                        json_t *object)
 {
     struct settings told = *settings;
+    told.exposure_auto = false;              /* the number that it chose */
     if (told.picture.effects_removed == 0) { /* kernels with more in them draw the same */
         told.picture.effects_added = 0;
         told.picture.all_effects = false;

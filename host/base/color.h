@@ -1,4 +1,4 @@
-/* The curve of sRGB (IEC 61966-2-1), between 0 and 1. */
+/* The curve of sRGB (IEC 61966-2-1), between 0 and 1, and one that keeps highlights below 1. */
 #ifndef BASE_COLOR_H
 #define BASE_COLOR_H
 
@@ -12,6 +12,14 @@ static inline double srgb_from_linear(double linear)
 static inline double linear_from_srgb(double srgb)
 {
     return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+/* Leaves values up to 0.6 alone; from there on a hyperbola with the same slope runs towards 1. */
+static inline float color_shoulder(float linear)
+{
+    const float from = 0.6f, rest = 1.0f - from;
+    float over = (linear - from) / rest;
+    return !(linear > from) || isinf(linear) ? linear : from + rest * over / (1.0f + over);
 }
 
 #endif

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/color.h"
 #include "image/image.h"
 
 struct sums {
@@ -21,6 +22,8 @@ void image_displayed_pixel(const struct image *image, size_t index, float rgba[4
     image_read_pixel(image, index, rgba);
     for (uint32_t c = 0; c < 3 && image->display_scale != 0.0f; ++c)
         rgba[c] *= image->display_scale;
+    for (uint32_t c = 0; c < 3 && image->display_soft; ++c)
+        rgba[c] = color_shoulder(rgba[c]);
 }
 
 /* Integers also need as many channels. */

@@ -18,6 +18,7 @@ struct image {
     /* For pictures of light: what is displayed (PNG, window, FLIP, over_1_255) is the floats times
        this; 0: the floats as they are. Files of floats keep them unscaled. */
     float display_scale;
+    bool display_soft; /* and then by color_shoulder */
 };
 
 /* Zeroed pixels. WHIT_ERROR_MEMORY, also for sizes whose product overflows. */

@@ -9,13 +9,20 @@
 #include "base/vec.h"
 #include "scene/freeze.h"
 
-#define PROBES     1024
+#define PROBES      1024
 /* This share of the lit surface is to be at most that bright, for a white surface. */
-#define SHARE      0.9
-#define BRIGHTNESS 0.8
+#define SHARE       0.9
+#define BRIGHTNESS  0.8
 /* Stated lights are left alone between these. */
-#define MIN        0.02
-#define MAX        2.0
+#define MIN         0.02
+#define MAX         2.0
+/* Exposure is left alone unless that much of what is seen would be burnt out, or nearly all would
+   be black; half of what is seen stays above LOW. */
+#define BURNT       1.25
+#define BURNT_SHARE 0.25
+#define BLACK       0.02
+#define LOW         0.1
+#define EV_MAX      32.0
 
 struct probe_list {
     double values[PROBES];
@@ -212,5 +219,74 @@ whit_result freeze_expose(struct scene *scene, bool emitters, double *factor)
         for (int k = 0; k < 3; ++k)
             color[k] = (float)fmin(*factor * (double)color[k], 1e30);
     }
+    return WHIT_OK;
+}
+
+/* ---- Exposure of a model ---- */
+
+static double at_share(const double *sorted, uint32_t count, double share)
+{
+    return sorted[(uint32_t)(share * (count - 1))];
+}
+
+static double share_from(const double *sorted, uint32_t count, double value)
+{
+    uint32_t below = 0;
+    while (below < count && sorted[below] < value)
+        ++below;
+    return (double)(count - below) / count;
+}
+
+/* Half stops down until the brightest tenth begins at 1 at most, but no further than leaves half of
+   it at LOW; half stops up where a white surface would be black all but everywhere. Else 0. */
+static double exposure_of(struct freeze_seen *seen, double *burnt)
+{
+    qsort(seen->shown, seen->count, sizeof *seen->shown, compare_values);
+    qsort(seen->white, seen->count, sizeof *seen->white, compare_values);
+    double bright = at_share(seen->shown, seen->count, SHARE), ev = 0.0;
+    double middle = at_share(seen->shown, seen->count, 0.5);
+    double white = at_share(seen->white, seen->count, SHARE);
+    *burnt = share_from(seen->shown, seen->count, BURNT);
+    if (*burnt > BURNT_SHARE)
+        ev =
+            fmax(floor(-2.0 * log2(bright)) / 2.0, fmin(ceil(2.0 * log2(LOW / middle)) / 2.0, 0.0));
+    else if (white < BLACK && bright > 0.0)
+        ev = floor(2.0 * log2(BRIGHTNESS / white)) / 2.0;
+    return fmin(fmax(ev, -EV_MAX), EV_MAX);
+}
+
+/* The file's, or made of its emissive surfaces. */
+static bool has_own_light(const struct scene *scene)
+{
+    bool own = false;
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        own = own || !scene->lights[i].made_by_whit || scene_light_is_flat(&scene->lights[i]) ||
+              scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE;
+    return own;
+}
+
+/* Light by whit is made to suit. Rays to lights are spent only where it would be too bright without
+   shadows. */
+whit_result freeze_choose_exposure(struct scene *scene)
+{
+    struct freeze_seen seen;
+    double ev = 0.0, burnt;
+    if (!scene->is_model || !has_own_light(scene))
+        return WHIT_OK;
+    whit_result result = freeze_see(scene, false, &seen);
+    if (result == WHIT_OK && seen.count)
+        ev = exposure_of(&seen, &burnt);
+    if (ev < 0.0)
+        result = freeze_see(scene, true, &seen);
+    if (result != WHIT_OK || ev == 0.0)
+        return result;
+    scene->exposure_ev = exposure_of(&seen, &burnt);
+    if (scene->exposure_ev < 0.0)
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "%.0f %% of what is seen would be burnt out: `--exposure auto` is %g EV",
+                   100.0 * burnt, scene->exposure_ev);
+    else if (scene->exposure_ev > 0.0)
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "what is seen would be black: `--exposure auto` is %g EV", scene->exposure_ev);
     return WHIT_OK;
 }

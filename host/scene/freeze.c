@@ -496,6 +496,8 @@ whit_result scene_freeze(struct scene *scene)
     whit_result result = check_all(scene);
     if (result == WHIT_OK)
         result = freeze_add_defaults(scene);
+    if (result == WHIT_OK)
+        result = freeze_choose_exposure(scene);
     if (result != WHIT_OK)
         return no_memory(scene, result);
     scene->triangle_total = scene->sphere_total = 0;

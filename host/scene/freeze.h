@@ -27,6 +27,19 @@ double freeze_brightness(const struct scene_light *light, const double point[3],
    nothing is seen. */
 WHIT_CHECK whit_result freeze_lit_share(const struct scene *scene, double *share);
 
+/* What the same rays see but for metal and mirrors: the brightest channel of it, and of a white
+   surface in its place. `shadows`: whether lights reach it; else there is more than there is. */
+enum { FREEZE_SEEN_MAX = 256 };
+struct freeze_seen {
+    double shown[FREEZE_SEEN_MAX], white[FREEZE_SEEN_MAX];
+    uint32_t count;
+};
+WHIT_CHECK whit_result freeze_see(const struct scene *scene, bool shadows,
+                                  struct freeze_seen *seen);
+
+/* exposure.c: scene->exposure_ev, and a note where it is not 0. */
+WHIT_CHECK whit_result freeze_choose_exposure(struct scene *scene);
+
 /* defaults.c: camera, lights, ambient light and environment where the file has none. */
 WHIT_CHECK whit_result freeze_add_defaults(struct scene *scene);
 

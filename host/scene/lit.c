@@ -1,28 +1,34 @@
-/* Whether what is seen gets light. Files have lights that light nothing of it: headlights that are
-   emissive surfaces, a sun over a closed box. Rays of a coarse picture, and rays from what they hit
-   to the lights, are held against every triangle: there are no trees yet, and few rays are enough.
- */
+/* Whether what is seen gets light, and how much. Files have lights that light nothing of it:
+   headlights that are emissive surfaces, a sun over a closed box; and lights that burn it out. Rays
+   of a coarse picture, and rays from what they hit to the lights, are held against every triangle:
+   there are no trees yet, and few rays are enough. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/color.h"
 #include "base/vec.h"
 #include "scene/freeze.h"
 
 /* Rays of the picture; fewer where these tests of triangles are used up, but some. */
-enum { RAYS_MAX = 256, RAYS_MIN = 32 };
+enum { RAYS_MAX = FREEZE_SEEN_MAX, RAYS_MIN = 32 };
 static const double TESTS_MAX = 2e7;
 /* What a white surface has to show, where a picture's white is 1. */
 static const double LIT = 0.02;
 /* Points are this share of their distance away from the surface, towards the eye. */
 static const double OFFSET = 1e-3;
+/* Lights that a point is asked about; what they say holds for the others. */
+enum { LIGHTS_ASKED = 4 };
 
 struct ray {
     double origin[3], dir[3]; /* t counts in lengths of `dir` */
     double t_max;
 };
 struct hit {
-    double t, normal[3]; /* world */
-    bool emits;
+    double t, u, v, normal[3]; /* world; u and v: how much of the triangle's second, third corner */
+    const struct scene_mesh *mesh;
+    uint32_t triangle;
+    const struct scene_material *material;
 };
 
 static bool is_black(const float rgb[3])
@@ -37,8 +43,8 @@ static bool is_solid(const struct scene_material *m)
 }
 
 /* Moeller and Trumbore (1997), in the space of the mesh, both sides. */
-static double meet(const struct scene_mesh *mesh, uint32_t triangle, const struct ray *ray,
-                   double normal[3])
+static bool meet(const struct scene_mesh *mesh, uint32_t triangle, const struct ray *ray,
+                 struct hit *hit)
 {
     const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
     double p[3][3], edges[2][3], from[3], across[3], turned[3];
@@ -52,11 +58,14 @@ static double meet(const struct scene_mesh *mesh, uint32_t triangle, const struc
     }
     double3_cross(ray->dir, edges[1], across);
     double3_cross(from, edges[0], turned);
-    double3_cross(edges[0], edges[1], normal);
     double scale = double3_dot(edges[0], across);
     double u = double3_dot(from, across) / scale, v = double3_dot(ray->dir, turned) / scale;
     double t = double3_dot(edges[1], turned) / scale;
-    return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < ray->t_max ? t : INFINITY;
+    if (!(u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < ray->t_max))
+        return false;
+    *hit = (struct hit){.t = t, .u = u, .v = v, .mesh = mesh, .triangle = triangle};
+    double3_cross(edges[0], edges[1], hit->normal);
+    return true;
 }
 
 static bool meets_box(const struct scene_mesh *mesh, const struct ray *ray)
@@ -85,18 +94,20 @@ static bool trace(const struct scene *scene, const struct scene_pose *pose,
             continue;
         for (uint32_t k = 0; k < mesh->triangle_count; ++k) {
             const struct scene_material *m = &scene->materials[mesh->materials[k]];
-            double normal[3], t = is_solid(m) ? meet(mesh, k, &ray, normal) : INFINITY;
-            if (!(t < ray.t_max))
+            struct hit own;
+            if (!is_solid(m) || !meet(mesh, k, &ray, &own))
                 continue;
             found = true;
             if (any)
                 return true;
-            ray.t_max = hit->t = t;
-            hit->emits = !is_black(m->emission);
+            ray.t_max = own.t;
+            *hit = own;
+            hit->material = m;
             /* The transpose of the inverse turns normals. */
             for (int c = 0; c < 3; ++c)
-                hit->normal[c] = inverses[i].m[c] * normal[0] + inverses[i].m[4 + c] * normal[1] +
-                                 inverses[i].m[8 + c] * normal[2];
+                hit->normal[c] = inverses[i].m[c] * own.normal[0] +
+                                 inverses[i].m[4 + c] * own.normal[1] +
+                                 inverses[i].m[8 + c] * own.normal[2];
             double3_unit(hit->normal);
         }
     }
@@ -117,27 +128,31 @@ static void place_on(const struct scene_light *light, uint32_t index, double out
                  (scene_light_is_flat(light) ? u * light->edge_u[k] + v * light->edge_v[k] : 0.0);
 }
 
+static bool reaches(const struct scene *scene, const struct scene_pose *pose,
+                    const struct affine *inverses, const struct scene_light *light,
+                    const double point[3], uint32_t index)
+{
+    bool parallel = light->kind == SCENE_LIGHT_DIRECTIONAL;
+    struct ray ray = {.t_max = parallel ? INFINITY : 1.0 - OFFSET};
+    struct hit hit;
+    double at[3];
+    place_on(light, index, at);
+    for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = point[k];
+        ray.dir[k] = parallel ? -light->direction[k] : at[k] - point[k];
+    }
+    return !trace(scene, pose, inverses, &ray, true, &hit);
+}
+
 static bool is_lit(const struct scene *scene, const struct scene_pose *pose,
                    const struct affine *inverses, const double point[3], const double normal[3],
                    uint32_t index)
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < pose->light_count && sum < LIT; ++i) {
-        const struct scene_light *light = &pose->lights[i];
-        struct ray ray = {.t_max = 1.0 - OFFSET};
-        struct hit hit;
-        double brightness = freeze_brightness(light, point, normal), at[3];
-        if (!(brightness > 0.1 * LIT))
-            continue;
-        place_on(light, index, at);
-        for (int k = 0; k < 3; ++k) {
-            ray.origin[k] = point[k];
-            ray.dir[k] =
-                light->kind == SCENE_LIGHT_DIRECTIONAL ? -light->direction[k] : at[k] - point[k];
-        }
-        if (light->kind == SCENE_LIGHT_DIRECTIONAL)
-            ray.t_max = INFINITY;
-        if (!trace(scene, pose, inverses, &ray, true, &hit))
+        double brightness = freeze_brightness(&pose->lights[i], point, normal);
+        if (brightness > 0.1 * LIT &&
+            reaches(scene, pose, inverses, &pose->lights[i], point, index))
             sum += brightness;
     }
     return sum >= LIT;
@@ -174,39 +189,179 @@ static uint32_t ray_count(const struct scene *scene)
     return (uint32_t)fmin(fmax(TESTS_MAX / triangles, RAYS_MIN), RAYS_MAX);
 }
 
-static double measure(const struct scene *scene, const struct scene_pose *pose,
-                      const struct affine *inverses)
+/* Where the ray of the coarse picture meets a surface, a little towards the eye. */
+static bool see(const struct scene *scene, const struct scene_pose *pose,
+                const struct affine *inverses, uint32_t index, uint32_t count, struct hit *hit,
+                double point[3])
+{
+    struct ray ray = look(&pose->cameras[0], index, count);
+    if (!trace(scene, pose, inverses, &ray, false, hit))
+        return false;
+    for (int k = 0; k < 3; ++k)
+        point[k] = ray.origin[k] + (1.0 - OFFSET) * hit->t * ray.dir[k];
+    return true;
+}
+
+static double measure_share(const struct scene *scene, const struct scene_pose *pose,
+                            const struct affine *inverses)
 {
     uint32_t count = ray_count(scene), seen = 0, lit = 0;
     for (uint32_t i = 0; i < count; ++i) {
-        struct ray ray = look(&pose->cameras[0], i, count);
         struct hit hit;
         double point[3];
-        if (!trace(scene, pose, inverses, &ray, false, &hit) || hit.emits)
+        if (!see(scene, pose, inverses, i, count, &hit, point) || !is_black(hit.material->emission))
             continue;
-        for (int k = 0; k < 3; ++k)
-            point[k] = ray.origin[k] + (1.0 - OFFSET) * hit.t * ray.dir[k];
         ++seen;
         lit += is_lit(scene, pose, inverses, point, hit.normal, i);
     }
     return seen ? (double)lit / seen : 1.0;
 }
 
+/* ---- How bright what is seen is ---- */
+
+/* The nearest texel; white where there is no picture. Pictures repeat, whatever the use says. */
+static void pick_texel(const struct scene *scene, const struct hit *hit, enum scene_slot slot,
+                       uint8_t rgba[4])
+{
+    const struct scene_texture_use *use = &hit->material->textures[slot];
+    const float *uvs =
+        hit->mesh->uvs[use->uv_set] ? hit->mesh->uvs[use->uv_set] : hit->mesh->uvs[0];
+    const uint32_t *index = hit->mesh->indices + 3 * (size_t)hit->triangle;
+    const double weights[3] = {1.0 - hit->u - hit->v, hit->u, hit->v};
+    double uv[2] = {0.0, 0.0};
+    uint32_t at[2];
+    memset(rgba, 255, 4);
+    if (use->texture == SCENE_NONE || !uvs || !scene->textures[use->texture].rgba)
+        return;
+    const struct scene_texture *texture = &scene->textures[use->texture];
+    for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 2; ++i)
+            uv[i] += weights[k] * (double)uvs[2 * (size_t)index[k] + (size_t)i];
+    }
+    for (int i = 0; i < 2; ++i) {
+        const float *m = use->transform + 3 * i;
+        double place = (double)m[0] * uv[0] + (double)m[1] * uv[1] + (double)m[2];
+        double part = isfinite(place) ? place - floor(place) : 0.0;
+        uint32_t size = i ? texture->height : texture->width, texel = (uint32_t)(part * size);
+        at[i] = texel < size ? texel : size - 1;
+    }
+    memcpy(rgba, texture->rgba + 4 * ((size_t)at[1] * texture->width + at[0]), 4);
+}
+
+/* The brightest channel of `rgb` times the picture in `slot`. */
+static double shine(const struct scene *scene, const struct hit *hit, const float rgb[3],
+                    enum scene_slot slot)
+{
+    uint8_t texel[4];
+    double most = 0.0;
+    pick_texel(scene, hit, slot, texel);
+    for (int c = 0; c < 3; ++c)
+        most = fmax(most, (double)rgb[c] * linear_from_srgb(texel[c] / 255.0));
+    return most;
+}
+
+/* Metal and mirrors show something else than their own colour. */
+static bool is_mirror(const struct scene *scene, const struct hit *hit)
+{
+    const struct scene_material *m = hit->material;
+    uint8_t texel[4];
+    pick_texel(scene, hit, SCENE_SLOT_METAL_ROUGH, texel);
+    return (m->model == SCENE_MODEL_METAL_ROUGH && (double)m->metallic * texel[2] > 127.0) ||
+           m->reflection[0] > 0.5f || m->reflection[1] > 0.5f || m->reflection[2] > 0.5f;
+}
+
+/* Light at a point, for a white surface. With `shadows` some of the lights, others from point to
+   point, are asked whether they reach it. */
+static double light_at(const struct scene *scene, const struct scene_pose *pose,
+                       const struct affine *inverses, const double point[3], const struct hit *hit,
+                       uint32_t index, bool shadows)
+{
+    uint32_t step = (pose->light_count + LIGHTS_ASKED - 1) / LIGHTS_ASKED;
+    double sum = 0.0, asked = 0.0, reached = 0.0;
+    for (uint32_t i = 0; i < pose->light_count; ++i) {
+        double brightness = freeze_brightness(&pose->lights[i], point, hit->normal);
+        sum += brightness;
+        if (!shadows || !(brightness > 0.0) || (i + index) % step != 0)
+            continue;
+        asked += brightness;
+        if (reaches(scene, pose, inverses, &pose->lights[i], point, index))
+            reached += brightness;
+    }
+    return asked > 0.0 ? sum * (reached / asked) : sum;
+}
+
+static void measure_seen(const struct scene *scene, const struct scene_pose *pose,
+                         const struct affine *inverses, bool shadows, struct freeze_seen *seen)
+{
+    uint32_t count = ray_count(scene);
+    double ambient =
+        fmax(fmax((double)scene->ambient[0], (double)scene->ambient[1]), (double)scene->ambient[2]);
+    for (uint32_t i = 0; i < count; ++i) {
+        struct hit hit;
+        double point[3];
+        if (!see(scene, pose, inverses, i, count, &hit, point) || is_mirror(scene, &hit))
+            continue;
+        double own = shine(scene, &hit, hit.material->emission, SCENE_SLOT_EMISSION);
+        double light = hit.material->model == SCENE_MODEL_UNLIT
+                           ? 1.0
+                           : light_at(scene, pose, inverses, point, &hit, i, shadows) + ambient;
+        double color = shine(scene, &hit, hit.material->diffuse, SCENE_SLOT_DIFFUSE);
+        seen->shown[seen->count] = own + light * color;
+        seen->white[seen->count++] = own + light;
+    }
+}
+
+/* ---- The first camera ---- */
+
+/* `inverses`: to free(); NULL where nothing can be told. */
+static whit_result begin(const struct scene *scene, struct scene_pose *pose,
+                         struct affine **inverses)
+{
+    whit_result result = scene_pose_init(scene, 0.0, pose);
+    *inverses = NULL;
+    if (result != WHIT_OK)
+        return result;
+    *inverses = calloc(pose->instance_count + 1, sizeof **inverses);
+    if (!*inverses) {
+        scene_pose_finish(pose);
+        return WHIT_ERROR_MEMORY;
+    }
+    bool all = pose->camera_count && pose->cameras[0].kind != SCENE_CAMERA_PANORAMA;
+    for (uint32_t i = 0; all && i < pose->instance_count; ++i)
+        all = affine_invert(&pose->instances[i], &(*inverses)[i]);
+    if (!all) {
+        free(*inverses);
+        *inverses = NULL;
+    }
+    return WHIT_OK;
+}
+
 whit_result freeze_lit_share(const struct scene *scene, double *share)
 {
     struct scene_pose pose;
+    struct affine *inverses;
     *share = 1.0;
-    whit_result result = scene_pose_init(scene, 0.0, &pose);
+    whit_result result = begin(scene, &pose, &inverses);
     if (result != WHIT_OK)
         return result;
-    struct affine *inverses = calloc(pose.instance_count + 1, sizeof *inverses);
-    bool all = inverses && pose.camera_count && pose.cameras[0].kind != SCENE_CAMERA_PANORAMA;
-    for (uint32_t i = 0; all && i < pose.instance_count; ++i)
-        all = affine_invert(&pose.instances[i], &inverses[i]);
-    if (all)
-        *share = measure(scene, &pose, inverses);
-    result = inverses ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (inverses)
+        *share = measure_share(scene, &pose, inverses);
     free(inverses);
     scene_pose_finish(&pose);
-    return result;
+    return WHIT_OK;
+}
+
+whit_result freeze_see(const struct scene *scene, bool shadows, struct freeze_seen *seen)
+{
+    struct scene_pose pose;
+    struct affine *inverses;
+    seen->count = 0;
+    whit_result result = begin(scene, &pose, &inverses);
+    if (result != WHIT_OK)
+        return result;
+    if (inverses)
+        measure_seen(scene, &pose, inverses, shadows, seen);
+    free(inverses);
+    scene_pose_finish(&pose);
+    return WHIT_OK;
 }

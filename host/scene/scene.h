@@ -269,7 +269,8 @@ struct scene {
     uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool is_model;                         /* of another program: its lights may need help */
     whit_lights lights_wanted;
-    bool lacks_memory; /* for a name or a note: scene_freeze fails */
+    double exposure_ev; /* that suits what the first camera sees of a model; set by scene_freeze */
+    bool lacks_memory;  /* for a name or a note: scene_freeze fails */
     bool frozen;
     bool pictures_dropped; /* by scene_drop_pictures */
 };

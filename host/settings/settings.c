@@ -32,6 +32,7 @@ struct settings settings_usual(void)
     return (struct settings){.load = {.up = WHIT_UP_AUTO, .texture_limit = 4096},
                              .trees = {.leaf_limit = 4},
                              .picture = whit_renderer_defaults(),
+                             .exposure_auto = true,
                              .fps = 24.0,
                              .fps_goal = 30.0};
 }
@@ -90,6 +91,15 @@ bool settings_check(struct settings *settings, char why[SETTING_WHY_BYTES])
 }
 
 /* ---- For libwhit ---- */
+
+void settings_expose(struct settings *settings, const whit_scene_info *scene)
+{
+    settings->scene_exposure_ev = scene->exposure_ev;
+    if (!settings->exposure_auto)
+        return;
+    settings->picture.exposure_ev = scene->exposure_ev;
+    settings->picture.soft_highlights = scene->exposure_ev != 0.0;
+}
 
 whit_renderer_params settings_picture(const struct settings *settings)
 {

@@ -31,7 +31,9 @@ struct settings {
     whit_accel_params trees;
     whit_renderer_params picture;    /* without camera and pointers: see settings_picture */
     char camera[SETTING_TEXT_BYTES]; /* "": the scene's first */
-    uint32_t frame;                  /* in place of a time, with `fps`: see settings_check */
+    bool exposure_auto;       /* the exposure in `picture` is the scene's: see settings_expose */
+    double scene_exposure_ev; /* what auto stands for, once the scene is known */
+    uint32_t frame;           /* in place of a time, with `fps`: see settings_check */
     double fps;
 
     uint32_t paint;              /* enum settings_paint */
@@ -76,6 +78,9 @@ bool settings_read(const struct setting *row, const char *text, struct settings 
                    char why[SETTING_WHY_BYTES]);
 /* Whether the options go together; else why not. Makes a time of a frame. */
 bool settings_check(struct settings *settings, char why[SETTING_WHY_BYTES]);
+
+/* Takes the exposure that suits the scene, where --exposure is auto. */
+void settings_expose(struct settings *settings, const whit_scene_info *scene);
 
 /* The parameters for libwhit, with their strings, which point into `settings`; `folders` is theirs.
  */

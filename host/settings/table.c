@@ -94,17 +94,51 @@ static bool write_build(const void *record, char text[SETTING_VALUE_BYTES])
     return true;
 }
 
+/* `number` is left as it is for auto. */
+static bool read_auto(const struct setting *row, const char *text, bool *is_auto, double *number,
+                      char *why)
+{
+    char *end;
+    double value = strtod(text, &end);
+    *is_auto = strcmp(text, "auto") == 0;
+    if (*is_auto)
+        return true;
+    if (end == text || *end || !(value >= row->min && value <= row->max))
+        return setting_refuse(why, " `%s`: auto or a number from %g to %g is needed", text,
+                              row->min, row->max);
+    *number = value;
+    return true;
+}
+
+static bool read_exposure(const struct setting *row, const char *text, void *record, char *why)
+{
+    struct settings *settings = record;
+    bool is_auto;
+    if (!read_auto(row, text, &is_auto, &settings->picture.exposure_ev, why))
+        return false;
+    settings->exposure_auto = is_auto;
+    settings->picture.soft_highlights = false;
+    return true;
+}
+
+static bool write_exposure(const void *record, char text[SETTING_VALUE_BYTES])
+{
+    const struct settings *settings = record;
+    if (settings->exposure_auto)
+        strcpy(text, "auto");
+    else
+        setting_write_number(settings->picture.exposure_ev, text, SETTING_VALUE_BYTES);
+    return true;
+}
+
 static bool read_scale(const struct setting *row, const char *text, void *record, char *why)
 {
     struct settings *settings = record;
-    char *end;
-    double scale = strtod(text, &end);
-    if (strcmp(text, "auto") == 0)
-        scale = 0.0;
-    else if (end == text || *end || !(scale >= row->min && scale <= row->max))
-        return setting_refuse(why, " `%s`: auto or a number from %g to %g is needed", text,
-                              row->min, row->max);
-    settings->paint_scale = scale;
+    bool is_auto;
+    if (!read_auto(row, text, &is_auto, &settings->paint_scale, why))
+        return false;
+    if (is_auto)
+        settings->paint_scale = 0.0;
     return true;
 }
 
@@ -217,12 +251,13 @@ const struct setting settings_table[] = {
     {"fresnel", 0, NULL, "or Schlick's approximation in its place", AT(EITHER, picture.schlick),
      .values = values_fresnel, .commands = IN_PICTURES, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .title = "Fresnel"},
-    {"exposure", 0, "EV",
+    {"exposure", 0, "auto|EV",
      "what is displayed, in the window, PNG and FLIP, times 2^EV;\n"
-     "EXR and PFM stay as they are",
-     AT(NUMBER, picture.exposure_ev), .min = -32.0, .max = 32.0, .commands = IN_PICTURES | IN_COST,
-     .change = SETTING_LIGHT, .title = "exposure", .step = 0.5, .shown_min = -8.0, .shown_max = 8.0,
-     .key = 'Z', .json = "exposure_ev"},
+     "auto: as suits what the first camera sees of a model, with\n"
+     "soft highlights; EXR and PFM stay as they are",
+     AT_OWN(exposure), .offset = offsetof(struct settings, picture.exposure_ev), .min = -32.0,
+     .max = 32.0, .commands = IN_PICTURES | IN_COST, .change = SETTING_LIGHT, .title = "exposure",
+     .step = 0.5, .shown_min = -8.0, .shown_max = 8.0, .key = 'Z', .json = "exposure_ev"},
     {"effects", 0, "auto|all|+NAME,-NAME",
      "compile what the scene calls for, or everything: the\n"
      "picture is the same; or more and less by name: less\n"

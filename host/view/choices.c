@@ -81,6 +81,8 @@ void choice_set(struct settings *settings, const struct setting *row, uint32_t s
 double choice_number(const struct settings *settings, const struct setting *row)
 {
     char text[SETTING_VALUE_BYTES];
+    if (row->kind == SETTING_OWN) /* auto has a number too */
+        return *(const double *)((const char *)settings + row->offset);
     setting_write(row, settings, 0, text);
     return strtod(text, NULL);
 }
@@ -90,6 +92,8 @@ void choice_set_number(struct settings *settings, const struct setting *row, dou
     char text[40];
     number = number < row->min ? row->min : number > row->max ? row->max : number;
     setting_write_number(number, text, sizeof text);
+    if (row->kind == SETTING_OWN && number == settings->scene_exposure_ev)
+        strcpy(text, "auto");
     set_text(settings, row, text);
 }
 

@@ -216,6 +216,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     atomic_store(&session->part, 0.0f);
     engine->brief = task->brief;
     pthread_mutex_unlock(&engine->lock);
+    settings_expose(&task->settings, &session->scene->info);
     whit_result result = engine_draw(task, &frame);
     bool kept = result == WHIT_OK && frame.whole && lane == &engine->lanes[0];
     bool same = kept && note_change(engine, &frame);

@@ -107,6 +107,8 @@ static void take_frame(struct view *view)
     scene_ref_drop(view->scene);
     view->scene = scene_ref_take(frame->scene);
     view->fallback = frame->settings;
+    if (settings_same_scene(&frame->settings, &view->settings))
+        settings_expose(&view->settings, &view->scene->info);
     if (other_scene)
         scenes_show(view);
     if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))

@@ -73,6 +73,7 @@ typedef struct whit_renderer_params {
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     double exposure_ev;     /* what is displayed (.png, FLIP, bytes) is times 2^this */
+    bool soft_highlights;   /* and runs softly towards 1 from 0.6 on, in place of a cut at 1 */
     /* Kernels have what the scene calls for. With all_effects they have everything, which changes
        no picture; without effects_removed it does. Bits 1 << the index of whit_effect_name. */
     bool all_effects;
@@ -139,10 +140,10 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   sampling, light_samples, bailout, depth and exposure_ev, and nothing else. Its camera is
-   borrowed until the next call. The picture is that of a renderer made with these, byte for byte.
-   After an error there is nothing to render before a call that succeeds: WHIT_ERROR_USAGE and
-   others as of whit_renderer_create. */
+   sampling, light_samples, bailout, depth, exposure_ev and soft_highlights, and nothing else. Its
+   camera is borrowed until the next call. The picture is that of a renderer made with these, byte
+   for byte. After an error there is nothing to render before a call that succeeds: WHIT_ERROR_USAGE
+   and others as of whit_renderer_create. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 

@@ -80,6 +80,8 @@ typedef struct whit_scene_info {
                                             stands on it */
     const char *environment;             /* "gradient" or "map": what rays that miss see */
     bool environment_made_by_whit;
+    double exposure_ev; /* half stops that suit what the first camera sees of a model; 0 where much
+                           of it is neither burnt out nor black, and of scene files */
 } whit_scene_info;
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
 

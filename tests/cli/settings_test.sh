@@ -81,6 +81,21 @@ render_png usual 0
 render_png dark -1
 expect 0 "the PNG of it" compare usual.png dark.png --metric mean --json dark.json
 check "is darker ($(jq -c .mean dark.json))" jq -e '.mean | type == "array" and all(. < -0.01)' dark.json
+# Models are exposed by what is seen of them; their floats stay.
+printf 'newmtl glow\nKd 0 0 0\nKe 50 25 5\n' >glow.mtl
+printf 'mtllib glow.mtl\nusemtl glow\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n' >glow.obj
+expect 0 "a model that burns out" render glow.obj -o glow.png --size 24x16
+check "says its exposure" grep -q 'note: 100 % of what is seen would be burnt out: `--exposure auto` is -6 EV' \
+    "$OUT/stderr"
+check "and the recipe has it" grep -aq '"exposure_ev":-6\(\.0\)\{0,1\}[,}]' glow.png
+for exposure in -6 0; do
+    expect 0 "at $exposure" render glow.obj -o glow$exposure.png --exposure $exposure --size 24x16 --quiet
+    expect 0 "its floats at $exposure" render glow.obj -o glow$exposure.pfm --exposure $exposure --size 24x16 --quiet
+done
+expect 0 "its floats" render glow.obj -o glow.pfm --size 24x16 --quiet
+check "are those of any exposure" cmp glow.pfm glow0.pfm
+expect 0 "highlights are softer than at the number" compare glow-6.png glow.png --metric mean --json soft.json
+check "darker where they are bright ($(jq -c .mean soft.json))" jq -e '.mean[0] < -0.01 and .mean[2] == 0' soft.json
 flip_of() {
     expect 0 "cost --exposure $1" cost "$CUBE" --size 24x16 --exposure "$1" --spend 0.3 --rays 0 \
         --knobs traversal --json "cost$1.json" --quiet

@@ -299,6 +299,93 @@ TEST(stated_lights_change_only_where_nothing_is_seen)
     }
 }
 
+/* ---- Exposure ---- */
+
+/* A wide floor with a lamp above the middle, which the camera looks at. */
+static struct scene *lamp_over_floor(float level, float albedo, bool is_model, whit_lights lights)
+{
+    struct scene *scene = empty_scene();
+    struct scene_material floor = material_plain("floor");
+    struct scene_light light = {.kind = SCENE_LIGHT_SPOT,
+                                .node = SCENE_NONE,
+                                .position = {0, 2, 0},
+                                .direction = {0, -1, 0},
+                                .color = {level, level, level},
+                                .cos_inner = 0.6f,
+                                .cos_outer = 0.5f,
+                                .falloff = true};
+    light.origin.file = string_copy("a.glb");
+    for (int i = 0; i < 3; ++i)
+        floor.diffuse[i] = albedo;
+    scene_put(scene, mesh_plane(100.0), &(struct put){.material = &floor});
+    scene_put_light(scene, light);
+    scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
+    scene->is_model = is_model;
+    scene->lights_wanted = lights;
+    return scene_ready(scene);
+}
+
+/* The spot lights less than a tenth of the floor, so that its strength is left as it is. */
+TEST(a_model_that_burns_out_is_exposed_less)
+{
+    const struct {
+        float level, albedo;
+        bool is_model;
+        double lo, hi;
+    } cases[] = {{4000.0f, 0.8f, true, -11.0, -8.5}, {4.0f, 0.8f, true, 0.0, 0.0},
+                 {4000.0f, 0.8f, false, 0.0, 0.0},   {4.0f, 0.01f, true, 0.0, 0.0},
+                 {0.01f, 0.8f, true, 6.0, 10.0},     {8.0f, 0.3f, true, 0.0, 0.0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct scene *scene =
+            lamp_over_floor(cases[i].level, cases[i].albedo, cases[i].is_model, WHIT_LIGHTS_FILE);
+        double ev = scene->exposure_ev;
+        assert_true(ev >= cases[i].lo && ev <= cases[i].hi && 2.0 * ev == floor(2.0 * ev));
+        assert_int_equal(scene_noted(scene, "`--exposure auto` is"), ev != 0.0);
+        scene_destroy(scene);
+    }
+}
+
+/* Metal shows what is around it, unless its picture says that it is none. */
+TEST(metal_is_not_taken_for_its_colour)
+{
+    static const uint8_t texels[2][4] = {{0, 0, 255, 255}, {0, 0, 0, 255}};
+    for (int plastic = 0; plastic < 2; ++plastic) {
+        struct scene *scene = empty_scene();
+        struct scene_material m = material_plain("shiny");
+        m.model = SCENE_MODEL_METAL_ROUGH;
+        m.metallic = 1.0f;
+        for (int i = 0; i < 3; ++i)
+            m.diffuse[i] = 1.0f;
+        m.textures[SCENE_SLOT_METAL_ROUGH].texture =
+            scene_put_texture(scene, 1, 1, texels[plastic]);
+        scene_put(scene, mesh_plane(4.0), &(struct put){.material = &m});
+        scene_put_sun(scene, 0, -1, 0, 1.9f);
+        scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
+        scene->is_model = true;
+        assert_true((scene_ready(scene)->exposure_ev < 0.0) == plastic);
+        scene_destroy(scene);
+    }
+}
+
+/* A lamp in a box above the floor lights nothing of it. */
+TEST(light_that_does_not_arrive_burns_nothing_out)
+{
+    struct scene *scene = empty_scene();
+    scene_put(scene, mesh_plane(100.0), NULL);
+    scene_put(scene, mesh_plane(100.0), &(struct put){.at = {0, 4, 0}});
+    struct scene_light light = {.kind = SCENE_LIGHT_DIRECTIONAL,
+                                .node = SCENE_NONE,
+                                .direction = {0, -1, 0},
+                                .color = {1.9f, 1.9f, 1.9f}};
+    light.origin.file = string_copy("a.glb");
+    scene_put_light(scene, light);
+    scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
+    scene->is_model = true;
+    scene_ready(scene);
+    assert_true(scene->exposure_ev == 0.0);
+    scene_destroy(scene);
+}
+
 /* ---- Lights that light nothing of what is seen ---- */
 
 static uint32_t lights_by_whit(const struct scene *scene, enum scene_light_kind kind)
