@@ -3,6 +3,7 @@
 
 #include "api/handles.h"
 #include "base/vec.h"
+#include "scene/viewpoint.h"
 
 static const double DEGREES = 180.0 / PI;
 
@@ -262,6 +263,21 @@ void whit_scene_get_note(const whit_scene *handle, uint32_t index, whit_note_inf
         return;
     info->warning = handle->scene->notes[index].level == SCENE_NOTE_WARNING;
     info->text = or_empty(handle->scene->notes[index].text);
+}
+
+whit_result whit_scene_choose_camera(const whit_scene *handle, whit_camera *camera)
+{
+    struct viewpoint viewpoint;
+    *camera = (whit_camera){.own = true, .up = {0.0, 1.0, 0.0}};
+    whit_result result = viewpoint_choose(handle->scene, &handle->pose, &viewpoint);
+    if (result != WHIT_OK) {
+        log_error(&handle->log, "out of memory");
+        return result;
+    }
+    copy3_double(camera->eye, viewpoint.eye);
+    copy3_double(camera->target, viewpoint.target);
+    camera->fov_y_degrees = viewpoint.fov_y * DEGREES;
+    return WHIT_OK;
 }
 
 static void world_triangle(const struct scene_mesh *mesh, const struct affine *to_world,

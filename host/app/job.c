@@ -60,6 +60,7 @@ whit_result job_load(struct job *job)
         whit_scene_info info;
         whit_scene_get_info(job->scene, &info);
         settings_expose(&job->settings, &info);
+        result = settings_choose_camera(&job->settings, job->scene);
     }
     return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }

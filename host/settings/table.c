@@ -213,8 +213,9 @@ static bool write_effects(const void *record, char text[SETTING_VALUE_BYTES])
 const struct setting settings_table[] = {
     {"size", 0, "WxH", "pixels", SETTING_AT_SIZE(struct settings, picture.width, picture.height),
      .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_PLACE, .always = true},
-    {"camera", 0, "NAME|N|numbers",
-     "a camera of the scene, by name or number, or\n"
+    {"camera", 0, "NAME|N|auto|numbers",
+     "a camera of the scene, by name or number; auto: whit's own,\n"
+     "as for files that have none; or\n"
      "ex,ey,ez,tx,ty,tz,ux,uy,uz,fov: eye, target, up and\n"
      "vertical angle in degrees",
      "the scene's first", AT(TEXT, camera), .commands = IN_PICTURES | IN_COST | IN_SCENE,

@@ -204,7 +204,7 @@ static void say_failure(struct engine *engine, whit_result result)
 
 static void draw_one(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
-    struct engine_frame frame;
+    struct engine_frame frame = {0};
     struct session *session = task->session;
     task->engine = engine;
     task->lane = lane;
@@ -217,7 +217,9 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     engine->brief = task->brief;
     pthread_mutex_unlock(&engine->lock);
     settings_expose(&task->settings, &session->scene->info);
-    whit_result result = engine_draw(task, &frame);
+    whit_result result = settings_choose_camera(&task->settings, session->scene->scene);
+    if (result == WHIT_OK)
+        result = engine_draw(task, &frame);
     bool kept = result == WHIT_OK && frame.whole && lane == &engine->lanes[0];
     bool same = kept && note_change(engine, &frame);
     pthread_mutex_lock(&engine->lock);

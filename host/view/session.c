@@ -122,6 +122,8 @@ whit_result session_open(struct session *session, const struct settings *setting
     tell(progress, SESSION_LOADING);
     if (!session->scene)
         result = load(session, scene_log);
+    if (result == WHIT_OK)
+        result = settings_choose_camera(&session->settings, session->scene->scene);
     tell(progress, SESSION_BUILDING);
     if (result == WHIT_OK)
         result = build(session);

@@ -89,6 +89,14 @@ struct settings view_drawn(const struct view *view, const struct settings *setti
     return drawn;
 }
 
+/* The exposure and the camera that stand for auto are the settings' own from here on. */
+static void take_choices(struct view *view, const struct engine_frame *frame)
+{
+    settings_expose(&view->settings, &frame->scene->info);
+    if (strcmp(view->settings.camera, "auto") == 0)
+        memcpy(view->settings.camera, frame->settings.camera, sizeof view->settings.camera);
+}
+
 static void take_frame(struct view *view)
 {
     struct engine_frame *frame = &view->frame, next = {.number = view->frame.number};
@@ -108,7 +116,7 @@ static void take_frame(struct view *view)
     view->scene = scene_ref_take(frame->scene);
     view->fallback = frame->settings;
     if (settings_same_scene(&frame->settings, &view->settings))
-        settings_expose(&view->settings, &view->scene->info);
+        take_choices(view, frame);
     if (other_scene)
         scenes_show(view);
     if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))

@@ -139,6 +139,9 @@ void whit_scene_get_instance(const whit_scene *scene, uint32_t index, whit_insta
 void whit_scene_get_effect(const whit_scene *scene, uint32_t index, whit_effect_info *info);
 void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info *info);
 
+/* Where whit looks from at a scene whose file has no camera, at time 0; WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_scene_choose_camera(const whit_scene *scene, whit_camera *camera);
+
 /* Every world-space triangle at `time_s`, in the order of instance, then primitive. Spheres are not
    among them. */
 typedef struct whit_triangle {

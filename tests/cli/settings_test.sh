@@ -96,6 +96,21 @@ expect 0 "its floats" render glow.obj -o glow.pfm --size 24x16 --quiet
 check "are those of any exposure" cmp glow.pfm glow0.pfm
 expect 0 "highlights are softer than at the number" compare glow-6.png glow.png --metric mean --json soft.json
 check "darker where they are bright ($(jq -c .mean soft.json))" jq -e '.mean[0] < -0.01 and .mean[2] == 0' soft.json
+# Whit's own view, beside the file's cameras, whatever their names are.
+sed 's/"camera": {/"camera": {"name": "auto", /' "$CUBE" >named.json
+check "a file names its camera auto" grep -q '"name": "auto"' named.json
+own() { expect 0 "$1" render "$2" -o "$1.pfm" --size 24x16 --quiet ${3:+--camera "$3"}; }
+own first "$CUBE"
+own number named.json 0
+own auto named.json auto
+expect 0 "its recipe" render named.json -o auto.png --size 24x16 --quiet --camera auto
+own again named.json "$(grep -a -o '"camera":"[^"]*"' auto.png | cut -d '"' -f 4)"
+check "auto is none of the file's" sh -c '! cmp -s first.pfm auto.pfm'
+check "a number is the file's" cmp first.pfm number.pfm
+check "the recipe has auto's numbers" cmp auto.pfm again.pfm
+own viewless glow.obj
+own viewless-auto glow.obj auto
+check "a model without a camera has whit's" cmp viewless.pfm viewless-auto.pfm
 flip_of() {
     expect 0 "cost --exposure $1" cost "$CUBE" --size 24x16 --exposure "$1" --spend 0.3 --rays 0 \
         --knobs traversal --json "cost$1.json" --quiet
