@@ -1,10 +1,11 @@
 /* One picture of many scenes:
        contact_sheet FOLDER|FILE... -o SHEET.png [--size WxH] [--aa 1|4|16|64] [--columns N]
-                     [--device D] [--texture-limit N]
+                     [--device D] [--texture-limit N] [--check yes]
 
    Folders are searched for scene files, models and all; within them, .json files count when they
    name whit's schema. Single files may be .png pictures. Tiles come in the order of their paths. A
-   scene that fails gets a dark tile with the kind of its error, and the exit code is 1. */
+   scene that fails gets a dark tile with the kind of its error, and the exit code is 1. With
+   --check each scene has to look right at once (appearance.h), or the exit code is 1 too. */
 #define _GNU_SOURCE
 #include <ctype.h>
 #include <ftw.h>
@@ -16,6 +17,7 @@
 
 #include <stb/stb_easy_font.h>
 
+#include "appearance.h"
 #include "whit.h"
 #include "whit_program.h"
 
@@ -26,6 +28,7 @@ struct sheet {
     uint32_t width, height, samples, columns, texture_limit;
     uint32_t sheet_width, sheet_height;
     float *pixels; /* sheet_width * sheet_height * 3 */
+    bool check;
 };
 
 static char *files[FILES_MAX];
@@ -143,30 +146,73 @@ static bool is_picture(const char *path)
     return dot && strcasecmp(dot, ".png") == 0;
 }
 
-static whit_result render(const struct sheet *sheet, whit_device *device, const char *path,
-                          whit_image **image)
+/* As the viewer and `whit render` show it. */
+static whit_result read_displayed(const whit_image *color, whit_image **image)
 {
-    const whit_load_params load = {.texture_limit = sheet->texture_limit};
+    whit_image_info info;
+    whit_image_get_info(color, &info);
+    uint8_t *rgba = malloc(4 * (size_t)info.width * info.height);
+    if (!rgba)
+        return WHIT_ERROR_MEMORY;
+    whit_image_display_bytes(color, rgba);
+    whit_result result = whit_image_create_display(info.width, info.height, rgba, image);
+    free(rgba);
+    return result;
+}
+
+static whit_result draw(const struct sheet *sheet, whit_device *device, whit_scene *scene,
+                        whit_accel *accel, whit_image **image, struct appearance *appearance)
+{
     whit_renderer_params params = whit_renderer_defaults();
+    whit_scene_info info;
+    whit_renderer *renderer = NULL;
+    whit_image *color = NULL;
+    whit_scene_get_info(scene, &info);
     params.width = sheet->width;
     params.height = sheet->height;
     params.sampling.count = sheet->samples;
+    params.exposure_ev = info.exposure_ev;
+    params.soft_highlights = info.exposure_ev != 0.0;
+    whit_result result = whit_renderer_create(device, accel, &params, &renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
+    if (result == WHIT_OK)
+        result = read_displayed(color, image);
+    if (result == WHIT_OK && sheet->check)
+        result = appearance_measure(device, scene, renderer, &params, color, appearance);
+    whit_image_destroy(color);
+    whit_renderer_destroy(renderer);
+    return result;
+}
+
+static whit_result render(const struct sheet *sheet, whit_device *device, const char *path,
+                          whit_image **image, struct appearance *appearance)
+{
+    const whit_load_params load = {.up = WHIT_UP_AUTO, .texture_limit = sheet->texture_limit};
     whit_scene *scene = NULL;
     whit_accel *accel = NULL;
-    whit_renderer *renderer = NULL;
     whit_result result = whit_scene_load(path, &load, &log_errors, &scene);
     if (result == WHIT_OK)
         result = whit_accel_create(scene, NULL, &accel);
     if (result == WHIT_OK)
-        result = whit_renderer_create(device, accel, &params, &renderer);
-    if (result == WHIT_OK)
-        result = whit_renderer_render(renderer);
-    if (result == WHIT_OK)
-        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, image);
-    whit_renderer_destroy(renderer);
+        result = draw(sheet, device, scene, accel, image, appearance);
     whit_accel_destroy(accel);
     whit_scene_destroy(scene);
     return result;
+}
+
+/* Says what was measured; whether it is right. */
+static bool say_appearance(const struct appearance *a)
+{
+    char relief[32] = "flat";
+    if (!a->is_flat)
+        snprintf(relief, sizeof relief, "%.2f", a->relief);
+    bool right = appearance_is_right(a);
+    printf("%6.1f %% burnt %6.1f %% black %8s relief  %s  ", 100.0 * a->burnt, 100.0 * a->black,
+           relief, right ? "right" : "WRONG");
+    return right;
 }
 
 /* The number of scenes that failed. */
@@ -178,10 +224,11 @@ static uint32_t fill_sheet(struct sheet *sheet, whit_device *device)
         uint32_t x = i % sheet->columns * sheet->width;
         uint32_t y = i / sheet->columns * (sheet->height + LABEL_ROWS);
         whit_image *image = NULL;
+        struct appearance appearance = {.is_flat = true};
         double start_ms = whit_clock_ms();
         whit_result result = is_picture(files[i])
                                  ? whit_image_load(files[i], NULL, &log_errors, &image)
-                                 : render(sheet, device, files[i], &image);
+                                 : render(sheet, device, files[i], &image, &appearance);
         if (result == WHIT_OK) {
             place(sheet, x, y, image);
         } else {
@@ -190,8 +237,11 @@ static uint32_t fill_sheet(struct sheet *sheet, whit_device *device)
             ++failed;
         }
         write_text(sheet, x + 4, y + sheet->height + 4, files[i]);
-        printf("%4u  %7.1f s  %-12s %s\n", i + 1, (whit_clock_ms() - start_ms) / 1000.0,
-               whit_result_name(result), files[i]);
+        printf("%4u  %7.1f s  %-12s ", i + 1, (whit_clock_ms() - start_ms) / 1000.0,
+               whit_result_name(result));
+        if (sheet->check && result == WHIT_OK)
+            failed += !say_appearance(&appearance);
+        puts(files[i]);
         fflush(stdout);
         whit_image_destroy(image);
     }
@@ -203,7 +253,7 @@ static uint32_t fill_sheet(struct sheet *sheet, whit_device *device)
 static int usage(void)
 {
     fputs("usage: contact_sheet FOLDER|FILE... -o SHEET.png [--size WxH] [--aa 1|4|16|64]\n"
-          "                     [--columns N] [--device D] [--texture-limit N]\n",
+          "                     [--columns N] [--device D] [--texture-limit N] [--check yes]\n",
           stderr);
     return 2;
 }
@@ -222,6 +272,8 @@ static bool read_option(struct sheet *sheet, const char *name, const char *value
         return sscanf(value, "%u", &sheet->columns) == 1;
     else if (strcmp(name, "--texture-limit") == 0)
         return sscanf(value, "%u", &sheet->texture_limit) == 1;
+    else if (strcmp(name, "--check") == 0)
+        return sheet->check = strcmp(value, "yes") == 0;
     else
         return false;
     return true;

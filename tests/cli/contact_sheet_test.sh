@@ -24,5 +24,21 @@ sheet 0 "2 scenes, 0 failed" "$CUBE" "$OUT/first.png"
 echo '{ "objects": 3 }' >"$OUT/broken.json"
 sheet 1 "2 scenes, 1 failed" "$OUT/broken.json" "$CUBE"
 check "which names it" grep -q 'broken.json:1' "$OUT/stderr"
+# With --check models have to look right: a box does, and a glow that is exposed less; a black box does not.
+box() {
+    printf 'newmtl m\n%s\n' "$2" >"$OUT/$1.mtl"
+    {
+        printf 'mtllib %s.mtl\nusemtl m\n' "$1"
+        for z in 0 1; do printf 'v 0 0 %s\nv 1 0 %s\nv 1 1 %s\nv 0 1 %s\n' $z $z $z $z; done
+        printf 'f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n'
+    } >"$OUT/$1.obj"
+}
+box grey 'Kd 0.7 0.7 0.7'
+box glow 'Ke 40 40 40'
+box coal 'Kd 0 0 0'
+sheet 0 "2 scenes, 0 failed" "$OUT/grey.obj" "$OUT/glow.obj" --check yes
+check "both are right" test "$(grep -c ' right ' "$OUT/stdout")" -eq 2
+sheet 1 "2 scenes, 1 failed" "$OUT/grey.obj" "$OUT/coal.obj" --check yes
+check "coal is not" grep -q '100.0 % black .* WRONG .*coal.obj$' "$OUT/stdout"
 expect 2 "no output" "$OUT/scenes"
 finish
