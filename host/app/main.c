@@ -1,10 +1,13 @@
 /* whit: the command line over libwhit. */
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "app/commands.h"
 #include "app/describe.h"
+#include "base/input.h"
 #include "base/text.h"
 
 static const struct cli_command *const commands[] = {
@@ -76,6 +79,8 @@ static bool has_display(void)
 /* model.png in the working folder, of `folder/model.glb`; false: there is such a file. */
 static bool name_picture(const char *path, char *out, size_t bytes)
 {
+    if (is_input(path))
+        path = "stdin";
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const char *dot = strrchr(name, '.');
     int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
@@ -83,8 +88,8 @@ static bool name_picture(const char *path, char *out, size_t bytes)
     return !is_file(out);
 }
 
-/* `whit FILE [options]` looks at it where there is a display, and makes a picture where there is
-   none. */
+/* `whit FILE [options]`, or `whit -`, looks at it where there is a display, and makes a picture
+   where there is none. */
 static int open_file(int argc, char **argv)
 {
     char picture[4096], render[] = "render", output[] = "-o", view[] = "view";
@@ -118,6 +123,9 @@ static int open_file(int argc, char **argv)
 int main(int argc, char **argv)
 {
     const char *word = argc > 1 ? argv[1] : NULL;
+    /* Where standard input is closed, no file that is opened later may stand in its place. */
+    if (fcntl(STDIN_FILENO, F_GETFD) < 0)
+        (void)!open("/dev/null", O_RDONLY);
     if (!word) {
         print_usage(stderr);
         return EXIT_USAGE;
@@ -137,7 +145,7 @@ int main(int argc, char **argv)
     if (strcmp(word, "--manual") == 0 && argc == 3)
         return describe_manual(commands, COMMAND_COUNT, argv[2]);
     const struct cli_command *command = find_command(word);
-    if (!command && is_file(word))
+    if (!command && (is_file(word) || is_input(word)))
         return open_file(argc, argv);
     if (!command)
         return refuse(word);

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
+#include "base/input.h"
 
 /* Paths of unfinished files. Whoever takes a pointer out of its slot owns it, so that the signal
    handler never reads a string that another thread frees. Slot numbers start at 1. */
@@ -104,11 +105,28 @@ static whit_result check_readable(const whit_log *log, const char *path, int fd,
     return WHIT_OK;
 }
 
+static whit_result copy_input(const whit_log *log, uint8_t **data, size_t *size_bytes)
+{
+    const uint8_t *input;
+    whit_result result = input_read(log, &input, size_bytes);
+    if (result != WHIT_OK)
+        return result;
+    *data = array_alloc(*size_bytes + 1, 1);
+    if (*data) {
+        memcpy(*data, input, *size_bytes + 1);
+        return WHIT_OK;
+    }
+    log_error(log, "standard input: no memory for its %zu bytes", *size_bytes);
+    return WHIT_ERROR_MEMORY;
+}
+
 whit_result file_read(const whit_log *log, const struct roots *roots, const char *path,
                       uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
 {
     *data = NULL;
     *size_bytes = 0;
+    if (roots_is_input(roots, path))
+        return copy_input(log, data, size_bytes);
     enum reach reach;
     int fd = roots_open(roots, path, &reach);
     if (fd < 0) {

@@ -187,16 +187,17 @@ enum reach roots_reach(const struct roots *roots, const char *path)
 
 /* The option that allows `folder`, as a shell reads it. A name that would end the quotes is left to
    the user to write: it may be made to be pasted. */
-static void write_hint(const char *folder, char *to, size_t bytes)
+static void write_hint(const struct roots *roots, const char *folder, char *to, size_t bytes)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                                 "/._-+,@%";
     bool quoted = folder[strspn(folder, plain)] != 0, known = !strchr(folder, '\'');
     const char *mark = quoted && known ? "'" : "";
-    static const char text[] =
-        "it lies outside of the folder of what is loaded; --allow-path %s%s%s lets whit read it";
-    if ((size_t)snprintf(to, bytes, text, mark, known ? folder : "FOLDER", mark) >= bytes)
-        snprintf(to, bytes, text, "", "FOLDER", "");
+    const char *why = roots->is_input ? "what standard input names has no folder"
+                                      : "it lies outside of the folder of what is loaded";
+    static const char text[] = "%s; --allow-path %s%s%s lets whit read it";
+    if ((size_t)snprintf(to, bytes, text, why, mark, known ? folder : "FOLDER", mark) >= bytes)
+        snprintf(to, bytes, text, why, "", "FOLDER", "");
 }
 
 static const char *refuse(struct roots *roots, const char *path)
@@ -206,7 +207,7 @@ static const char *refuse(struct roots *roots, const char *path)
     char *slash = folder ? strrchr(folder, '/') : NULL;
     if (slash)
         slash[slash == folder] = 0;
-    write_hint(folder ? folder : "FOLDER", roots->reason, sizeof roots->reason);
+    write_hint(roots, folder ? folder : "FOLDER", roots->reason, sizeof roots->reason);
     roots->refused_count++;
     if (roots->refused_folder)
         free(folder);
@@ -256,6 +257,17 @@ whit_result roots_init(struct roots *roots, const char *named)
     whit_result result = roots->named && folder ? add_folder(roots, folder) : WHIT_ERROR_MEMORY;
     free(folder);
     return result == WHIT_ERROR_MEMORY ? result : WHIT_OK;
+}
+
+whit_result roots_init_input(struct roots *roots, const char *named)
+{
+    *roots = (struct roots){.named = string_copy(named), .is_input = true};
+    return roots->named ? WHIT_OK : WHIT_ERROR_MEMORY;
+}
+
+bool roots_is_input(const struct roots *roots, const char *path)
+{
+    return roots && roots->is_input && strcmp(path, roots->named) == 0;
 }
 
 whit_result roots_allow(const whit_log *log, struct roots *roots, const char *folder)

@@ -23,6 +23,7 @@ enum { REACH_REASON_BYTES = 768 };
 /* Made by roots_init, ended by roots_finish; a zeroed one reaches nothing. */
 struct roots {
     char *named;    /* the file that the user named: it is opened wherever it is */
+    bool is_input;  /* that name stands for standard input, which has no folder */
     char **folders; /* without links, absolute */
     uint32_t count, capacity;
     char reason[REACH_REASON_BYTES]; /* of roots_why_not */
@@ -33,6 +34,10 @@ struct roots {
 /* The folder of `named`, a file that the user named. WHIT_ERROR_MEMORY; a folder that is not there
    reaches nothing. */
 WHIT_CHECK whit_result roots_init(struct roots *roots, const char *named);
+/* None: `named` is what standard input is called. WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result roots_init_input(struct roots *roots, const char *named);
+/* Whether `path` is standard input by that name. NULL roots have none. */
+bool roots_is_input(const struct roots *roots, const char *path);
 /* One more folder; logs why it cannot be had. */
 WHIT_CHECK whit_result roots_allow(const whit_log *log, struct roots *roots, const char *folder);
 void roots_finish(struct roots *roots);

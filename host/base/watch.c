@@ -8,6 +8,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/input.h"
 
 struct watched {
     int folder; /* inotify's number of it */
@@ -56,7 +57,7 @@ void watch_clear(struct watch *watch)
 
 void watch_add(struct watch *watch, const char *path)
 {
-    char *folder = watch ? path_folder(path) : NULL;
+    char *folder = watch && !is_input(path) ? path_folder(path) : NULL;
     if (!folder)
         return;
     struct watched file = {

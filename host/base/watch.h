@@ -9,7 +9,8 @@ struct watch;
 /* NULL where watching is not possible. */
 struct watch *watch_create(void);
 void watch_destroy(struct watch *watch); /* NULL is fine */
-/* Also this file. Editors replace files: its folder is watched for its name. */
+/* Also this file. Editors replace files: its folder is watched for its name. Standard input, which
+   never changes, is none. */
 void watch_add(struct watch *watch, const char *path);
 void watch_clear(struct watch *watch); /* none of them any more */
 /* Whether one of them was written to its end, or put in place of another, since the last call. Does

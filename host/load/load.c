@@ -7,7 +7,9 @@
 
 #include "base/color.h"
 #include "base/file.h"
+#include "base/input.h"
 #include "base/path.h"
+#include "load/format.h"
 #include "load/up.h"
 #include "scene/afford.h"
 
@@ -102,19 +104,40 @@ static void tell_refused(const struct roots *roots, const whit_load_params *para
     snprintf(params->refused->folder, sizeof params->refused->folder, "%s", folder);
 }
 
-whit_result load_scene(const whit_log *log, const char *path, const whit_load_params *params,
-                       struct scene **out)
+static whit_result check_path(const whit_log *log, const char *path)
 {
-    *out = NULL;
+    struct stat info;
     if (!file_exists(path)) {
         log_error(log, "%s: there is no such file", path);
         return WHIT_ERROR_INPUT;
     }
-    struct stat info;
     if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
         log_error(log, "%s: this is a folder, not a scene or a model", path);
         return WHIT_ERROR_INPUT;
     }
+    return WHIT_OK;
+}
+
+enum { INPUT_NAME_BYTES = 16 };
+
+/* Standard input goes by this name from here on, so that all that is told by an extension is. */
+static whit_result name_input(const whit_log *log, char name[INPUT_NAME_BYTES])
+{
+    const uint8_t *data;
+    size_t size_bytes;
+    whit_result result = input_read(log, &data, &size_bytes);
+    const char *extension = result == WHIT_OK ? format_find(data, size_bytes) : NULL;
+    if (extension)
+        snprintf(name, INPUT_NAME_BYTES, "stdin.%s", extension);
+    else if (result == WHIT_OK)
+        log_error(log, "standard input: it begins like no .json scene and like none of " LOAD_MODELS
+                       " models");
+    return extension ? WHIT_OK : WHIT_ERROR_INPUT;
+}
+
+static whit_result load_named(const whit_log *log, const char *path, bool piped,
+                              const whit_load_params *params, struct scene **out)
+{
     if (params &&
         ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY)) {
         log_error(log, "%s: up or lights: a value of an enumeration that there is none of", path);
@@ -127,7 +150,8 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
     }
     scene->memory_limit = params && params->memory_limit_bytes ? params->memory_limit_bytes
                                                                : scene_default_memory_limit();
-    whit_result result = roots_init(&scene->roots, path);
+    whit_result result =
+        piped ? roots_init_input(&scene->roots, path) : roots_init(&scene->roots, path);
     for (uint32_t i = 0; params && result == WHIT_OK && i < params->allowed_count; i++)
         result = roots_allow(log, &scene->roots, params->allowed_folders[i]);
     scene->is_model = load_is_model(path);
@@ -153,4 +177,14 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
     }
     *out = scene;
     return WHIT_OK;
+}
+
+whit_result load_scene(const whit_log *log, const char *path, const whit_load_params *params,
+                       struct scene **out)
+{
+    char name[INPUT_NAME_BYTES];
+    bool piped = is_input(path);
+    *out = NULL;
+    whit_result result = piped ? name_input(log, name) : check_path(log, path);
+    return result == WHIT_OK ? load_named(log, piped ? name : path, piped, params, out) : result;
 }

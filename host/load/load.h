@@ -28,7 +28,8 @@ static inline struct foreign_params load_foreign(const whit_load_params *params)
 /* Whether the path's extension is one of LOAD_MODELS. */
 bool load_is_model(const char *path);
 
-/* Reads any supported file into a frozen scene: .json scene files, and models by LOAD_MODELS. On
+/* Reads any supported file into a frozen scene: .json scene files, and models by LOAD_MODELS; for
+   `-` standard input, whose first bytes tell what it is, and which names no files. On
    failure *out is NULL and one error naming the file and the reason (and the line, where the format
    has lines) was logged. NULL params mean defaults. */
 WHIT_CHECK whit_result load_scene(const whit_log *log, const char *path,

@@ -304,7 +304,7 @@ whit_result obj_read_libraries(struct scene *scene, const char *path, const char
         free(names);
         at = end ? end + 1 : NULL;
     }
-    if (result == WHIT_OK && read.count == 0)
+    if (result == WHIT_OK && read.count == 0 && !scene->roots.is_input)
         result = read_sibling(scene, path, library, &read);
     table_finish(&read);
     return result;

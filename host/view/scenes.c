@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/input.h"
 #include "base/watch.h"
 #include "view/memory.h"
 #include "view/view_private.h"
@@ -70,11 +71,17 @@ void view_learn_camera(struct view *view)
         read_camera(view, (uint32_t)view->file_camera);
 }
 
+/* What comes from standard input is another scene the next time. */
+static bool remembers(const struct view *view)
+{
+    return view->params->remember && !is_input(view->settings.scene);
+}
+
 /* What the user made of the scene's camera, for the next time. */
 static void remember_camera(const struct view *view)
 {
     bool by_hand = view->file_camera < 0;
-    if (view->params->remember && view->camera_known)
+    if (remembers(view) && view->camera_known)
         memory_keep(&view->log, view->settings.scene, by_hand ? view->settings.camera : "");
 }
 
@@ -82,7 +89,7 @@ static void recall_camera(struct view *view)
 {
     struct view_camera camera;
     char text[SETTING_TEXT_BYTES];
-    if (view->params->remember && !view->settings.camera[0] &&
+    if (remembers(view) && !view->settings.camera[0] &&
         memory_find(view->settings.scene, text, sizeof text) && camera_from_text(text, &camera))
         memcpy(view->settings.camera, text, sizeof text);
 }

@@ -51,9 +51,11 @@ typedef struct whit_load_params {
     whit_refused *refused; /* filled in, on failure too; NULL: not wanted */
 } whit_load_params;
 
-/* .json scene files and .obj .gltf .glb .ply .stl .fbx .dae .3mf .off models. WHIT_ERROR_INPUT for
-   a file that is missing, damaged or refused, or takes more memory than params allow;
-   WHIT_ERROR_USAGE where `require_sandbox` cannot be kept; WHIT_ERROR_CANCELLED. */
+/* .json scene files and .obj .gltf .glb .ply .stl .fbx .dae .3mf .off models. `-` is standard
+   input, of at most 256 MiB: it is read once, and kept for further calls; its first bytes tell what
+   it is, and files that it names are found in `allowed_folders` alone. WHIT_ERROR_INPUT for a file
+   that is missing, damaged or refused, or takes more memory than params allow; WHIT_ERROR_USAGE
+   where `require_sandbox` cannot be kept; WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_scene **out);
 void whit_scene_destroy(whit_scene *scene);

@@ -6,9 +6,10 @@ needs jq
 XDG_STATE_HOME=$OUT/state
 export XDG_STATE_HOME
 
-# As in common.sh, but a window that does not end is ended.
+# As in common.sh, but a window that does not end is ended. $INPUT is its standard input.
+INPUT=/dev/null
 run() {
-    timeout $((${LIMIT_S:-100} * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" "$@" >"$OUT/stdout" 2>"$OUT/stderr"
+    timeout $((${LIMIT_S:-100} * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" "$@" <"$INPUT" >"$OUT/stdout" 2>"$OUT/stderr"
     status=$?
 }
 

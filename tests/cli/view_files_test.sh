@@ -44,6 +44,20 @@ check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001
 rm whit-0001.png
 EXPECTED=
 
+# Standard input: read once, watched never, and the scenes beside it are none.
+printf -- '--size 96x64\n' >./-
+INPUT=$CUBE
+play "standard input" - $SMALL --remember yes <<END
+in: | scene = - | render has whit render - --size
+again: press R, press Right, press Left | scene = - | frame.ids as in | render as in
+turned: press 3 | frame.ids not as in
+file: drop $CUBE | scene = $CUBE | frame.ids as in
+END
+grep -s -e '-"' "$XDG_STATE_HOME/whit/cameras.json"
+check "no camera of it is remembered" test $? -ne 0
+INPUT=/dev/null
+rm ./-
+
 # A scene that names a file outside of its folder: asked once, read where the answer is yes.
 mkdir model maps
 printf 'mtllib ../maps/a.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' >model/a.obj

@@ -6,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/view/state_file.h"
+#include "base/input.h"
 #include "view/view.h"
 
 static const struct setting_value values_remember[] = {{"yes", 1, NULL}, {"no", 0, NULL}, {0}};
@@ -193,7 +194,8 @@ static int work(struct job *job, struct view_params *view)
         view->hint = start_hint;
     }
     view->settings = job->settings;
-    list_beside(&scenes, scene);
+    if (!is_input(scene))
+        list_beside(&scenes, scene);
     view->scenes = (const char *const *)scenes.paths;
     view->scene_count = scenes.count;
     view->cancel = &cli_cancel;

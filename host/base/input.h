@@ -1,0 +1,25 @@
+/* Standard input: read once, to its end, and kept for whoever reads it again. */
+#ifndef BASE_INPUT_H
+#define BASE_INPUT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+/* Whether a path that the user gave stands for standard input. */
+static inline bool is_input(const char *path)
+{
+    return path[0] == '-' && !path[1];
+}
+
+/* More is refused. */
+#define INPUT_BYTES_MAX ((size_t)256 << 20)
+
+/* *data stays until the process ends, with one zero byte behind its size. The first call of all
+   threads reads; what failed fails again. Logs why: a terminal, nothing in it, too much of it.
+   WHIT_ERROR_INPUT. */
+WHIT_CHECK whit_result input_read(const whit_log *log, const uint8_t **data, size_t *size_bytes);
+
+#endif

@@ -1,0 +1,110 @@
+#include "load/format.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+/* The first line of an XML file, and comments, may come before its root. */
+enum { HEAD_BYTES = 4096, STL_HEADER_BYTES = 84, STL_TRIANGLE_BYTES = 50 };
+
+static bool begins(const char *text, const char *word)
+{
+    return strncmp(text, word, strlen(word)) == 0;
+}
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+/* In the first HEAD_BYTES, of text that may hold zero bytes. */
+static bool head_has(const uint8_t *data, size_t size_bytes, const char *word)
+{
+    size_t length = strlen(word), end = size_bytes < HEAD_BYTES ? size_bytes : HEAD_BYTES;
+    for (size_t i = 0; i + length <= end; ++i)
+        if (memcmp(data + i, word, length) == 0)
+            return true;
+    return false;
+}
+
+/* Such a file has no magic: its size is what its header counts. */
+static bool is_binary_stl(const uint8_t *data, size_t size_bytes)
+{
+    if (size_bytes < STL_HEADER_BYTES)
+        return false;
+    const uint8_t *at = data + STL_HEADER_BYTES - 4;
+    uint64_t count = at[0] | (uint64_t)at[1] << 8 | (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24;
+    return count && size_bytes == STL_HEADER_BYTES + STL_TRIANGLE_BYTES * count;
+}
+
+/* Whether the outermost object has that key, which glTF asks for and scene files do not know. */
+static bool has_key(const char *text, const char *quoted_key)
+{
+    int depth = 0;
+    for (const char *at = text; *at; ++at) {
+        if (*at == '{' || *at == '[')
+            depth++;
+        else if (*at == '}' || *at == ']')
+            depth--;
+        if (*at != '"')
+            continue;
+        if (depth == 1 && begins(at, quoted_key)) {
+            const char *behind = at + strlen(quoted_key);
+            while (is_blank(*behind))
+                behind++;
+            if (*behind == ':')
+                return true;
+        }
+        for (at++; *at && *at != '"'; ++at)
+            at += *at == '\\' && at[1];
+        if (!*at)
+            return false;
+    }
+    return false;
+}
+
+/* The first line that is no comment begins with a word of OBJ. */
+static bool is_obj(const char *text)
+{
+    static const char *const words[] = {"v", "vn", "vt",     "vp",     "f", "g",
+                                        "o", "s",  "mtllib", "usemtl", "l", "p"};
+    size_t count = sizeof words / sizeof *words, i = 0;
+    while (is_blank(*text) || *text == '#')
+        text += *text == '#' ? strcspn(text, "\n") : 1;
+    size_t length = strcspn(text, " \t\r\n");
+    while (i < count && (strlen(words[i]) != length || !begins(text, words[i])))
+        i++;
+    return i < count && is_blank(text[length]);
+}
+
+/* `OFF`, or with letters of what each point has in front, and alone on its line or before numbers.
+ */
+static bool is_off(const char *text)
+{
+    text += strspn(text, "STCN4n");
+    return begins(text, "OFF") && (is_blank(text[3]) || !text[3]);
+}
+
+const char *format_find(const uint8_t *data, size_t size_bytes)
+{
+    const char *text = (const char *)data;
+    if (begins(text, "glTF"))
+        return "glb";
+    if (begins(text, "PK\x03\x04"))
+        return "3mf";
+    if (begins(text, "Kaydara FBX Binary") || begins(text, "; FBX"))
+        return "fbx";
+    if (is_binary_stl(data, size_bytes))
+        return "stl";
+    text += begins(text, "\xef\xbb\xbf") ? 3 : 0;
+    while (is_blank(*text))
+        text++;
+    if (*text == '{')
+        return has_key(text, "\"asset\"") ? "gltf" : "json";
+    if (begins(text, "ply") && (text[3] == '\n' || text[3] == '\r'))
+        return "ply";
+    if (begins(text, "solid") && head_has(data, size_bytes, "facet"))
+        return "stl";
+    if (*text == '<' && head_has(data, size_bytes, "<COLLADA"))
+        return "dae";
+    return is_off(text) ? "off" : is_obj(text) ? "obj" : NULL;
+}
