@@ -16,6 +16,7 @@ struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
     bool counters;            /* costs in --stats */
     struct frames frames;     /* with them `output` and `ids` are patterns */
+    uint32_t thumbnail;       /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 
 /* Makes the kernels of a picture and prints them (kernels.c). Gives the exit code. */

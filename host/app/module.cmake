@@ -59,5 +59,11 @@ install(FILES app/completion/whit.bash
 install(FILES app/completion/_whit DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 install(FILES app/completion/whit.fish
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# What file managers and desktops look for.
+install(FILES app/desktop/whit.thumbnailer DESTINATION ${CMAKE_INSTALL_DATADIR}/thumbnailers)
+install(FILES app/desktop/whit.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+if(WHIT_VIEWER)
+  install(FILES app/desktop/whit.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/whit
   FILES_MATCHING PATTERN "*.json" PATTERN "*.png")

@@ -51,4 +51,45 @@ if command -v pkg-config >/dev/null && [ -z "${CFLAGS_EXTRA:-}" ]; then
 fi
 check "the installed program runs" bin/whit --version
 check "an installed scene has its map" quietly bin/whit scene share/whit/scenes/gallery/normal-map.json
+
+# What file managers read: each kind of model that it names is known, here or by shared-mime-info.
+field() {
+    sed -n "s/^$2=//p" "$1"
+}
+THUMBNAILER=share/thumbnailers/whit.thumbnailer
+known="model/gltf-binary model/gltf+json model/obj model/stl model/3mf"
+known="$known $(sed -n 's/.*<mime-type type="\([^"]*\)".*/\1/p' share/mime/packages/whit.xml)"
+types=$(field "$THUMBNAILER" MimeType)
+for type in $(echo "$types" | tr ';' ' '); do
+    check "$type is known" test "${known#*"$type"}" != "$known"
+done
+check "nine kinds" test "$(echo "$types" | tr -cd ';' | wc -c)" -eq 9
+if [ -s share/applications/whit.desktop ]; then
+    check "the viewer opens them" test "$(field share/applications/whit.desktop MimeType)" = "$types"
+    check "by name" test "$(field share/applications/whit.desktop Exec)" = "whit view %f"
+    check "as an application" test "$(field share/applications/whit.desktop Type)" = Application
+    ! command -v desktop-file-validate >/dev/null ||
+        check "it is valid" desktop-file-validate share/applications/whit.desktop
+fi
+
+# A thumbnail, as sandboxes make it: no display, no home, no cache, no network where that can be had, and any name.
+isolate=
+unshare -rn true 2>/dev/null && isolate="unshare -rn"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/a model.obj"
+thumbnail() {
+    line=$(field "$THUMBNAILER" Exec | sed "s,%i,'$OUT/a model.obj',; s,%o,'$OUT/thumb.X7',; s,%s,$1,g")
+    (
+        unset DISPLAY WAYLAND_DISPLAY XDG_CACHE_HOME XDG_RUNTIME_DIR
+        HOME=/proc/self PATH=$OUT/prefix/bin:$PATH $isolate sh -c "$line" >"$OUT/said" 2>&1
+    )
+}
+check "the thumbnailer's line runs" thumbnail 96
+check "it says nothing" test ! -s "$OUT/said"
+check "a PNG of 96 x 96 pixels" test "$(od -An -tx1 -N8 "$OUT/thumb.X7" | tr -d ' ')$(
+    od -An -tx1 -j16 -N8 "$OUT/thumb.X7" | tr -d ' ')" = 89504e470d0a1a0a0000006000000060
+printf 'v 0 0\n' >"$OUT/a model.obj"
+rm "$OUT/thumb.X7"
+thumbnail 96
+check "a damaged model: exit code 2" test $? -eq 2
+check "and no file" test ! -e "$OUT/thumb.X7"
 finish

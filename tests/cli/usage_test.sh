@@ -66,6 +66,8 @@ refuse 2 "--time and --frame" "two ways" render "$CUBE" -o "$P" --time 1 --frame
 
 refuse 2 "unknown extension" "x.gif: pictures are" render "$CUBE" -o "$OUT/pictures/x.gif"
 refuse 2 "identities as PNG" "x.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$P"
+refuse 2 "--thumbnail of costs" "one picture of colours" render "$CUBE" -o "$P" --thumbnail 64 --view visits
+refuse 2 "--thumbnail 0" "from 1 to 4096" render "$CUBE" -o "$P" --thumbnail 0
 refuse 2 "a dash as picture" "-o -: pictures go to files" render "$CUBE" -o -
 refuse 2 "a dash as identities" "--ids -: " render "$CUBE" -o "$P" --ids -
 refuse 2 "a dash as rays" "--input -: .*/dev/stdin" trace "$CUBE" --input - -o "$OUT/pictures/h"

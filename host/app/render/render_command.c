@@ -17,6 +17,10 @@ static const struct setting options[] = {
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png",
      .kind = SETTING_OWN, .read = frames_read},
+    {"thumbnail", 0, "N",
+     "for file managers: N x N pixels, and a PNG whatever the\n"
+     "picture is called; says errors only",
+     SETTING_AT_COUNT(struct render_request, thumbnail), .min = 1, .max = 4096},
     {"counters", 0, NULL, "--stats (text) with what traversals cost",
      SETTING_AT_FLAG(struct render_request, counters)},
     {0},
@@ -38,7 +42,7 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
                      "pictures go to files, whose names say how: .png, .exr or .pfm") ||
         !cli_no_dash(reader, "--ids", request->ids, "identities go to a file, an .exr"))
         return false;
-    if (!whit_image_format_known(request->output, false))
+    if (!request->thumbnail && !whit_image_format_known(request->output, false))
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);
     if (request->ids && !whit_image_format_known(request->ids, true))
         return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
@@ -160,12 +164,31 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
     return result;
 }
 
+/* File managers give names of their own, and write about the file into the PNG. */
+static whit_result save_thumbnail(whit_renderer *renderer, const char *path)
+{
+    whit_image *image;
+    uint8_t *data = NULL;
+    size_t size_bytes;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    if (result != WHIT_OK)
+        return result;
+    result = whit_image_encode_png(image, NULL, 0, &cli_log, &data, &size_bytes);
+    if (result == WHIT_OK)
+        result = whit_file_write(path, data, size_bytes, &cli_log);
+    whit_memory_destroy(data);
+    whit_image_destroy(image);
+    return result;
+}
+
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats)
 {
     const struct settings *settings = &job->settings;
     struct recipe recipe;
     whit_device_info device;
+    if (request->thumbnail)
+        return save_thumbnail(renderer, request->output);
     whit_device_get_info(job->device, &device);
     if (!recipe_init(&recipe, settings, job->scene, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
@@ -282,6 +305,9 @@ static int work(struct job *job, const struct render_request *request)
 static bool check_choice(struct cli_reader *reader, const struct settings *settings,
                          const struct render_request *request)
 {
+    bool other = request->frames.given || request->ids || settings->paint != PAINT_COLOR;
+    if (request->thumbnail && other)
+        return cli_misuse(reader, "--thumbnail is for one picture of colours");
     if (request->frames.given && (settings->budget_ms > 0.0 || settings->max_error > 0.0))
         return cli_misuse(reader, "%s is for one picture of colours",
                           settings->budget_ms > 0.0 ? "--budget-ms" : "--max-error");
@@ -298,6 +324,10 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (!job_read(&job, &reader, &request, false) || !frames_check(&reader, &job, &request) ||
         !check_choice(&reader, &job.settings, &request) || !check_outputs(&reader, &request))
         return reader.status;
+    if (request.thumbnail) {
+        job.settings.picture.width = job.settings.picture.height = request.thumbnail;
+        job.settings.quiet = true;
+    }
     if (request.counters && job.settings.stats == STATS_NONE)
         job.settings.stats = STATS_TEXT;
     if (request.frames.given)
