@@ -4,7 +4,9 @@
 
 #include "api/handles.h"
 #include "base/threads.h"
+#include "image/edges.h"
 #include "twin/traverse.h"
+#include "whit/whit_program.h"
 
 _Static_assert(sizeof(whit_ray) == sizeof(struct gpu_ray), "rays are handed on as they are");
 _Static_assert(sizeof(whit_hit) == sizeof(struct gpu_hit), "hits are handed on as they are");
@@ -213,6 +215,17 @@ static whit_result add_costs(const whit_renderer *renderer, whit_view view, uint
     }
     image_finish(&costs);
     return result;
+}
+
+whit_result whit_renderer_draw_edges(whit_renderer *renderer, bool of_primitives, whit_image *color)
+{
+    whit_image *ids;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
+    if (result != WHIT_OK)
+        return result;
+    image_draw_edges(&color->image, &ids->image, of_primitives);
+    whit_image_destroy(ids);
+    return WHIT_OK;
 }
 
 whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, whit_ray_kind kind,

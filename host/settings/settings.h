@@ -17,6 +17,7 @@ enum settings_paint {
     PAINT_COUNT,
 };
 enum settings_boxes { BOXES_OFF, BOXES_MESHES, BOXES_INSTANCES, BOXES_COUNT };
+enum settings_edges { EDGES_OFF, EDGES_OBJECTS, EDGES_TRIANGLES };
 enum settings_stats { STATS_NONE, STATS_TEXT, STATS_JSON };
 
 /* A plain record: copied freely, compared by the rows of the table. */
@@ -39,6 +40,7 @@ struct settings {
     uint32_t paint;              /* enum settings_paint */
     uint32_t paint_rays;         /* whit_ray_kind, or WHIT_RAY_KINDS: all */
     double paint_scale;          /* of the heat map; 0: by the picture */
+    uint32_t edges;              /* enum settings_edges */
     double fps_goal;             /* pictures a second that the viewer holds */
     uint32_t boxes, boxes_level; /* enum settings_boxes, which the viewer draws over the picture */
 

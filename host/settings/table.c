@@ -16,6 +16,10 @@ enum {
 
 static const struct setting_value values_stats[] = {
     {"text", STATS_TEXT, NULL}, {"json", STATS_JSON, NULL}, {0}};
+static const struct setting_value values_edges[] = {{"off", EDGES_OFF, NULL},
+                                                    {"objects", EDGES_OBJECTS, NULL},
+                                                    {"triangles", EDGES_TRIANGLES, NULL},
+                                                    {0}};
 static const struct setting_value values_segments[] = {
     {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
 
@@ -187,6 +191,12 @@ static bool aa_tells(const void *record, bool recipe)
     return settings->paint == PAINT_COLOR || settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
+/* Heat maps have none. */
+static bool edges_tell(const void *record, bool recipe)
+{
+    return !recipe || ((const struct settings *)record)->paint == PAINT_COLOR;
+}
+
 /* Kernels with more in them draw the same picture. */
 static bool effects_tell(const void *record, bool recipe)
 {
@@ -265,6 +275,12 @@ const struct setting settings_table[] = {
      "changes it. Names and prices: `whit scene --effects`",
      AT_OWN(effects), .values = values_effects, .commands = IN_PICTURES, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .tells = effects_tell},
+
+    {"edges", 0, NULL,
+     "black over the picture where neighbouring pixels meet another\n"
+     "object, or another triangle",
+     AT(CHOICE, edges), .values = values_edges, .commands = IN_RENDER | IN_VIEW,
+     .change = SETTING_LIGHT, .tells = edges_tell, .title = "edges"},
 
     {"budget-ms", 0, "T",
      "choose the best of these settings that take at most T ms, by\n"

@@ -5,6 +5,8 @@
 #define WHIT_PROGRAM_H
 
 #include "whit_device.h"
+#include "whit_image.h"
+#include "whit_renderer.h"
 
 /* ---- Files and clocks ---- */
 
@@ -26,6 +28,13 @@ void whit_file_abandon_all(void);
 uint64_t whit_peak_memory_bytes(void);
 double whit_clock_ms(void);
 double whit_clock_cpu_ms(void); /* used by all threads of this process */
+
+/* ---- Overlays ---- */
+
+/* Makes pixels of `color`, a picture that the renderer has just drawn, black at the edges of
+   instances, or of primitives. WHIT_ERROR_USAGE where nothing was rendered, WHIT_ERROR_DEVICE. */
+WHIT_CHECK whit_result whit_renderer_draw_edges(whit_renderer *renderer, bool of_primitives,
+                                                whit_image *color);
 
 /* ---- A device, opened beside other work ---- */
 

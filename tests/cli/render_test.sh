@@ -55,7 +55,7 @@ expect 0 "all options of a recipe" render "$SCENES/default.json" -o all.png --si
     --instances on --numerics fast
 listed=$(sed -n 's/^| `whit:options` | //p' "$SCENES/../docs/cli.md")
 options=$(grep -a -o '{"width":8,[^}]*}' all.png)
-check "the recipe has nineteen keys" test "$(echo "$options" | jq 'keys | length')" -eq 19
+check "the recipe has twenty keys" test "$(echo "$options" | jq 'keys | length')" -eq 20
 for key in $(echo "$options" | jq -r 'keys[]'); do
     check "docs/cli.md names $key" sh -c 'echo "$1" | grep -q "\b$2\b"' - "$listed" "$key"
 done
@@ -114,6 +114,26 @@ echo old >keep.png
 refuse 2 "a render that fails" "there is no camera" render "$CUBE" -o keep.png --camera nobody
 check "leaves the old file alone" test "$(cat keep.png)" = old
 check "no hidden file is left" test -z "$(find . -name '.*' -type f)"
+
+# Edges are drawn over the picture, and nothing else changes.
+black() {
+    tail -c $((64 * 48 * 12)) "$1.pfm" | od -An -v -tx4 -w12 | grep -c '^ 00000000 00000000 00000000$'
+}
+for edges in off objects triangles; do
+    expect 0 "--edges $edges" render "$CUBE" -o $edges.pfm --size 64x48 --edges $edges --quiet
+    tail -c $((64 * 48 * 12)) $edges.pfm | od -An -v -tx4 -w12 >$edges.pixels
+done
+expect 0 "no word of edges" render "$CUBE" -o usual.pfm --size 64x48 --quiet
+check "--edges off is the usual picture" cmp usual.pfm off.pfm
+objects=$(black objects) triangles=$(black triangles)
+check "more edges of triangles ($triangles) than of objects ($objects)" \
+    test "$objects" -gt 20 -a "$triangles" -gt $((objects + 20)) -a "$(black off)" -eq 0
+for edges in objects triangles; do
+    check "what is no edge is as it was" test "$(paste -d '|' off.pixels $edges.pixels |
+        awk -F '|' '$1 != $2 && $2 != " 00000000 00000000 00000000"' | wc -l)" -eq 0
+done
+expect 0 "edges of costs" render "$CUBE" -o costs.png --size 64x48 --edges objects --view visits --quiet
+check "are none" sh -c '! grep -aq -e "--edges" costs.png'
 
 # A file in place of a command.
 mkdir "$OUT/alone" && cp "$CUBE" "$OUT/alone/some.cube.json"

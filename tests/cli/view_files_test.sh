@@ -16,6 +16,7 @@ cp "$SCENES/spin.json" list/c.json
 echo no scene >list/notes.txt
 echo "--size 96x64" >start.view
 echo "--size 96x64 --effects -highlights" >plain.view
+echo "--size 96x64 --edges triangles" >edges.view
 EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
 play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
 a: | scene = list/a.json
@@ -29,6 +30,8 @@ stood: press Space | frame.pixels as stepped | render as stepped | frame.pixels 
 dropped: drop $SCENES/cube.json | scene = $SCENES/cube.json | frame.ids as a
 large! drop $SCENES/atrium.json, until error | scene = $SCENES/cube.json | error has (--memory-limit)
 nowhere: drop $OUT/nowhere.obj | frame.ids as dropped | render as dropped | error has nowhere.obj
+edges: drop edges.view | frame.ids as nowhere | frame.pixels not as nowhere | render has --edges triangles
+none: drop start.view | frame.ids as nowhere | frame.pixels as nowhere
 turned: press I, move 40 30, button left down, move 49 33, button left up | scene = $SCENES/cube.json
     | frame.ids not as nowhere | error as nowhere | compare.count = 6144 | compare.other_colors = 0
 picked: click 24 32 | picked = true | probe.rays > 0

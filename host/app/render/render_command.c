@@ -133,16 +133,46 @@ whit_result render_create(const struct job *job, const struct render_request *re
     return result == WHIT_OK ? job_still_wanted() : result;
 }
 
-static whit_result save(whit_renderer *renderer, whit_aov aov, const char *path,
-                        const struct recipe *recipe)
+static whit_result save_ids(whit_renderer *renderer, const char *path, const struct recipe *recipe)
 {
     whit_image *image;
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
-    whit_result result = whit_renderer_image(renderer, aov, &image);
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_IDS, &image);
     if (result != WHIT_OK)
         return result;
     result = whit_image_save(image, path, recipe->texts, recipe->count, &cli_log);
+    whit_image_destroy(image);
+    return result;
+}
+
+/* File managers give names of their own, and write about the file into the PNG. */
+static whit_result save_thumbnail(const whit_image *image, const char *path)
+{
+    uint8_t *data = NULL;
+    size_t size_bytes;
+    whit_result result = whit_image_encode_png(image, NULL, 0, &cli_log, &data, &size_bytes);
+    if (result == WHIT_OK)
+        result = whit_file_write(path, data, size_bytes, &cli_log);
+    whit_memory_destroy(data);
+    return result;
+}
+
+static whit_result save_colors(whit_renderer *renderer, const struct settings *settings,
+                               const struct render_request *request, const struct recipe *recipe)
+{
+    whit_image *image;
+    if (cli_cancel)
+        return WHIT_ERROR_CANCELLED;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    if (result != WHIT_OK)
+        return result;
+    if (settings->edges)
+        result = whit_renderer_draw_edges(renderer, settings->edges == EDGES_TRIANGLES, image);
+    if (result == WHIT_OK)
+        result = request->thumbnail ? save_thumbnail(image, request->output)
+                                    : whit_image_save(image, request->output, recipe->texts,
+                                                      recipe->count, &cli_log);
     whit_image_destroy(image);
     return result;
 }
@@ -164,41 +194,22 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
     return result;
 }
 
-/* File managers give names of their own, and write about the file into the PNG. */
-static whit_result save_thumbnail(whit_renderer *renderer, const char *path)
-{
-    whit_image *image;
-    uint8_t *data = NULL;
-    size_t size_bytes;
-    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
-    if (result != WHIT_OK)
-        return result;
-    result = whit_image_encode_png(image, NULL, 0, &cli_log, &data, &size_bytes);
-    if (result == WHIT_OK)
-        result = whit_file_write(path, data, size_bytes, &cli_log);
-    whit_memory_destroy(data);
-    whit_image_destroy(image);
-    return result;
-}
-
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, const whit_stats *stats)
 {
     const struct settings *settings = &job->settings;
     struct recipe recipe;
     whit_device_info device;
-    if (request->thumbnail)
-        return save_thumbnail(renderer, request->output);
     whit_device_get_info(job->device, &device);
     if (!recipe_init(&recipe, settings, job->scene, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     if (request->ids)
-        result = save(renderer, WHIT_AOV_IDS, request->ids, &recipe);
+        result = save_ids(renderer, request->ids, &recipe);
     if (result == WHIT_OK)
         result = settings->paint != PAINT_COLOR
                      ? save_view(renderer, settings, request->output, &recipe)
-                     : save(renderer, WHIT_AOV_COLOR, request->output, &recipe);
+                     : save_colors(renderer, settings, request, &recipe);
     recipe_finish(&recipe);
     return result;
 }

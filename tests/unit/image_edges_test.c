@@ -1,0 +1,74 @@
+/* Edges are where neighbouring pixels hit something else. */
+#include "image_fixture.h"
+
+#include "image/edges.h"
+
+enum { WIDTH = 4, HEIGHT = 3, COUNT = WIDTH * HEIGHT };
+
+/* Instances and primitives by rows of digits; `wanted` has an x where it is black. */
+static void assert_edges(const char *instances, const char *primitives, bool of_primitives,
+                         const char *wanted)
+{
+    struct image color, ids;
+    assert_int_equal(image_init(&color, WIDTH, HEIGHT, 4, false), WHIT_OK);
+    assert_int_equal(image_init(&ids, WIDTH, HEIGHT, 2, true), WHIT_OK);
+    for (size_t i = 0; i < COUNT; ++i) {
+        for (size_t c = 0; c < 4; ++c)
+            color.pixels[4 * i + c] = 2.5f;
+        ids.words[2 * i] = (uint32_t)instances[i];
+        ids.words[2 * i + 1] = (uint32_t)primitives[i];
+    }
+    image_draw_edges(&color, &ids, of_primitives);
+    for (size_t i = 0; i < COUNT; ++i) {
+        float light = wanted[i] == 'x' ? 0.0f : 2.5f;
+        for (size_t c = 0; c < 3; ++c)
+            assert_float_equal(color.pixels[4 * i + c], light, 0.0f);
+        assert_float_equal(color.pixels[4 * i + 3], 2.5f, 0.0f);
+    }
+    image_finish(&color);
+    image_finish(&ids);
+}
+
+TEST(edges_are_of_objects_or_of_primitives)
+{
+    assert_edges("000000000000", "000000000000", true, "............");
+    assert_edges("0011"
+                 "0011"
+                 "0011",
+                 "0100"
+                 "0100"
+                 "0100",
+                 false,
+                 ".x.."
+                 ".x.."
+                 ".x..");
+    assert_edges("0011"
+                 "0011"
+                 "0011",
+                 "0100"
+                 "0100"
+                 "0122",
+                 true,
+                 "xx.."
+                 "xxxx"
+                 "xx..");
+}
+
+/* The last column and the last row have nobody beyond them: not the row that memory has next. */
+TEST(edges_of_the_picture_are_none)
+{
+    assert_edges("0000"
+                 "1111"
+                 "1111",
+                 "000000000000", false,
+                 "xxxx"
+                 "...."
+                 "....");
+    assert_edges("0001"
+                 "0001"
+                 "0001",
+                 "000000000000", false,
+                 "..x."
+                 "..x."
+                 "..x.");
+}
