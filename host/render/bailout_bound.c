@@ -135,7 +135,8 @@ static double ray_max(const struct renderer *renderer, const bool *worn)
         for (uint32_t i = 0; i < scene->material_count; ++i) {
             if (!worn[i])
                 continue;
-            struct max max = material_max(renderer, &scene->materials[i], arriving);
+            const struct scene_material m = material_drawn(renderer, i);
+            struct max max = material_max(renderer, &m, arriving);
             next = fmax(next, max.own + max.weights * radiance);
         }
         radiance = next;

@@ -255,6 +255,9 @@ struct material_records {
     struct gpu_texture *uses;
     uint32_t use_count;
 };
+/* A material of the scene as kernels of the renderer's effects draw it; it borrows all that it
+   points to. */
+struct scene_material material_drawn(const struct renderer *renderer, uint32_t index);
 WHIT_CHECK whit_result material_records_init(struct renderer *renderer,
                                              struct material_records *records);
 void material_records_finish(struct material_records *records);

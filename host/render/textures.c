@@ -127,9 +127,31 @@ static bool reads_slot(const struct renderer *renderer, enum scene_slot slot)
     return renderer->effects.called[bends ? SCENE_EFFECT_NORMAL_MAPS : SCENE_EFFECT_TEXTURES];
 }
 
+/* Glass without refraction: a body of the colour that it lets through, under a face that mirrors
+   as it did. Its shadows stay those of glass, for which it keeps what passes. */
+static void make_solid(struct scene_material *m)
+{
+    float root = (m->ior - 1.0f) / (m->ior + 1.0f);
+    float mirror = m->fresnel ? root * root : 0.0f;
+    for (int c = 0; m->model == SCENE_MODEL_PHONG && c < 3; ++c) {
+        m->diffuse[c] += (1.0f - mirror) * m->transmission[c];
+        m->ambient[c] += (1.0f - mirror) * m->transmission[c];
+        m->reflection[c] = m->fresnel ? mirror : m->reflection[c];
+    }
+}
+
+struct scene_material material_drawn(const struct renderer *renderer, uint32_t index)
+{
+    struct scene_material m = renderer->scene->materials[index];
+    bool glass = m.transmission[0] > 0.0f || m.transmission[1] > 0.0f || m.transmission[2] > 0.0f;
+    if (glass && m.model != SCENE_MODEL_UNLIT && !renderer->effects.called[SCENE_EFFECT_REFRACTION])
+        make_solid(&m);
+    return m;
+}
+
 static whit_result add_material(struct material_upload *up, uint32_t index)
 {
-    const struct scene_material *m = &up->renderer->scene->materials[index];
+    const struct scene_material drawn = material_drawn(up->renderer, index), *m = &drawn;
     struct gpu_material *out = &up->materials[index];
     memcpy(out->diffuse, m->diffuse, sizeof out->diffuse);
     memcpy(out->ambient, m->ambient, sizeof out->ambient);

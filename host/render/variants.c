@@ -368,7 +368,8 @@ static void narrow_to_class(const struct renderer *renderer, uint32_t material_c
     }
     if (!walks || !spec->SPEC_CUTOUTS)
         narrow_textures(renderer, which, spec);
-    if (!own.lit)
+    /* Glass that nothing refracts in is lit: see material_drawn. */
+    if (!own.lit && !(glass && !renderer->effects.called[SCENE_EFFECT_REFRACTION]))
         spec->SPEC_LIGHTS = 0;
     if (!walks && spec->SPEC_SPHERES)
         spec->SPEC_SPHERES = !own.on_spheres     ? SPHERES_NONE

@@ -81,7 +81,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
         gloss = (1.0 - roughness) * (1.0 - roughness);
         vec3 edge = max(vec3(1.0 - roughness) * mix(specular_level, 1.0, metallic), f0);
         vec3 f = f0 + (edge - f0) * schlick_weight(cos_view);
-        vec3 kept = 1.0 - clamp(transmission, 0.0, 1.0);
+        vec3 kept = SPEC_REFRACTION != 0u ? 1.0 - clamp(transmission, 0.0, 1.0) : vec3(1.0);
         transmission *= o.diffuse * (1.0 - metallic);
         o.diffuse *= (1.0 - metallic) * kept;
         o.ambient = o.diffuse + f0 * (1.0 - gloss);

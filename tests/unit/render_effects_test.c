@@ -337,6 +337,58 @@ TEST(effects_left_out_are_gone)
     }
 }
 
+/* Glass of one model on the floor, or the body that stands in for it where nothing refracts. */
+static bool is_glass, is_metal_rough;
+
+static struct scene *glass_or_body_scene(void)
+{
+    struct scene *scene = plain_scene();
+    struct scene_material m = material_plain("glass");
+    const float color[] = {0.9f, 0.6f, 0.3f};
+    m.model = is_metal_rough ? SCENE_MODEL_METAL_ROUGH : SCENE_MODEL_PHONG;
+    m.ior = 3.0f; /* of which a quarter is reflected head-on */
+    m.fresnel = true;
+    for (int c = 0; c < 3; ++c) {
+        float body = 0.75f * color[c];
+        m.diffuse[c] = is_metal_rough ? color[c] : is_glass ? 0.0f : body;
+        m.ambient[c] = m.diffuse[c];
+        m.reflection[c] = is_glass || is_metal_rough ? 0.0f : 0.25f;
+        m.transmission[c] = !is_glass ? 0.0f : is_metal_rough ? 1.0f : color[c];
+    }
+    add_object(scene, ring(), m, 0, 0.5, 0);
+    return scene;
+}
+
+static struct picture glass_or_body(bool glass, bool metal_rough, whit_classes classes, bool all)
+{
+    whit_renderer_params params = small;
+    is_glass = glass;
+    is_metal_rough = metal_rough;
+    params.effects_removed = bit(SCENE_EFFECT_REFRACTION);
+    params.shadows = WHIT_SHADOWS_NONE; /* those of glass stay light */
+    params.classes = classes;
+    params.all_effects = all;
+    return picture_of(glass_or_body_scene(), NULL, &params);
+}
+
+TEST(glass_that_refracts_nothing_is_a_body_of_its_colour)
+{
+    static const struct {
+        whit_classes classes;
+        bool all;
+    } kernels[] = {
+        {WHIT_CLASSES_ONE, false}, {WHIT_CLASSES_MANY, false}, {WHIT_CLASSES_AUTO, true}};
+    for (int model = 0; model < 2; ++model) {
+        struct picture body = glass_or_body(false, model, WHIT_CLASSES_ONE, false);
+        for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
+            struct picture glass = glass_or_body(true, model, kernels[i].classes, kernels[i].all);
+            assert_same_picture("glass", &glass, &body);
+            picture_finish(&glass);
+        }
+        picture_finish(&body);
+    }
+}
+
 TEST(effects_added_do_not_matter)
 {
     static const enum scene_effect added[] = {SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,
