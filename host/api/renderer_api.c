@@ -17,6 +17,10 @@ _Static_assert((uint32_t)WHIT_RAY_KINDS == RAY_KIND_COUNT &&
                    (uint32_t)WHIT_RAY_REFRACTED == RAY_REFRACTED,
                "kinds of rays");
 
+/* Of a grid's lines: grey that shows before bright and dark, and lets some of it through. */
+#define GRID_LIGHT  0.15f
+#define GRID_WEIGHT 0.7f
+
 enum { DEPTH_DEFAULT = 8, LIGHT_SAMPLES_DEFAULT = 16, CPU_BATCH = 4096 };
 
 const char *whit_effect_name(uint32_t index)
@@ -217,17 +221,6 @@ static whit_result add_costs(const whit_renderer *renderer, whit_view view, uint
     return result;
 }
 
-whit_result whit_renderer_draw_edges(whit_renderer *renderer, bool of_primitives, whit_image *color)
-{
-    whit_image *ids;
-    whit_result result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
-    if (result != WHIT_OK)
-        return result;
-    image_draw_edges(&color->image, &ids->image, of_primitives);
-    whit_image_destroy(ids);
-    return WHIT_OK;
-}
-
 whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, whit_ray_kind kind,
                                      whit_image **out)
 {
@@ -344,6 +337,54 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     if (cost)
         *cost = sum;
     return WHIT_OK;
+}
+
+static whit_result draw_grid(whit_renderer *renderer, struct image *color)
+{
+    struct cpu_trace trace = {.renderer = renderer, .any = true};
+    struct gpu_ray *rays;
+    float *cover;
+    whit_result result = renderer_grid_rays(renderer->renderer, &rays, &cover, &trace.count);
+    if (result != WHIT_OK)
+        return result;
+    trace.rays = rays;
+    trace.hits = malloc((size_t)trace.count * sizeof *trace.hits);
+    result = trace.hits ? trace_on_cpu(renderer, &trace, NULL) : WHIT_ERROR_MEMORY;
+    if (!trace.hits)
+        log_error(&renderer->log, "out of memory");
+    for (size_t i = 0; result == WHIT_OK && i < trace.count; ++i) {
+        float share = trace.hits[i].primitive == HIT_NONE ? GRID_WEIGHT * cover[i] : 0.0f;
+        for (size_t c = 0; share > 0.0f && c < 3; ++c) {
+            float *light = &color->pixels[color->channels * i + c];
+            *light += (GRID_LIGHT - *light) * share;
+        }
+    }
+    free(trace.hits);
+    free(cover);
+    free(rays);
+    return result;
+}
+
+static whit_result draw_edges(whit_renderer *renderer, bool of_primitives, struct image *color)
+{
+    whit_image *ids;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
+    if (result != WHIT_OK)
+        return result;
+    image_draw_edges(color, &ids->image, of_primitives);
+    whit_image_destroy(ids);
+    return WHIT_OK;
+}
+
+whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay *overlay,
+                                    whit_image *color)
+{
+    whit_result result = api_need_device(renderer);
+    if (result == WHIT_OK && overlay->grid)
+        result = draw_grid(renderer, &color->image);
+    if (result == WHIT_OK && (overlay->edges_of_instances || overlay->edges_of_primitives))
+        result = draw_edges(renderer, overlay->edges_of_primitives, &color->image);
+    return result;
 }
 
 static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray *rays,

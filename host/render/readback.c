@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "picture/grid.h"
 #include "render/renderer.h"
 
 bool readback_is_late(const struct renderer *renderer)
@@ -139,4 +140,21 @@ whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
         *rays = NULL;
     }
     return result;
+}
+
+whit_result renderer_grid_rays(const struct renderer *renderer, struct gpu_ray **rays,
+                               float **cover, uint64_t *count)
+{
+    *cover = NULL;
+    whit_result result = renderer_camera_rays(renderer, UINT32_MAX, rays, count);
+    if (result != WHIT_OK)
+        return result;
+    *cover = malloc((size_t)*count * sizeof **cover);
+    if (*cover) {
+        grid_cover(&renderer->pose, renderer->params.width, renderer->params.height, *rays, *cover);
+        return WHIT_OK;
+    }
+    free(*rays);
+    *rays = NULL;
+    return render_no_memory(renderer, "a grid");
 }

@@ -52,6 +52,10 @@ void renderer_get_stats(const struct renderer *renderer, whit_stats *stats);
    sides are that of it over a whole number. *rays: free(). */
 WHIT_CHECK whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
                                             struct gpu_ray **rays, uint64_t *count);
+/* Those of the whole picture, up to the ground, and how much of each pixel a grid there covers (see
+   picture/grid.h); free() both. */
+WHIT_CHECK whit_result renderer_grid_rays(const struct renderer *renderer, struct gpu_ray **rays,
+                                          float **cover, uint64_t *count);
 
 /* Whether a renderer that is made with these params has one kernel where others have several: what
    WHIT_CLASSES_AUTO comes to. */

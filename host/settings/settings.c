@@ -111,6 +111,13 @@ whit_renderer_params settings_picture(const struct settings *settings)
     return params;
 }
 
+whit_overlay settings_overlay(const struct settings *settings)
+{
+    return (whit_overlay){.grid = settings->grid,
+                          .edges_of_instances = settings->edges == EDGES_OBJECTS,
+                          .edges_of_primitives = settings->edges == EDGES_TRIANGLES};
+}
+
 whit_load_params settings_load(const struct settings *settings,
                                const char *folders[SETTING_FOLDERS_MAX])
 {

@@ -5,6 +5,7 @@
 #define SETTINGS_SETTINGS_H
 
 #include "settings/setting.h"
+#include "whit/whit_program.h"
 
 /* What is painted. Costs are heat maps, of what whit_view tells. */
 enum settings_paint {
@@ -41,6 +42,7 @@ struct settings {
     uint32_t paint_rays;         /* whit_ray_kind, or WHIT_RAY_KINDS: all */
     double paint_scale;          /* of the heat map; 0: by the picture */
     uint32_t edges;              /* enum settings_edges */
+    bool grid;                   /* on the ground */
     double fps_goal;             /* pictures a second that the viewer holds */
     uint32_t boxes, boxes_level; /* enum settings_boxes, which the viewer draws over the picture */
 
@@ -87,6 +89,8 @@ void settings_expose(struct settings *settings, const whit_scene_info *scene);
 /* The parameters for libwhit, with their strings, which point into `settings`; `folders` is theirs.
  */
 whit_renderer_params settings_picture(const struct settings *settings);
+/* What is drawn over the picture. */
+whit_overlay settings_overlay(const struct settings *settings);
 whit_load_params settings_load(const struct settings *settings,
                                const char *folders[SETTING_FOLDERS_MAX]);
 

@@ -20,6 +20,7 @@ static const struct setting_value values_edges[] = {{"off", EDGES_OFF, NULL},
                                                     {"objects", EDGES_OBJECTS, NULL},
                                                     {"triangles", EDGES_TRIANGLES, NULL},
                                                     {0}};
+static const struct setting_value values_grid[] = {{"off", 0, NULL}, {"on", 1, NULL}, {0}};
 static const struct setting_value values_segments[] = {
     {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
 
@@ -191,8 +192,8 @@ static bool aa_tells(const void *record, bool recipe)
     return settings->paint == PAINT_COLOR || settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
-/* Heat maps have none. */
-static bool edges_tell(const void *record, bool recipe)
+/* Nothing is drawn over heat maps. */
+static bool overlays_tell(const void *record, bool recipe)
 {
     return !recipe || ((const struct settings *)record)->paint == PAINT_COLOR;
 }
@@ -280,7 +281,12 @@ const struct setting settings_table[] = {
      "black over the picture where neighbouring pixels meet another\n"
      "object, or another triangle",
      AT(CHOICE, edges), .values = values_edges, .commands = IN_RENDER | IN_VIEW,
-     .change = SETTING_LIGHT, .tells = edges_tell, .title = "edges"},
+     .change = SETTING_LIGHT, .tells = overlays_tell, .title = "edges"},
+    {"grid", 0, NULL,
+     "on: lines on the ground, just below the scene, behind what\n"
+     "stands before them",
+     AT(EITHER, grid), .values = values_grid, .commands = IN_RENDER | IN_VIEW,
+     .change = SETTING_LIGHT, .tells = overlays_tell, .title = "grid"},
 
     {"budget-ms", 0, "T",
      "choose the best of these settings that take at most T ms, by\n"

@@ -129,10 +129,10 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
     if (task->settings.paint != PAINT_COLOR) {
         result = paint_costs(task, frame);
     } else {
-        uint32_t edges = task->settings.edges;
+        const whit_overlay overlay = settings_overlay(&task->settings);
         result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &frame->color);
-        if (result == WHIT_OK && edges)
-            result = whit_renderer_draw_edges(renderer, edges == EDGES_TRIANGLES, frame->color);
+        if (result == WHIT_OK)
+            result = whit_renderer_draw_over(renderer, &overlay, frame->color);
         if (result == WHIT_OK)
             whit_image_display_bytes(frame->color, frame->rgba);
     }

@@ -31,10 +31,14 @@ double whit_clock_cpu_ms(void); /* used by all threads of this process */
 
 /* ---- Overlays ---- */
 
-/* Makes pixels of `color`, a picture that the renderer has just drawn, black at the edges of
-   instances, or of primitives. WHIT_ERROR_USAGE where nothing was rendered, WHIT_ERROR_DEVICE. */
-WHIT_CHECK whit_result whit_renderer_draw_edges(whit_renderer *renderer, bool of_primitives,
-                                                whit_image *color);
+typedef struct whit_overlay {
+    bool grid; /* on the ground, behind what stands before it */
+    bool edges_of_instances, edges_of_primitives;
+} whit_overlay;
+/* Draws over `color`, the picture that the renderer has just drawn. WHIT_ERROR_USAGE where nothing
+   was rendered, WHIT_ERROR_DEVICE; WHIT_ERROR_CANCELLED. */
+WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay *overlay,
+                                               whit_image *color);
 
 /* ---- A device, opened beside other work ---- */
 

@@ -55,7 +55,7 @@ expect 0 "all options of a recipe" render "$SCENES/default.json" -o all.png --si
     --instances on --numerics fast
 listed=$(sed -n 's/^| `whit:options` | //p' "$SCENES/../docs/cli.md")
 options=$(grep -a -o '{"width":8,[^}]*}' all.png)
-check "the recipe has twenty keys" test "$(echo "$options" | jq 'keys | length')" -eq 20
+check "the recipe has twenty-one keys" test "$(echo "$options" | jq 'keys | length')" -eq 21
 for key in $(echo "$options" | jq -r 'keys[]'); do
     check "docs/cli.md names $key" sh -c 'echo "$1" | grep -q "\b$2\b"' - "$listed" "$key"
 done
@@ -132,8 +132,23 @@ for edges in objects triangles; do
     check "what is no edge is as it was" test "$(paste -d '|' off.pixels $edges.pixels |
         awk -F '|' '$1 != $2 && $2 != " 00000000 00000000 00000000"' | wc -l)" -eq 0
 done
-expect 0 "edges of costs" render "$CUBE" -o costs.png --size 64x48 --edges objects --view visits --quiet
-check "are none" sh -c '! grep -aq -e "--edges" costs.png'
+
+# So is a grid on the ground, which a cube that glows stands before.
+cat >glows.json <<X
+{ "camera": { "eye": [1.2, 1.4, 1.6], "target": [0, 0, 0], "fov": 60 }, "environment": "#000000", "ambient": 0,
+  "materials": { "m": { "emission": [7, 0, 0] } }, "objects": [ { "shape": "box", "size": 1, "material": "m" } ] }
+X
+for grid in off on; do
+    expect 0 "--grid $grid" render glows.json -o grid-$grid.pfm --size 64x48 --grid $grid --quiet
+    tail -c $((64 * 48 * 12)) grid-$grid.pfm | od -An -v -tf4 -w12 >grid-$grid.pixels
+done
+lines=$(grep -cv '^ *[07] *0 *0$' grid-on.pixels)
+check "lines are drawn ($lines pixels), and nothing else" test "$lines" -gt 100 -a \
+    "$(grep -cv '^ *[07] *0 *0$' grid-off.pixels)" -eq 0
+check "what stands before them is as it was" test "$(grep -c '^ *7 ' grid-off.pixels)" -gt 60 -a \
+    "$(grep -c '^ *7 *0 *0$' grid-on.pixels)" -eq "$(grep -c '^ *7 ' grid-off.pixels)"
+expect 0 "edges of costs" render "$CUBE" -o costs.png --size 64x48 --edges objects --grid on --view visits --quiet
+check "are none" sh -c '! grep -aq -e "--edges" -e "--grid" costs.png'
 
 # A file in place of a command.
 mkdir "$OUT/alone" && cp "$CUBE" "$OUT/alone/some.cube.json"

@@ -161,14 +161,14 @@ static whit_result save_thumbnail(const whit_image *image, const char *path)
 static whit_result save_colors(whit_renderer *renderer, const struct settings *settings,
                                const struct render_request *request, const struct recipe *recipe)
 {
+    const whit_overlay overlay = settings_overlay(settings);
     whit_image *image;
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
     whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
     if (result != WHIT_OK)
         return result;
-    if (settings->edges)
-        result = whit_renderer_draw_edges(renderer, settings->edges == EDGES_TRIANGLES, image);
+    result = whit_renderer_draw_over(renderer, &overlay, image);
     if (result == WHIT_OK)
         result = request->thumbnail ? save_thumbnail(image, request->output)
                                     : whit_image_save(image, request->output, recipe->texts,

@@ -1,0 +1,77 @@
+#include "picture/grid.h"
+
+#include <math.h>
+
+/* Where the ground is, and where its lines are. */
+struct ground {
+    double height, step, center[2], radius;
+};
+
+/* 1, 2 or 5 times a power of ten, no more than `value`. */
+static double round_down(double value)
+{
+    double power = pow(10.0, floor(log10(value))), digits = value / power;
+    return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
+}
+
+static struct ground find_ground(const struct scene_pose *pose)
+{
+    const double *lo = pose->lo, *hi = pose->hi;
+    double size = fmax(fmax(hi[0] - lo[0], hi[1] - lo[1]), hi[2] - lo[2]);
+    if (!(size >= 0.0)) /* nothing is there */
+        return (struct ground){.step = 0.2, .radius = 2.0};
+    if (!(size > 0.0))
+        size = 1.0;
+    return (struct ground){
+        /* Below floors that are the bottom of the scene. */
+        .height = lo[1] - 1e-4 * size,
+        .step = round_down(size / 5.0),
+        .center = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[2] + hi[2])},
+        .radius = 2.0 * size,
+    };
+}
+
+/* Where a ray meets the ground: its t, or below 0. */
+static double meet(const struct ground *ground, const struct gpu_ray *ray, double at[2])
+{
+    double t = (ground->height - (double)ray->origin[1]) / (double)ray->dir[1];
+    if (!(t > 0.0) || !isfinite(t))
+        return -1.0;
+    at[0] = (double)ray->origin[0] + t * (double)ray->dir[0];
+    at[1] = (double)ray->origin[2] + t * (double)ray->dir[2];
+    return t;
+}
+
+/* Of a pixel at `at`, with its neighbours. Lines are about a pixel wide, and gone
+   where two fall on a pixel. */
+static double cover_of(const struct ground *ground, const double at[2], const double right[2],
+                       const double below[2])
+{
+    double most = 0.0, away = hypot(at[0] - ground->center[0], at[1] - ground->center[1]);
+    for (int k = 0; k < 2; ++k) {
+        double wide = fmax(fabs(right[k] - at[k]), fabs(below[k] - at[k])) / ground->step;
+        double place = at[k] / ground->step, off = fabs(place - round(place));
+        double line = wide > 0.0 ? fmax(1.0 - off / wide, 0.0) : off == 0.0;
+        most = fmax(most, line * fmin(fmax(2.0 - 4.0 * wide, 0.0), 1.0));
+    }
+    return most * fmin(fmax(2.0 - away / ground->radius, 0.0), 1.0);
+}
+
+void grid_cover(const struct scene_pose *pose, uint32_t width, uint32_t height,
+                struct gpu_ray *rays, float *cover)
+{
+    const struct ground ground = find_ground(pose);
+    for (uint32_t y = 0; y < height; ++y) {
+        for (uint32_t x = 0; x < width; ++x) {
+            /* Neighbours to the right and below, or at the last ones to the left and above. */
+            size_t here = (size_t)y * width + x;
+            size_t right = x + 1 < width ? here + 1 : x ? here - 1 : here;
+            size_t below = y + 1 < height ? here + width : y ? here - width : here;
+            double at[2], beside[2][2], t = meet(&ground, &rays[here], at);
+            bool whole = t > 0.0 && meet(&ground, &rays[right], beside[0]) > 0.0 &&
+                         meet(&ground, &rays[below], beside[1]) > 0.0;
+            cover[here] = whole ? (float)cover_of(&ground, at, beside[0], beside[1]) : 0.0f;
+            rays[here].t_max = cover[here] > 0.0f ? (float)t : -1.0f;
+        }
+    }
+}
