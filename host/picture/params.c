@@ -51,8 +51,8 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
         return WHIT_ERROR_USAGE;
     }
     uint32_t n = params->sampling.count, first = params->sampling.first;
-    if (!is_power_of_4(n) || n > WHIT_SAMPLES_MAX) {
-        log_error(log, "%u samples a pixel: must be 1, 4, 16, 64, 256, 1024 or 4096", n);
+    if (n > WHIT_SAMPLES_MAX) {
+        log_error(log, "%u samples a pixel: must be 1..%d", n, WHIT_SAMPLES_MAX);
         return WHIT_ERROR_USAGE;
     }
     if (first % n != 0 || first > WHIT_SAMPLES_MAX - n) {

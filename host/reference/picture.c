@@ -130,8 +130,10 @@ static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x,
         tracer->sample = params->sampling.first + i;
         sum = tree_trace(tracer, x, y, &first);
         uint32_t level = 0;
-        for (; i >> level & 1u; ++level)
-            sum = d3_add(partial[level], sum);
+        bool last = i + 1 == params->sampling.count;
+        for (; last ? i >> level : i >> level & 1u; ++level)
+            if (i >> level & 1u)
+                sum = d3_add(partial[level], sum);
         partial[level] = sum;
         if (i == 0 && job->ids) {
             job->ids->words[2 * pixel] = first.instance;

@@ -15,7 +15,7 @@ uint32_t pixels_levels(const whit_renderer_params *params)
     uint32_t max = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? ADAPTIVE_MAX
                                                                    : params->sampling.count,
              levels = 0;
-    while (max >> (levels + 1))
+    while ((max - 1) >> levels)
         ++levels;
     return levels;
 }

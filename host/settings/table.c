@@ -1,4 +1,5 @@
 /* The table of settings: a row an option, in the order of help. */
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,13 +58,14 @@ static bool read_aa(const struct setting *row, const char *text, void *record, c
     static const char prefix[] = "adaptive:";
     whit_renderer_params *picture = &((struct settings *)record)->picture;
     size_t length = strlen(prefix);
-    char list[80], *end;
+    char *end;
+    (void)row;
     if (strncmp(text, prefix, length) != 0) {
-        uint32_t found = value_find(row->values, text);
-        if (found == WHIT_NONE)
-            return setting_refuse(why, " `%s`: one of %s or adaptive:X is needed", text,
-                                  value_list(row->values, ", ", list, sizeof list));
-        picture->sampling = (whit_sampling){.count = (uint32_t)row->values[found].value};
+        unsigned long count = strtoul(text, &end, 10);
+        if (!isdigit((unsigned char)text[0]) || *end || count < 1 || count > WHIT_SAMPLES_MAX)
+            return setting_refuse(why, " `%s`: a whole number from 1 to %d or adaptive:X is needed",
+                                  text, WHIT_SAMPLES_MAX);
+        picture->sampling = (whit_sampling){.count = (uint32_t)count};
         return true;
     }
     double contrast = strtod(text + length, &end);
@@ -238,9 +240,10 @@ const struct setting settings_table[] = {
     {"fps", 0, "F", "frames in a second, for --frame", AT(NUMBER, fps), .min = 1e-3, .max = 1e6,
      .commands = IN_SCENES},
 
-    {"aa", 0, "1|4|16|...|4096|adaptive:X",
-     "samples a pixel; adaptive: 4, where neighbours differ by\n"
-     "more than X 16, and then 64",
+    {"aa", 0, "N|adaptive:X",
+     "samples a pixel, 1 to 4096 (powers of 4 are spread evenly);\n"
+     "adaptive: 4, where neighbours differ by more than X 16,\n"
+     "and then 64",
      AT_OWN(aa), .values = values_samples, .commands = IN_PICTURES | IN_SCENE,
      .change = SETTING_LIGHT, .always = true, .tells = aa_tells, .title = "anti-aliasing",
      .steps = steps_aa, .key = 'Y'},

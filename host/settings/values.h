@@ -26,7 +26,7 @@ extern const struct setting_value values_lights[];          /* whit_lights */
 extern const struct setting_value values_shadows[];         /* whit_shadows */
 extern const struct setting_value values_fresnel[];         /* whit_renderer_params.schlick */
 extern const struct setting_value values_effects[];         /* what the text begins with */
-extern const struct setting_value values_samples[];         /* of a pixel: powers of 4 */
+extern const struct setting_value values_samples[];         /* of a pixel: those spread evenly */
 extern const struct setting_value values_light_samples[];   /* of an area light */
 extern const struct setting_value values_view[];            /* 0: colours; 1 + whit_view */
 extern const struct setting_value values_rays[];            /* whit_ray_kind; WHIT_RAY_KINDS: all */

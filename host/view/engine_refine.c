@@ -1,6 +1,7 @@
 /* The window's picture at rest gets better by itself: 4, 16, 64 ... samples of each pixel. Samples
    are one nested sequence, summed pairwise in blocks of four: so a picture of 4n samples is the one
-   of n and three more parts of n, bit by bit what `--aa 4n` gives, and no ray is traced twice. */
+   of n and three more parts of n, and no ray is traced twice. Where n is a power of 2 it is bit by
+   bit what `--aa 4n` gives. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,6 +43,7 @@ void engine_refine_begin(struct engine_refine *refine, const struct engine_frame
     set_base(refine, frame);
     refine->samples = frame->samples;
     refine->part = 1;
+    refine->done = frame->samples * PARTS > WHIT_SAMPLES_MAX;
 }
 
 /* The first part is the whole picture that engine_keep copied. */

@@ -40,7 +40,7 @@ typedef enum whit_sampling_kind {
 } whit_sampling_kind;
 typedef struct whit_sampling {
     whit_sampling_kind kind;
-    uint32_t count;  /* FIXED: a power of 4 up to WHIT_SAMPLES_MAX; 0: 1 */
+    uint32_t count;  /* FIXED: up to WHIT_SAMPLES_MAX; powers of 4 are spread evenly; 0: 1 */
     uint32_t first;  /* FIXED: a multiple of `count`; ids are of sample 0 alone */
     double contrast; /* ADAPTIVE: above 0, up to 1 */
 } whit_sampling;
@@ -238,7 +238,7 @@ typedef struct whit_share {
 } whit_share;
 #define WHIT_SHARES 24
 
-/* Numbers of samples that a pixel may have: 1, 4, 16, ... WHIT_SAMPLES_MAX. */
+/* Pixels are counted by their samples: 1, up to 4, up to 16, ... up to WHIT_SAMPLES_MAX. */
 enum { WHIT_SAMPLE_LEVELS = 7 };
 
 typedef struct whit_stats {

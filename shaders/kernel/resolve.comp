@@ -86,13 +86,15 @@ void resolve_pixel(uint id)
         return;
     vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
     // Samples are summed in pairs, pairs in pairs: partial sum i, of 2^i samples, waits for the next like it
-    // where bit i of their number is set.
+    // where bit i of their number is set. Behind the last sample all that wait are added; of 2^i samples these
+    // are the same.
+    bool last = chunk.summed + 1u == chunk.samples;
     uint row = chunk.sums_row + slot;
-    for (uint carry = chunk.summed; (carry & 1u) != 0u; carry >>= 1) {
-        total.rgb += pixels[row].rgb;
+    for (uint waiting = chunk.summed; last ? waiting != 0u : (waiting & 1u) != 0u; waiting >>= 1) {
+        if ((waiting & 1u) != 0u)
+            total.rgb += pixels[row].rgb;
         row += chunk.sums_step;
     }
-    bool last = chunk.summed + 1u == chunk.samples;
     if (last && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
     pixels[last ? pixel : row] = total;

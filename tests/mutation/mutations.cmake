@@ -367,8 +367,8 @@ mutation(reference_without_room reference_formula RED light_falls_with_cosine_an
 change(host/reference/surface.c surface_at [[ROOM]] [[0.0 * ROOM]])
 
 mutation(samples_summed_one_by_one render_samples RED samples_are_summed_in_pairs)
-change(shaders/kernel/resolve.comp [[carry = chunk.summed; (carry & 1u) != 0u; carry >>= 1]]
-  [[carry = min(chunk.summed, 1u); carry != 0u; carry = 0u, row -= chunk.sums_step]])
+change(shaders/kernel/resolve.comp [[waiting = chunk.summed; last ? waiting != 0u : (waiting & 1u) != 0u; waiting >>= 1]]
+  [[waiting = min(chunk.summed, 1u); waiting != 0u; waiting = 0u, row -= chunk.sums_step]])
 
 mutation(sums_of_parts_mixed render_samples RED full_queues_do_not_matter)
 change(host/render/stages.c [[part.first_block += max, part.sums_row += max * RENDER_BLOCK_PIXELS]]

@@ -67,6 +67,40 @@ TEST(draws_pictures_and_ray_trees)
     close_scene(&o);
 }
 
+static whit_image *draw_samples(whit_accel *accel, uint32_t first, uint32_t count)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_reference *reference = NULL;
+    whit_image *color = NULL;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.sampling = (whit_sampling){.first = first, .count = count};
+    assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_render(reference, &color, NULL), WHIT_OK);
+    whit_reference_destroy(reference);
+    return color;
+}
+
+TEST(any_number_of_samples_is_their_mean)
+{
+    enum { COUNT = 13 };
+    struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
+    double sums[WIDTH * HEIGHT * 4] = {0};
+    for (uint32_t count = 1; count <= COUNT; ++count) {
+        whit_image *one = draw_samples(o.accel, count - 1, 1);
+        whit_image *all = draw_samples(o.accel, 0, count);
+        for (int i = 0; i < WIDTH * HEIGHT * 4; ++i) {
+            sums[i] += (double)whit_image_floats(one)[i];
+            double mean = sums[i] / count, drawn = (double)whit_image_floats(all)[i];
+            if (fabs(drawn - mean) > 1e-6 * fabs(mean))
+                fail_msg("%u samples, float %d: %.9g is not %.9g", count, i, drawn, mean);
+        }
+        whit_image_destroy(one);
+        whit_image_destroy(all);
+    }
+    close_scene(&o);
+}
+
 TEST(refuses_what_it_cannot_draw)
 {
     struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
@@ -74,7 +108,7 @@ TEST(refuses_what_it_cannot_draw)
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}},
         {.effects_removed = 1},
         {.camera = {.name = "nobody"}},
-        {.sampling.count = 3}};
+        {.sampling.count = 4097}};
     whit_reference *reference = NULL;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
         assert_int_equal(whit_reference_create(o.accel, &refused[i], 0, &reference),

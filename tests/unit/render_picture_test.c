@@ -415,7 +415,7 @@ TEST(nonsense_is_refused)
     const whit_renderer_params bad[] = {
         {.width = 0, .height = 4},
         {.width = 70000, .height = 4},
-        {.sampling.count = 3},
+        {.sampling.count = 4097},
         {.tile_size = 8},
         {.depth = 1000},
         {.camera = {.name = "nobody"}},

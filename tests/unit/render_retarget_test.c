@@ -102,7 +102,7 @@ TEST(nonsense_is_refused)
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
     wrong = steps[0];
-    wrong.sampling.count = 5;
+    wrong.sampling.count = 4097;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_set_view(f.renderer, &steps[1]), WHIT_OK);
     check_same(&f, "after nonsense", &steps[1]);

@@ -1,5 +1,7 @@
 /* Samples of pictures: their sum is pairwise by index, so that sets of them merge to the bytes of
  * the whole. */
+#include <math.h>
+
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "unit.h"
@@ -98,6 +100,22 @@ TEST(sets_merge_to_the_whole)
     draw_parts(4);
     assert_int_equal(count_differing(SAMPLES / 4), 0);
     assert_memory_not_equal(parts[0], parts[1], sizeof *parts);
+}
+
+/* Of every number of samples the picture is their mean, on the device and in double. */
+TEST(any_number_of_samples_is_their_mean)
+{
+    draw_parts(1);
+    for (uint32_t count = 2; count < SAMPLES; ++count) {
+        draw(0, count, 0, whole);
+        for (int i = 0; i < FLOATS; ++i) {
+            double sum = 0.0;
+            for (uint32_t s = 0; s < count; ++s)
+                sum += (double)parts[s][i] / count;
+            if (fabs(sum - (double)whole[i]) > 1e-6 * fabs(sum) + 1e-7)
+                fail_msg("%u samples, float %d: %.9g is not %.9g", count, i, (double)whole[i], sum);
+        }
+    }
 }
 
 /* Halves of a tile keep their sums apart. */
@@ -203,9 +221,7 @@ TEST(large_pictures_have_room_for_sums)
 
 TEST(other_samples_are_refused)
 {
-    static const whit_renderer_params wrong[] = {{.sampling.count = 2},
-                                                 {.sampling.count = 8},
-                                                 {.sampling.count = 3},
+    static const whit_renderer_params wrong[] = {{.sampling.count = 4097},
                                                  {.sampling.count = 16384},
                                                  {.sampling.count = ~0u},
                                                  {.light_samples = 256},
@@ -217,8 +233,9 @@ TEST(other_samples_are_refused)
         whit_renderer_params params = wrong[i];
         assert_int_equal(params_check(&silent, &params), WHIT_ERROR_USAGE);
     }
-    for (uint32_t n = 1; n <= WHIT_SAMPLES_MAX; n *= 4) {
-        whit_renderer_params params = {.sampling.count = n, .sampling.first = WHIT_SAMPLES_MAX - n};
+    for (uint32_t n = 1; n <= WHIT_SAMPLES_MAX; ++n) {
+        whit_renderer_params params = {.sampling.count = n,
+                                       .sampling.first = (WHIT_SAMPLES_MAX / n - 1) * n};
         assert_int_equal(params_check(&silent, &params), WHIT_OK);
     }
 }
