@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cost/cost.h"
-
-static const double AS_RIGHT = 0.01, AS_GOOD = 0.02;
+#include "cost/choose.h"
 
 const char *cost_metric_name(enum cost_metric metric)
 {
@@ -42,9 +40,9 @@ static bool beats(const struct cost_report *report, enum cost_metric metric,
 {
     double a_ms = rank_ms(report, a), b_ms = rank_ms(report, b);
     double a_error = cost_error_of(&a->error, metric), b_error = cost_error_of(&b->error, metric);
-    if (!is_ranked(a) || a_ms > b_ms || a_error > b_error * (1.0 + AS_RIGHT))
+    if (!is_ranked(a) || a_ms > b_ms || a_error > b_error * (1.0 + CHOOSE_AS_RIGHT))
         return false;
-    return a_ms < b_ms || a_error < b_error * (1.0 - AS_RIGHT) || a < b;
+    return a_ms < b_ms || a_error < b_error * (1.0 - CHOOSE_AS_RIGHT) || a < b;
 }
 
 void cost_mark_best(struct cost_report *report, enum cost_metric metric)
@@ -80,8 +78,8 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
     bool samples = row->alone.pixel_count == 0;
     double before = samples ? usual->error.rmse : usual->alone.rmse;
     double after = own_error(row, COST_RMSE);
-    bool more_right = after < before * (1.0 - AS_RIGHT);
-    bool less_right = after > before * (1.0 + AS_RIGHT);
+    bool more_right = after < before * (1.0 - CHOOSE_AS_RIGHT);
+    bool less_right = after > before * (1.0 + CHOOSE_AS_RIGHT);
     if (row->change == SETTING_HITS && row->hits[COST_AIMED].traced) {
         more_right = more_right || inexact_hits(row) < inexact_hits(usual);
         less_right = less_right || inexact_hits(row) > inexact_hits(usual);
@@ -93,28 +91,12 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
 
 /* ---- Choices ---- */
 
-/* What a setting does to the usual picture. Errors are added: squares of RMSE, means of FLIP. */
-struct effect {
-    double ratio, error;
-    bool known;
-};
-struct search {
-    const struct cost_report *report;
-    const struct cost_goal *goal;
-    const struct knob *table;
-    uint32_t count, aa;
-    struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
-    double tolerated; /* second pass: errors up to this are as good as the least; < 0: first pass */
-    uint8_t settings[COST_CHOICE_KNOBS];
-    struct cost_choice best;
-};
-
 static double to_sum(double error, enum cost_metric metric)
 {
     return metric == COST_RMSE ? error * error : error;
 }
 
-static double from_sum(double sum, enum cost_metric metric)
+double choose_from_sum(double sum, enum cost_metric metric)
 {
     sum = fmax(sum, 0.0);
     return metric == COST_RMSE ? sqrt(sum) : sum;
@@ -162,6 +144,7 @@ static void collect(struct search *search)
 {
     const struct cost_report *report = search->report;
     enum cost_metric metric = search->goal->metric;
+    search->usual_own = to_sum(own_error(&report->rows[0], metric), metric);
     for (uint32_t k = 0; k < search->count; ++k)
         search->effects[k][search->table[k].usual] = (struct effect){.ratio = 1.0, .known = true};
     search->effects[search->aa][search->table[search->aa].usual].error =
@@ -198,37 +181,24 @@ static void take_free(struct search *search)
     }
 }
 
-static bool is_searched(const struct search *search, uint32_t knob)
+bool choose_is_searched(const struct search *search, uint32_t knob)
 {
     return knob_change(&search->table[knob]) == SETTING_LIGHT;
 }
 
-static bool is_better(const struct search *search, double ms, double error)
-{
-    const struct cost_choice *best = &search->best;
-    if (search->goal->kind == COST_WITHIN && ms > search->goal->limit)
-        return false;
-    if (search->goal->kind == COST_UNDER && error > search->goal->limit)
-        return false;
-    if (!best->found)
-        return true;
-    if (search->goal->kind == COST_UNDER || search->tolerated >= 0.0)
-        return ms < best->ms && (search->tolerated < 0.0 || error <= search->tolerated);
-    return error < best->error;
-}
-
+/* All combinations of shading settings, for the cheapest below the error. */
 static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 {
     if (knob == search->count) {
         double ms = search->report->usual_ms_max * ratio;
-        double error = from_sum(sum, search->goal->metric);
-        if (!is_better(search, ms, error))
+        double error = choose_from_sum(sum, search->goal->metric);
+        if (error > search->goal->limit || (search->best.found && ms >= search->best.ms))
             return;
         search->best = (struct cost_choice){.ms = ms, .error = error, .found = true};
         memcpy(search->best.settings, search->settings, sizeof search->settings);
         return;
     }
-    if (!is_searched(search, knob)) {
+    if (!choose_is_searched(search, knob)) {
         const struct effect *effect = &search->effects[knob][search->settings[knob]];
         walk(search, knob + 1, ratio * effect->ratio, sum);
         return;
@@ -243,16 +213,14 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal)
 {
-    struct search search = {
-        .report = report, .goal = goal, .aa = knob_find("aa"), .tolerated = -1.0};
+    struct search search = {.report = report, .goal = goal, .aa = knob_find("aa")};
     search.table = knob_table(&search.count);
     collect(&search);
     take_free(&search);
-    walk(&search, 0, 1.0, 0.0);
-    if (goal->kind == COST_WITHIN && search.best.found) {
-        search.tolerated = search.best.error * (1.0 + AS_GOOD);
+    if (goal->kind == COST_WITHIN)
+        choose_within(&search);
+    else
         walk(&search, 0, 1.0, 0.0);
-    }
     return search.best;
 }
 
@@ -264,6 +232,8 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
         if (choice->settings[k] != table[k].usual)
             knob_apply(&table[k], choice->settings[k], settings);
     }
+    if (choice->samples > 0)
+        settings->picture.sampling = (whit_sampling){.count = choice->samples};
 }
 
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes)

@@ -195,15 +195,20 @@ double cost_error_of(const whit_difference *difference, enum cost_metric metric)
 /* By the report's figures: ratios multiply, squared errors and FLIP add up. Numerics and instances
    stay as they are, for what they get wrong is not told by one picture; of knobs that change
    nothing the fastest setting is taken; as many samples as the reference has count with half the
-   error of a quarter of them. The cheapest with an error of at most `limit`; the one with
-   the least error of those that 9 of 10 times take at most `limit` ms by the wall clock; errors
-   that differ by 2 % count as equal. */
+   error of a quarter of them. The cheapest with an error of at most `limit`; or of those that 9 of
+   10 times take at most `limit` ms by the wall clock the one that gives up least, in the order of
+   within.c, with as many samples as fit, up to 64. */
 struct cost_choice {
     uint8_t settings[COST_CHOICE_KNOBS]; /* of each knob of the table */
+    uint32_t samples;                    /* of a pixel; 0: as the knob's setting says */
     double ms, error;                    /* predicted: wall clock of the full picture; the metric */
     bool found;
 };
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal);
+/* How many things are given up for time, one after the other (within.c), and which one in that
+   order is that setting of that knob; WHIT_NONE: none, it is the usual one or better. */
+uint32_t cost_steps(void);
+uint32_t cost_step_of(const char *knob, const char *setting);
 void cost_choice_apply(const struct cost_choice *choice, struct settings *settings);
 /* As options of `whit render`. */
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);

@@ -276,21 +276,26 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
     return result;
 }
 
-/* Takes a measured row that keeps the limit, where no predicted combination does: the one with the
-   least error for a limit of time, the cheapest for a limit of error. */
+/* Takes a measured row that keeps the limit, where no predicted combination does: for a limit of
+   time the one that gives up what is missed least, and of those that give up the same the one with
+   the least error; the cheapest for a limit of error. */
 static void take_measured(const struct cost_report *report, struct cost_answer *answer)
 {
     const struct cost_goal *goal = &answer->goal;
     double best = INFINITY;
+    uint32_t best_step = WHIT_NONE;
     for (uint32_t i = 0; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         double error = cost_error_of(&row->error, goal->metric);
         double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
+        /* Counted from 1, so that what gives up nothing comes first. */
+        uint32_t step = goal->kind == COST_WITHIN ? cost_step_of(row->knob, row->setting) + 1 : 0;
         /* The error of one picture does not tell which rays miss: settings of hits stay usual. */
         if (!row->measured || row->broken || row->change == SETTING_HITS || !is_kept(goal, row) ||
-            !(rank < best))
+            step > best_step || (step == best_step && !(rank < best)))
             continue;
         best = rank;
+        best_step = step;
         *answer = (struct cost_answer){.goal = answer->goal,
                                        .found = true,
                                        .kept = true,

@@ -122,7 +122,7 @@ check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
 
 tiny="$CUBE --size 48x36 -o $OUT/chosen.png"
 expect 0 "a time that is enough" render $tiny --budget-ms 1e6
-check "takes the most samples" grep -q "^whit: note: chosen: --aa 16;* .*predicted" "$OUT/stderr"
+check "takes the most samples" grep -q "^whit: note: chosen: --aa 64.*; predicted" "$OUT/stderr"
 check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
 expect 0 "an error that one sample has" render $tiny --max-error 0.9
 check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0

@@ -1,0 +1,33 @@
+/* What the two ways to choose share: what each setting does to time and error (choose.c). */
+#ifndef COST_CHOOSE_H
+#define COST_CHOOSE_H
+
+#include "cost/cost.h"
+
+/* Errors whose difference is below this share count as equal. */
+#define CHOOSE_AS_RIGHT 0.01
+
+/* What a setting does to the usual picture. Errors are added: squares of RMSE, means of FLIP. */
+struct effect {
+    double ratio, error;
+    bool known;
+};
+struct search {
+    const struct cost_report *report;
+    const struct cost_goal *goal;
+    const struct knob *table;
+    uint32_t count, aa;
+    struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
+    double usual_own; /* the usual settings' error without that of samples, as a sum */
+    uint8_t settings[COST_CHOICE_KNOBS];
+    struct cost_choice best;
+};
+
+double choose_from_sum(double sum, enum cost_metric metric);
+/* Whether settings of the knob are chosen: those that change light alone. */
+bool choose_is_searched(const struct search *search, uint32_t knob);
+/* The best picture within a time (within.c): search->best. `search` has what is known, and the
+   usual settings but for knobs that change nothing, of which it has the fastest. */
+void choose_within(struct search *search);
+
+#endif

@@ -1,0 +1,177 @@
+/* The best picture within a time: what is given up for it is an order, not what one figure of error
+   says, to which a picture without shadows may be as right as one with them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cost/choose.h"
+
+struct step {
+    const char *knob, *setting;
+    uint32_t samples; /* it is taken only where fewer samples a pixel are left without it */
+};
+
+/* What is given up, in this order: first what the eye misses least. A step is skipped where the
+   scene has nothing of it or where it saves no time. Samples are given up in between, and get what
+   a step leaves of the time: fewer of them are rough edges and lens, which are seen less than what
+   comes behind them. The order is that of FLIP in docs/accuracy.md, with two exceptions: opaque
+   shadows and a second bounce have glass look like something else, so they come late. */
+static const struct step order[] = {
+    {"bailout", "0.0009765625", 64}, /* from 0: rays too weak to be displayed */
+    {"depth", "8", 64},              /* from 16: the ninth bounce is seen in nested glass alone */
+    {"light-samples", "16", 64},     /* from 64: each sample of the pixel has points of its own */
+    {"bailout", "0.015625", 16},     /* rays of less than 1/64: faint mirror images in glass */
+    {"light-samples", "4", 4},       /* steps in soft shadows, which samples smooth */
+    {"fresnel", "schlick", 1},       /* a little more or less of a reflection */
+    {"depth", "4", 1},               /* mirrors in mirrors, and the back of nested glass */
+    {"terminator", "off", 1},        /* facets where light grazes */
+    {"light-samples", "1", 1},       /* soft shadows get hard */
+    {"bailout", "0.125", 1},         /* reflections on glass and dull metal */
+    {"normal-maps", "off", 1},       /* relief */
+    {"depth", "2", 1},               /* from here on things are missing, not rough */
+    {"shadows", "opaque", 1},        /* glass casts a shadow like stone */
+    {"depth", "1", 1},               /* nothing is seen through glass */
+    {"shadows", "none", 1},          /* things hover */
+    {"depth", "0", 1},               /* neither mirrors nor glass */
+    {"textures", "off", 1},          /* what things are made of */
+};
+enum { STEPS = sizeof order / sizeof *order, SAMPLES_MOST = 64 };
+
+/* What more time than that of 64 samples goes to. */
+static const struct step careful[] = {
+    {"bailout", "0", 0}, {"depth", "16", 0}, {"light-samples", "64", 0}};
+
+static bool names(const struct step *step, const char *knob, const char *setting)
+{
+    return strcmp(step->knob, knob) == 0 && strcmp(step->setting, setting) == 0;
+}
+
+uint32_t cost_steps(void)
+{
+    return STEPS;
+}
+
+uint32_t cost_step_of(const char *knob, const char *setting)
+{
+    for (uint32_t i = 0; i < STEPS; ++i) {
+        if (names(&order[i], knob, setting))
+            return i;
+    }
+    return WHIT_NONE;
+}
+
+/* The knob of the step, and which of its settings it is. */
+static uint32_t find(const struct search *search, const struct step *step, uint32_t *setting)
+{
+    uint32_t knob = knob_find(step->knob);
+    *setting = 0;
+    while (strcmp(knob_setting_name(&search->table[knob], *setting), step->setting) != 0)
+        ++*setting;
+    return knob;
+}
+
+/* ---- Samples ---- */
+
+/* The row of `aa` with that many samples: row 0 for one. NULL: it was not measured. */
+static const struct effect *sampled(const struct search *search, uint32_t samples)
+{
+    const struct knob *aa = &search->table[search->aa];
+    for (uint32_t s = 0; s < aa->count; ++s) {
+        const char *name = knob_setting_name(aa, s);
+        if (strtoul(name, NULL, 10) == samples)
+            return search->effects[search->aa][s].known ? &search->effects[search->aa][s] : NULL;
+    }
+    return NULL;
+}
+
+/* What so many samples do, between the rows on both sides: time goes straight, error by its power
+   law. Behind the last row they go on as random samples would. */
+static struct effect samples_effect(const struct search *search, uint32_t samples)
+{
+    uint32_t below = 1, above = 0;
+    for (uint32_t n = 1; n <= SAMPLES_MOST; n *= 4) {
+        if (!sampled(search, n))
+            continue;
+        if (n <= samples)
+            below = n;
+        else if (!above)
+            above = n;
+    }
+    struct effect a = *sampled(search, below);
+    bool rmse = search->goal->metric == COST_RMSE;
+    double more = (double)samples / below;
+    if (!above)
+        return (struct effect){a.ratio * more, a.error / (rmse ? more : sqrt(more)), true};
+    const struct effect *b = sampled(search, above);
+    double share = (double)(samples - below) / (above - below);
+    double power = log(more) / log((double)above / below);
+    return (struct effect){
+        a.ratio + share * (b->ratio - a.ratio),
+        pow(fmax(a.error, 1e-30), 1.0 - power) * pow(fmax(b->error, 1e-30), power), true};
+}
+
+/* ---- The choice ---- */
+
+/* Of all knobs but samples. */
+static struct effect others_effect(const struct search *search)
+{
+    struct effect all = {.ratio = 1.0, .known = true};
+    for (uint32_t k = 0; k < search->count; ++k) {
+        const struct effect *effect = &search->effects[k][search->settings[k]];
+        if (k == search->aa || (!choose_is_searched(search, k) && !effect->known))
+            continue;
+        all.ratio *= effect->ratio;
+        all.error += choose_is_searched(search, k) ? effect->error : 0.0;
+    }
+    return all;
+}
+
+/* Keeps the settings as they are with the most samples that fit, where those are more than before.
+ */
+static void take(struct search *search)
+{
+    const struct effect others = others_effect(search);
+    uint32_t most = sampled(search, 4) || sampled(search, 16) ? SAMPLES_MOST : 1;
+    uint32_t before = search->best.found ? search->best.samples : 0;
+    for (uint32_t n = most; n > before; --n) {
+        const struct effect samples = samples_effect(search, n);
+        double ms = search->report->usual_ms_max * others.ratio * samples.ratio;
+        if (ms > search->goal->limit)
+            continue;
+        search->best = (struct cost_choice){
+            .samples = n,
+            .ms = ms,
+            .error = choose_from_sum(samples.error + others.error, search->goal->metric),
+            .found = true};
+        memcpy(search->best.settings, search->settings, sizeof search->settings);
+        return;
+    }
+}
+
+static void be_careful(struct search *search)
+{
+    for (size_t i = 0; i < sizeof careful / sizeof *careful; ++i) {
+        uint32_t setting, knob = find(search, &careful[i], &setting);
+        const struct effect *effect = &search->effects[knob][setting];
+        double before = search->usual_own;
+        if (effect->known && effect->error < -CHOOSE_AS_RIGHT * before)
+            search->settings[knob] = (uint8_t)setting;
+    }
+}
+
+void choose_within(struct search *search)
+{
+    be_careful(search);
+    take(search);
+    for (uint32_t i = 0; i < STEPS; ++i) {
+        uint32_t setting, knob = find(search, &order[i], &setting);
+        const struct effect *effects = search->effects[knob];
+        if (search->best.found && search->best.samples >= order[i].samples)
+            break;
+        if (!effects[setting].known ||
+            effects[setting].ratio >= effects[search->settings[knob]].ratio)
+            continue;
+        search->settings[knob] = (uint8_t)setting;
+        take(search);
+    }
+}

@@ -1,0 +1,164 @@
+/* What `whit cost` and --budget-ms give up for time, by reports that nobody measured. */
+#include <string.h>
+
+#include "cost/cost.h"
+#include "unit.h"
+
+enum { REPORTS = 400, SAMPLES_MOST = 64 };
+static const double USUAL_MS = 100.0;
+
+static struct cost_report report;
+
+static uint32_t random_bits(void)
+{
+    static uint64_t state = 1;
+    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (uint32_t)(state >> 33);
+}
+
+static double random_up_to(double most)
+{
+    return most * (random_bits() % 10000) / 1e4;
+}
+
+/* How far down the order a setting is, from 1; 0: nothing is given up by it. */
+static uint32_t rank_of(uint32_t knob, uint32_t setting)
+{
+    uint32_t count;
+    const struct knob *k = &knob_table(&count)[knob];
+    return cost_step_of(k->name, knob_setting_name(k, setting)) + 1;
+}
+
+/* Of samples and of what is more careful than usual a picture takes longer, of what is given up
+   later in the order the shorter. */
+static double ratio_of(uint32_t knob, uint32_t setting)
+{
+    uint32_t count;
+    const struct knob *k = &knob_table(&count)[knob];
+    double samples = strtod(knob_setting_name(k, setting), NULL);
+    uint32_t rank = rank_of(knob, setting);
+    if (strcmp(k->name, "aa") == 0)
+        return samples < 1.0 ? 80.0 : samples * (0.95 + random_up_to(0.1));
+    return rank > 0 ? 1.0 - 0.05 * rank + random_up_to(0.04) : 1.1 + random_up_to(2.0);
+}
+
+static void add_row(uint32_t knob, uint32_t setting, uint32_t samples)
+{
+    uint32_t count;
+    const struct knob *k = &knob_table(&count)[knob];
+    struct cost_row *row = &report.rows[report.row_count++];
+    double ratio = ratio_of(knob, setting);
+    bool told_apart = random_bits() % 8 > 0;
+    *row = (struct cost_row){.knob_index = knob,
+                             .setting_index = setting,
+                             .change = SETTING_LIGHT,
+                             .measured = samples > 0 || random_bits() % 16 > 0};
+    snprintf(row->knob, sizeof row->knob, "%s", k->name);
+    snprintf(row->setting, sizeof row->setting, "%s", knob_setting_name(k, setting));
+    row->price.verdict = samples || told_apart ? (ratio > 1.0 ? 1 : -1) : 0;
+    row->price.ratio[COST_WALL].median = ratio;
+    row->error = (whit_difference){.pixel_count = 1, .rmse = 0.1 / (samples ? samples : 1)};
+    row->alone = (whit_difference){.pixel_count = !samples, .rmse = random_up_to(0.2)};
+}
+
+static void make_report(void)
+{
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    memset(&report, 0, sizeof report);
+    report.clock = COST_WALL;
+    report.reference_samples = 16;
+    report.usual_ms_max = USUAL_MS;
+    report.rows[0] = (struct cost_row){.knob_index = WHIT_NONE,
+                                       .setting_index = WHIT_NONE,
+                                       .measured = true,
+                                       .ms = {USUAL_MS},
+                                       .error = {.pixel_count = 1, .rmse = 0.1},
+                                       .alone = {.pixel_count = 1, .rmse = 0.01}};
+    report.row_count = 1;
+    for (uint32_t k = 0; k < count; ++k) {
+        bool samples = strcmp(table[k].name, "aa") == 0;
+        for (uint32_t s = 0; s < table[k].count && knobs_of_light() >> k & 1; ++s)
+            if (s != table[k].usual && (!samples || s < 3))
+                add_row(k, s, samples ? (uint32_t)strtoul(table[k].settings[s].text, NULL, 10) : 0);
+    }
+}
+
+/* Whether the row is known to save time beside the settings of its knob that come before it. */
+static bool saves_time(const struct cost_row *row)
+{
+    double ratio = row->price.ratio[COST_WALL].median;
+    bool saves = row->measured && row->price.verdict < 0;
+    for (uint32_t i = 1; i < report.row_count; ++i) {
+        const struct cost_row *other = &report.rows[i];
+        if (other->knob_index == row->knob_index && other->measured && other->price.verdict < 0 &&
+            rank_of(other->knob_index, other->setting_index) <
+                rank_of(row->knob_index, row->setting_index))
+            saves = saves && ratio < other->price.ratio[COST_WALL].median;
+    }
+    return saves;
+}
+
+/* The last thing in the order that the choice gives up, and whether all before it are too, as far
+   as they save time. */
+static uint32_t check_order(const struct cost_choice *choice)
+{
+    uint32_t last = 0, count;
+    knob_table(&count);
+    for (uint32_t k = 0; k < count; ++k) {
+        uint32_t rank = rank_of(k, choice->settings[k]);
+        last = rank > last ? rank : last;
+    }
+    for (uint32_t i = 1; i < report.row_count; ++i) {
+        const struct cost_row *row = &report.rows[i];
+        uint32_t k = row->knob_index, rank = rank_of(k, row->setting_index);
+        if (rank > 0 && rank < last && saves_time(row) && rank_of(k, choice->settings[k]) < rank)
+            fail_msg("%s %s stays, and what is missed more is given up", row->knob, row->setting);
+    }
+    return last;
+}
+
+TEST(nothing_is_given_up_before_what_is_missed_less)
+{
+    uint32_t reached = 0, all = 0, found = 0;
+    for (int i = 0; i < REPORTS; ++i) {
+        make_report();
+        uint32_t last = 0;
+        for (double limit = 100.0 * USUAL_MS; limit > 0.005 * USUAL_MS; limit *= 0.8) {
+            const struct cost_goal goal = {COST_WITHIN, COST_RMSE, limit, 0.0};
+            const struct cost_choice choice = cost_choose(&report, &goal);
+            if (!choice.found)
+                break;
+            last = check_order(&choice);
+            assert_true(choice.ms <= limit);
+            /* Another sample would not have fitted. */
+            if (choice.samples < SAMPLES_MOST)
+                assert_true(choice.ms * (choice.samples + 1.2) / choice.samples > limit);
+            reached = last > reached ? last : reached;
+            ++found;
+        }
+        all += last == cost_steps();
+    }
+    print_message("  %u choices; all %u things were given up in %u of %d reports\n", found, reached,
+                  all, REPORTS);
+    assert_int_equal(reached, cost_steps());
+}
+
+/* Shadows, glass and textures go behind all that is only rough. */
+TEST(the_order_ends_with_what_is_missed_most)
+{
+    static const char *const last[][2] = {{"shadows", "opaque"},
+                                          {"depth", "1"},
+                                          {"shadows", "none"},
+                                          {"depth", "0"},
+                                          {"textures", "off"}};
+    for (uint32_t i = 0; i < 5; ++i)
+        assert_int_equal(cost_step_of(last[i][0], last[i][1]), cost_steps() - 5 + i);
+    assert_int_equal(cost_step_of("aa", "4"), WHIT_NONE);
+    assert_int_equal(cost_step_of("shadows", "tinted"), WHIT_NONE);
+}
+
+int main(void)
+{
+    return unit_run(NULL, NULL);
+}
