@@ -15,6 +15,7 @@ extern const struct cli_command command_render, command_scene, command_trace, co
 struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
     bool counters;            /* costs in --stats */
+    bool fresh;               /* for a choice what is kept with the scene is measured anew */
     struct frames frames;     /* with them `output` and `ids` are patterns */
     uint32_t thumbnail;       /* pixels on a side, of a PNG whatever its name; 0: none */
 };

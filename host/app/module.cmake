@@ -15,7 +15,7 @@ add_executable(whit_program
   app/bvh/study_trace.c
   app/compare/compare_command.c
   app/cost/cost_choice.c app/cost/cost_command.c app/cost/cost_compare.c app/cost/cost_json.c
-  app/cost/cost_page.c app/cost/cost_table.c ${page_source}
+  app/cost/cost_kept.c app/cost/cost_page.c app/cost/cost_table.c ${page_source}
   app/devices/device_hints.c app/devices/devices_command.c
   app/hard/hard_command.c app/hard/hard_output.c
   app/probe/probe_command.c app/probe/probe_output.c

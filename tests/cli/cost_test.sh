@@ -131,6 +131,40 @@ refuse 1 "no time at all" "no setting takes" render $tiny --budget-ms 0.001 --qu
 refuse 2 "chosen and given" "chooses --aa" render $tiny --budget-ms 10 --aa 4
 refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
 
+# A sample takes 135 ms, and bounces take nothing: so there are as many of these as there can be, and of samples
+# six are less than nine tenths of 1000 ms, while seven are more.
+most=" --depth 16 --bailout 0"
+tiny="$GLASS --size 48x36 -o $OUT/chosen.png --budget-ms 1000"
+kept="kept with the scene; --fresh measures anew"
+chosen() { sed -n 's/^whit: note: chosen: \(.*\); predicted.*/\1/p' "$OUT/stderr"; }
+expect 0 "what is left of the time goes to samples" render $tiny
+first=$(chosen)
+check "six of them ($first)" test "$first" = "--aa 6$most"
+check "it was measured" grep -q "measuring what settings cost" "$OUT/stderr"
+# As slow as it may be now, the choice stays.
+export WHIT_TEST_WRONG=noisy
+expect 0 "the second run" render $tiny
+unset WHIT_TEST_WRONG
+check "makes the same choice ($(chosen))" test "$(chosen)" = "$first"
+check "and says by which figures" grep -q "^whit: note: by figures of 20.* UTC, $kept" "$OUT/stderr"
+check "it is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
+expect 0 "another time, by the same figures" render $tiny --budget-ms 1400
+check "gets its own choice ($(chosen))" test "$(chosen)" = "--aa 9$most"
+expect 0 "and the first one again" render $tiny
+check "its own" test "$(chosen)" = "$first"
+expect 0 "--fresh" render $tiny --fresh
+check "measures anew" grep -q "measuring what settings cost" "$OUT/stderr"
+expect 0 "other trees" render $tiny --build median
+check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
+# Records that are cut, of something else or empty are measured again, and nothing is said of them.
+record=$(ls -t "$OUT"/cache/whit/cost-* | sed -n 2p)
+for damage in "truncate -s 2000" "truncate -s 0" "cp $(ls -t "$OUT"/cache/whit/cost-* | sed -n 1p)"; do
+    $damage "$record"
+    expect 0 "a record damaged by ${damage%% /*}" render $tiny
+    check "is measured again" grep -q "measuring what settings cost" "$OUT/stderr"
+    check "with the same choice, and no error" test "$(chosen)$(grep -c "error\|warning" "$OUT/stderr")" = "${first}0"
+done
+
 # ---- What is wrong is found, in its row ----
 
 # By the slowest of ten pictures nothing is predicted to keep 150 ms; the row of the usual settings does.

@@ -59,9 +59,34 @@ whit_result cost_save_json(const struct cost *cost, const char *path);
 /* What cost_save_json wrote, for comparisons: no pictures. `scene` gets the name of its scene,
    which the caller frees. False, said: another file. */
 bool cost_load_json(const char *path, struct cost_report *report, char **scene);
-/* The same in whit's cache, for choices: complete reports alone. */
-void cost_keep(const struct cost_report *report, const char *name);
-bool cost_load_kept(const char *name, struct cost_report *report);
+/* The same as parts of other documents. The second takes over `root`; NULL is no report. */
+json_t *cost_report_document(const struct cost_report *report);
+bool cost_report_read(json_t *root, struct cost_report *report);
+
+/* ---- What is kept with a scene (cost_kept.c) ---- */
+
+enum { COST_KEPT_CHOICES = 16, COST_KEPT_NAME = 32 };
+struct cost_kept_choice {
+    double budget_ms, tried_ms; /* tried: what the picture was expected to take then */
+    struct cost_choice choice;
+};
+struct cost_kept {
+    struct cost_report report;
+    char made[32]; /* when it was measured */
+    uint32_t choice_count;
+    struct cost_kept_choice choices[COST_KEPT_CHOICES];
+};
+/* Under which name whit's cache has it: another one for each scene, device, driver, version of
+   whit, and for all settings that decide pixels or time. */
+void cost_kept_name(const struct job *job, char name[COST_KEPT_NAME]);
+/* False: there is none, or it is broken or of something else. */
+bool cost_kept_load(const struct job *job, const char *name, struct cost_kept *kept);
+/* Reports that are not complete are not kept. */
+void cost_kept_save(const struct cost_kept *kept, const char *name);
+void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
+/* The choice for that time, or NULL. */
+const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
+void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
 
 /* ---- The page (cost_page.c) ---- */
 

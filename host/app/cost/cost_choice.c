@@ -1,30 +1,16 @@
 /* --budget-ms and --max-error: settings by what `whit cost` measures of this scene, size and
    device, once; figures are kept. */
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/cost/cost.h"
 
-enum { KEPT_VERSION = 3, KEPT_NAME = 32, SAMPLES = 16, TRIALS = 5, TRIES = 5 };
+enum { SAMPLES = 16, TRIALS = 5, TRIES = 6 };
 /* What takes less tells more of who else had the processor. */
 static const double TRIAL_MS_MIN = 20.0;
-
-/* The name under which the figures of this scene, size, time, camera and device are kept. */
-static void kept_name(const struct job *job, char name[KEPT_NAME])
-{
-    char key[1024 + SETTING_TEXT_BYTES];
-    const whit_renderer_params *picture = &job->settings.picture;
-    whit_device_info device;
-    whit_scene_info scene;
-    whit_device_get_info(job->device, &device);
-    whit_scene_get_info(job->scene, &scene);
-    snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %s|%s|%s", KEPT_VERSION,
-             WHIT_VERSION, scene.hash, picture->width, picture->height, picture->time_s,
-             job->settings.camera, device.name, device.driver);
-    snprintf(name, KEPT_NAME, "cost-%016" PRIx64, cost_hash(key));
-}
+/* A try that takes this share of the time is not followed by another. */
+static const double ENOUGH = 0.8;
 
 static whit_result measure(struct job *job, struct cost_report **report)
 {
@@ -52,43 +38,49 @@ static whit_result measure(struct job *job, struct cost_report **report)
     return result;
 }
 
-/* As they are kept, or measured and then kept. The same figures give the same picture. */
-static whit_result find_figures(struct job *job, struct cost_report *out)
+/* As they are kept, or measured and then kept. */
+static whit_result find_figures(struct job *job, bool fresh, const char *name,
+                                struct cost_kept *kept)
 {
-    char name[KEPT_NAME];
     struct cost_report *measured = NULL;
-    kept_name(job, name);
-    if (cost_load_kept(name, out))
+    if (!fresh && cost_kept_load(job, name, kept)) {
+        if (!job->settings.quiet)
+            cli_note("by figures of %s, kept with the scene; --fresh measures anew", kept->made);
         return WHIT_OK;
+    }
     whit_result result = measure(job, &measured);
     if (result == WHIT_OK) {
-        *out = *measured;
-        cost_keep(measured, name);
+        cost_kept_begin(kept, measured);
+        cost_kept_save(kept, name);
     }
     cost_report_destroy(measured);
     return result;
 }
 
-/* `slower`: than the figures say, at this moment. */
-static struct cost_choice choose(const struct cost_report *report, const struct job *job,
-                                 double slower)
+static struct cost_choice choose(const struct cost_report *report, const struct settings *settings,
+                                 double limit_ms)
 {
-    const struct settings *settings = &job->settings;
     bool within = settings->budget_ms > 0.0;
     const struct cost_goal goal = {
         .kind = within ? COST_WITHIN : COST_UNDER,
         .metric = COST_RMSE,
-        .limit =
-            within ? COST_ROOM * settings->budget_ms / slower : COST_ROOM * settings->max_error,
+        .limit = within ? limit_ms : COST_ROOM * settings->max_error,
     };
-    struct cost_choice choice = cost_choose(report, &goal);
-    if (!choice.found && within)
+    return cost_choose(report, &goal);
+}
+
+/* Where what is slowest in ten pictures does not keep the time, what is as usual may. */
+static struct cost_choice choose_first(const struct cost_report *report,
+                                       const struct settings *settings)
+{
+    struct cost_choice choice = choose(report, settings, COST_ROOM * settings->budget_ms);
+    double slowest = report->usual_ms_max / fmax(report->rows[0].ms[COST_WALL], 1e-6);
+    if (!choice.found && settings->budget_ms > 0.0)
+        choice = choose(report, settings, settings->budget_ms * slowest);
+    if (!choice.found && settings->budget_ms > 0.0)
         cli_error("no setting takes at most %.6g ms here", settings->budget_ms);
     else if (!choice.found)
         cli_error("no setting has an error of at most %.6g here", settings->max_error);
-    if (within && choice.found && slower > 1.5 && !job->settings.quiet)
-        cli_note("at this moment the device takes %.1f times as long as when it was measured",
-                 slower);
     return choice;
 }
 
@@ -100,81 +92,157 @@ static void say_choice(const struct cost_choice *choice, double ms)
              ms, choice->error);
 }
 
-/* The choice at this moment, in small where that takes long enough: what the full picture takes,
-   the most of TRIALS. From a small picture to the full one it is as far as for the usual settings.
- */
-static whit_result try_now(const struct cost_report *report, const struct job *job,
-                           double expected_ms, whit_renderer *renderer, double *full_ms)
+/* ---- Within a time ---- */
+
+struct choosing {
+    struct job *job;
+    const struct cost_report *report;
+    const struct render_request *request;
+    struct frames_progress *progress;
+    struct settings before;
+    whit_renderer **renderer; /* of the choice */
+};
+
+static whit_result set_choice(const struct choosing *choosing, const struct cost_choice *choice)
 {
-    const whit_renderer_params full = job_picture(job);
+    choosing->job->settings = choosing->before;
+    cost_choice_apply(choice, &choosing->job->settings);
+    whit_renderer_destroy(*choosing->renderer);
+    *choosing->renderer = NULL;
+    return render_create(choosing->job, choosing->request, choosing->progress, choosing->renderer);
+}
+
+/* Cuts down a picture to be tried: to a few of its samples, or to a small size where it has few. By
+   how much; 1: it is quick as it is. From a small picture to the full one it is as far as for the
+   usual settings. */
+static double cut_down(const struct cost_report *report, const struct cost_choice *choice,
+                       whit_renderer_params *picture)
+{
+    enum { PART = 16, FEW = 4 };
+    double least = choice->samples * TRIAL_MS_MIN / choice->ms;
+    double smaller = report->rows[0].ms[report->clock] / fmax(report->small_ms, 1e-6);
+    if (choice->samples >= FEW) {
+        uint32_t count = (uint32_t)fmin(fmax(choice->samples / PART, least), choice->samples);
+        picture->sampling.count = count > 0 ? count : 1;
+        return (double)choice->samples / picture->sampling.count;
+    }
+    if (choice->ms / smaller < TRIAL_MS_MIN)
+        return 1.0;
+    cost_small_size(report, &picture->width, &picture->height);
+    return smaller;
+}
+
+/* The choice at this moment: what the full picture takes, the most of TRIALS. */
+static whit_result try_now(const struct choosing *choosing, const struct cost_choice *choice,
+                           double *full_ms)
+{
+    const whit_renderer_params full = job_picture(choosing->job);
     whit_renderer_params tried = full;
     struct cost_times times;
-    double larger = report->rows[0].ms[report->clock] / fmax(report->small_ms, 1e-6);
-    if (expected_ms / larger >= TRIAL_MS_MIN)
-        cost_small_size(report, &tried.width, &tried.height);
-    else
-        larger = 1.0;
-    whit_result result = cost_time(renderer, &tried, TRIALS, &times);
+    double larger = cut_down(choosing->report, choice, &tried);
+    whit_result result = cost_time(*choosing->renderer, &tried, TRIALS, &times);
     if (result == WHIT_OK)
-        result = whit_renderer_set_view(renderer, &full);
-    /* As far beyond the most as half of what is between the trials. */
-    *full_ms = larger * (1.5 * times.ms[COST_WALL].high - 0.5 * times.ms[COST_WALL].low);
+        result = whit_renderer_set_view(*choosing->renderer, &full);
+    /* As far beyond the most as half of what is between the trials. By how much they differ evens
+       out where the full picture is as many of them. */
+    const struct sample_median *ms = &times.ms[COST_WALL];
+    double beyond_ms = 1.5 * ms->high - 0.5 * ms->low - ms->median;
+    *full_ms = larger * ms->median + sqrt(fmax(larger, 1.0)) * beyond_ms;
     return result;
 }
 
-/* Chooses until the choice keeps the time when it is tried, and does not leave much of it. */
-static whit_result choose_within(const struct cost_report *report, struct job *job,
-                                 const struct render_request *request,
-                                 struct frames_progress *progress, whit_renderer **renderer)
+static bool is_same(const struct cost_choice *a, const struct cost_choice *b)
 {
-    const struct settings before = job->settings;
-    double slower = 1.0, ms = 0.0;
-    whit_result result = WHIT_OK;
-    for (int i = 0; i < TRIES; ++i) {
-        const struct cost_choice choice = choose(report, job, slower);
-        if (!choice.found)
-            return WHIT_ERROR_FAILED;
-        job->settings = before;
-        cost_choice_apply(&choice, &job->settings);
-        whit_renderer_destroy(*renderer);
-        *renderer = NULL;
-        result = render_create(job, request, progress, renderer);
+    return a->samples == b->samples && memcmp(a->settings, b->settings, sizeof a->settings) == 0;
+}
+
+/* Tries choices, each for a device that is as fast as the last ones showed, until one takes most of
+   the time, or the next would be the same. *best gets the most careful one that keeps the time;
+   where none does the last one. */
+static whit_result find_within(const struct choosing *choosing, struct cost_kept_choice *best)
+{
+    const double budget_ms = choosing->before.budget_ms, aim_ms = COST_ROOM * budget_ms;
+    struct cost_choice choice = choose_first(choosing->report, &choosing->before);
+    struct cost_kept_choice tried = {.budget_ms = budget_ms};
+    double slower[2] = {
+        0}; /* than the figures say: of the last try that was too long; that fitted */
+    whit_result result = choice.found ? WHIT_OK : WHIT_ERROR_FAILED;
+    for (int i = 0; result == WHIT_OK && i < TRIES; ++i) {
+        tried.choice = choice;
+        result = set_choice(choosing, &choice);
         if (result == WHIT_OK)
-            result = try_now(report, job, choice.ms, *renderer, &ms);
-        if (result != WHIT_OK)
-            return result;
-        bool fits = ms <= COST_ROOM * before.budget_ms;
-        slower = ms / choice.ms;
-        if ((fits && (i > 0 || ms >= COST_TOO_LITTLE * choice.ms)) || i == TRIES - 1) {
-            say_choice(&choice, ms);
+            result = try_now(choosing, &choice, &tried.tried_ms);
+        bool fits = tried.tried_ms <= aim_ms;
+        if (slower[1] == 0.0 || (fits && choice.ms > best->choice.ms))
+            *best = tried;
+        slower[fits] = tried.tried_ms / choice.ms;
+        double now =
+            slower[0] > 0.0 && slower[1] > 0.0 ? sqrt(slower[0] * slower[1]) : slower[fits];
+        choice = choose(choosing->report, &choosing->before, aim_ms / now);
+        if (!choice.found || is_same(&choice, &tried.choice) ||
+            (fits && tried.tried_ms >= ENOUGH * budget_ms))
             break;
-        }
     }
-    if (ms > before.budget_ms)
-        cli_note("it is likely to take more than %.6g ms", before.budget_ms);
+    if (result == WHIT_OK && !is_same(&best->choice, &tried.choice))
+        result = set_choice(choosing, &best->choice);
     return result;
+}
+
+static whit_result choose_within(const struct choosing *choosing, struct cost_kept *kept,
+                                 const char *name)
+{
+    const struct cost_kept_choice *known = cost_kept_find(kept, choosing->before.budget_ms);
+    struct cost_kept_choice found = {0};
+    whit_result result;
+    if (known) {
+        found = *known;
+        result = set_choice(choosing, &found.choice);
+    } else {
+        result = find_within(choosing, &found);
+    }
+    if (result != WHIT_OK)
+        return result;
+    if (!known) {
+        cost_kept_add(kept, &found);
+        cost_kept_save(kept, name);
+    }
+    say_choice(&found.choice, found.tried_ms);
+    if (found.tried_ms > found.budget_ms)
+        cli_note("it is likely to take more than %.6g ms", found.budget_ms);
+    return WHIT_OK;
+}
+
+/* ---- Below an error ---- */
+
+static whit_result choose_under(const struct choosing *choosing)
+{
+    const struct cost_choice choice = choose_first(choosing->report, &choosing->before);
+    if (!choice.found)
+        return WHIT_ERROR_FAILED;
+    say_choice(&choice, choice.ms);
+    return set_choice(choosing, &choice);
 }
 
 whit_result render_choose(struct job *job, const struct render_request *request,
                           struct frames_progress *progress, whit_renderer **renderer)
 {
-    struct cost_report *report = calloc(1, sizeof *report);
-    if (!report) {
+    char name[COST_KEPT_NAME];
+    struct cost_kept *kept = calloc(1, sizeof *kept);
+    if (!kept) {
         cli_error("out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = find_figures(job, report);
-    if (result == WHIT_OK && job->settings.budget_ms > 0.0) {
-        result = choose_within(report, job, request, progress, renderer);
-    } else if (result == WHIT_OK) {
-        const struct cost_choice choice = choose(report, job, 1.0);
-        result = choice.found ? WHIT_OK : WHIT_ERROR_FAILED;
-        if (choice.found) {
-            say_choice(&choice, choice.ms);
-            cost_choice_apply(&choice, &job->settings);
-            result = render_create(job, request, progress, renderer);
-        }
-    }
-    free(report);
+    const struct choosing choosing = {.job = job,
+                                      .report = &kept->report,
+                                      .request = request,
+                                      .progress = progress,
+                                      .before = job->settings,
+                                      .renderer = renderer};
+    cost_kept_name(job, name);
+    whit_result result = find_figures(job, request->fresh, name, kept);
+    if (result == WHIT_OK)
+        result = job->settings.budget_ms > 0.0 ? choose_within(&choosing, kept, name)
+                                               : choose_under(&choosing);
+    free(kept);
     return result;
 }

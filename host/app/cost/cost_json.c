@@ -220,12 +220,9 @@ whit_result cost_save_json(const struct cost *cost, const char *path)
     return document_save(cost_document(cost), path);
 }
 
-void cost_keep(const struct cost_report *report, const char *name)
+json_t *cost_report_document(const struct cost_report *report)
 {
-    char *text = document_line(report_document(report, NULL));
-    if (text && report->complete)
-        whit_cache_write(name, text, strlen(text), &cli_log);
-    free(text);
+    return report_document(report, NULL);
 }
 
 /* ---- Reading ---- */
@@ -397,12 +394,7 @@ bool cost_load_json(const char *path, struct cost_report *report, char **scene)
     return false;
 }
 
-bool cost_load_kept(const char *name, struct cost_report *report)
+bool cost_report_read(json_t *root, struct cost_report *report)
 {
-    uint8_t *data;
-    size_t bytes;
-    bool known = whit_cache_read(name, &cli_log, &data, &bytes) &&
-                 read_known(json_loadb((const char *)data, bytes, 0, NULL), report, NULL);
-    whit_memory_destroy(data);
-    return known && report->complete;
+    return read_known(root, report, NULL);
 }

@@ -23,6 +23,10 @@ static const struct setting options[] = {
      SETTING_AT_COUNT(struct render_request, thumbnail), .min = 1, .max = 4096},
     {"counters", 0, NULL, "--stats (text) with what traversals cost",
      SETTING_AT_FLAG(struct render_request, counters)},
+    {"fresh", 0, NULL,
+     "for --budget-ms and --max-error: measure anew what is kept\n"
+     "with the scene",
+     SETTING_AT_FLAG(struct render_request, fresh)},
     {0},
 };
 
@@ -253,7 +257,8 @@ static void say_done(const struct job *job, const struct render_request *request
     double budget_ms = job->settings.budget_ms;
     if (budget_ms > 0.0)
         cli_note("it took %.1f of %.6g ms%s", stats->render_ms, budget_ms,
-                 stats->render_ms > budget_ms ? ": more than predicted" : "");
+                 stats->render_ms > budget_ms ? ": more than predicted; --fresh measures anew"
+                                              : "");
 }
 
 static whit_result render_one(struct job *job, const struct render_request *request,

@@ -1,0 +1,150 @@
+/* What is kept with a scene for --budget-ms and --max-error: the figures, and the choices that were
+   made by them, so that the next run makes the same. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "app/cost/cost.h"
+
+enum { KEPT_VERSION = 4 };
+
+/* All that decides pixels or time but for what is chosen. */
+void cost_kept_name(const struct job *job, char name[COST_KEPT_NAME])
+{
+    char key[2048 + SETTING_TEXT_BYTES], line[1024 + SETTING_TEXT_BYTES];
+    const whit_renderer_params *picture = &job->settings.picture;
+    struct settings settings = job->settings;
+    whit_device_info device;
+    whit_scene_info scene;
+    settings.budget_ms = settings.max_error = 0.0;
+    settings_write(&settings, SETTINGS_LINE, " ", line, sizeof line);
+    whit_device_get_info(job->device, &device);
+    whit_scene_get_info(job->scene, &scene);
+    snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %s|%s|%s", KEPT_VERSION,
+             WHIT_VERSION, scene.hash, picture->width, picture->height, picture->time_s, line,
+             device.name, device.driver);
+    snprintf(name, COST_KEPT_NAME, "cost-%016" PRIx64, cost_hash(key));
+}
+
+void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report)
+{
+    time_t now = time(NULL);
+    struct tm utc;
+    *kept = (struct cost_kept){.report = *report};
+    if (gmtime_r(&now, &utc))
+        strftime(kept->made, sizeof kept->made, "%Y-%m-%d %H:%M UTC", &utc);
+}
+
+const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms)
+{
+    for (uint32_t i = 0; i < kept->choice_count; ++i) {
+        if (kept->choices[i].budget_ms == budget_ms)
+            return &kept->choices[i];
+    }
+    return NULL;
+}
+
+void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice)
+{
+    if (kept->choice_count == COST_KEPT_CHOICES) /* the oldest goes */
+        memmove(kept->choices, kept->choices + 1, --kept->choice_count * sizeof *kept->choices);
+    kept->choices[kept->choice_count++] = *choice;
+}
+
+/* ---- Writing ---- */
+
+static json_t *choice_document(const struct cost_kept_choice *kept)
+{
+    json_t *out = document_object(), *settings = document_object();
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    document_number(out, "budget_ms", kept->budget_ms);
+    document_number(out, "tried_ms", kept->tried_ms);
+    document_number(out, "predicted_ms", kept->choice.ms);
+    document_number(out, "predicted_error", kept->choice.error);
+    document_count(out, "samples", kept->choice.samples);
+    for (uint32_t k = 0; k < count; ++k)
+        document_text(settings, table[k].name,
+                      knob_setting_name(&table[k], kept->choice.settings[k]));
+    document_put(out, "settings", settings);
+    return out;
+}
+
+void cost_kept_save(const struct cost_kept *kept, const char *name)
+{
+    json_t *root = document_root(), *choices = document_array();
+    document_text(root, "made", kept->made);
+    document_put(root, "figures", cost_report_document(&kept->report));
+    for (uint32_t i = 0; i < kept->choice_count; ++i)
+        document_append(choices, choice_document(&kept->choices[i]));
+    document_put(root, "choices", choices);
+    char *text = document_line(root);
+    if (text && kept->report.complete)
+        whit_cache_write(name, text, strlen(text), &cli_log);
+    free(text);
+}
+
+/* ---- Reading ---- */
+
+static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
+{
+    uint32_t count;
+    const struct knob *table = knob_table(&count);
+    const json_t *settings = json_object_get(object, "settings");
+    kept->budget_ms = json_number_value(json_object_get(object, "budget_ms"));
+    kept->tried_ms = json_number_value(json_object_get(object, "tried_ms"));
+    kept->choice.ms = json_number_value(json_object_get(object, "predicted_ms"));
+    kept->choice.error = json_number_value(json_object_get(object, "predicted_error"));
+    json_int_t samples = json_integer_value(json_object_get(object, "samples"));
+    for (uint32_t k = 0; k < count; ++k) {
+        const char *text = json_string_value(json_object_get(settings, table[k].name));
+        uint32_t s = 0;
+        while (text && s < table[k].count && strcmp(knob_setting_name(&table[k], s), text) != 0)
+            ++s;
+        if (!text || s == table[k].count)
+            return false;
+        kept->choice.settings[k] = (uint8_t)s;
+    }
+    kept->choice.samples = (uint32_t)samples;
+    kept->choice.found = true;
+    return kept->budget_ms > 0.0 && samples >= 1 && samples <= WHIT_SAMPLES_MAX;
+}
+
+/* Takes over `root`. */
+static bool read_kept(json_t *root, struct cost_kept *kept)
+{
+    json_t *figures = json_incref(json_object_get(root, "figures"));
+    const json_t *choices = json_object_get(root, "choices"), *choice;
+    const char *made = json_string_value(json_object_get(root, "made"));
+    size_t i;
+    *kept = (struct cost_kept){0};
+    bool good = cost_report_read(figures, &kept->report) && kept->report.complete && made;
+    snprintf(kept->made, sizeof kept->made, "%s", made ? made : "");
+    json_array_foreach(choices, i, choice)
+    {
+        good = good && i < COST_KEPT_CHOICES && read_choice(choice, &kept->choices[i]);
+        kept->choice_count += good;
+    }
+    json_decref(root);
+    return good;
+}
+
+bool cost_kept_load(const struct job *job, const char *name, struct cost_kept *kept)
+{
+    uint8_t *data;
+    size_t bytes;
+    whit_device_info device;
+    whit_scene_info scene;
+    bool good = whit_cache_read(name, &cli_log, &data, &bytes) &&
+                read_kept(json_loadb((const char *)data, bytes, 0, NULL), kept);
+    whit_memory_destroy(data);
+    whit_device_get_info(job->device, &device);
+    whit_scene_get_info(job->scene, &scene);
+    return good && kept->report.scene_hash == scene.hash &&
+           kept->report.width == job->settings.picture.width &&
+           kept->report.height == job->settings.picture.height &&
+           strcmp(kept->report.device, device.name) == 0 &&
+           strcmp(kept->report.driver, device.driver) == 0;
+}
