@@ -14,9 +14,10 @@ enum {
 };
 
 /* Below this FLIP nobody sees a difference; a time or error that differs by less than these shares
-   is not worth a sentence; more time than this is not what people wait for at a whim. */
+   is not worth a sentence; more time than this is not what people wait for at a whim; an interval
+   this much above 1 does not say that a setting costs nothing. */
 static const double FLIP_UNSEEN = 0.002, ERROR_SHARE = 0.05, TIME_SHARE = 0.03, RATIO_MAX = 20.0,
-                    HALF_LOW = 45.0, HALF_HIGH = 55.0;
+                    TIME_UNSURE = 0.1, HALF_LOW = 45.0, HALF_HIGH = 55.0;
 
 static void find(struct cost_finding *finding, const char *format, ...) WHIT_PRINTF(2, 3);
 static void find(struct cost_finding *finding, const char *format, ...)
@@ -153,12 +154,17 @@ static bool find_exact(const struct cost_report *report, struct cost_finding *fi
     const struct cost_hits *aimed = &report->rows[0].hits[COST_AIMED];
     if (!exact)
         return false;
-    double more = 100.0 * (ratio_of(report, exact) - 1.0);
+    bool told_apart = exact->price.verdict != 0;
+    double high = exact->price.ratio[report->clock].high;
+    double more = 100.0 * ((told_apart ? ratio_of(report, exact) : high) - 1.0);
     add_value(finding, more);
-    if (exact->price.verdict == 0)
-        find(finding, "exact hits cost nothing that can be measured");
-    else
+    if (told_apart)
         find(finding, "exact hits cost %.2g %%", more);
+    else if (high > 1.0 + TIME_UNSURE)
+        find(finding, "exact hits cost up to %.0f %%, if anything: this was measured no better",
+             more);
+    else
+        find(finding, "exact hits cost nothing that can be measured");
     if (aimed->traced && !aimed->unanswered && aimed->judged.tally.wrong) {
         size_t used = strlen(finding->text);
         add_value(finding, (double)aimed->judged.tally.wrong);

@@ -14,8 +14,8 @@ struct step {
 /* What is given up, in this order: first what the eye misses least. A step is skipped where the
    scene has nothing of it or where it saves no time. Samples are given up in between, and get what
    a step leaves of the time: fewer of them are rough edges and lens, which are seen less than what
-   comes behind them. The order is that of FLIP in docs/accuracy.md, with two exceptions: opaque
-   shadows and a second bounce have glass look like something else, so they come late. */
+   comes behind them. The order is about that of FLIP in docs/accuracy.md, over its scenes; but
+   shadows come later than FLIP says, for without them one cannot see where things stand. */
 static const struct step order[] = {
     {"bailout", "0.0009765625", 64}, /* from 0: rays too weak to be displayed */
     {"depth", "8", 64},              /* from 16: the ninth bounce is seen in nested glass alone */

@@ -172,6 +172,8 @@ export WHIT_TEST_WRONG=noisy
 expect 0 "--within what only a row of the table keeps" cost "$CUBE" $small --reference-samples 4 \
     --knobs aa,numerics --within 150 --json "$J"
 check "gets that row" grep -q "^Best picture within 150 ms: the usual settings. .*: kept" "$OUT/stdout"
+check "the sentence does not say that exact hits are free" jq -e \
+    '.sentence | contains("exact hits cost up to 200 %, if anything")' "$J"
 check "as the JSON says" jq -e '.answers[0] | .kept and .row == 0 and .predicted_ms < 150' "$J"
 export WHIT_TEST_WRONG=schlick
 run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
