@@ -1,0 +1,36 @@
+# Tables of docs/accuracy.md from reports of `whit cost --json` (tools/accuracy).
+
+def digits($n): . * pow(10; $n) | round / pow(10; $n) | tostring
+    | if contains("e") then . else (split(".") | .[0] + "." + ((.[1] // "") + "0000")[:$n]) end;
+def ratio: .price[.clock].ratio.median;
+def time: if .knob == "usual" then "1" else (ratio | digits(2)) + (if .price.verdict == 0 then " =" else "" end) end;
+def line: "| " + join(" | ") + " |";
+def settings: map(.rows[] | [.knob, .setting]) | reduce .[] as $s ([]; if index([$s]) then . else . + [$s] end);
+def cell($name; f): (.clock as $clock | .rows[] | select([.knob, .setting] == $name and .measured)
+    | .clock = $clock | f) // "";
+def table($reports; $names; f):
+    ($names[] as $name | [($name | join(" ") | rtrimstr(" ")), ($reports[] | [cell($name; f)] | .[0] // "")] | line);
+def inexact: .aimed_rays | "\(.wrong), \(.leaks), \(.misses + .false_hits + .other_ids)";
+
+[inputs] as $reports
+| ($scenes | split(" ")) as $scenes
+| [$reports | settings[]] as $names
+| "## The rows", "",
+  "    whit cost scenes/SCENE.json \($options)", "",
+  "On \($day), on \($reports[0].device) (\($reports[0].driver)), clock: \($reports[0].clock). Errors are against the "
+  + "reference in double. The usual picture takes, in ms, and beside itself:", "",
+  ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
+  (["ms"] + ($reports | map(.rows[0].cpu_ms | round | tostring)) | line),
+  (["beside itself"] + ($reports | map(.rows[0].price.cpu.ratio | "\(.low | digits(2)) to \(.high | digits(2))")) | line),
+  (["judged at"] + ($reports | map("\(.judged_width) x \(.judged_height)")) | line),
+  (["samples of the reference"] + ($reports | map(.reference.samples | tostring)) | line), "",
+  "Time beside the usual picture (`=`: not distinguishable from it), and FLIP:", "",
+  ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
+  table($reports; $names; "\(time), \(.error.flip | digits(4))"), "",
+  "RMSE without what samples do (`alone`):", "",
+  ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
+  table($reports; $names | map(select(.[0] | IN("usual", "numerics", "arithmetic", "instances")));
+      .alone.rmse * 1e4 | round / 1e4 | tostring), "",
+  "Of 20,000 rays aimed at edges and vertices, beside exact arithmetic: wrong, leaks, and what the bounds of floats excuse:", "",
+  ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
+  table($reports; $names | map(select(.[0] | IN("usual", "numerics", "instances"))); inexact)
