@@ -37,8 +37,10 @@ static void set_base(struct engine_refine *refine, const struct engine_frame *fr
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame)
 {
     engine_refine_stop(refine);
-    const whit_sampling *sampling = &frame->settings.picture.sampling;
-    if (frame->settings.paint != PAINT_COLOR || sampling->kind != WHIT_SAMPLING_FIXED)
+    const struct settings *settings = &frame->settings;
+    bool drawn_over = settings->edges != EDGES_OFF || settings->grid; /* is no part of a sum */
+    if (settings->paint != PAINT_COLOR || drawn_over ||
+        settings->picture.sampling.kind != WHIT_SAMPLING_FIXED)
         return;
     set_base(refine, frame);
     refine->samples = frame->samples;
