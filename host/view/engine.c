@@ -214,7 +214,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     engine->drawing = session;
     engine->drawing_since_ms = whit_clock_ms();
     atomic_store(&session->part, 0.0f);
-    engine->brief = task->brief;
+    engine->brief = task->finishes;
     pthread_mutex_unlock(&engine->lock);
     settings_expose(&task->settings, &session->scene->info);
     whit_result result = settings_choose_camera(&task->settings, session->scene->scene);

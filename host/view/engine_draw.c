@@ -79,6 +79,7 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
     if (!(first && looks_same(lane)) && (first || lane->quality == ENGINE_QUICK))
         task->step_spacing = choose_step(lane, first, divisor);
     task->brief = first;
+    task->finishes = first && (task->divisor > 1 || task->step_spacing > 0 || divisor == 1);
     task->moving = lane->moving;
     task->asked_ms = lane->asked_ms;
 }

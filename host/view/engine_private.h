@@ -114,7 +114,8 @@ struct engine_task {
     enum engine_quality quality;
     uint32_t divisor;
     uint32_t step_spacing; /* of the first step; 0: at once */
-    bool moving, brief;    /* brief: within the budget, so let it be finished */
+    bool moving, brief;    /* brief: the first picture of what is asked for */
+    bool finishes;         /* it, or its first step, is within the budget, and is not cancelled */
     double asked_ms;
     struct engine *engine; /* that shows the steps, in `lane` */
     struct engine_lane *lane;

@@ -15,7 +15,7 @@ next() {
 
 # ---- Keys ----
 
-KEYS="T K O Minus Equal A B V T ] 2 Home Period"
+KEYS="T K O Minus Equal Y B V T ] 2 Home Period"
 {
     n=0
     for key in $KEYS; do

@@ -33,8 +33,8 @@ events() {
         }
         BEGIN {
             if (real) print "clock real"
-            keys = split("T Shift+T K M O Minus Equal A B Shift+B V [ ] \\ Home 0 1 2 3 4 5 6 " \
-                "Space Comma Period L 9 Shift+9 R H F1 F2 X C D N J Shift+J G F C D Ctrl+C Ctrl+S Tab Left Right F12", key, " ")
+            keys = split("T Shift+T K M O Minus Equal Y B Shift+B V [ ] \\ Home 0 1 2 3 4 5 6 " \
+                "Space Comma Period L 9 Shift+9 R H F1 F2 X I U N J Shift+J G F I U Ctrl+C Ctrl+S Tab Left Right F12", key, " ")
             names = split("cube 8k spin balls whitted default lens layers glass-of-water", name, " ")
             state = state % 2147483646 + 1
             random(2)
