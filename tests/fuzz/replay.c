@@ -34,7 +34,9 @@ static int run_folder(const char *folder)
     for (int i = 0; i < count; i++) {
         char *path = string_format("%s/%s", folder, entries[i]->d_name);
         fuzz_check(path, "out of memory");
-        if (entries[i]->d_name[0] != '.') {
+        if (entries[i]->d_name[0] != '.' && entries[i]->d_type == DT_DIR) {
+            run += run_folder(path);
+        } else if (entries[i]->d_name[0] != '.') {
             run_file(path);
             run++;
         }
