@@ -36,7 +36,7 @@ if(WHIT_VIEWER)
     WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
   # In front of the library, whose modules they call.
   target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_view> glfw
-    PkgConfig::IMGUI stdc++)
+    PkgConfig::IMGUI PkgConfig::FONTCONFIG stdc++)
   add_dependencies(whit_program_needs whit_view)
 endif()
 # In front of the library, which it calls.

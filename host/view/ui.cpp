@@ -231,6 +231,20 @@ static void make_fonts(void *user, void *commands)
     }
 }
 
+// Dear ImGui's own font is of 13 pixels and comes without a file.
+static void set_font(float scale, const uint8_t *data, size_t size_bytes)
+{
+    ImFontConfig font;
+    font.SizePixels = 13.0f * scale;
+    if (data) {
+        font.FontDataOwnedByAtlas = false;
+        ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<uint8_t *>(data), (int)size_bytes,
+                                                   12.5f * scale, &font);
+    } else {
+        ImGui::GetIO().Fonts->AddFontDefault(&font);
+    }
+}
+
 static void set_style(float scale)
 {
     ImGui::StyleColorsDark();
@@ -239,9 +253,6 @@ static void set_style(float scale)
     style.FrameRounding = 3.0f;
     style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06f, 0.07f, 0.09f, 0.86f);
     style.ScaleAllSizes(scale);
-    ImFontConfig font;
-    font.SizePixels = 13.0f * scale;
-    ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 
 static void set_keys()
@@ -329,7 +340,8 @@ static bool give_back(struct ui *ui)
 
 extern "C" {
 
-whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out)
+whit_result ui_create(struct swapchain *swapchain, float scale, const uint8_t *font,
+                      size_t font_bytes, struct ui **out)
 {
     *out = nullptr;
     struct ui *ui = set_aside() ? new (std::nothrow) struct ui() : nullptr;
@@ -346,6 +358,7 @@ whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out)
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().BackendPlatformName = "whit";
     set_style(ui->scale);
+    set_font(ui->scale, font, font_bytes);
     set_keys();
     whit_result result = start(ui);
     if (result != WHIT_OK) {

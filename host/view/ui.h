@@ -4,6 +4,7 @@
 #define VIEW_UI_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "whit/whit_base.h"
@@ -15,8 +16,10 @@ extern "C" {
 struct swapchain;
 struct ui;
 
-/* `scale`: of text and all else, 1 on a screen of 96 dots an inch. Errors are logged. */
-WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, struct ui **out);
+/* `scale`: of text and all else, 1 on a screen of 96 dots an inch. `font`: a TrueType file, read
+   here alone; NULL: Dear ImGui's own. Errors are logged. */
+WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, const uint8_t *font,
+                                 size_t font_bytes, struct ui **out);
 void ui_destroy(struct ui *ui); /* before the swapchain; NULL is fine */
 
 /* What the user does, since the last frame. Keys are those of ui_key. */

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/platform.h"
 #include "kernels.h"
+#include "view/font.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 
@@ -351,6 +352,20 @@ static whit_result step(struct view *view)
     return result;
 }
 
+/* Replays draw with the font that every machine has. */
+static whit_result open_ui(struct view *view)
+{
+    uint8_t *font = NULL;
+    size_t font_bytes = 0;
+    float scale =
+        view->params->ui_scale > 0.0f ? view->params->ui_scale : window_scale(view->window);
+    if (!view->params->replay)
+        (void)font_load(&font, &font_bytes);
+    whit_result result = ui_create(view->swapchain, scale, font, font_bytes, &view->ui);
+    free(font);
+    return result;
+}
+
 static whit_result open_device(struct view *view)
 {
     const struct device_params params = {
@@ -369,12 +384,7 @@ static whit_result open_device(struct view *view)
         result = swapchain_create(view->device, &chain, &view->swapchain);
     if (result == WHIT_OK)
         result = fit_window(view);
-    if (result == WHIT_OK)
-        result = ui_create(view->swapchain,
-                           view->params->ui_scale > 0.0f ? view->params->ui_scale
-                                                         : window_scale(view->window),
-                           &view->ui);
-    return result;
+    return result == WHIT_OK ? open_ui(view) : result;
 }
 
 /* The engine begins before the window has its device: both take a while. */

@@ -4,6 +4,7 @@
 #include "device_fixture.h"
 #include "kernels.h"
 #include "unit.h"
+#include "view/font.h"
 #include "view/ui.h"
 #include "view/window.h"
 
@@ -17,6 +18,17 @@ struct shop {
     struct ui *ui;
     struct messages messages;
 };
+
+/* With the font of this system, which is there: fonts-dejavu-core is among the packages. */
+static whit_result open_ui(struct shop *shop)
+{
+    uint8_t *font;
+    size_t font_bytes;
+    assert_true(font_load(&font, &font_bytes));
+    whit_result result = ui_create(shop->swapchain, 1.0f, font, font_bytes, &shop->ui);
+    free(font);
+    return result;
+}
 
 static whit_result shop_open(struct shop *shop, bool validation, bool blit)
 {
@@ -39,7 +51,7 @@ static whit_result shop_open(struct shop *shop, bool validation, bool blit)
         result = swapchain_create(shop->device, &chain, &shop->swapchain);
     if (result == WHIT_OK)
         result = swapchain_resize(shop->swapchain, WIDTH, HEIGHT);
-    return result == WHIT_OK ? ui_create(shop->swapchain, 1.0f, &shop->ui) : result;
+    return result == WHIT_OK ? open_ui(shop) : result;
 }
 
 static void shop_close(struct shop *shop)
