@@ -239,7 +239,7 @@ static void set_font(float scale, const uint8_t *data, size_t size_bytes)
     if (data) {
         font.FontDataOwnedByAtlas = false;
         ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<uint8_t *>(data), (int)size_bytes,
-                                                   12.5f * scale, &font);
+                                                   std::round(12.5f * scale), &font);
     } else {
         ImGui::GetIO().Fonts->AddFontDefault(&font);
     }
