@@ -2,6 +2,7 @@
 // With ui_widgets.cpp this is everything of the viewer that is C++.
 #include "view/ui_inside.hpp"
 
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
