@@ -120,10 +120,10 @@ struct trace_state {
     uint32_t deferred_count; /* rays of the last batch that floats left open */
 };
 
-/* The pixels of a picture that a pass draws: every `spacing`-th of rows and columns. */
+/* The pixels of a picture that a pass draws: from (x, y) on every so-many-th. */
 struct lattice {
-    uint32_t spacing, x, y; /* 1, 2, 4, 8; the first pixel */
-    uint32_t width, height; /* how many */
+    uint32_t x, y, spacing_x, spacing_y; /* spacing: 1, 2, 4, 8 */
+    uint32_t width, height;              /* how many */
 };
 
 /* What one picture in the making knows. An adaptive one, or one in steps, is made in several

@@ -13,29 +13,33 @@ static uint32_t first_pixel(uint32_t spacing)
     return spacing == 8 ? 5 : spacing > 1;
 }
 
-static struct lattice make_lattice(const whit_renderer_params *params, uint32_t spacing, uint32_t x,
-                                   uint32_t y)
+static struct lattice make_lattice(const whit_renderer_params *params, uint32_t x, uint32_t y,
+                                   uint32_t spacing_x, uint32_t spacing_y)
 {
     return (struct lattice){
-        .spacing = spacing,
         .x = x,
         .y = y,
-        .width = (params->width - x + spacing - 1) / spacing,
-        .height = (params->height - y + spacing - 1) / spacing,
+        .spacing_x = spacing_x,
+        .spacing_y = spacing_y,
+        .width = (params->width - x + spacing_x - 1) / spacing_x,
+        .height = (params->height - y + spacing_y - 1) / spacing_y,
     };
 }
 
 struct lattice lattice_whole(const whit_renderer_params *params)
 {
-    return make_lattice(params, 1, 0, 0);
+    return make_lattice(params, 0, 0, 1, 1);
+}
+
+static uint32_t log2_of(uint32_t spacing)
+{
+    return spacing == 8 ? 3 : spacing / 2;
 }
 
 uint32_t lattice_word(const struct lattice *lattice)
 {
-    uint32_t shift = 0;
-    while (lattice->spacing >> (shift + 1))
-        ++shift;
-    return shift | lattice->x << LATTICE_X_SHIFT | lattice->y << LATTICE_Y_SHIFT;
+    return log2_of(lattice->spacing_x) | log2_of(lattice->spacing_y) << LATTICE_ROWS_SHIFT |
+           lattice->x << LATTICE_X_SHIFT | lattice->y << LATTICE_Y_SHIFT;
 }
 
 bool steps_are_wanted(const struct renderer *renderer)
@@ -91,34 +95,34 @@ static whit_result give_step(const struct renderer *renderer, uint32_t spacing)
 }
 
 static whit_result draw_lattice(struct renderer *renderer, struct progress *progress,
-                                uint32_t spacing, uint32_t x, uint32_t y)
+                                const struct lattice *lattice)
 {
     const whit_renderer_params *params = &renderer->params;
-    progress->lattice = make_lattice(params, spacing, x, y);
-    progress->share = (double)progress->lattice.width * progress->lattice.height /
-                      ((double)params->width * params->height);
+    progress->lattice = *lattice;
+    progress->share =
+        (double)lattice->width * lattice->height / ((double)params->width * params->height);
     return render_pass(renderer, params->sampling.count, progress);
 }
 
-/* Every pixel of a step of half the spacing is one of four of this spacing, of which one is
-   drawn. */
+/* A step of half the spacing has twice as many rows. Those that are new are drawn whole, as packets
+   of rays like their pixels side by side; of the others every second pixel is new. */
 static whit_result draw_between(struct renderer *renderer, struct progress *progress,
                                 uint32_t spacing)
 {
+    const whit_renderer_params *params = &renderer->params;
     uint32_t half = spacing / 2, first = first_pixel(half), drawn = first_pixel(spacing);
-    whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < 4; ++i) {
-        uint32_t x = first + half * (i & 1), y = first + half * (i >> 1);
-        if (x != drawn || y != drawn)
-            result = draw_lattice(renderer, progress, spacing, x, y);
-    }
-    return result;
+    uint32_t other = first + (drawn == first ? half : 0);
+    const struct lattice rows = make_lattice(params, first, other, half, spacing);
+    const struct lattice rest = make_lattice(params, other, drawn, spacing, spacing);
+    whit_result result = draw_lattice(renderer, progress, &rows);
+    return result == WHIT_OK ? draw_lattice(renderer, progress, &rest) : result;
 }
 
 whit_result steps_render(struct renderer *renderer, struct progress *progress)
 {
     uint32_t spacing = renderer->params.step_spacing, first = first_pixel(spacing);
-    whit_result result = draw_lattice(renderer, progress, spacing, first, first);
+    const struct lattice begin = make_lattice(&renderer->params, first, first, spacing, spacing);
+    whit_result result = draw_lattice(renderer, progress, &begin);
     for (; result == WHIT_OK && spacing > 1; spacing /= 2) {
         result = give_step(renderer, spacing);
         if (result == WHIT_OK)

@@ -241,7 +241,7 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
                                   .blocks_x = across,
                                   .lattice = lattice_word(lattice),
                                   .band_y = band_y,
-                                  .band_rows = lattice->spacing * rows};
+                                  .band_rows = lattice->spacing_y * rows};
         whit_result result = pass_chunk(renderer, &chunk, progress);
         if (result != WHIT_OK)
             return result;

@@ -16,7 +16,9 @@ static const double MOVING_MS = 160.0; /* after the last move: then the picture 
 static const double TOAST_MS = 4000.0;
 static const double REST_MS = 1000.0; /* without a picture: the next begins another rate */
 static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
-static const double WATCH_S = 0.25;   /* between looks at the scene's files */
+/* Between pictures of how far it is: on a CPU device each takes from the cores that draw. */
+static const double PROGRESS_SHOWN_MS = 400.0;
+static const double WATCH_S = 0.25; /* between looks at the scene's files */
 static const double IDLE_S = 5.0;
 
 double view_now_ms(const struct view *view)
@@ -163,13 +165,23 @@ static bool is_hidden(const struct view *view)
     return info.width == 0 && view->frame.number > 0;
 }
 
+static bool is_progress_due(struct view *view)
+{
+    double now_ms = whit_clock_ms();
+    bool slow = view->status.stage != SESSION_DONE || view->status.drawing_ms > SLOW_MS;
+    if (!slow || now_ms - view->progress_ms < PROGRESS_SHOWN_MS)
+        return false;
+    view->progress_ms = now_ms;
+    return true;
+}
+
 static whit_result take_status(struct view *view)
 {
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
     if (old.stage != view->status.stage || strcmp(old.error, view->status.error) != 0 ||
         old.change.number != view->status.change.number || old.drawing != view->status.drawing ||
-        view->status.stage != SESSION_DONE || view->status.drawing_ms > SLOW_MS)
+        is_progress_due(view))
         view->dirty = true;
     /* Hidden, it is asked for nothing: the failure is that of something older. */
     return view->status.failed && !is_hidden(view) ? take_failure(view) : WHIT_OK;

@@ -116,8 +116,9 @@ struct view {
     bool help, hint;
     char toast[TOAST_BYTES];
     double toast_until_ms;
-    bool dirty;   /* the window is to be drawn again */
-    bool resized; /* its images are to be made again */
+    double progress_ms; /* of the system's clock: when how far work is was shown last */
+    bool dirty;         /* the window is to be drawn again */
+    bool resized;       /* its images are to be made again */
     bool quit;
     uint32_t shown; /* pictures */
     bool picture_set;

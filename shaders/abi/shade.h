@@ -197,11 +197,13 @@ struct gpu_chunk {
 };
 GPU_ASSERT_SIZE(gpu_chunk, 96)
 
-/* Every so-many-th pixel of rows and columns, as a power of two, and the first one; 0: all. */
-#define LATTICE_SHIFT_MASK 15u
-#define LATTICE_X_SHIFT    8u
-#define LATTICE_Y_SHIFT    16u
-#define LATTICE_FIRST_MASK 255u
+/* Every so-many-th pixel of rows, in the low bits, and of columns, as powers of two, and the first
+   one; 0: all. */
+#define LATTICE_SHIFT_MASK  15u
+#define LATTICE_ROWS_SHIFT  4u
+#define LATTICE_X_SHIFT     8u
+#define LATTICE_Y_SHIFT     16u
+#define LATTICE_FIRST_MASK  255u
 
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 

@@ -42,7 +42,8 @@ uvec2 slot_pixel(uint slot)
     uint x = (i & 3u) | ((i >> 1) & 4u);
     uint y = ((i >> 2) & 1u) | ((i >> 3) & 6u);
     uvec2 first = uvec2(chunk.lattice >> LATTICE_X_SHIFT, chunk.lattice >> LATTICE_Y_SHIFT);
-    return ((block * 8u + uvec2(x, y)) << (chunk.lattice & LATTICE_SHIFT_MASK)) + (first & LATTICE_FIRST_MASK);
+    uvec2 shift = uvec2(chunk.lattice, chunk.lattice >> LATTICE_ROWS_SHIFT) & LATTICE_SHIFT_MASK;
+    return ((block * 8u + uvec2(x, y)) << shift) + (first & LATTICE_FIRST_MASK);
 }
 
 bool is_in_picture(uvec2 at)
