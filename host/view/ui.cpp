@@ -2,7 +2,6 @@
 // With ui_widgets.cpp this is everything of the viewer that is C++.
 #include "view/ui_inside.hpp"
 
-#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -240,7 +239,7 @@ static void set_font(float scale, const uint8_t *data, size_t size_bytes)
     if (data) {
         font.FontDataOwnedByAtlas = false;
         ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<uint8_t *>(data), (int)size_bytes,
-                                                   std::round(12.5f * scale), &font);
+                                                   (float)(int)(12.5f * scale + 0.5f), &font);
     } else {
         ImGui::GetIO().Fonts->AddFontDefault(&font);
     }
