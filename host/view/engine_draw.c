@@ -248,6 +248,7 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     whit_result result = whit_renderer_set_view(session->renderer, &params);
     if (result == WHIT_OK)
         result = whit_renderer_render(session->renderer);
+    session->step = NULL;
     if (result == WHIT_OK)
         result = read_picture(task, frame);
     if (result == WHIT_OK)
