@@ -26,8 +26,21 @@ static bool ended_alike(const whit_probe_ray *a, const whit_probe_ray *b)
     return a->light == b->light && a->end == b->end && a->material == b->material &&
            a->passed == b->passed && a->equal == b->equal && a->exact_known == b->exact_known &&
            a->exact_equal == b->exact_equal && is_same_hit(&a->device, &b->device) &&
-           is_same_hit(&a->twin, &b->twin) && is_same_hit(&a->exact, &b->exact) &&
-           memcmp(a->added, b->added, sizeof a->added) == 0;
+           is_same_hit(&a->twin, &b->twin) && is_same_hit(&a->exact, &b->exact);
+}
+
+static whit_probe_row row_of(const struct family *f, uint32_t ray)
+{
+    whit_probe_row row = {.ray = ray, .count = 1};
+    memcpy(row.added, f->report->rays[ray].added, sizeof row.added);
+    return row;
+}
+
+static void fold(whit_probe_row *row, const whit_probe_ray *ray)
+{
+    ++row->count;
+    for (int i = 0; i < 3; ++i)
+        row->added[i] += (ray->added[i] - row->added[i]) / (float)row->count;
 }
 
 /* Shadow rays of a ray, those that reach their light first. */
@@ -40,13 +53,13 @@ static void add_shadows(struct family *f, uint32_t ray)
         while (row < f->row_count && !ended_alike(&rays[f->rows[row].ray], &rays[i]))
             ++row;
         if (row < f->row_count) {
-            ++f->rows[row].count;
+            fold(&f->rows[row], &rays[i]);
             continue;
         }
         for (row = f->row_count++; row > begin && rays[f->rows[row - 1].ray].end > rays[i].end;
              --row)
             f->rows[row] = f->rows[row - 1];
-        f->rows[row] = (whit_probe_row){.ray = i, .count = 1};
+        f->rows[row] = row_of(f, i);
     }
 }
 
@@ -92,7 +105,7 @@ static void add_rows(struct family *f)
     const whit_probe_ray *rays = f->report->rays;
     uint32_t ray = f->report->ray_count > 0 ? 0 : WHIT_NONE;
     while (ray != WHIT_NONE) {
-        f->rows[f->row_count++] = (whit_probe_row){.ray = ray, .count = 1};
+        f->rows[f->row_count++] = row_of(f, ray);
         add_shadows(f, ray);
         uint32_t to = f->first_child[ray];
         while (to == WHIT_NONE && ray != WHIT_NONE) {

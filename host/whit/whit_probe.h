@@ -80,10 +80,11 @@ WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t 
 void whit_probe_report_destroy(whit_probe_report *report);
 
 /* A ray of a report, or several shadow rays from where it ended to one light that ended alike: the
-   same end, at the same instance, with the same share of the light. */
+   same end, at the same instance. */
 typedef struct whit_probe_row {
     uint32_t ray; /* the first one */
     uint32_t count;
+    float added[3]; /* as of a ray; the mean of several */
 } whit_probe_row;
 /* The rows of a report, which hold each ray once: a ray is followed by its shadow rays, those that
    reach their light first, then by its branches, what brought most first. *rows is the caller's,

@@ -40,7 +40,11 @@ static int make_report(void **state)
     return 0;
 }
 
-static void check_rows(const whit_probe_row *expected, uint32_t expected_count)
+struct wanted {
+    uint32_t ray, count;
+};
+
+static void check_rows(const struct wanted *expected, uint32_t expected_count)
 {
     whit_probe_row *rows;
     uint32_t count;
@@ -55,22 +59,38 @@ static void check_rows(const whit_probe_row *expected, uint32_t expected_count)
 
 TEST(what_brought_most_comes_first)
 {
-    static const whit_probe_row expected[] = {{0, 1},  {2, 2}, {1, 2}, {5, 1}, {10, 1},
-                                              {11, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}};
+    static const struct wanted expected[] = {{0, 1},  {2, 2}, {1, 2}, {5, 1}, {10, 1},
+                                             {11, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}};
     check_rows(expected, 10);
 }
 
 /* A difference between device, twin and exact arithmetic is never folded away. */
 TEST(what_differs_stands_alone)
 {
-    static const whit_probe_row expected[] = {{0, 1},  {2, 1}, {4, 1}, {1, 2}, {5, 1}, {10, 1},
-                                              {11, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}};
+    static const struct wanted expected[] = {{0, 1},  {2, 1}, {4, 1}, {1, 2}, {5, 1}, {10, 1},
+                                             {11, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}};
     rays[4].equal = false;
     check_rows(expected, 11);
     rays[4].equal = true;
     rays[4].light = 1;
     check_rows(expected, 11);
     rays[4].light = 0;
+}
+
+/* Shares of the light that come through glass differ from point to point. */
+TEST(a_row_has_the_mean_of_its_rays)
+{
+    whit_probe_row *rows;
+    uint32_t count;
+    rays[4].added[0] = 0.5f;
+    assert_int_equal(whit_probe_rows(&report, &rows, &count), WHIT_OK);
+    assert_int_equal(rows[1].ray, 2);
+    assert_int_equal(rows[1].count, 2);
+    assert_float_equal(rows[1].added[0], 0.75f, 0.0);
+    assert_float_equal(rows[1].added[1], 1.0f, 0.0);
+    assert_float_equal(rows[4].added[0], 0.3f, 0.0);
+    whit_memory_destroy(rows);
+    rays[4].added[0] = 1.0f;
 }
 
 TEST(a_report_without_rays_has_no_rows)

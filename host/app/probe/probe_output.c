@@ -160,11 +160,13 @@ static void cell_text(const struct probe *probe, const whit_probe_row *row, int 
         hit_text(hit, text);
 }
 
-static void print_row_end(const struct probe *probe, const whit_probe_ray *ray)
+static void print_row_end(const struct probe *probe, const whit_probe_row *row)
 {
+    const whit_probe_ray *ray = &probe->report->rays[row->ray];
+    const float *added = row->added;
     printf("%.4g %.4g %.4g", (double)ray->weight[0], (double)ray->weight[1],
            (double)ray->weight[2]);
-    printf("  %.4g %.4g %.4g", (double)ray->added[0], (double)ray->added[1], (double)ray->added[2]);
+    printf("  %.4g %.4g %.4g", (double)added[0], (double)added[1], (double)added[2]);
     if (ray->material != WHIT_NONE)
         printf("  %s, %s%s", cli_shown(instance_of(probe, ray->device.instance).name),
                cli_shown(material_of(probe, ray->material).name),
@@ -196,7 +198,7 @@ static void print_rows(const struct probe *probe, const whit_probe_row *rows, ui
             cell_text(probe, &rows[i], c, text);
             printf("%-*s  ", widths[c], text);
         }
-        print_row_end(probe, &probe->report->rays[rows[i].ray]);
+        print_row_end(probe, &rows[i]);
     }
 }
 
