@@ -58,11 +58,15 @@ static bool write_triangle(void *user, const whit_triangle *triangle)
     return fputs("f -3 -2 -1\n", user) >= 0;
 }
 
-/* An OBJ without materials, in `path`; the caller removes it. */
-static whit_result write_clay(const whit_scene *scene, char path[64])
+enum { PATH_BYTES = 4096 };
+
+/* An OBJ without materials, in the folder for temporary files; the caller removes it. `path` is
+   empty where it could not be made. */
+static whit_result write_clay(const whit_scene *scene, char path[PATH_BYTES])
 {
-    strcpy(path, "/tmp/whit_clay_XXXXXX.obj");
-    int file = mkstemps(path, 4);
+    const char *folder = getenv("TMPDIR");
+    int length = snprintf(path, PATH_BYTES, "%s/whit_clay_XXXXXX.obj", folder ? folder : "/tmp");
+    int file = length < PATH_BYTES ? mkstemps(path, 4) : -1;
     FILE *stream = file < 0 ? NULL : fdopen(file, "w");
     if (!stream) {
         path[0] = '\0';
@@ -174,7 +178,7 @@ whit_result appearance_measure(whit_device *device, const whit_scene *scene,
                                const whit_image *color, struct appearance *out)
 {
     whit_image *ids = NULL;
-    char path[64] = "";
+    char path[PATH_BYTES] = "";
     *out = (struct appearance){0};
     whit_result result = read_ids(renderer, color, &ids);
     if (result == WHIT_OK)

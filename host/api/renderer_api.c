@@ -17,7 +17,7 @@ _Static_assert((uint32_t)WHIT_RAY_KINDS == RAY_KIND_COUNT &&
                    (uint32_t)WHIT_RAY_REFRACTED == RAY_REFRACTED,
                "kinds of rays");
 
-/* Of a grid's lines: grey that shows before bright and dark, and lets some of it through. */
+/* The lines of a grid: a grey that is seen before bright and before dark, and their opacity. */
 #define GRID_LIGHT  0.15f
 #define GRID_WEIGHT 0.7f
 

@@ -123,7 +123,7 @@ static int open_file(int argc, char **argv)
 int main(int argc, char **argv)
 {
     const char *word = argc > 1 ? argv[1] : NULL;
-    /* Where standard input is closed, no file that is opened later may stand in its place. */
+    /* With standard input closed, the next file that is opened would become it. */
     if (fcntl(STDIN_FILENO, F_GETFD) < 0)
         (void)!open("/dev/null", O_RDONLY);
     if (!word) {

@@ -1,4 +1,5 @@
-/* What the two ways to choose share: what each setting does to time and error (choose.c). */
+/* The choice within a time (within.c) and that below an error (choose.c) share this: how much each
+   setting changes time and error. */
 #ifndef COST_CHOOSE_H
 #define COST_CHOOSE_H
 
@@ -7,7 +8,8 @@
 /* Errors whose difference is below this share count as equal. */
 #define CHOOSE_AS_RIGHT 0.01
 
-/* What a setting does to the usual picture. Errors are added: squares of RMSE, means of FLIP. */
+/* A setting beside the usual picture: `ratio` of their times, and the error that it adds (a square
+   of RMSE, or a mean of FLIP, so that errors of several settings add up). */
 struct effect {
     double ratio, error;
     bool known;

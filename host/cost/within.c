@@ -11,11 +11,11 @@ struct step {
     uint32_t samples; /* it is taken only where fewer samples a pixel are left without it */
 };
 
-/* What is given up, in this order: first what the eye misses least. A step is skipped where the
-   scene has nothing of it or where it saves no time. Samples are given up in between, and get what
-   a step leaves of the time: fewer of them are rough edges and lens, which are seen less than what
-   comes behind them. The order is about that of FLIP in docs/accuracy.md, over its scenes; but
-   shadows come later than FLIP says, for without them one cannot see where things stand. */
+/* Settings are given up in this order: first those that the eye misses least. A step is skipped if
+   the scene has nothing of it or if it saves no time. Samples take what time a step leaves; fewer
+   of them are rough edges, which are seen less than the later steps. The order follows the FLIP of
+   docs/accuracy.md, but shadows are given up later than FLIP says: without them nobody sees where
+   things stand. */
 static const struct step order[] = {
     {"bailout", "0.0009765625", 64}, /* from 0: rays too weak to be displayed */
     {"depth", "8", 64},              /* from 16: the ninth bounce is seen in nested glass alone */
@@ -37,7 +37,7 @@ static const struct step order[] = {
 };
 enum { STEPS = sizeof order / sizeof *order, SAMPLES_MOST = 64 };
 
-/* What more time than that of 64 samples goes to. */
+/* Settings that are better than the usual ones; time beyond that of 64 samples goes to them. */
 static const struct step careful[] = {
     {"bailout", "0", 0}, {"depth", "16", 0}, {"light-samples", "64", 0}};
 

@@ -36,7 +36,7 @@ typedef struct whit_overlay {
     bool edges_of_instances, edges_of_primitives;
 } whit_overlay;
 /* Draws over `color`, the picture that the renderer has just drawn. WHIT_ERROR_USAGE where nothing
-   was rendered, WHIT_ERROR_DEVICE; WHIT_ERROR_CANCELLED. */
+   was rendered, WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay *overlay,
                                                whit_image *color);
 

@@ -93,6 +93,15 @@ mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose s
     | keys.traversal as key | words = --size 320x400 --traversal sign
 END
 
+# ---- The panel of a pixel stands beside it ----
+
+play "a pixel" "$CUBE" --size 640x400 --ui-scale 0.5 <<END
+left: press F2 x2, click 40 200 | picked = true
+right: click 600 200 | picked = true
+END
+check "on its right" test "$(value left panels.Pixel | cut -d ' ' -f 1)" -gt 320
+check "and on its left" test "$(value right panels.Pixel | cut -d ' ' -f 3)" -lt 320
+
 # ---- Files of settings ----
 
 play "saved" "$SCENES/8k.json" --size 96x64 <<END

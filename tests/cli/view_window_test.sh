@@ -18,9 +18,9 @@ around: move 40 30, button left down, move 60 40, button left up | keys.next cam
 aside: move 40 30, button middle down, move 60 40, button middle up
 near: wheel 0 1
 far: wheel 0 -1 | words as aside | frame.ids as aside
-look: button right down, move 50 45
+look: button right down, move 50 45, button right up
 fly: key W down, wait 60, key W up
-fit: press S, button right up, still, press Home
+fit: press S, still, press Home
 file: press 0 | frame.ids as start | words = --size 96x64 | keys.next camera of the file = camera
 front: press 1
 right: press 2

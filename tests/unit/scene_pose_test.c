@@ -200,6 +200,31 @@ static struct scene *glass_scene(void)
     return scene_ready(scene);
 }
 
+static void check_objects(double floor_side, double low, double high)
+{
+    struct scene *scene = scene_begin(NULL, "test");
+    struct scene_pose pose;
+    double lo[3], hi[3];
+    uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 1, 0);
+    scene_put(scene, mesh_box(2, 2, 2), &(struct put){.name = "box", .node = &node});
+    if (floor_side > 0.0)
+        scene_put(scene, mesh_box(floor_side, 0.01, floor_side), &(struct put){.name = "floor"});
+    scene = scene_ready(scene);
+    assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
+    scene_pose_objects(scene, &pose, lo, hi);
+    assert_float_equal(lo[0], low, 1e-5);
+    assert_float_equal(hi[0], high, 1e-5);
+    scene_pose_finish(&pose);
+    scene_destroy(scene);
+}
+
+TEST(objects_are_framed_without_a_wide_floor)
+{
+    check_objects(48.0, -1.0, 1.0);
+    check_objects(2.5, -1.25, 1.25); /* hardly wider than what stands on it */
+    check_objects(0.0, -1.0, 1.0);
+}
+
 TEST(effects_have_reasons)
 {
     struct scene *scene = glass_scene();

@@ -63,7 +63,7 @@ bool cost_load_json(const char *path, struct cost_report *report, char **scene);
 json_t *cost_report_document(const struct cost_report *report);
 bool cost_report_read(json_t *root, struct cost_report *report);
 
-/* ---- What is kept with a scene (cost_kept.c) ---- */
+/* ---- Figures and choices in whit's cache (cost_kept.c) ---- */
 
 enum { COST_KEPT_CHOICES = 16, COST_KEPT_NAME = 32 };
 struct cost_kept_choice {

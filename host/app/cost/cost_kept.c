@@ -1,5 +1,5 @@
-/* What is kept with a scene for --budget-ms and --max-error: the figures, and the choices that were
-   made by them, so that the next run makes the same. */
+/* A record in whit's cache for --budget-ms and --max-error: the measured figures of a scene, and
+   the choices made by them, so that the next run makes the same choice. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
