@@ -190,26 +190,37 @@ void child_release_forks(void)
     pthread_rwlock_unlock(&fork_lock);
 }
 
+pid_t child_fork(sigset_t *before)
+{
+    pthread_rwlock_wrlock(&fork_lock);
+    /* No handler of the parent may run in the child: it would remove the parent's files. */
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, before);
+    pid_t pid = fork();
+    if (pid == 0) {
+        fork_lock = (pthread_rwlock_t)PTHREAD_RWLOCK_INITIALIZER;
+        return 0;
+    }
+    pthread_rwlock_unlock(&fork_lock);
+    pthread_sigmask(SIG_SETMASK, before, NULL);
+    return pid;
+}
+
 static bool start(struct child *child, const struct child_limits *limits,
                   int (*fn)(void *user, void *to, child_write write), void *user)
 {
     if (!open_channels(child, limits))
         return false;
-    pthread_rwlock_wrlock(&fork_lock);
     uint64_t already_bytes = mapped_bytes();
     pid_t parent = getpid();
-    /* No handler of the parent may run in the child: it would remove the parent's files. */
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    child->pid = fork();
+    sigset_t before;
+    child->pid = child_fork(&before);
     if (child->pid == 0) {
         confine(child, limits, already_bytes, parent);
         pthread_sigmask(SIG_SETMASK, &before, NULL);
         _exit(run_inside(limits, fn, user));
     }
-    pthread_rwlock_unlock(&fork_lock);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
     close_fd(&child->write_fd);
     return child->pid > 0;
 }

@@ -2,9 +2,11 @@
 #ifndef BASE_CHILD_H
 #define BASE_CHILD_H
 
+#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 /* Exit code of a child whose memory ran out. */
 enum { CHILD_EXIT_MEMORY = 120 };
@@ -57,5 +59,8 @@ double child_clock_limit_s(const struct child_limits *limits);
    locks, such as loading a library, which a child would find held for ever. */
 void child_hold_forks(void);
 void child_release_forks(void);
+/* fork() as child_run does it: not while forks are held, and with all signals blocked in the child,
+   which sets its handlers and then *before. child_run works in there too. */
+pid_t child_fork(sigset_t *before);
 
 #endif

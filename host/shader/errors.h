@@ -11,7 +11,8 @@ enum { SHADER_ERROR_MAX = 32, SHADER_FILE_BYTES = 512, SHADER_REASON_BYTES = 512
 /* Both texts are UTF-8 or foreign bytes, ended by 0, without line ends; whoever shows them does so
    by whit_text_show, as the log does. */
 struct shader_error {
-    char file[SHADER_FILE_BYTES]; /* as struct shader_file's `name`; of whit's own: "whit:lib/x.glsl" */
+    char file[SHADER_FILE_BYTES]; /* as struct shader_file's `name`; of whit's own:
+                                     "whit:lib/x.glsl" */
     uint32_t line;                /* from 1; 0: of the file as a whole */
     char reason[SHADER_REASON_BYTES];
 };

@@ -21,9 +21,10 @@ struct shader_include {
 };
 
 struct shader_file {
-    char *name;     /* for messages: as the user can open it from where whit was started */
-    char *relative; /* from the folder of the first file, without "." and ".."; files[0]: its name */
-    char *text;     /* ends with a 0 that `bytes` does not count */
+    char *name; /* for messages: as the user can open it from where whit was started */
+    char
+        *relative; /* from the folder of the first file, without "." and ".."; files[0]: its name */
+    char *text;    /* ends with a 0 that `bytes` does not count */
     size_t bytes;
     struct shader_include *includes; /* in the order of lines */
     uint32_t include_count, include_capacity;

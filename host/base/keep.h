@@ -1,0 +1,28 @@
+/* A process that is kept and answers requests, each in a child of its own that is locked in. */
+#ifndef BASE_KEEP_H
+#define BASE_KEEP_H
+
+#include "base/child.h"
+
+struct keep;
+
+/* What the process does before the first request, NULL: nothing; and what its children do with the
+   bytes of one: as fn of child_run. */
+struct keep_work {
+    void (*prepare)(void);
+    int (*answer)(const void *request, size_t bytes, void *to, child_write write);
+};
+
+/* Forks, with all memory of the caller as it then is. The process has no descriptor of the
+   caller's, and ends when the caller does, or at keep_stop. NULL: it cannot be had. */
+struct keep *keep_start(const struct keep_work *work);
+/* Ends the process and waits for that. NULL is fine. */
+void keep_stop(struct keep *keep);
+
+/* child_run of `answer`, by that process; one thread at a time. CHILD_NOT_STARTED with *alive
+   false: the process has ended, and has to be started anew. It is ended when *limits->cancel
+   becomes true. */
+enum child_end keep_run(struct keep *keep, const struct child_limits *limits, const void *request,
+                        size_t bytes, struct child_reply *reply, bool *alive);
+
+#endif

@@ -1,0 +1,365 @@
+#include "shader/compile.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+
+#include "base/array.h"
+#include "base/foreign.h"
+#include "base/keep.h"
+#include "base/text.h"
+#include "shader/expand.h"
+#include "shader/glslang.h"
+#include "shader/scan.h"
+#include "shader/spirv.h"
+#include "sources.h"
+
+enum { REPLY_BYTES = 64 << 20, WHO_BYTES = 256 };
+
+struct shader_compiler {
+    whit_log log;
+    struct shader_limits limits;
+    struct keep *keep; /* NULL: each request has a process of its own */
+    uint32_t restarts; /* of a process that ended */
+    bool warned;       /* that there is no sandbox */
+};
+
+/* --- the process ---------------------------------------------------------------------------- */
+
+/* A request is a glslang_question, whose text follows. */
+static int answer(const void *request, size_t bytes, void *to, child_write write)
+{
+    struct glslang_question question;
+    if (bytes < sizeof question)
+        return 1;
+    memcpy(&question, request, sizeof question);
+    question.text = (const char *)request + sizeof question;
+    return glslang_answer_question(&question, to, write);
+}
+
+static const struct keep_work work = {glslang_warm, answer};
+
+struct shader_compiler *shader_compiler_create(const whit_log *log,
+                                               const struct shader_limits *limits)
+{
+    struct shader_compiler *compiler = calloc(1, sizeof *compiler);
+    if (!compiler) {
+        log_error(log, "no memory for a compiler of shaders");
+        return NULL;
+    }
+    compiler->log = log_or_silence(log);
+    if (limits)
+        compiler->limits = *limits;
+    compiler->keep = keep_start(&work);
+    return compiler;
+}
+
+void shader_compiler_destroy(struct shader_compiler *compiler)
+{
+    if (!compiler)
+        return;
+    keep_stop(compiler->keep);
+    free(compiler);
+}
+
+static struct child_limits child_limits_of(const struct shader_limits *limits)
+{
+    return (struct child_limits){
+        .who = "compiler",
+        .cpu_s = limits->cpu_s > 0.0 ? limits->cpu_s : 5.0,
+        .clock_s = limits->clock_s > 0.0 ? limits->clock_s : 20.0,
+        .memory_bytes = limits->memory_bytes ? limits->memory_bytes : UINT64_C(1) << 30,
+        .reply_bytes = REPLY_BYTES,
+        .require_sandbox = limits->require_sandbox,
+        .cancel = limits->cancel,
+    };
+}
+
+struct one_shot {
+    const void *request;
+    size_t bytes;
+};
+
+static int answer_once(void *user, void *to, child_write write)
+{
+    const struct one_shot *once = user;
+    return answer(once->request, once->bytes, to, write);
+}
+
+/* In the process that is kept, in a new one where that has ended, or in one of its own. */
+static enum child_end run(struct shader_compiler *c, const struct child_limits *limits,
+                          const void *request, size_t bytes, struct child_reply *reply)
+{
+    enum { RESTARTS_MAX = 16 };
+    for (uint32_t tries = 0; c->keep && tries < 2; ++tries) {
+        bool alive;
+        enum child_end end = keep_run(c->keep, limits, request, bytes, reply, &alive);
+        if (alive && end != CHILD_NOT_STARTED)
+            return end;
+        keep_stop(c->keep);
+        c->keep = c->restarts++ < RESTARTS_MAX ? keep_start(&work) : NULL;
+        if (end != CHILD_NOT_STARTED)
+            return end;
+    }
+    struct one_shot once = {request, bytes};
+    return child_run(limits, answer_once, &once, reply);
+}
+
+/* --- errors --------------------------------------------------------------------------------- */
+
+struct place {
+    const whit_log *log;
+    const struct shader_text *text;
+    const struct shader_request *request;
+    struct shader_errors *errors;
+};
+
+/* What errors of the text as a whole stand behind. */
+static const char *whole_name(const struct place *place)
+{
+    return place->text && place->text->file_count ? place->text->files[0].name
+                                                  : place->request->kernel;
+}
+
+static whit_result explain(const struct place *place, enum child_end end,
+                           const struct child_limits *limits, const struct child_reply *reply)
+{
+    const char *name = whole_name(place);
+    switch (end) {
+    case CHILD_TIME:
+        shader_error_add(place->log, place->errors, name, 0,
+                         "it was not compiled within %.3g s of the processor's time, or %.3g s by "
+                         "the clock",
+                         limits->cpu_s, child_clock_limit_s(limits));
+        return WHIT_ERROR_INPUT;
+    case CHILD_MEMORY:
+        shader_error_add(place->log, place->errors, name, 0,
+                         "the compiler asked for more than %.4g MiB of memory for it",
+                         (double)limits->memory_bytes / 1048576.0);
+        return WHIT_ERROR_INPUT;
+    case CHILD_CRASHED: /* C++ ends by abort(), signal 6, where memory runs out */
+        shader_error_add(place->log, place->errors, name, 0,
+                         "the compiler crashed on it (signal %d)%s", reply->signal,
+                         reply->signal == 6 ? ", as where memory runs out"
+                                            : ", as on brackets or blocks that are too deep");
+        return WHIT_ERROR_INPUT;
+    case CHILD_CANCELLED:
+        log_error(place->log, "%s: compiling was cancelled", name);
+        return WHIT_ERROR_CANCELLED;
+    case CHILD_NOT_STARTED:
+        log_error(place->log, "%s: the compiler's process could not be started", name);
+        return WHIT_ERROR_MEMORY;
+    case CHILD_OPEN:
+        log_error(place->log,
+                  "%s: the compiler cannot be locked in here (%s), and that is required", name,
+                  strerror(reply->open_because));
+        return WHIT_ERROR_USAGE;
+    default:
+        shader_error_add(place->log, place->errors, name, 0,
+                         end == CHILD_FORBIDDEN
+                             ? "the compiler tried on it what it may not, and was stopped"
+                             : "the compiler gave no usable reply");
+        return WHIT_ERROR_INPUT;
+    }
+}
+
+/* A brace that opens and does not close, or the other way round: what is told of it otherwise is
+   told at the end of all text. */
+static bool find_open_brace(const struct shader_text *text, uint32_t *file, uint32_t *line)
+{
+    enum { DEPTH = 256 };
+    for (uint32_t i = 0; i < text->file_count; ++i) {
+        uint32_t lines[DEPTH], depth = 0;
+        struct scan scan;
+        scan_begin(&scan, text->files[i].text, text->files[i].bytes);
+        *file = i;
+        while (scan_next(&scan)) {
+            *line = scan.token_line;
+            if (scan_is(&scan, SCAN_SIGN, "{") && depth < DEPTH)
+                lines[depth++] = scan.token_line;
+            else if (scan_is(&scan, SCAN_SIGN, "}") && depth-- == 0)
+                return true;
+        }
+        if (depth) {
+            *line = lines[depth - 1];
+            return true;
+        }
+    }
+    return false;
+}
+
+static void add_own_error(const struct place *place, const struct glslang_error *error,
+                          const char *reason)
+{
+    char name[SHADER_FILE_BYTES];
+    uint32_t file, line;
+    if (place->text && find_open_brace(place->text, &file, &line)) {
+        shader_error_add(place->log, place->errors, place->text->files[file].name, line,
+                         "a brace without its other one: %s", reason);
+        return;
+    }
+    snprintf(name, sizeof name, "whit:%s",
+             error->file < shader_source_count ? shader_sources[error->file].path
+                                               : place->request->kernel);
+    shader_error_add(place->log, place->errors, name, error->line,
+                     place->text ? "%s (in whit's own text: what it uses of yours has another form)"
+                                 : "%s",
+                     reason);
+}
+
+/* What a child tells is not to be believed. */
+static void add_errors(const struct place *place, const struct glslang_answer *answer)
+{
+    bool user = false;
+    uint32_t count =
+        answer->error_count < SHADER_ERROR_MAX ? answer->error_count : SHADER_ERROR_MAX;
+    for (uint32_t i = 0; i < count; ++i)
+        user = user || answer->errors[i].own == 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const struct glslang_error *error = &answer->errors[i];
+        char reason[SHADER_REASON_BYTES];
+        foreign_text(error->reason, sizeof error->reason, reason, sizeof reason);
+        if (error->own == 0 && place->text && error->file < place->text->file_count) {
+            shader_error_add(place->log, place->errors, place->text->files[error->file].name,
+                             error->line, "%s", reason);
+        } else if (error->own == 1 && !user) {
+            add_own_error(place, error, reason);
+            break; /* the others follow from it */
+        } else if (error->own > 1) {
+            shader_error_add(place->log, place->errors, whole_name(place), 0, "%s", reason);
+        }
+    }
+    if (place->errors)
+        place->errors->more += answer->more;
+}
+
+/* --- replies -------------------------------------------------------------------------------- */
+
+/* True: its parts are where they should be. */
+static bool is_whole(const struct glslang_answer *answer, size_t bytes)
+{
+    uint64_t words = answer->word_count, loops = answer->loop_count;
+    uint64_t all = sizeof *answer + words * sizeof(uint32_t) + loops * sizeof(struct shader_loop);
+    return words <= REPLY_BYTES && bytes == all &&
+           (words ? words > SPV_HEADER_WORDS : answer->error_count > 0);
+}
+
+static bool take_code(const struct glslang_answer *answer, const uint8_t *data,
+                      struct shader_code *code)
+{
+    code->bytes = (size_t)answer->word_count * sizeof *code->words;
+    code->words = malloc(code->bytes);
+    code->loops = array_alloc(answer->loop_count, sizeof *code->loops);
+    if (!code->words || !code->loops) {
+        shader_code_free(code);
+        return false;
+    }
+    memcpy(code->words, data, code->bytes);
+    memcpy(code->loops, data + code->bytes, answer->loop_count * sizeof *code->loops);
+    code->loop_count = answer->loop_count;
+    code->instructions = answer->instructions;
+    return true;
+}
+
+static whit_result take_reply(const struct place *place, const struct child_reply *reply,
+                              struct shader_code *code)
+{
+    struct glslang_answer *got = malloc(sizeof *got);
+    whit_result result = WHIT_ERROR_INPUT;
+    if (!got) {
+        log_error(place->log, "no memory for a kernel");
+        return WHIT_ERROR_MEMORY;
+    }
+    if (reply->size_bytes >= sizeof *got)
+        memcpy(got, reply->data, sizeof *got);
+    if (reply->size_bytes < sizeof *got || !is_whole(got, reply->size_bytes)) {
+        shader_error_add(place->log, place->errors, whole_name(place), 0,
+                         "the compiler gave no usable reply");
+    } else if (!got->word_count) {
+        add_errors(place, got);
+    } else if (take_code(got, reply->data + sizeof *got, code)) {
+        result = WHIT_OK;
+    } else {
+        log_error(place->log, "no memory for a kernel");
+        result = WHIT_ERROR_MEMORY;
+    }
+    free(got);
+    return result;
+}
+
+/* --- a request ------------------------------------------------------------------------------ */
+
+/* A name that no text of a user can hold but by chance. */
+static void make_own_tag(char own[GLSLANG_OWN_BYTES])
+{
+    uint64_t number = 0;
+    if (getrandom(&number, sizeof number, 0) != (ssize_t)sizeof number)
+        number = (uint64_t)(uintptr_t)own;
+    snprintf(own, GLSLANG_OWN_BYTES, "whit%016llx.", (unsigned long long)number);
+}
+
+/* The question with its text; NULL: why not was told. */
+static uint8_t *make_question(const struct place *place, size_t *bytes)
+{
+    struct glslang_question question = {.trust = place->request->trust};
+    make_own_tag(question.own);
+    struct expanded expanded;
+    if (!expand_kernel(place->log, place->text, place->request, question.own, &expanded,
+                       place->errors))
+        return NULL;
+    question.bytes = expanded.bytes;
+    question.user_at = expanded.user_at;
+    question.user_end = expanded.user_end;
+    *bytes = sizeof question + expanded.bytes + 1;
+    uint8_t *request = malloc(*bytes);
+    if (request) {
+        memcpy(request, &question, sizeof question);
+        memcpy(request + sizeof question, expanded.text, expanded.bytes + 1);
+    } else {
+        log_error(place->log, "no memory for the text of a kernel");
+    }
+    free(expanded.text);
+    return request;
+}
+
+static void warn_of_open(struct shader_compiler *compiler, const struct child_reply *reply)
+{
+    if (!reply->open_because || compiler->warned)
+        return;
+    compiler->warned = true;
+    log_warning(&compiler->log,
+                "shaders are compiled without a sandbox: its filter cannot be set here (%s)",
+                strerror(reply->open_because));
+}
+
+whit_result shader_compile(struct shader_compiler *compiler, const struct shader_text *text,
+                           const struct shader_request *request, struct shader_code *code,
+                           struct shader_errors *errors)
+{
+    *code = (struct shader_code){0};
+    const struct place place = {&compiler->log, text && text->file_count ? text : NULL, request,
+                                errors};
+    struct child_limits limits = child_limits_of(&compiler->limits);
+    size_t bytes;
+    uint8_t *question = make_question(&place, &bytes);
+    if (!question)
+        return WHIT_ERROR_INPUT;
+    struct child_reply reply;
+    enum child_end end = run(compiler, &limits, question, bytes, &reply);
+    free(question);
+    if (end != CHILD_OPEN)
+        warn_of_open(compiler, &reply);
+    whit_result result = end == CHILD_DONE ? take_reply(&place, &reply, code)
+                                           : explain(&place, end, &limits, &reply);
+    child_reply_free(&reply);
+    return result;
+}
+
+void shader_code_free(struct shader_code *code)
+{
+    free(code->words);
+    free(code->loops);
+    *code = (struct shader_code){0};
+}

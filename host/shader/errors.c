@@ -1,0 +1,25 @@
+#include "shader/errors.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+void shader_error_add(const whit_log *log, struct shader_errors *errors, const char *file,
+                      uint32_t line, const char *format, ...)
+{
+    struct shader_error error = {.line = line};
+    snprintf(error.file, sizeof error.file, "%s", file);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(error.reason, sizeof error.reason, format, args);
+    va_end(args);
+    if (line)
+        log_error(log, "%s:%u: %s", error.file, line, error.reason);
+    else
+        log_error(log, "%s: %s", error.file, error.reason);
+    if (!errors)
+        return;
+    if (errors->count < SHADER_ERROR_MAX)
+        errors->items[errors->count++] = error;
+    else
+        errors->more++;
+}

@@ -1,0 +1,327 @@
+#include "shader/expand.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "shader/scan.h"
+#include "sources.h"
+
+enum { DEPTH_MAX = 32, NAME_BYTES = 256 };
+#define EXPANDED_BYTES ((size_t)16 << 20)
+
+struct expansion {
+    const struct shader_text *text;
+    const struct shader_request *request;
+    const char *own;
+    char *out;
+    size_t used, room;
+    size_t user_at, user_end;
+    bool *pasted; /* of shader_sources: nothing left out */
+    uint32_t depth;
+    bool failed; /* no memory */
+    bool large;
+    const char *missing; /* a name that is not embedded */
+    char name[NAME_BYTES];
+};
+
+static void put(struct expansion *e, const char *text, size_t bytes)
+{
+    if (e->used + bytes > EXPANDED_BYTES) {
+        e->large = true;
+        return;
+    }
+    if (e->used + bytes + 1 > e->room) {
+        size_t room = 2 * (e->used + bytes + 1);
+        char *out = realloc(e->out, room);
+        e->failed = e->failed || !out;
+        if (!out)
+            return;
+        e->out = out;
+        e->room = room;
+    }
+    memcpy(e->out + e->used, text, bytes);
+    e->used += bytes;
+    e->out[e->used] = 0;
+}
+
+static void put_string(struct expansion *e, const char *text)
+{
+    put(e, text, strlen(text));
+}
+
+static void put_line(struct expansion *e, uint32_t line, const char *tag, uint32_t file)
+{
+    char text[NAME_BYTES];
+    snprintf(text, sizeof text, "#line %u \"%s%u\"\n", line, tag, file);
+    put_string(e, text);
+}
+
+static bool has_user(const struct expansion *e)
+{
+    return e->text && e->text->file_count;
+}
+
+static bool goes_on(const struct expansion *e)
+{
+    return !e->failed && !e->large && !e->missing;
+}
+
+/* --- the user's text ------------------------------------------------------------------------ */
+
+/* The length of a line, and over its end. */
+static const char *next_line(const char *at, const char *end, size_t *length)
+{
+    const char *start = at;
+    while (at < end && *at != '\n' && *at != '\r')
+        at++;
+    *length = (size_t)(at - start);
+    if (at < end)
+        at += at[0] == '\r' && at + 1 < end && at[1] == '\n' ? 2 : 1;
+    return at;
+}
+
+/* No file includes itself, so that this ends. */
+static void put_user_file(struct expansion *e, uint32_t index)
+{
+    const struct shader_file *file = &e->text->files[index];
+    const char *at = file->text, *end = at + file->bytes;
+    uint32_t line = 1, include = 0;
+    size_t length;
+    if (file->bytes >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
+        at += 3;
+    put_line(e, 1, EXPAND_USER_TAG, index);
+    for (const char *next; at < end && goes_on(e); at = next, ++line) {
+        next = next_line(at, end, &length);
+        if (include < file->include_count && file->includes[include].line == line) {
+            put_user_file(e, file->includes[include++].file);
+            put_line(e, line + 1, EXPAND_USER_TAG, index);
+        } else {
+            put(e, at, length);
+            put(e, "\n", 1);
+        }
+    }
+    put_string(e, "\n\n"); /* twice: the last line may end with a backslash */
+}
+
+static bool may_be_undefined(const char *name)
+{
+    return strncmp(name, "GL_", 3) != 0 && strcmp(name, "defined") != 0 &&
+           strcmp(name, "__LINE__") != 0 && strcmp(name, "__FILE__") != 0 &&
+           strcmp(name, "__VERSION__") != 0;
+}
+
+/* What the user's macros stand for stays in the user's text. */
+static void put_undefs(struct expansion *e, const struct shader_file *file)
+{
+    struct scan scan;
+    scan_begin(&scan, file->text, file->bytes);
+    while (scan_next(&scan)) {
+        if (!scan_is(&scan, SCAN_DIRECTIVE, "define") || !scan_next(&scan) ||
+            scan.kind != SCAN_WORD || strlen(scan.text) + 1 == sizeof scan.text ||
+            !may_be_undefined(scan.text))
+            continue;
+        put_string(e, "#undef ");
+        put_string(e, scan.text);
+        put_string(e, "\n");
+    }
+}
+
+static void put_user(struct expansion *e)
+{
+    e->user_at = e->used;
+    put_user_file(e, 0);
+    e->user_end = e->used;
+    for (uint32_t i = 0; i < e->text->file_count && goes_on(e); ++i)
+        put_undefs(e, &e->text->files[i]);
+}
+
+/* --- whit's own ----------------------------------------------------------------------------- */
+
+static uint32_t find_source(const char *path)
+{
+    uint32_t i = 0;
+    while (i < shader_source_count && strcmp(shader_sources[i].path, path) != 0)
+        i++;
+    return i;
+}
+
+/* "../bind/x.glsl" or "x.glsl", as "kernel/y.comp" names it. */
+static void join(const char *from, const char *name, size_t length, char out[NAME_BYTES])
+{
+    const char *slash = strrchr(from, '/');
+    if (length > 3 && memcmp(name, "../", 3) == 0)
+        snprintf(out, NAME_BYTES, "%.*s", (int)(length - 3), name + 3);
+    else
+        snprintf(out, NAME_BYTES, "%.*s%.*s", slash ? (int)(slash + 1 - from) : 0, from,
+                 (int)length, name);
+}
+
+/* A directive of whit's own text: `at` behind its name, or NULL where the line is none. */
+static const char *is_directive(const char *line, const char *name)
+{
+    line += strspn(line, " \t");
+    if (*line++ != '#')
+        return NULL;
+    line += strspn(line, " \t");
+    size_t length = strlen(name);
+    return strncmp(line, name, length) == 0 ? line + length : NULL;
+}
+
+/* What an #include names; its length, 0 where the line is none. */
+static size_t included(const char *line, const char **name)
+{
+    const char *at = is_directive(line, "include");
+    if (!at)
+        return 0;
+    *name = at + strspn(at, " \t") + 1;
+    return (*name)[-1] == '"' ? strcspn(*name, "\"\n") : 0;
+}
+
+struct own_file {
+    const char *path, *text;
+    uint32_t index;
+    bool whole; /* it is pasted whatever is defined */
+};
+
+static void put_own(struct expansion *e, const struct own_file *file);
+
+static void put_included(struct expansion *e, const struct own_file *file, const char *name,
+                         size_t length, bool whole)
+{
+    char path[NAME_BYTES];
+    join(file->path, name, length, path);
+    uint32_t index = find_source(path);
+    if (index == shader_source_count || e->depth == DEPTH_MAX) {
+        snprintf(e->name, sizeof e->name, "%s", path);
+        e->missing = e->name;
+        return;
+    }
+    if (e->pasted[index])
+        return;
+    e->pasted[index] = whole;
+    if (has_user(e) && strcmp(path, "hook/user.glsl") == 0) {
+        put_user(e);
+        return;
+    }
+    const struct own_file other = {path, shader_sources[index].text, index, whole};
+    e->depth++;
+    put_own(e, &other);
+    e->depth--;
+}
+
+static void put_defines(struct expansion *e)
+{
+    for (uint32_t i = 0; i < e->request->define_count; ++i) {
+        put_string(e, "#define ");
+        put_string(e, e->request->defines[i]);
+        put_string(e, "\n");
+    }
+}
+
+/* The lines behind which defines go: the last #extension, or #version. 0: the file has neither. */
+static uint32_t head_lines(const char *text, bool version)
+{
+    uint32_t line = 1, last = 0;
+    for (const char *at = text; at && *at; ++line) {
+        if (is_directive(at, "version") || (!version && is_directive(at, "extension")))
+            last = line;
+        at = strchr(at, '\n');
+        at = at ? at + 1 : NULL;
+    }
+    return last;
+}
+
+/* Conditions that are open, without the guard of the file. */
+struct open_conditions {
+    uint32_t count;
+    bool guarded, seen;
+};
+
+static void follow_conditions(struct open_conditions *open, const char *line)
+{
+    bool opens = is_directive(line, "if") != NULL;
+    if (!open->seen && is_directive(line, "")) {
+        open->seen = true;
+        open->guarded = is_directive(line, "ifndef") != NULL;
+    }
+    if (opens)
+        open->count++;
+    else if (is_directive(line, "endif") && open->count)
+        open->count--;
+}
+
+static void put_own(struct expansion *e, const struct own_file *file)
+{
+    bool kernel = e->depth == 0;
+    uint32_t line = 1, version = kernel ? head_lines(file->text, true) : 0;
+    uint32_t head = kernel ? head_lines(file->text, false) : 0;
+    struct open_conditions open = {0};
+    if (!kernel)
+        put_line(e, 1, e->own, file->index);
+    for (const char *at = file->text, *next; *at && goes_on(e); at = next, ++line) {
+        const char *name, *end = at + strcspn(at, "\n");
+        size_t length = included(at, &name);
+        next = *end ? end + 1 : end;
+        follow_conditions(&open, at);
+        if (length) {
+            put_included(e, file, name, length, file->whole && open.count == open.guarded);
+        } else {
+            put(e, at, (size_t)(end - at));
+            put(e, "\n", 1);
+        }
+        if (line == version)
+            put_string(e, "#extension GL_GOOGLE_cpp_style_line_directive : require\n");
+        if (line == head)
+            put_defines(e);
+        if (length || line == version || line == head)
+            put_line(e, line + 1, e->own, file->index);
+    }
+}
+
+static void explain(const struct expansion *e, const whit_log *log, struct shader_errors *errors)
+{
+    if (e->failed)
+        log_error(log, "no memory for the text of a kernel");
+    else if (e->large)
+        shader_error_add(log, errors, has_user(e) ? e->text->files[0].name : e->request->kernel, 0,
+                         "larger than 16 MiB with all that it includes");
+    else
+        shader_error_add(log, errors, "whit", 0, "no shader %s is embedded", e->missing);
+}
+
+bool expand_kernel(const whit_log *log, const struct shader_text *text,
+                   const struct shader_request *request, const char *own, struct expanded *expanded,
+                   struct shader_errors *errors)
+{
+    struct expansion e = {.text = text, .request = request, .own = own};
+    e.pasted = array_alloc_zeroed(shader_source_count, sizeof *e.pasted);
+    e.failed = !e.pasted;
+    uint32_t index = request->kernel_text ? shader_source_count : find_source(request->kernel);
+    struct own_file kernel = {request->kernel, request->kernel_text, index, true};
+    if (!kernel.text && index == shader_source_count)
+        e.missing = request->kernel;
+    else if (!kernel.text)
+        kernel.text = shader_sources[index].text;
+    if (goes_on(&e))
+        put_own(&e, &kernel);
+    free(e.pasted);
+    *expanded = (struct expanded){e.out, e.used, e.user_at, e.user_end};
+    if (goes_on(&e) && e.out)
+        return true;
+    explain(&e, log, errors);
+    free(e.out);
+    return false;
+}
+
+char *shader_expand(const whit_log *log, const struct shader_text *text,
+                    const struct shader_request *request, size_t *bytes,
+                    struct shader_errors *errors)
+{
+    struct expanded expanded;
+    if (!expand_kernel(log, text, request, "whit.", &expanded, errors))
+        return NULL;
+    *bytes = expanded.bytes;
+    return expanded.text;
+}

@@ -1,0 +1,111 @@
+#include "shader/fuel.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+/* Opens the loop's guard behind its header: a block that leaves the loop where there is no fuel,
+   and one in which it goes on, which gets what the header ended with. */
+static void put_guard(struct fuel *fuel, struct spv_module *m)
+{
+    struct fuel_loop *loop = &fuel->blocks[fuel->block_count - 1];
+    uint32_t u = spv_uint(m), guard = m->next_id++, left = m->next_id++, none = m->next_id++,
+             less = m->next_id++;
+    loop->out = m->next_id++;
+    loop->in = m->next_id++;
+    SPV_EMIT(m, SPV_BRANCH, guard);
+    SPV_EMIT(m, SPV_LABEL, guard);
+    SPV_EMIT(m, SPV_LOAD, u, left, m->fuel);
+    SPV_EMIT(m, SPV_I_EQUAL, spv_bool(m), none, left, spv_constant(m, u, 0));
+    SPV_EMIT(m, SPV_SELECTION_MERGE, loop->in, 0);
+    SPV_EMIT(m, SPV_BRANCH_CONDITIONAL, none, loop->out, loop->in);
+    SPV_EMIT(m, SPV_LABEL, loop->out);
+    if (m->fuel_loop)
+        SPV_EMIT(m, SPV_STORE, m->fuel_loop, spv_constant(m, u, fuel->count));
+    SPV_EMIT(m, SPV_BRANCH, loop->merge);
+    SPV_EMIT(m, SPV_LABEL, loop->in);
+    SPV_EMIT(m, SPV_I_SUB, u, less, left, spv_constant(m, u, 1));
+    SPV_EMIT(m, SPV_STORE, m->fuel, less);
+}
+
+static void begin_loop(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
+{
+    const struct shader_loop loop = {m->place.file, m->place.line};
+    const struct fuel_loop blocks = {.header = fuel->label, .merge = words[1]};
+    if (!ARRAY_PUSH(fuel->loops, fuel->count, fuel->capacity, loop) ||
+        !ARRAY_PUSH(fuel->blocks, fuel->block_count, fuel->block_capacity, blocks))
+        m->failed = true;
+    fuel->waits = !m->failed;
+    spv_put(m, &m->body, words, spv_length(words));
+}
+
+/* A value of what the block before had: headers end elsewhere now, and loops are left once more. */
+static void put_phi(const struct fuel *fuel, struct spv_module *m, const uint32_t *words)
+{
+    uint32_t length = spv_length(words), at = m->body.count;
+    spv_put(m, &m->body, words, length);
+    for (uint32_t i = 0; i < fuel->block_count && !m->failed; ++i) {
+        const struct fuel_loop *loop = &fuel->blocks[i];
+        for (uint32_t j = 4; j < length; j += 2) {
+            if (words[j] == loop->header)
+                m->body.words[at + j] = loop->in;
+        }
+        if (loop->merge == fuel->label) {
+            const uint32_t more[] = {spv_null(m, words[1]), loop->out};
+            spv_put(m, &m->body, more, 2);
+            if (!m->failed)
+                m->body.words[at] += 2u << 16;
+        }
+    }
+}
+
+static bool is_void(const struct spv_module *m, uint32_t type)
+{
+    const uint32_t *def = spv_def(m, type);
+    return def && spv_op(def) == SPV_TYPE_VOID;
+}
+
+/* What nothing reached before, loops without fuel may. */
+static void put_return(struct spv_module *m)
+{
+    if (is_void(m, m->return_type))
+        spv_emit(m, SPV_RETURN, NULL, 0);
+    else
+        SPV_EMIT(m, SPV_RETURN_VALUE, spv_null(m, m->return_type));
+}
+
+bool fuel_take(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words);
+    if (fuel->waits && op != SPV_LINE && op != SPV_NO_LINE) {
+        fuel->waits = false;
+        put_guard(fuel, m);
+    }
+    switch (op) {
+    case SPV_FUNCTION:
+        fuel->block_count = 0;
+        return false;
+    case SPV_LABEL:
+        fuel->label = words[1];
+        return false;
+    case SPV_LOOP_MERGE:
+        begin_loop(fuel, m, words);
+        return true;
+    case SPV_PHI:
+        put_phi(fuel, m, words);
+        return true;
+    case SPV_UNREACHABLE:
+        put_return(m);
+        return true;
+    default:
+        return false;
+    }
+}
+
+void fuel_finish(struct fuel *fuel)
+{
+    free(fuel->loops);
+    free(fuel->blocks);
+    *fuel = (struct fuel){0};
+}

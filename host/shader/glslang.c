@@ -1,0 +1,203 @@
+#include "shader/glslang.h"
+
+#include <glslang/Include/glslang_c_interface.h>
+#include <glslang/Public/resource_limits_c.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "shader/bounds.h"
+#include "shader/exact.h"
+#include "shader/expand.h"
+#include "shader/fuel.h"
+#include "shader/messages.h"
+#include "shader/module.h"
+#include "shader/refuse.h"
+
+struct compilation {
+    const struct glslang_question *question;
+    struct glslang_answer answer;
+    struct fuel fuel;
+    struct refuse_variables variables;
+};
+
+static void report(struct compilation *c, struct spv_place place, const char *why)
+{
+    messages_add(&c->answer, place.file == UINT32_MAX ? 2 : 0, place.file, place.line, why);
+}
+
+/* --- GLSL ----------------------------------------------------------------------------------- */
+
+static glslang_input_t input_of(const char *text)
+{
+    return (glslang_input_t){
+        .language = GLSLANG_SOURCE_GLSL,
+        .stage = GLSLANG_STAGE_COMPUTE,
+        .client = GLSLANG_CLIENT_VULKAN,
+        .client_version = GLSLANG_TARGET_VULKAN_1_2,
+        .target_language = GLSLANG_TARGET_SPV,
+        .target_language_version = GLSLANG_TARGET_SPV_1_5,
+        .code = text,
+        .default_version = 460,
+        .default_profile = GLSLANG_NO_PROFILE,
+        .messages = (glslang_messages_t)(GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT),
+        .resource = glslang_default_resource(),
+    };
+}
+
+static glslang_program_t *link_program(struct compilation *c, glslang_shader_t *shader)
+{
+    glslang_program_t *program = glslang_program_create();
+    glslang_program_add_shader(program, shader);
+    if (glslang_program_link(program, GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT)) {
+        glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
+        glslang_program_SPIRV_generate_with_options(program, GLSLANG_STAGE_COMPUTE, &options);
+        return program;
+    }
+    messages_take(&c->answer, c->question, glslang_program_get_info_log(program));
+    glslang_program_delete(program);
+    return NULL;
+}
+
+/* NULL: there are errors. */
+static glslang_program_t *compile_glsl(struct compilation *c)
+{
+    glslang_input_t input = input_of(c->question->text);
+    glslang_shader_t *shader = glslang_shader_create(&input);
+    if (shader && glslang_shader_preprocess(shader, &input) && glslang_shader_parse(shader, &input))
+        return link_program(c, shader);
+    messages_take(&c->answer, c->question, shader ? glslang_shader_get_info_log(shader) : "");
+    return NULL;
+}
+
+void glslang_warm(void)
+{
+    static const char text[] = "#version 460\n"
+                               "layout(local_size_x_id = 0) in;\n"
+                               "void main() {}\n";
+    const struct glslang_question question = {.text = text, .bytes = sizeof text - 1};
+    struct compilation *c = calloc(1, sizeof *c);
+    glslang_initialize_process();
+    if (!c)
+        return;
+    c->question = &question;
+    glslang_program_t *program = compile_glsl(c);
+    if (program)
+        glslang_program_delete(program);
+    free(c);
+}
+
+/* --- SPIR-V --------------------------------------------------------------------------------- */
+
+/* Copies what stands in functions, and what users wrote with fuel and bounds. */
+static void take_instruction(struct compilation *c, struct spv_module *m, const uint32_t *words)
+{
+    bool user = spv_follow(m, words), taken = false;
+    uint32_t op = spv_op(words);
+    const char *why = user ? refuse_instruction(m, words) : NULL;
+    if (!why && user && op == SPV_VARIABLE)
+        why = refuse_variable(&c->variables, m, words);
+    if (why)
+        report(c, m->place, why);
+    c->answer.instructions += op != SPV_LINE && op != SPV_NO_LINE && op != SPV_LABEL;
+    if (user && !c->question->trust) {
+        taken = m->fuel && m->user_function && fuel_take(&c->fuel, m, words);
+        if (!taken)
+            taken = bounds_take(m, words, &why);
+        if (why && !taken)
+            report(c, m->place, why);
+    }
+    if (!taken)
+        spv_put(m, &m->body, words, spv_length(words));
+}
+
+/* A variable of all functions is the user's where the user's text has its name. */
+static void check_global(struct compilation *c, struct spv_module *m, const uint32_t *name)
+{
+    const uint32_t *variable = spv_def(m, name[1]);
+    if (!variable || spv_op(variable) != SPV_VARIABLE || variable[3] != SPV_STORAGE_PRIVATE)
+        return;
+    struct spv_place place = {UINT32_MAX, 0};
+    if (!messages_find_word(c->question, (const char *)(name + 2), &place.file, &place.line))
+        return;
+    const char *why = refuse_variable(&c->variables, m, variable);
+    if (why)
+        report(c, place, why);
+}
+
+static void check_module(struct compilation *c, struct spv_module *m)
+{
+    const char *name;
+    char why[SHADER_REASON_BYTES];
+    if (c->question->user_at == c->question->user_end)
+        return;
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        if (spv_op(m->words + at) == SPV_NAME && spv_length(m->words + at) > 2)
+            check_global(c, m, m->words + at);
+    }
+    uint32_t capability = refuse_capability(m, &name);
+    if (!capability || c->answer.error_count)
+        return;
+    snprintf(why, sizeof why, "it asks the device for %s (capability %u), which whit does not have",
+             name[0] ? name : "something", capability);
+    report(c, (struct spv_place){0, 0}, why);
+}
+
+/* The module with passes behind it; no words: there are errors, or there is no memory. */
+static struct spv_words make_module(struct compilation *c, const uint32_t *words, size_t count)
+{
+    struct spv_module m;
+    struct spv_words out = {0};
+    bool whole = spv_read(&m, words, count, c->question->own);
+    m.has_user = c->question->user_at != c->question->user_end;
+    for (size_t at = m.functions_at; whole && at < count; at += spv_length(words + at))
+        take_instruction(c, &m, words + at);
+    if (whole)
+        check_module(c, &m);
+    else
+        report(c, (struct spv_place){UINT32_MAX, 0}, "glslang wrote a module that cannot be read");
+    if (whole && !c->answer.error_count)
+        out = spv_write(&m);
+    if (m.failed)
+        out.count = 0;
+    spv_finish(&m);
+    return out;
+}
+
+static int write_answer(struct compilation *c, const uint32_t *words, size_t count, void *to,
+                        child_write write)
+{
+    c->answer.word_count = count;
+    c->answer.loop_count = count ? c->fuel.count : 0;
+    bool written = write(to, &c->answer, sizeof c->answer) &&
+                   write(to, words, count * sizeof *words) &&
+                   write(to, c->fuel.loops, c->answer.loop_count * sizeof *c->fuel.loops);
+    return written ? 0 : 1;
+}
+
+static int finish_module(struct compilation *c, glslang_program_t *program, void *to,
+                         child_write write)
+{
+    size_t count = 0;
+    uint32_t *exact = NULL;
+    struct spv_words made = make_module(c, glslang_program_SPIRV_get_ptr(program),
+                                        glslang_program_SPIRV_get_size(program));
+    enum shader_exact end = EXACT_NO_MEMORY;
+    if (made.count)
+        end = shader_exact(made.words, made.count, &exact, &count);
+    if (end != EXACT_DONE && !c->answer.error_count)
+        return CHILD_EXIT_MEMORY;
+    return write_answer(c, exact, count, to, write);
+}
+
+int glslang_answer_question(void *user, void *to, child_write write)
+{
+    struct compilation *c = calloc(1, sizeof *c);
+    if (!c)
+        return CHILD_EXIT_MEMORY;
+    c->question = user;
+    glslang_initialize_process();
+    glslang_program_t *program = compile_glsl(c);
+    /* Nothing is given back: the process ends. */
+    return program ? finish_module(c, program, to, write) : write_answer(c, NULL, 0, to, write);
+}

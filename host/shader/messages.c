@@ -1,0 +1,255 @@
+#include "shader/messages.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "shader/expand.h"
+#include "shader/scan.h"
+
+enum { NOBODY = 2, LINE_BYTES = 2048 };
+
+void messages_add(struct glslang_answer *answer, uint32_t own, uint32_t file, uint32_t line,
+                  const char *reason)
+{
+    if (answer->error_count == SHADER_ERROR_MAX) {
+        answer->more++;
+        return;
+    }
+    struct glslang_error *error = &answer->errors[answer->error_count++];
+    *error = (struct glslang_error){own, file, line, {0}};
+    snprintf(error->reason, sizeof error->reason, "%s", reason);
+}
+
+/* --- places in the user's text -------------------------------------------------------------- */
+
+/* The user's part of the text, with the place in the file that it came from. */
+struct walk {
+    struct scan scan;
+    uint32_t file, first, shift; /* the line of the file is `first`, at line `shift` of the part */
+};
+
+static void walk_begin(struct walk *walk, const struct glslang_question *question)
+{
+    memset(walk, 0, sizeof *walk);
+    scan_begin(&walk->scan, question->text + question->user_at,
+               question->user_end - question->user_at);
+}
+
+static void follow_line(struct walk *walk)
+{
+    uint32_t line = walk->scan.token_line;
+    if (!scan_next(&walk->scan))
+        return;
+    walk->first = (uint32_t)strtoul(walk->scan.text, NULL, 10);
+    walk->shift = line + 1;
+    if (scan_next(&walk->scan) && walk->scan.kind == SCAN_STRING)
+        walk->file = (uint32_t)strtoul(walk->scan.text + strlen(EXPAND_USER_TAG), NULL, 10);
+}
+
+static uint32_t line_of(const struct walk *walk, uint32_t line)
+{
+    return walk->first + line - walk->shift;
+}
+
+bool messages_find_word(const struct glslang_question *question, const char *word, uint32_t *file,
+                        uint32_t *line)
+{
+    struct walk walk;
+    walk_begin(&walk, question);
+    while (scan_next(&walk.scan)) {
+        if (scan_is(&walk.scan, SCAN_DIRECTIVE, "line")) {
+            follow_line(&walk);
+        } else if (scan_is(&walk.scan, SCAN_WORD, word)) {
+            *file = walk.file;
+            *line = line_of(&walk, walk.scan.token_line);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The place where a function has its body; of one that has none, where it is named first. */
+static bool find_function(const struct glslang_question *question, const char *name, uint32_t *file,
+                          uint32_t *line)
+{
+    struct walk walk, words;
+    struct scan_functions functions = {.braces = 0};
+    walk_begin(&walk, question);
+    while (scan_next_function(&walk.scan, &functions)) {
+        if (strcmp(functions.name, name) != 0)
+            continue;
+        walk_begin(&words, question);
+        while (scan_next(&words.scan)) {
+            if (scan_is(&words.scan, SCAN_DIRECTIVE, "line"))
+                follow_line(&words);
+            if (words.scan.token_line == functions.line && scan_is(&words.scan, SCAN_WORD, name)) {
+                *file = words.file;
+                *line = line_of(&words, functions.line);
+                return true;
+            }
+        }
+    }
+    return messages_find_word(question, name, file, line);
+}
+
+/* --- words ---------------------------------------------------------------------------------- */
+
+/* What glslang's grammar calls signs. */
+static const char *const signs[][2] = {
+    {"LEFT_BRACE", "'{'"},
+    {"RIGHT_BRACE", "'}'"},
+    {"LEFT_PAREN", "'('"},
+    {"RIGHT_PAREN", "')'"},
+    {"LEFT_BRACKET", "'['"},
+    {"RIGHT_BRACKET", "']'"},
+    {"SEMICOLON", "';'"},
+    {"COMMA", "','"},
+    {"EQUAL", "'='"},
+    {"DOT", "'.'"},
+    {"COLON", "':'"},
+    {"QUESTION", "'?'"},
+    {"PLUS", "'+'"},
+    {"DASH", "'-'"},
+    {"STAR", "'*'"},
+    {"SLASH", "'/'"},
+    {"PERCENT", "'%'"},
+    {"LEFT_ANGLE", "'<'"},
+    {"RIGHT_ANGLE", "'>'"},
+    {"BANG", "'!'"},
+    {"TILDE", "'~'"},
+    {"AMPERSAND", "'&'"},
+    {"VERTICAL_BAR", "'|'"},
+    {"CARET", "'^'"},
+    {"IDENTIFIER", "a name"},
+    {"INTCONSTANT", "a number"},
+    {"UINTCONSTANT", "a number"},
+    {"FLOATCONSTANT", "a number"},
+};
+
+static bool is_name(char c)
+{
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+static const char *sign_of(const char *word, size_t length)
+{
+    for (size_t i = 0; i < sizeof signs / sizeof *signs; ++i) {
+        if (strlen(signs[i][0]) == length && strncmp(signs[i][0], word, length) == 0)
+            return signs[i][1];
+    }
+    return NULL;
+}
+
+/* `'x' :  reason ` as `'x': reason`, `'' : reason` as `reason`, with signs in the place of their
+   names. */
+static void tidy(const char *from, char out[SHADER_REASON_BYTES])
+{
+    size_t used = 0;
+    from += strncmp(from, "'' : ", 5) == 0 ? 5 : 0;
+    from += strspn(from, " ");
+    while (*from && used + 8 < SHADER_REASON_BYTES) {
+        size_t word = 0;
+        while (is_name(from[word]))
+            word++;
+        const char *sign = word ? sign_of(from, word) : NULL;
+        if (sign) {
+            used += (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "%s", sign);
+        } else if (word) {
+            used +=
+                (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "%.*s", (int)word, from);
+        } else if (strncmp(from, "' : ", 4) == 0) {
+            used += (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "': ");
+            from += 3 + strspn(from + 3, " ");
+            continue;
+        } else {
+            out[used++] = *from;
+        }
+        used = used < SHADER_REASON_BYTES ? used : SHADER_REASON_BYTES - 1;
+        from += word ? word : 1;
+    }
+    while (used && isspace((unsigned char)out[used - 1]))
+        used--;
+    out[used] = 0;
+}
+
+/* --- lines of a log ------------------------------------------------------------------------- */
+
+static const char *behind(const char *text, const char *start)
+{
+    size_t length = strlen(start);
+    return strncmp(text, start, length) == 0 ? text + length : NULL;
+}
+
+/* `f(vf3;` as `f`. */
+static void plain_name(const char *mangled, char *out, size_t out_bytes)
+{
+    mangled += strspn(mangled, " ");
+    snprintf(out, out_bytes, "%.*s", (int)strcspn(mangled, "( "), mangled);
+}
+
+/* What is told of functions when all text is read, with names on the next line. */
+static bool take_function(struct glslang_answer *answer, const struct glslang_question *question,
+                          const char *line, const char *next)
+{
+    char name[256], called[256] = "", why[SHADER_REASON_BYTES];
+    uint32_t file = 0, at = 0;
+    bool recursion = strstr(line, "Recursion detected") != NULL;
+    if (!recursion && !strstr(line, "No function definition"))
+        return false;
+    const char *calling = strstr(next, " calling ");
+    plain_name(next, name, sizeof name);
+    if (calling)
+        plain_name(calling + strlen(" calling "), called, sizeof called);
+    if (recursion && strcmp(name, called) == 0)
+        snprintf(why, sizeof why, "%s calls itself: there is no recursion in GLSL", name);
+    else if (recursion)
+        snprintf(why, sizeof why,
+                 "%s calls %s, which leads back to it: there is no recursion in GLSL", name,
+                 called);
+    else
+        snprintf(why, sizeof why, "%s is called and has no body", name);
+    uint32_t own = find_function(question, name, &file, &at) ? 0 : NOBODY;
+    messages_add(answer, own, file, at, why);
+    return true;
+}
+
+/* "NAME:LINE: reason"; without a name it is nobody's. */
+static void take_error(struct glslang_answer *answer, const struct glslang_question *question,
+                       const char *line)
+{
+    char why[SHADER_REASON_BYTES];
+    const char *file = behind(line, question->own), *user = behind(line, EXPAND_USER_TAG);
+    char *end = NULL;
+    uint32_t own = user ? 0 : file ? 1 : NOBODY, number = 0, at = 0;
+    const char *rest = user ? user : file;
+    if (rest && isdigit((unsigned char)*rest)) {
+        number = (uint32_t)strtoul(rest, &end, 10);
+        if (*end == ':')
+            at = (uint32_t)strtoul(end + 1, &end, 10);
+        line = *end == ':' ? end + 1 + strspn(end + 1, " ") : end;
+    } else {
+        own = NOBODY;
+    }
+    tidy(line, why);
+    if (!strstr(why, "compilation terminated") && !strstr(why, "compilation errors.") && why[0])
+        messages_add(answer, own, number, at, why);
+}
+
+void messages_take(struct glslang_answer *answer, const struct glslang_question *question,
+                   const char *log)
+{
+    char line[LINE_BYTES], next[LINE_BYTES];
+    for (const char *at = log; at && *at;) {
+        size_t length = strcspn(at, "\n");
+        snprintf(line, sizeof line, "%.*s", (int)length, at);
+        at += length + (at[length] == '\n');
+        snprintf(next, sizeof next, "%.*s", (int)strcspn(at, "\n"), at);
+        const char *error = behind(line, "ERROR: ");
+        if (error && !take_function(answer, question, error, next))
+            take_error(answer, question, error);
+    }
+    if (!answer->error_count)
+        messages_add(answer, NOBODY, 0, 0, "glslang refuses it without a reason");
+}

@@ -1,0 +1,317 @@
+#include "shader/module.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+enum { BOUND_MAX = 1 << 24, WHIT_OWN = UINT32_MAX };
+
+static bool is_type(uint32_t op)
+{
+    return op >= SPV_TYPE_VOID && op <= SPV_TYPE_FUNCTION;
+}
+
+/* The result of an instruction; 0: it has none. What has a type has it in front of its result, and
+   nothing else begins with a type. */
+static uint32_t result_of(const struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words), length = spv_length(words);
+    if ((is_type(op) || op == SPV_STRING || op == SPV_EXT_INST_IMPORT || op == SPV_LABEL) &&
+        length >= 2)
+        return words[1];
+    if (length < 3 || op == SPV_NAME || op == SPV_MEMBER_NAME || op == SPV_DECORATE ||
+        op == SPV_DECORATE + 1 || op == SPV_ENTRY_POINT || op == SPV_LINE)
+        return 0;
+    const uint32_t *type = spv_def(m, words[1]);
+    return type && is_type(spv_op(type)) ? words[2] : 0;
+}
+
+const uint32_t *spv_def(const struct spv_module *m, uint32_t id)
+{
+    return id < m->bound && m->defined_at[id] ? m->words + m->defined_at[id] : NULL;
+}
+
+uint32_t spv_type_of(const struct spv_module *m, uint32_t id)
+{
+    const uint32_t *def = spv_def(m, id);
+    return def && !is_type(spv_op(def)) && spv_length(def) >= 3 && spv_def(m, def[1]) ? def[1] : 0;
+}
+
+bool spv_constant_value(const struct spv_module *m, uint32_t id, uint32_t *value)
+{
+    const uint32_t *def = spv_def(m, id);
+    if (!def || spv_op(def) != SPV_CONSTANT || spv_length(def) != 4)
+        return false;
+    *value = def[3];
+    return true;
+}
+
+const char *spv_string(const struct spv_module *m, uint32_t id)
+{
+    const uint32_t *def = spv_def(m, id);
+    if (!def || spv_op(def) != SPV_STRING)
+        return "";
+    const char *text = (const char *)(def + 2);
+    return memchr(text, 0, 4 * (size_t)(spv_length(def) - 2)) ? text : "";
+}
+
+static uint64_t times(uint64_t size, uint64_t count)
+{
+    return size && count > UINT64_MAX / size ? UINT64_MAX : size * count;
+}
+
+/* Of a specialization constant, what it is where nobody says. */
+static uint64_t usual_length(const struct spv_module *m, uint32_t id)
+{
+    const uint32_t *def = spv_def(m, id);
+    bool known = def && spv_length(def) == 4 &&
+                 (spv_op(def) == SPV_CONSTANT || spv_op(def) == SPV_SPEC_CONSTANT);
+    return known ? def[3] : UINT64_MAX;
+}
+
+uint64_t spv_size(const struct spv_module *m, uint32_t type)
+{
+    const uint32_t *def = spv_def(m, type);
+    uint64_t sum = 0;
+    if (!def || spv_length(def) < 2)
+        return UINT64_MAX;
+    switch (spv_op(def)) {
+    case SPV_TYPE_BOOL:
+        return 4;
+    case SPV_TYPE_INT:
+    case SPV_TYPE_FLOAT:
+        return (def[2] + 7) / 8;
+    case SPV_TYPE_VECTOR:
+    case SPV_TYPE_MATRIX:
+        return times(spv_size(m, def[2]), def[3]);
+    case SPV_TYPE_ARRAY:
+        return times(spv_size(m, def[2]), usual_length(m, def[3]));
+    case SPV_TYPE_STRUCT:
+        for (uint32_t i = 2; i < spv_length(def); ++i) {
+            uint64_t size = spv_size(m, def[i]);
+            sum = size > UINT64_MAX - sum ? UINT64_MAX : sum + size;
+        }
+        return sum;
+    default:
+        return UINT64_MAX;
+    }
+}
+
+/* --- reading -------------------------------------------------------------------------------- */
+
+static void read_name(struct spv_module *m, const uint32_t *words)
+{
+    const char *name = (const char *)(words + 2);
+    size_t bytes = 4 * (size_t)(spv_length(words) - 2);
+    if (bytes > sizeof "whit_fuel" && strncmp(name, "whit_fuel", bytes) == 0)
+        m->fuel = words[1];
+    if (bytes >= sizeof "whit_fuel_loop" && strncmp(name, "whit_fuel_loop", bytes) == 0)
+        m->fuel_loop = words[1];
+}
+
+static bool is_private(const struct spv_module *m, uint32_t id)
+{
+    const uint32_t *def = spv_def(m, id);
+    return def && spv_op(def) == SPV_VARIABLE && def[3] == SPV_STORAGE_PRIVATE;
+}
+
+bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const char *own)
+{
+    *m = (struct spv_module){.words = words, .count = count, .own = own};
+    if (count < SPV_HEADER_WORDS || words[0] != SPV_MAGIC || words[SPV_BOUND_AT] > BOUND_MAX ||
+        count > UINT32_MAX)
+        return false;
+    m->bound = m->next_id = words[SPV_BOUND_AT];
+    m->defined_at = calloc(m->bound + (size_t)1, sizeof *m->defined_at);
+    if (!m->defined_at)
+        return false;
+    for (size_t at = SPV_HEADER_WORDS; at < count; at += spv_length(words + at)) {
+        uint32_t length = spv_length(words + at), op = spv_op(words + at);
+        if (length == 0 || length > count - at)
+            return false;
+        uint32_t id = result_of(m, words + at);
+        if (id >= m->bound)
+            return false;
+        if (id)
+            m->defined_at[id] = (uint32_t)at;
+        if (op == SPV_FUNCTION && !m->functions_at)
+            m->functions_at = at;
+        if (op == SPV_NAME && length > 2)
+            read_name(m, words + at);
+        if (op == SPV_EXT_INST_IMPORT)
+            m->glsl = words[at + 1];
+        if (op == SPV_ENTRY_POINT && length > 2)
+            m->entry = words[at + 2];
+    }
+    m->fuel = is_private(m, m->fuel) ? m->fuel : 0;
+    m->fuel_loop = is_private(m, m->fuel_loop) ? m->fuel_loop : 0;
+    m->place.file = WHIT_OWN;
+    return m->functions_at != 0;
+}
+
+void spv_finish(struct spv_module *m)
+{
+    free(m->defined_at);
+    free(m->globals.words);
+    free(m->body.words);
+    free(m->constants);
+    *m = (struct spv_module){0};
+}
+
+/* --- where an instruction stands ------------------------------------------------------------ */
+
+static struct spv_place place_of(const struct spv_module *m, const uint32_t *line)
+{
+    struct spv_place place = {WHIT_OWN, line[2]};
+    const char *name = spv_string(m, line[1]);
+    if (strncmp(name, m->own, strlen(m->own)) == 0)
+        return place;
+    const char *dot = strchr(name, '.');
+    place.file = dot ? (uint32_t)strtoul(dot + 1, NULL, 10) : 0;
+    return place;
+}
+
+bool spv_follow(struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words), length = spv_length(words);
+    if (op == SPV_LINE && length == 4)
+        m->place = place_of(m, words);
+    if (op == SPV_FUNCTION && length == 5) {
+        m->function = words[2];
+        m->return_type = words[1];
+        m->user_function = m->place.file != WHIT_OWN;
+        /* main() begins with what globals start as, and no OpLine where that stands on the line of
+           what glslang wrote last. */
+        if (words[2] == m->entry && m->has_user)
+            m->place.file = 0;
+    }
+    return m->user_function || m->place.file != WHIT_OWN;
+}
+
+/* --- what is added -------------------------------------------------------------------------- */
+
+void spv_put(struct spv_module *m, struct spv_words *to, const uint32_t *words, uint32_t count)
+{
+    while (to->capacity - to->count < count) {
+        uint32_t full = to->capacity;
+        if (!array_reserve((void **)&to->words, full, &to->capacity, sizeof *to->words)) {
+            m->failed = true;
+            return;
+        }
+    }
+    memcpy(to->words + to->count, words, count * sizeof *words);
+    to->count += count;
+}
+
+static void put_instruction(struct spv_module *m, struct spv_words *to, uint32_t op,
+                            const uint32_t *operands, uint32_t count)
+{
+    uint32_t head = spv_head(op, count + 1);
+    spv_put(m, to, &head, 1);
+    spv_put(m, to, operands, count);
+}
+
+void spv_emit(struct spv_module *m, uint32_t op, const uint32_t *operands, uint32_t count)
+{
+    put_instruction(m, &m->body, op, operands, count);
+}
+
+static uint32_t find_global(const struct spv_module *m, uint32_t op, uint32_t width, uint32_t sign)
+{
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        if (spv_op(words) == op && (op == SPV_TYPE_BOOL || (words[2] == width && words[3] == sign)))
+            return words[1];
+    }
+    return 0;
+}
+
+static uint32_t keep_constant(struct spv_module *m, struct spv_constant constant)
+{
+    if (!ARRAY_PUSH(m->constants, m->constant_count, m->constant_capacity, constant))
+        m->failed = true;
+    return constant.id;
+}
+
+/* What was added before, by its type and value; a type that is no id names what was looked up. */
+static uint32_t find_constant(const struct spv_module *m, uint32_t type, uint32_t value)
+{
+    for (uint32_t i = 0; i < m->constant_count; ++i) {
+        if (m->constants[i].type == type && m->constants[i].value == value)
+            return m->constants[i].id;
+    }
+    return 0;
+}
+
+enum { LOOKED_UP = UINT32_MAX, NULL_OF = UINT32_MAX - 1 };
+
+static uint32_t find_or_add(struct spv_module *m, uint32_t op)
+{
+    uint32_t id = find_constant(m, LOOKED_UP, op);
+    if (id)
+        return id;
+    id = find_global(m, op, 32, 0);
+    if (!id) {
+        id = m->next_id++;
+        const uint32_t operands[] = {id, 32, 0};
+        put_instruction(m, &m->globals, op, operands, op == SPV_TYPE_BOOL ? 1 : 3);
+    }
+    return keep_constant(m, (struct spv_constant){LOOKED_UP, op, id});
+}
+
+uint32_t spv_uint(struct spv_module *m)
+{
+    return find_or_add(m, SPV_TYPE_INT);
+}
+
+uint32_t spv_bool(struct spv_module *m)
+{
+    return find_or_add(m, SPV_TYPE_BOOL);
+}
+
+uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
+{
+    uint32_t id = find_constant(m, type, value);
+    if (id)
+        return id;
+    id = m->next_id++;
+    const uint32_t operands[] = {type, id, value};
+    put_instruction(m, &m->globals, SPV_CONSTANT, operands, 3);
+    return keep_constant(m, (struct spv_constant){type, value, id});
+}
+
+uint32_t spv_null(struct spv_module *m, uint32_t type)
+{
+    uint32_t id = find_constant(m, NULL_OF, type);
+    if (id)
+        return id;
+    id = m->next_id++;
+    const uint32_t operands[] = {type, id};
+    put_instruction(m, &m->globals, SPV_CONSTANT_NULL, operands, 2);
+    return keep_constant(m, (struct spv_constant){NULL_OF, type, id});
+}
+
+static bool is_remark(uint32_t op)
+{
+    return (op >= SPV_SOURCE_CONTINUED && op <= SPV_LINE) || op == SPV_NO_LINE ||
+           op == SPV_MODULE_PROCESSED;
+}
+
+struct spv_words spv_write(struct spv_module *m)
+{
+    struct spv_words out = {0};
+    spv_put(m, &out, m->words, SPV_HEADER_WORDS);
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        if (!is_remark(spv_op(m->words + at)))
+            spv_put(m, &out, m->words + at, spv_length(m->words + at));
+    }
+    spv_put(m, &out, m->globals.words, m->globals.count);
+    for (uint32_t at = 0; at < m->body.count; at += spv_length(m->body.words + at)) {
+        if (!is_remark(spv_op(m->body.words + at)))
+            spv_put(m, &out, m->body.words + at, spv_length(m->body.words + at));
+    }
+    if (!m->failed)
+        out.words[SPV_BOUND_AT] = m->next_id;
+    return out;
+}

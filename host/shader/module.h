@@ -1,0 +1,88 @@
+/* A SPIR-V module as glslang made it, with OpLine and OpName in it, on its way to one without: read
+   once, then every instruction of its functions goes by, to be checked, kept or replaced. It runs
+   in the child that compiled it. */
+#ifndef SHADER_MODULE_H
+#define SHADER_MODULE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "shader/compile.h"
+#include "shader/spirv.h"
+
+struct spv_words {
+    uint32_t *words;
+    uint32_t count, capacity;
+};
+
+/* A place in the user's text; file UINT32_MAX: it is whit's own. */
+struct spv_place {
+    uint32_t file, line;
+};
+
+struct spv_constant {
+    uint32_t type, value, id;
+};
+
+struct spv_module {
+    const uint32_t *words;
+    size_t count;
+    size_t functions_at;  /* the first word of the first OpFunction */
+    uint32_t *defined_at; /* by id: the word of the instruction that it is the result of; 0: none */
+    uint32_t bound;       /* ids of `words` are below it */
+    uint32_t next_id;     /* of what is added */
+    uint32_t glsl;        /* GLSL.std.450; 0: not imported */
+    uint32_t fuel, fuel_loop; /* whit_fuel, whit_fuel_loop; 0: not declared */
+    const char *own;          /* how names of whit's own files begin */
+    uint32_t entry;           /* main() */
+    bool has_user;            /* set by the caller: there is text of a user in it */
+    bool failed;              /* no memory */
+
+    /* What goes out: added types and constants, and functions. */
+    struct spv_words globals, body;
+    struct spv_constant *constants;
+    uint32_t constant_count, constant_capacity;
+
+    /* Where the instruction in hand stands. */
+    uint32_t function, return_type;
+    bool user_function;
+    struct spv_place place;
+};
+
+/* False: damaged, or no memory. */
+bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const char *own);
+void spv_finish(struct spv_module *m);
+
+/* Follows OpLine and OpFunction; true where the instruction is one of the user's. */
+bool spv_follow(struct spv_module *m, const uint32_t *instruction);
+/* The instruction that an id is the result of; NULL: there is none. */
+const uint32_t *spv_def(const struct spv_module *m, uint32_t id);
+uint32_t spv_type_of(const struct spv_module *m, uint32_t id); /* 0: it has none */
+/* The value of an OpConstant of 32 bits. */
+bool spv_constant_value(const struct spv_module *m, uint32_t id, uint32_t *value);
+/* Bytes that a variable of this type takes; UINT64_MAX where that is not known. */
+uint64_t spv_size(const struct spv_module *m, uint32_t type);
+/* The text of an OpString; "" where it is none. */
+const char *spv_string(const struct spv_module *m, uint32_t id);
+
+/* Types and constants that are there, or are added. */
+uint32_t spv_uint(struct spv_module *m);
+uint32_t spv_bool(struct spv_module *m);
+uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value);
+uint32_t spv_null(struct spv_module *m, uint32_t type);
+
+void spv_put(struct spv_module *m, struct spv_words *to, const uint32_t *words, uint32_t count);
+/* SPV_EMIT(m, op, operands...) adds an instruction to the function in hand. */
+#define SPV_EMIT(m, op, ...)                                                                       \
+    do {                                                                                           \
+        const uint32_t operands_[] = {__VA_ARGS__};                                                \
+        spv_emit(m, op, operands_, sizeof operands_ / sizeof *operands_);                          \
+    } while (0)
+void spv_emit(struct spv_module *m, uint32_t op, const uint32_t *operands, uint32_t count);
+
+/* The module with what was added, and `body` for its functions, without debug information. Free
+   ->words. */
+struct spv_words spv_write(struct spv_module *m);
+
+#endif

@@ -1,0 +1,129 @@
+#include "shader/refuse.h"
+
+#include <stdlib.h>
+
+#include "base/array.h"
+
+/* The last number of what SPIR-V has without extensions; above stand those of extensions. */
+enum { LAST_PLAIN = 403, DEMOTE = 5380, TERMINATE = 4416 };
+
+static bool within(uint32_t op, uint32_t first, uint32_t last)
+{
+    return op >= first && op <= last;
+}
+
+static const char *refused_operation(uint32_t op)
+{
+    if (op == SPV_CONTROL_BARRIER || op == SPV_MEMORY_BARRIER)
+        return "barriers are whit's own: functions of users run for one ray alone";
+    if (op == SPV_KILL || op == TERMINATE || op == DEMOTE)
+        return "a ray cannot be discarded: return something";
+    if (within(op, SPV_ATOMIC_FIRST, SPV_ATOMIC_LAST))
+        return "atomic operations are whit's own: functions of users write nothing but their "
+               "results";
+    if (within(op, SPV_IMAGE_FIRST, SPV_IMAGE_LAST) || op == SPV_IMAGE_TEXEL_POINTER)
+        return "images are whit's own";
+    if (within(op, SPV_GROUP_FIRST, SPV_GROUP_LAST))
+        return "subgroups are whit's own: which rays go together is not told";
+    if (within(op, SPV_DPDX_FIRST, SPV_FWIDTH_LAST))
+        return "there are no derivatives: functions of users run for one ray alone";
+    if (op > LAST_PLAIN)
+        return "an operation that is not to be had here";
+    return NULL;
+}
+
+static bool is_fuel(const struct spv_module *m, uint32_t id)
+{
+    return id && (id == m->fuel || id == m->fuel_loop);
+}
+
+static const char *refused_write(const struct spv_module *m, const uint32_t *words)
+{
+    const uint32_t *pointer = spv_def(m, spv_type_of(m, words[1]));
+    uint32_t storage = pointer && spv_op(pointer) == SPV_TYPE_POINTER ? pointer[2] : UINT32_MAX;
+    if (is_fuel(m, words[1]))
+        return "whit_fuel is whit's own";
+    if (storage == SPV_STORAGE_FUNCTION || storage == SPV_STORAGE_PRIVATE)
+        return NULL;
+    return "writes into buffers are whit's own: functions of users write nothing but their results";
+}
+
+static const char *refused_type(const struct spv_module *m, uint32_t type)
+{
+    const uint32_t *def = spv_def(m, type);
+    while (def && (spv_op(def) == SPV_TYPE_VECTOR || spv_op(def) == SPV_TYPE_MATRIX))
+        def = spv_def(m, def[2]);
+    if (def && spv_op(def) == SPV_TYPE_FLOAT && def[2] != 32)
+        return "floats have 32 bits here: no double, no half";
+    if (def && spv_op(def) == SPV_TYPE_INT && def[2] < 32)
+        return "integers have 32 bits or 64 here";
+    return NULL;
+}
+
+const char *refuse_instruction(const struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words);
+    if (op == SPV_LINE || op == SPV_NO_LINE || op == SPV_LABEL || spv_length(words) < 2)
+        return refused_operation(op == SPV_NO_LINE ? SPV_LINE : op);
+    if (op == SPV_LOAD && is_fuel(m, words[3]))
+        return "whit_fuel is whit's own";
+    const char *why = op == SPV_STORE || op == SPV_COPY_MEMORY ? refused_write(m, words) : NULL;
+    if (!why)
+        why = refused_operation(op);
+    return why ? why : refused_type(m, words[1]);
+}
+
+static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint32_t table)
+{
+    for (uint32_t i = 0; i < all->table_count; ++i) {
+        if (all->tables[i] == table)
+            return true;
+    }
+    if (!ARRAY_PUSH(all->tables, all->table_count, all->table_capacity, table))
+        m->failed = true;
+    return false;
+}
+
+const char *refuse_variable(struct refuse_variables *all, struct spv_module *m,
+                            const uint32_t *words)
+{
+    const uint32_t *pointer = spv_def(m, words[1]);
+    if (spv_length(words) == 5 && was_counted(all, m, words[4]))
+        return NULL;
+    uint64_t bytes = pointer && spv_length(pointer) == 4 ? spv_size(m, pointer[3]) : UINT64_MAX;
+    bool before = all->refused;
+    all->bytes = bytes > UINT64_MAX - all->bytes ? UINT64_MAX : all->bytes + bytes;
+    all->refused = all->bytes > REFUSE_VARIABLE_BYTES;
+    return all->refused && !before ? "variables of more than 16 KiB together, up to this one"
+                                   : NULL;
+}
+
+void refuse_finish(struct refuse_variables *all)
+{
+    free(all->tables);
+    *all = (struct refuse_variables){0};
+}
+
+uint32_t refuse_capability(const struct spv_module *m, const char **name)
+{
+    /* Matrix, Shader, Int64, SampledBuffer, ImageBuffer, GroupNonUniform and its kinds. */
+    static const uint32_t known[] = {0, 1, 11, 46, 47, 61, 62, 63, 64, 65};
+    static const struct {
+        uint32_t capability;
+        const char *name;
+    } names[] = {{9, "16-bit floats"},   {10, "double"},      {22, "16-bit integers"},
+                 {39, "8-bit integers"}, {51, "derivatives"}, {5, "addresses"}};
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        bool found = spv_op(words) != SPV_CAPABILITY;
+        for (size_t i = 0; !found && i < sizeof known / sizeof *known; ++i)
+            found = words[1] == known[i];
+        if (found)
+            continue;
+        *name = "";
+        for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+            *name = names[i].capability == words[1] ? names[i].name : *name;
+        return words[1];
+    }
+    return 0;
+}

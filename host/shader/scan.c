@@ -1,0 +1,254 @@
+#include "shader/scan.h"
+
+#include <string.h>
+
+static bool is_newline(char c)
+{
+    return c == '\n' || c == '\r';
+}
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+static bool is_word(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/* Over one end of a line: LF, CR or CR LF. */
+static const char *behind_newline(const char *at, const char *end)
+{
+    return at[0] == '\r' && at + 1 < end && at[1] == '\n' ? at + 2 : at + 1;
+}
+
+/* Over lines that end with a backslash. */
+static void join_lines(struct scan *scan)
+{
+    while (scan->at + 1 < scan->end && scan->at[0] == '\\' && is_newline(scan->at[1])) {
+        scan->at = behind_newline(scan->at + 1, scan->end);
+        scan->line++;
+    }
+}
+
+/* The character in hand, 0 at the end. */
+static char look(struct scan *scan)
+{
+    join_lines(scan);
+    return scan->at < scan->end ? *scan->at : 0;
+}
+
+static void step(struct scan *scan)
+{
+    if (is_newline(*scan->at)) {
+        scan->at = behind_newline(scan->at, scan->end);
+        scan->line++;
+    } else {
+        scan->at++;
+    }
+}
+
+static bool bad(struct scan *scan, const char *reason)
+{
+    scan->kind = SCAN_BAD;
+    scan->reason = reason;
+    scan->at = scan->end;
+    return false;
+}
+
+void scan_begin(struct scan *scan, const char *text, size_t bytes)
+{
+    memset(scan, 0, sizeof *scan);
+    scan->at = text;
+    scan->end = text + bytes;
+    scan->line = 1;
+    scan->at_line_start = true;
+    static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8 */
+    if (bytes >= 3 && memcmp(text, mark, 3) == 0)
+        scan->at += 3;
+}
+
+/* `scan` stands behind the first slash. */
+static bool skip_comment(struct scan *scan)
+{
+    bool line = look(scan) == '/';
+    step(scan);
+    for (char last = 0, c; (c = look(scan)) != 0 || scan->at < scan->end; last = c) {
+        if (line && is_newline(c))
+            return true;
+        step(scan);
+        if (!line && last == '*' && c == '/')
+            return true;
+    }
+    return line || bad(scan, "a comment that does not end");
+}
+
+/* Blanks, comments and, where they mean nothing, ends of lines. */
+static bool skip_blanks(struct scan *scan)
+{
+    for (;;) {
+        char c = look(scan);
+        if (is_newline(c) && !scan->in_directive) {
+            scan->at_line_start = true;
+            step(scan);
+        } else if (is_blank(c)) {
+            step(scan);
+        } else if (c == '/') {
+            struct scan before = *scan;
+            step(scan);
+            char next = look(scan);
+            if (next != '/' && next != '*') {
+                *scan = before;
+                return true;
+            }
+            scan->token_line = before.line;
+            if (!skip_comment(scan))
+                return false;
+        } else {
+            return true;
+        }
+    }
+}
+
+static void take_word(struct scan *scan)
+{
+    size_t used = 0;
+    for (char c; is_word(c = look(scan)); step(scan)) {
+        if (used + 1 < sizeof scan->text)
+            scan->text[used++] = c;
+    }
+    scan->text[used] = 0;
+}
+
+/* What the compiler and this scanner might read otherwise than each other is refused. */
+static bool take_string(struct scan *scan)
+{
+    size_t used = 0;
+    step(scan);
+    for (;; step(scan)) {
+        if (scan->at >= scan->end || is_newline(*scan->at))
+            return bad(scan, "a string that does not end on its line");
+        char c = *scan->at;
+        if (c == '"')
+            break;
+        if (c == '\\')
+            return bad(scan, "a backslash in a string");
+        if (used + 1 < sizeof scan->text)
+            scan->text[used++] = c;
+    }
+    step(scan);
+    scan->text[used] = 0;
+    scan->kind = SCAN_STRING;
+    return true;
+}
+
+static bool take_directive(struct scan *scan)
+{
+    step(scan);
+    scan->in_directive = true;
+    if (!skip_blanks(scan))
+        return false;
+    take_word(scan);
+    scan->kind = SCAN_DIRECTIVE;
+    return true;
+}
+
+bool scan_next(struct scan *scan)
+{
+    if (scan->kind == SCAN_BAD || !skip_blanks(scan))
+        return false;
+    bool first = scan->at_line_start;
+    char c = look(scan);
+    scan->token_line = scan->line;
+    scan->at_line_start = false;
+    scan->text[0] = 0;
+    if (scan->in_directive && (scan->at >= scan->end || is_newline(c))) {
+        scan->in_directive = false;
+        scan->kind = SCAN_NEWLINE;
+        return true;
+    }
+    if (scan->at >= scan->end) {
+        scan->kind = SCAN_END;
+        return false;
+    }
+    if (first && c == '#')
+        return take_directive(scan);
+    if (c == '"')
+        return take_string(scan);
+    if (is_word(c)) {
+        scan->kind = SCAN_WORD;
+        take_word(scan);
+        return true;
+    }
+    scan->kind = SCAN_SIGN;
+    scan->text[0] = c;
+    scan->text[1] = 0;
+    step(scan);
+    return true;
+}
+
+bool scan_is(const struct scan *scan, enum scan_kind kind, const char *text)
+{
+    return scan->kind == kind && strcmp(scan->text, text) == 0;
+}
+
+/* What #else leaves out may open what the branch before it has opened already. */
+static void follow_directive(const struct scan *scan, struct scan_functions *f)
+{
+    const uint32_t max = sizeof f->depths / sizeof *f->depths;
+    bool opens = strncmp(scan->text, "if", 2) == 0;
+    if (opens && f->depth_count < max)
+        f->depths[f->depth_count] = f->braces;
+    f->depth_count += opens;
+    if (strncmp(scan->text, "el", 2) == 0 && f->depth_count && f->depth_count <= max)
+        f->braces = f->depths[f->depth_count - 1];
+    f->depth_count -= f->depth_count && strcmp(scan->text, "endif") == 0;
+}
+
+static void skip_line(struct scan *scan)
+{
+    while (scan_next(scan) && scan->kind != SCAN_NEWLINE)
+        ;
+}
+
+/* Whether the sign in hand opens the body of a function. */
+static bool follow_sign(char sign, struct scan_functions *f)
+{
+    bool body = sign == '{' && f->braces == 0 && f->closed;
+    if (sign == '{') {
+        f->braces++;
+        f->brackets = 0;
+    } else if (sign == '}') {
+        f->braces -= f->braces > 0;
+        f->brackets = 0;
+    } else if (sign == '(') {
+        f->brackets++;
+    } else if (sign == ')' && f->brackets) {
+        f->brackets--;
+        f->closed = f->brackets == 0 && f->name[0];
+        return false;
+    }
+    if (f->brackets == 0)
+        f->closed = false;
+    if (f->brackets == 0 && !body)
+        f->name[0] = 0;
+    return body;
+}
+
+bool scan_next_function(struct scan *scan, struct scan_functions *f)
+{
+    while (scan_next(scan)) {
+        if (scan->kind == SCAN_DIRECTIVE) {
+            follow_directive(scan, f);
+            skip_line(scan);
+        } else if (scan->kind == SCAN_WORD && f->braces == 0 && f->brackets == 0) {
+            memcpy(f->name, scan->text, sizeof f->name);
+            f->line = scan->token_line;
+            f->closed = false;
+        } else if (scan->kind == SCAN_SIGN && follow_sign(scan->text[0], f)) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,3 @@
+#include "sources.h"
+
+#include "shader_sources.h"
