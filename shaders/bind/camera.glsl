@@ -41,6 +41,11 @@ vec2 mirror_sample(vec2 xy, uvec2 pixel)
     return uintBitsToFloat(floatBitsToUint(xy) ^ (uvec2(pixel.x ^ pixel.y, pixel.x) << 31));
 }
 
+#ifdef HOOK_CAMERA
+// Lets the user's function have its say.
+void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir);
+#endif
+
 // camera_ray of picture/camera.c is this in C, bit for bit: sums, differences and products alone, which
 // all devices round alike.
 Ray camera_ray(uvec2 pixel)
@@ -50,12 +55,19 @@ Ray camera_ray(uvec2 pixel)
     precise vec2 at = (middle + place) * vec2(frame.inv_width, frame.inv_height);
     vec3 origin, dir;
     camera_line(at, lens, origin, dir);
+#ifdef HOOK_CAMERA
+    aim_camera(pixel, at, origin, dir);
+#endif
     precise float squared = (dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z;
     precise vec3 unit = dir * inverse_square_root(squared);
     Ray ray;
     ray.origin = origin;
     ray.dir = unit;
     ray.weight = vec3(1.0);
+#ifdef HOOK_CAMERA
+    if (!is_usable(origin, unit))
+        ray.weight = vec3(uintBitsToFloat(0x7fc00000u)); // which makes an error of the picture
+#endif
     ray.steps = 0u;
     ray.media = SPEC_MEDIA != 0u ? uvec4(frame.eye_media0, frame.eye_media1, frame.eye_media2,
                                          frame.eye_media3)

@@ -18,7 +18,7 @@ vec3 fetch_environment(ivec2 at, int size)
 }
 
 // What a ray along unit `dir` sees when it meets nothing.
-vec3 environment_radiance(vec3 dir)
+vec3 environment(vec3 dir)
 {
     if (SPEC_ENVIRONMENT_MAP != 0u && frame.environment_size != 0u) {
         int size = int(frame.environment_size);

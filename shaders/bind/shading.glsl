@@ -10,7 +10,11 @@
 
 // A storage buffer: lavapipe compiles the values of uniform buffers that branches read into the
 // kernel, along with push constants, and would compile anew for every dispatch.
-layout(set = 0, binding = BIND_FRAME, std430) readonly buffer FrameBuffer { gpu_frame stored_frame; };
+layout(set = 0, binding = BIND_FRAME, std430) readonly buffer FrameBuffer
+{
+    gpu_frame stored_frame;
+    float stored_sliders[SLIDERS_MAX];
+};
 
 // Every kernel's first act is to take it from there: within branches and loops lavapipe loads what is the
 // same for all lanes lane by lane.

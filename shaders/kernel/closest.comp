@@ -17,10 +17,16 @@
 
 layout(local_size_x_id = 0) in;
 
+#ifdef HOOKS
+#include "../hook/declare.glsl"
+#else
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front, ivec3 own)
 {
     return own;
 }
+#define miss whit_miss
+#include "../hook/miss.glsl"
+#endif
 
 uint ray_slot[SPEC_PACKET_RAYS], ray_id[SPEC_PACKET_RAYS], ray_kind[SPEC_PACKET_RAYS];
 uvec4 ray_media_of[SPEC_PACKET_RAYS];
@@ -91,7 +97,17 @@ bool leave_ray(uint r, bool alive)
     if (met)
         store_hit(ray_id[r], hit);
     vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // the largest float
-    vec3 sky = environment_radiance(packet_dir[r]) * weight;
+#ifdef HOOKS
+    hook_ray.origin = packet_origin[r];
+    hook_ray.dir = packet_dir[r];
+    hook_pixel = slot_pixel(ray_slot[r]);
+    hook_hit = hit;
+    begin_hook();
+#endif
+    vec3 sky = miss(packet_dir[r]) * weight;
+#ifdef HOOKS
+    end_hook(alive && !met);
+#endif
     if (alive && !met)
         store_sum(ray_id[r], sky, 0u);
     if (SPEC_PROBE != 0u && alive)
@@ -120,4 +136,11 @@ void main()
     }
     list_hits(met, class_of, ray_id);
     report_status(status);
+#ifdef HOOKS
+    report_hooks();
+#endif
 }
+
+#ifdef HOOKS
+#include "../hook/user.glsl"
+#endif

@@ -11,6 +11,10 @@
 #include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
 
+#ifdef HOOKS
+#include "../hook/declare.glsl"
+#endif
+
 layout(local_size_x_id = 0) in;
 
 vec3 child_sum(uint id)
@@ -95,6 +99,14 @@ void resolve_pixel(uint id)
             total.rgb += pixels[row].rgb;
         row += chunk.sums_step;
     }
+#ifdef HOOK_POST
+    if (last) {
+        hook_pixel = at;
+        begin_hook();
+        total.rgb = post(ivec2(at), total.rgb);
+        end_hook(true);
+    }
+#endif
     if (last && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
     pixels[last ? pixel : row] = total;
@@ -110,4 +122,11 @@ void main()
         resolve_pixel(done ? item : ITEM_NONE);
     else if (done && item != ITEM_NONE)
         resolve_hit(item);
+#ifdef HOOKS
+    report_hooks();
+#endif
 }
+
+#ifdef HOOKS
+#include "../hook/user.glsl"
+#endif

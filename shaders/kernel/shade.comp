@@ -10,11 +10,16 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "../bind/queues.glsl"
 #include "../bind/crossing.glsl"
-#include "../bind/filter.glsl"
-#include "../bind/lit.glsl"
-#include "../bind/optics.glsl"
+#include "../bind/hook.glsl"
+#include "../bind/lit_surface.glsl"
 #include "../bind/probe.glsl"
-#include "../bind/terminator.glsl"
+
+#ifdef HOOKS
+#include "../hook/declare.glsl"
+#else
+#define scatter whit_scatter
+#include "../hook/scatter.glsl"
+#endif
 
 layout(local_size_x_id = 0) in;
 
@@ -53,8 +58,21 @@ void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout
         calls.ends[which] = deep ? PROBE_DEPTH : PROBE_BAILOUT;
 }
 
-// What the surface reflects and lets through.
-Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
+// hook/scatter.glsl, or the user's function. `lost`: it gave no number.
+void scatter_hook(Surface s, Optics o, inout Rays rays, inout bool lost)
+{
+#ifdef HOOK_SCATTER
+    begin_hook();
+    scatter(s, o, rays);
+    end_hook(true);
+    vec3 sum = rays.reflected_dir + rays.refracted_dir + rays.reflected + rays.refracted + rays.straight;
+    lost = lost || any(isnan(sum)) || any(isinf(sum));
+#else
+    scatter(s, o, rays);
+#endif
+}
+
+Calls no_calls(uint steps)
 {
     Calls calls;
     calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
@@ -62,25 +80,31 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
     calls.cut = 0.0;
     calls.cuts = 0u;
     calls.lost = false;
-    calls.steps = ray.steps + STEPS_OF_BOUNCE;
+    calls.steps = steps;
+    return calls;
+}
+
+// What the surface reflects and lets through.
+Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
+{
+    Calls calls = no_calls(ray.steps + STEPS_OF_BOUNCE);
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(ray.steps) >= frame.depth;
-    float solid = 1.0 - o.straight;
+    Rays rays = Rays(vec3(0.0), vec3(0.0), vec3(0.0), ray.dir, ray.dir);
+    scatter_hook(s, o, rays, calls.lost);
     if (SPEC_REFRACTION != 0u) {
-        vec3 dir = ray.dir;
-        bool passes = o.thin || refract_dir(ray.dir, s.ns, o.eta, dir);
+        vec3 dir = rays.refracted_dir;
         // A shading normal may bend the ray back to its own side: then straight on.
         if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
             dir = ray.dir;
-        if (passes)
-            call(0u, dir, ray.weight * o.refracted * solid, deep, calls, status);
+        call(0u, dir, ray.weight * rays.refracted, deep, calls, status);
     }
     if (SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u)
-        call(1u, ray.dir, ray.weight * o.straight, deep, calls, status);
+        call(1u, ray.dir, ray.weight * rays.straight, deep, calls, status);
     if (SPEC_REFLECTION != 0u) {
-        vec3 dir = reflect(ray.dir, s.ns);
+        vec3 dir = rays.reflected_dir;
         if (dot(dir, s.ng) <= 0.0)
             dir = reflect(ray.dir, s.ng);
-        call(2u, normalize(dir), ray.weight * o.reflected * solid, deep, calls, status);
+        call(2u, normalize(dir), ray.weight * rays.reflected, deep, calls, status);
     }
     return calls;
 }
@@ -88,13 +112,7 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
 // Straight on, where both sides of a surface are the same medium. Counted as refracted.
 Calls call_through(Ray ray, inout uint status)
 {
-    Calls calls;
-    calls.wanted[0] = calls.wanted[1] = calls.wanted[2] = false;
-    calls.ends[0] = calls.ends[1] = calls.ends[2] = PROBE_DEFERRED;
-    calls.cut = 0.0;
-    calls.cuts = 0u;
-    calls.lost = false;
-    calls.steps = ray.steps + 1u;
+    Calls calls = no_calls(ray.steps + 1u);
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(calls.steps) > frame.depth;
     call(0u, ray.dir, ray.weight, deep, calls, status);
     return calls;
@@ -200,25 +218,44 @@ void ask_lights(bool alive, uint id, uint record, Ray ray, Surface s, Optics o, 
                 bool catcher, inout uint status)
 {
     vec3 weight = catcher ? vec3(1.0) : ray.weight * (1.0 - o.straight);
-    vec3 lift = smooth_lift(s);
-    Lit lit;
-    lit.p = s.p;
-    lit.origin = offset_origin(s.p + lift, s.error, s.ng);
-    lit.error = largest_of(s.error);
-    lit.ns = s.ns;
-    lit.ng = s.ng;
-    lit.diffuse = o.diffuse * weight;
-    lit.highlight = o.highlight * weight;
-    lit.gloss = o.metal_rough ? o.alpha : o.shininess;
-    lit.absorption = surrounding_absorption(c.before);
-    lit.flags = (lift != vec3(0.0) ? LIT_LIFTED : 0u) | (o.metal_rough ? LIT_METAL_ROUGH : 0u) |
-                (catcher ? LIT_CATCHER : 0u);
+    Lit lit = lit_surface(s, o, weight, c.before);
+    lit.flags |= catcher ? LIT_CATCHER : 0u;
     lit.id = id;
     lit.record = record;
     bool some = largest_of(lit.diffuse + lit.highlight) > 0.0 ||
                 any(isnan(lit.diffuse + lit.highlight));
     list_lit(alive && some, lit, status);
 }
+
+// What the surface sends to the eye before lights are asked, or with HOOK_SHADE all of it.
+vec3 own_light(Surface s, Optics o, vec3 dir)
+{
+#ifdef HOOK_SHADE
+    begin_hook();
+    vec3 own = shade(s, o, -dir);
+    end_hook(true);
+    return own;
+#else
+    return o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
+#endif
+}
+
+#ifdef HOOK_SURFACE
+void change_surface(inout Surface s)
+{
+    Surface changed = s;
+    begin_hook();
+    surface(changed);
+    end_hook(true);
+    vec3 sum = changed.ns + changed.color + vec3(changed.u, changed.v, changed.color_alpha);
+    hook_lost = any(isnan(sum)) || any(isinf(sum));
+    s.ns = normalize_or(changed.ns, s.ns);
+    s.color = changed.color;
+    s.color_alpha = changed.color_alpha;
+    s.u = changed.u;
+    s.v = changed.v;
+}
+#endif
 
 void main()
 {
@@ -241,6 +278,15 @@ void main()
     if (alive && must_wait(status))
         list_deferred(id);
     alive = alive && !must_wait(status);
+    hook_ray = ray;
+#ifdef HOOKS
+    hook_pixel = slot_pixel(slot);
+    hook_hit = hit;
+    hook_media = c.before;
+#endif
+#ifdef HOOK_SURFACE
+    change_surface(s);
+#endif
     Optics o = surface_optics(s, m, ray.dir, c.eta);
     if (dot(s.ns, ray.dir) > 0.0)
         s.ns = s.ng;
@@ -253,6 +299,16 @@ void main()
         calls = call_through(ray, status);
         o.thin = false;
     }
+    vec3 own = own_light(s, o, ray.dir);
+#ifdef HOOKS
+    calls.lost = calls.lost || hook_lost;
+    status |= hook_status;
+    if (alive && must_wait(hook_status))
+        list_deferred(id);
+    alive = alive && !must_wait(hook_status);
+    if (alive)
+        report_hooks();
+#endif
     if (CALLS_RAYS)
         tally_cuts(alive ? calls.cuts : 0u);
     uint has = 0u;
@@ -260,7 +316,6 @@ void main()
         has = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
     if (SPEC_PROBE != 0u && alive)
         probe_calls(id, ray, calls, has, !seen);
-    vec3 own = o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
     own *= ray.weight * (1.0 - o.straight);
     bool some = has != 0u;
     has |= catcher && some ? SUM_IS_CATCHER : 0u;
@@ -271,8 +326,18 @@ void main()
         count_cut(slot, calls);
     if (alive && catcher)
         store_hit_row(id * HIT_ROWS, uvec4(0u));
-    if (SPEC_LIGHTS != 0u)
+#ifdef HOOK_SHADE
+    const bool asks = SPEC_CATCHERS != 0u && SPEC_LIGHTS != 0u; // all others have asked
+    seen = catcher;
+#else
+    const bool asks = SPEC_LIGHTS != 0u;
+#endif
+    if (asks)
         ask_lights(alive && seen && !o.unlit && (!catcher || some), id, hit.triangle, ray, s, o, c, catcher,
                    status);
     report_status(alive ? status : 0u);
 }
+
+#ifdef HOOKS
+#include "../hook/user.glsl"
+#endif

@@ -8,35 +8,17 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "../bind/queues.glsl"
-#include "../bind/filter.glsl"
-#include "../bind/light.glsl"
-#include "../bind/lit.glsl"
+#include "../bind/arrival.glsl"
 #include "../bind/packet.glsl"
 #include "../bind/probe.glsl"
-#include "../lib/optics.glsl"
+
+#ifdef HOOKS
+#include "../hook/declare.glsl"
+#endif
 
 layout(local_size_x_id = 0) in;
 
 Lit lit_of[SPEC_PACKET_RAYS];
-LightSample turn_of[SPEC_PACKET_RAYS];
-
-// A shadow ray from `lit`, of packet ray `r`. What is lifted off the triangle may be met by light from
-// below the triangle's plane, which then must pass beside the triangle itself.
-void ask_light(uint r, bool wanted, Lit lit, LightSample light, bool above)
-{
-    vec3 to_light = light.to_light;
-    float distance = light.distance;
-    if (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u && distance < FLOAT_LARGEST) {
-        vec3 way = lit.p + to_light * distance - lit.origin;
-        distance = length(way);
-        to_light = way / distance;
-    }
-    packet_alive[r] = wanted;
-    packet_origin[r] = lit.origin;
-    packet_dir[r] = to_light;
-    packet_t_max[r] = distance;
-    packet_skip[r] = uvec2(lit.skip_instance, above ? lit.skip_primitive : HIT_NONE);
-}
 
 // How much of a light passes to the surface: 1 less opaque things in between, times the filters.
 vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
@@ -50,77 +32,21 @@ vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
         add_cost(slot, RAY_SHADOW);
     }
     status |= wanted ? blocker.status : 0u;
-    if (blocker.primitive != HIT_NONE)
-        return vec3(0.0);
-    if (SPEC_FILTERS == 0u)
-        return vec3(1.0);
-    ivec3 depth = blocker.filter_depth;
-    float end = packet_t_max[r] < FLOAT_LARGEST ? packet_t_max[r] : 0.0;
-    if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && SPEC_ABSORPTION != 0u)
-        depth = max(depth + absorption_depth(lit.absorption, end), ivec3(0));
-    return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
+    return passing_share(blocker, lit.absorption, packet_t_max[r]);
 }
 
-// What the points of a flat emitter add up to. Its diffuse light is that of the whole polygon, of
-// which the points only tell the visible share, weighted by what each of them would send.
-struct EmitterSum {
-    float weight;  // cos cos / distance^2
-    vec3 visible;  // the same, times the share that passes
-    vec3 highlight;
-};
-
-// The highlight is not scaled up where points miss most of what is above the horizon. `open`: the
-// diffuse light without shadows.
-vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
-{
-    open = vec3(0.0);
-    if (!(sum.weight > 0.0))
-        return open;
-    float factor = emitter_form_factor(light, lit.p, vec3(lit.error), lit.ns);
-    float sampled = light.area_share * sum.weight;
-    vec3 radiance = min(light.color, vec3(LIGHT_MAX));
-    vec3 diffuse = lit.diffuse * (factor * (sum.visible / sum.weight));
-    vec3 highlight = sum.highlight * (light.area_share * min(factor / sampled, 1.0));
-    open = radiance * (lit.diffuse * factor);
-    return radiance * (diffuse + highlight);
-}
-
-// What arrives from one point of the light at one lit hit.
-struct Arrival {
-    bool faces, wanted;
-    float cos_light, strength;
-    vec3 highlight, reflected, arriving;
-};
 Arrival arrival_of[SPEC_PACKET_RAYS];
 
 void face_light(uint r, bool alive, gpu_light light, uint point)
 {
     Lit lit = lit_of[r];
-    LightSample at;
-    bool arrives = light_at(light, point, lit.p, at);
-    Arrival a;
-    a.cos_light = dot(at.to_light, lit.ns);
-    a.faces = alive && arrives && a.cos_light > 0.0;
-    a.strength = at.strength;
-    a.arriving = at.arriving;
-    bool above = dot(at.to_light, lit.ng) > 0.0;
-    bool wanted = a.faces && (above || (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u));
-    a.highlight = vec3(0.0);
-    a.reflected = lit.diffuse * a.cos_light;
-    if (SPEC_HIGHLIGHTS != 0u) {
-        vec3 middle = normalize_or(at.to_light + lit.view, lit.ns);
-        float cos_half = clamp(dot(middle, lit.ns), 0.0, 1.0);
-        float cos_view = max(dot(lit.view, lit.ns), 0.0);
-        bool metal_rough = SPEC_METAL_ROUGH != 0u && (lit.flags & LIT_METAL_ROUGH) != 0u;
-        a.highlight = metal_rough ? lit.highlight * a.cos_light *
-                                        ggx_highlight(cos_half, a.cos_light, cos_view, lit.gloss)
-                                  : lit.highlight * blinn_highlight(cos_half, lit.gloss);
-        a.reflected += a.highlight;
-    }
-    // NaN is wanted too: it must be seen in the picture.
-    a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= 0.0);
+    Arrival a = arrive(alive, lit, light, point);
+    packet_alive[r] = a.wanted;
+    packet_origin[r] = lit.origin;
+    packet_dir[r] = a.dir;
+    packet_t_max[r] = a.distance;
+    packet_skip[r] = uvec2(lit.skip_instance, a.above ? lit.skip_primitive : HIT_NONE);
     arrival_of[r] = a;
-    ask_light(r, a.wanted, lit, at, above);
 }
 
 EmitterSum emitter_of[SPEC_PACKET_RAYS];
@@ -213,3 +139,7 @@ void main()
     if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
         atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);
 }
+
+#ifdef HOOKS
+#include "../hook/user.glsl"
+#endif

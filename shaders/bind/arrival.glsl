@@ -1,0 +1,100 @@
+// What of a light arrives at a lit hit, and what the surface sends on of it.
+#ifndef BIND_ARRIVAL_GLSL
+#define BIND_ARRIVAL_GLSL
+
+#include "../lib/optics.glsl"
+#include "filter.glsl"
+#include "lit.glsl"
+
+// What arrives from one point of a light at one lit hit, and the shadow ray there.
+struct Arrival {
+    bool faces, wanted;
+    bool above; // the light is on the side of the triangle's normal too
+    float cos_light, strength;
+    vec3 highlight, reflected, arriving;
+    vec3 dir; // of the shadow ray, unit
+    float distance;
+};
+
+// Aims the shadow ray. What is lifted off the triangle may be met by light from below the triangle's
+// plane, which then must pass beside the triangle itself.
+void aim_at_light(Lit lit, LightSample light, inout Arrival a)
+{
+    a.dir = light.to_light;
+    a.distance = light.distance;
+    if (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u && a.distance < FLOAT_LARGEST) {
+        vec3 way = lit.p + a.dir * a.distance - lit.origin;
+        a.distance = length(way);
+        a.dir = way / a.distance;
+    }
+}
+
+Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
+{
+    LightSample at;
+    bool arrives = light_at(light, point, lit.p, at);
+    Arrival a;
+    a.cos_light = dot(at.to_light, lit.ns);
+    a.faces = alive && arrives && a.cos_light > 0.0;
+    a.strength = at.strength;
+    a.arriving = at.arriving;
+    a.above = dot(at.to_light, lit.ng) > 0.0;
+    bool wanted = a.faces && (a.above || (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u));
+    a.highlight = vec3(0.0);
+    a.reflected = lit.diffuse * a.cos_light;
+    if (SPEC_HIGHLIGHTS != 0u) {
+        vec3 middle = normalize_or(at.to_light + lit.view, lit.ns);
+        float cos_half = clamp(dot(middle, lit.ns), 0.0, 1.0);
+        float cos_view = max(dot(lit.view, lit.ns), 0.0);
+        bool metal_rough = SPEC_METAL_ROUGH != 0u && (lit.flags & LIT_METAL_ROUGH) != 0u;
+        a.highlight = metal_rough ? lit.highlight * a.cos_light *
+                                        ggx_highlight(cos_half, a.cos_light, cos_view, lit.gloss)
+                                  : lit.highlight * blinn_highlight(cos_half, lit.gloss);
+        a.reflected += a.highlight;
+    }
+    // NaN is wanted too: it must be seen in the picture.
+    a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= 0.0);
+    aim_at_light(lit, at, a);
+    return a;
+}
+
+// The share of light that passes along a shadow ray of length `t_max`. `blocker`: what TRAVERSE_SHADOW has
+// met; `absorption`: of the media where the ray starts.
+vec3 passing_share(Hit blocker, vec3 absorption, float t_max)
+{
+    if (blocker.primitive != HIT_NONE)
+        return vec3(0.0);
+    if (SPEC_FILTERS == 0u)
+        return vec3(1.0);
+    ivec3 depth = blocker.filter_depth;
+    float end = t_max < FLOAT_LARGEST ? t_max : 0.0;
+    if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && SPEC_ABSORPTION != 0u)
+        depth = max(depth + absorption_depth(absorption, end), ivec3(0));
+    return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
+}
+
+// What the points of a flat emitter add up to. Its diffuse light is that of the whole polygon, of
+// which the points only tell the visible share, weighted by what each of them would send.
+struct EmitterSum {
+    float weight;  // cos cos / distance^2
+    vec3 visible;  // the same, times the share that passes
+    vec3 highlight;
+};
+
+// The highlight is not scaled up where points miss most of what is above the horizon. `open`: the
+// diffuse light without shadows.
+vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
+{
+    open = vec3(0.0);
+    if (!(sum.weight > 0.0))
+        return open;
+    float factor = emitter_form_factor(light, lit.p, vec3(lit.error), lit.ns);
+    float sampled = light.area_share * sum.weight;
+    vec3 radiance = min(light.color, vec3(LIGHT_MAX));
+    vec3 diffuse = lit.diffuse * (factor * (sum.visible / sum.weight));
+    vec3 highlight = sum.highlight * (light.area_share * min(factor / sampled, 1.0));
+    open = radiance * (lit.diffuse * factor);
+    return radiance * (diffuse + highlight);
+}
+
+#endif

@@ -1,0 +1,22 @@
+// What stages and hooks tell each other: functions that a user may put in the place of whit's (hook/).
+#ifndef BIND_HOOK_GLSL
+#define BIND_HOOK_GLSL
+
+#include "ray.glsl"
+
+// The rays that go on from a surface.
+struct Rays {
+    vec3 reflected, refracted, straight; // share of what they bring that is seen, linear RGB; 0: there is none
+    vec3 reflected_dir, refracted_dir;   // the way they go, world space, unit but for rounding
+};
+
+// The ray that a hook is called for.
+Ray hook_ray;
+
+// The way that ray goes: unit, world space.
+vec3 ray_dir()
+{
+    return hook_ray.dir;
+}
+
+#endif

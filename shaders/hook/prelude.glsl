@@ -1,0 +1,216 @@
+// What the functions of a user's file may use besides each other. Lengths are in world units, angles in radians,
+// directions unit vectors of world space, light is radiance in linear RGB.
+//
+// struct Surface (bind/surface.glsl): p, ng, ns, color, color_alpha, u, v, instance, material
+// struct Optics (bind/optics.glsl):   diffuse, ambient, highlight, emission, reflected, refracted, straight,
+//                                     shininess, alpha, eta, thin, unlit, metal_rough
+// struct Rays (bind/hook.glsl):       reflected, refracted, straight, reflected_dir, refracted_dir
+// ray_dir():                          the way goes the ray that has met the surface
+// environment(dir):                   what the scene's sky sends from there
+#ifndef HOOK_PRELUDE_GLSL
+#define HOOK_PRELUDE_GLSL
+
+#include "../bind/arrival.glsl"
+#include "../bind/hook.glsl"
+#include "../bind/lit_surface.glsl"
+
+// Set before a hook is called.
+uvec2 hook_pixel;
+Hit hook_hit;            // of the surface
+uvec4 hook_media;        // around it
+uint hook_status = 0u;   // of the rays that hooks have traced
+bool hook_lost = false;  // a hook gave no number
+uint whit_fuel = 0u;     // iterations of loops that the call may still take
+uint whit_fuel_loop = 0u; // number of the loop in which there were none left; 0: none
+uint hook_loop = 0u;      // the same, of any call
+
+void begin_hook()
+{
+    whit_fuel = HOOK_FUEL;
+    whit_fuel_loop = 0u;
+}
+
+void end_hook(bool alive)
+{
+    hook_loop = alive ? max(hook_loop, whit_fuel_loop) : hook_loop;
+}
+
+void report_hooks()
+{
+    if (hook_loop != 0u) {
+        atomicMax(status_loop, hook_loop + (HOOK_KERNEL << 16));
+        report_status(STATUS_FUEL);
+    }
+}
+
+// Value of slider `index` of the file.
+float slider(uint index)
+{
+    return stored_sliders[index];
+}
+
+// ---- The ray ----
+
+// Where it starts.
+vec3 ray_origin()
+{
+    return hook_ray.origin;
+}
+
+// How far the surface is from there.
+float ray_distance()
+{
+    return hook_hit.t;
+}
+
+// Surfaces between the camera and this one that have called for rays; 0: the camera sees it.
+uint bounces()
+{
+    return ray_bounces(hook_ray.steps);
+}
+
+// ---- The picture ----
+
+// From 0, 0 at the top left.
+uvec2 pixel()
+{
+    return hook_pixel;
+}
+
+uvec2 picture_size()
+{
+    return uvec2(frame.width, frame.height);
+}
+
+// Which of the pixel's samples.
+uint sample_number()
+{
+    return chunk.sample_index;
+}
+
+// Where the camera is.
+vec3 eye()
+{
+    return frame.eye;
+}
+
+uint hash(uint x) // PCG, after Jarzynski and Olano 2020
+{
+    x = x * 747796405u + 2891336453u;
+    x = ((x >> ((x >> 28) + 4u)) ^ x) * 277803737u;
+    return x >> 22 ^ x;
+}
+
+// A number from 0 to just below 1: another one for each k, pixel, sample and ray, the same in every run.
+float random(uint k)
+{
+    uvec2 at = pixel();
+    uvec3 way = floatBitsToUint(hook_ray.dir);
+    uint seed = hash(at.x ^ hash(at.y ^ hash(chunk.sample_index)));
+    seed = hash(seed ^ hash(way.x ^ hash(way.y ^ hash(way.z))));
+    return float(hash(seed + k) >> 8) * (1.0 / 16777216.0);
+}
+
+// ---- Light ----
+
+// Light that comes from everywhere.
+vec3 ambient()
+{
+    return frame.ambient;
+}
+
+uint light_count()
+{
+    return frame.light_count;
+}
+
+// Points of the light that are tested: --light-samples of an area light, 1 of all others.
+uint light_points(uint index)
+{
+    return is_flat(fetch_light(index)) ? turns_each() : 1u;
+}
+
+struct Light {
+    vec3 dir;       // from the surface to the point of the light
+    float distance; // along it; the largest float: a light without a place
+    vec3 arriving;  // irradiance over pi on what faces the point, without shadows; of an area light, its share
+};
+
+// Point `point` of a light, as a surface has it.
+Light light(uint index, uint point, Surface s)
+{
+    LightSample at;
+    bool arrives = light_at(fetch_light(index), point, s.p, at);
+    return Light(at.to_light, at.distance, arrives ? at.arriving : vec3(0.0));
+}
+
+// ---- Rays ----
+
+// Just off the surface, on the side that `dir` goes to: where a ray from it starts.
+vec3 off_surface(Surface s, vec3 dir)
+{
+    return offset_origin(s.p, s.error, dot(dir, s.ng) < 0.0 ? -s.ng : s.ng);
+}
+
+// How much light comes along a way of length `distance` from `origin`: 1 where nothing is in it, 0 behind
+// something opaque.
+vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorption)
+{
+    if (SPEC_SHADOWS == 0u)
+        return vec3(1.0);
+    Hit blocker = traverse(TRAVERSE_SHADOW, origin, dir, 0.0, distance, frame.root, skip.x, skip.y);
+    hook_status |= blocker.status;
+    return passing_share(blocker, absorption, distance);
+}
+
+// The same from a surface, which is not in its own way.
+vec3 visible(Surface s, vec3 dir, float distance)
+{
+    return visible_from(off_surface(s, dir), dir, distance, uvec2(hook_hit.instance, hook_hit.primitive),
+                        surrounding_absorption(hook_media));
+}
+
+// What a ray meets, and after which distance. False: nothing; `met` then means nothing.
+bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
+{
+    Hit hit = traverse(TRAVERSE_CLOSEST, origin, dir, 0.0, FLOAT_LARGEST, frame.root, HIT_NONE, HIT_NONE);
+    hook_status |= hit.status;
+    bool some = hit.primitive != HIT_NONE;
+    distance = hit.t;
+    if (some) {
+        met = fetch_surface(hit);
+        if (dot(dir, met.ng) > 0.0)
+            met.ng = -met.ng;
+        if (dot(met.ns, met.ng) < 0.0)
+            met.ns = -met.ns;
+    }
+    return some;
+}
+
+// What a light, with its shadows, lets a surface send to `to_eye`.
+vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
+{
+    Lit lit = lit_surface(s, o, vec3(1.0), hook_media);
+    lit.view = to_eye;
+    gpu_light from = fetch_light(index);
+    EmitterSum emitter = EmitterSum(0.0, vec3(0.0), vec3(0.0));
+    vec3 sum = vec3(0.0);
+    uint points = light_points(index);
+    for (uint point = 0u; point < points; point++) {
+        Arrival a = arrive(true, lit, from, point);
+        vec3 share = vec3(0.0);
+        if (a.wanted)
+            share = visible_from(lit.origin, a.dir, a.distance,
+                                 uvec2(hook_hit.instance, a.above ? hook_hit.primitive : HIT_NONE),
+                                 lit.absorption);
+        float weight = a.faces ? a.cos_light * a.strength : 0.0;
+        emitter.weight += weight;
+        emitter.visible += share * weight;
+        emitter.highlight += a.highlight * share * a.strength;
+        sum += a.reflected * a.arriving * share;
+    }
+    vec3 open;
+    return is_flat(from) ? emitter_light(from, lit, emitter, open) : sum;
+}
+
+#endif
