@@ -1,10 +1,10 @@
 whit_module(api
-  SOURCES scene_api.c accel_api.c device_api.c renderer_api.c probe_api.c probe_rows.c reference_api.c hard_api.c judge_api.c image_api.c file_api.c
+  SOURCES scene_api.c accel_api.c device_api.c renderer_api.c shader_api.c probe_api.c probe_rows.c reference_api.c hard_api.c judge_api.c image_api.c file_api.c
   LINK whit_base whit_image whit_scene whit_load whit_hard whit_picture whit_device whit_render whit_reference)
 
 # libwhit: the objects of all modules in one archive. Its users link `whit`; its headers are found
 # as <whit/whit.h>, and as "whit.h".
-set(library_modules base image scene load bvh accel twin oracle picture hard device render reference api kernels)
+set(library_modules base image scene load bvh accel twin oracle picture hard device shader render reference api kernels)
 list(TRANSFORM library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:whit_\\1>"
   OUTPUT_VARIABLE library_objects)
 add_library(whit STATIC ${library_objects})
@@ -21,7 +21,8 @@ foreach(library whit whit_shared)
   target_link_libraries(${library}
     PUBLIC $<$<BOOL:${WHIT_SANITIZE}>:-fsanitize=address,undefined>
     PRIVATE assimp::assimp PNG::PNG JPEG::JPEG OpenEXR::OpenEXRCore PkgConfig::JANSSON PkgConfig::GMP
-      PkgConfig::SECCOMP Vulkan::Vulkan
+      PkgConfig::SECCOMP glslang::glslang glslang::SPIRV glslang::glslang-default-resource-limits
+      SPIRV-Tools-opt Vulkan::Vulkan stdc++
       Threads::Threads m)
 endforeach()
 

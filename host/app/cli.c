@@ -98,11 +98,14 @@ static void on_message(void *user, whit_log_level level, const char *message)
         return;
     if (level == WHIT_LOG_ERROR)
         cli_error("%s", message);
-    else
+    else if (level == WHIT_LOG_WARNING)
         cli_warning("%s", message);
+    else
+        cli_note("%s", message);
 }
 
 const whit_log cli_log = {.fn = on_message, .level = WHIT_LOG_WARNING};
+const whit_log cli_log_notes = {.fn = on_message, .level = WHIT_LOG_INFO};
 const whit_log cli_log_errors = {.fn = on_message, .level = WHIT_LOG_ERROR};
 
 void cli_hush(bool on)

@@ -89,6 +89,7 @@ void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
    the scene keeps its notes. */
 extern const whit_log cli_log;
 extern const whit_log cli_log_errors;
+extern const whit_log cli_log_notes; /* with notes */
 
 /* Whether errors of libwhit are kept to itself, as where something is tried that may be refused. */
 void cli_hush(bool on);

@@ -9,7 +9,7 @@
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench, command_hard, command_compare, command_cost, command_view,
-    command_probe;
+    command_probe, command_shader;
 
 /* The options of `whit render` itself; those of the picture are in the job's settings. */
 struct render_request {

@@ -42,6 +42,37 @@ void job_start(const struct job *job)
     cli_limit_time(job->settings.time_limit_s);
 }
 
+whit_result job_still_wanted(void)
+{
+    if (cli_cancel)
+        return WHIT_ERROR_CANCELLED;
+    if (!cli_time_over())
+        return WHIT_OK;
+    cli_error("the time limit has passed");
+    return WHIT_ERROR_TIME_LIMIT;
+}
+
+whit_result job_begin_compiler(struct job *job, const whit_log *log)
+{
+    const struct settings *settings = &job->settings;
+    const whit_shader_limits limits = {.cpu_s = settings->load.import_limit_s,
+                                       .memory_bytes = settings->load.memory_limit_bytes / 2,
+                                       .require_sandbox = settings->load.require_sandbox,
+                                       .cancel = &cli_cancel};
+    return whit_shader_compiler_create(&limits, log, &job->compiler);
+}
+
+whit_result job_load_shader(struct job *job)
+{
+    const struct settings *settings = &job->settings;
+    if (!settings->shader[0])
+        return WHIT_OK;
+    whit_result result = job_begin_compiler(job, &cli_log);
+    if (result == WHIT_OK)
+        result = whit_shader_load(job->compiler, settings->shader, settings->trust, &job->shader);
+    return result == WHIT_OK ? job_still_wanted() : result;
+}
+
 whit_result job_load(struct job *job)
 {
     const char *folders[SETTING_FOLDERS_MAX];
@@ -84,16 +115,6 @@ void job_print_notes(const struct job *job, bool all)
         cli_note("and %u more; `whit scene` lists them", wanted - NOTES_SHOWN);
 }
 
-whit_result job_still_wanted(void)
-{
-    if (cli_cancel)
-        return WHIT_ERROR_CANCELLED;
-    if (!cli_time_over())
-        return WHIT_OK;
-    cli_error("the time limit has passed");
-    return WHIT_ERROR_TIME_LIMIT;
-}
-
 whit_result job_build(struct job *job)
 {
     whit_result result = job_still_wanted();
@@ -132,6 +153,7 @@ whit_result job_open_device(struct job *job)
 whit_renderer_params job_picture(const struct job *job)
 {
     whit_renderer_params params = settings_picture(&job->settings);
+    params.shader = job->shader;
     params.cancel = &cli_cancel;
     params.time_limit_s = cli_time_left_s();
     return params;
@@ -152,4 +174,6 @@ void job_finish(struct job *job)
     whit_device_destroy(job->device);
     whit_accel_destroy(job->accel);
     whit_scene_destroy(job->scene);
+    whit_shader_destroy(job->shader);
+    whit_shader_compiler_destroy(job->compiler);
 }

@@ -11,6 +11,8 @@ struct job {
     whit_accel *accel;
     whit_device *device;
     whit_device_opening *opening;
+    whit_shader_compiler *compiler; /* of --shader */
+    whit_shader *shader;
     bool keeps_axes;                               /* `--up auto` turns no model: see job_load */
     double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
 };
@@ -26,6 +28,11 @@ void job_start(const struct job *job);
 /* Starts to open the device in a thread, for job_open_device to wait for; what fails is said
    there, and nowhere if the program ends before. */
 void job_begin_device(struct job *job);
+/* The process that compiles shaders, which logs to `log`; NULL: nothing. */
+WHIT_CHECK whit_result job_begin_compiler(struct job *job, const whit_log *log);
+/* Compiles the file of --shader, where there is one. Before anything else is loaded: the compiler's
+   process has the memory that the program has then. */
+WHIT_CHECK whit_result job_load_shader(struct job *job);
 /* Each step before the next one. Failures were said. */
 whit_result job_load(struct job *job);
 whit_result job_build(struct job *job);

@@ -1,5 +1,6 @@
 /* The record that every ray of a picture reads: camera, sky, where trees begin, limits. */
 #include <float.h>
+#include <string.h>
 
 #include "render/renderer.h"
 
@@ -46,11 +47,31 @@ whit_result frame_fill(struct renderer *renderer)
     return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);
 }
 
+/* As struct FrameBuffer of shaders/bind/shading.glsl. */
+struct frame_words {
+    struct gpu_frame frame;
+    float sliders[SLIDERS_MAX];
+};
+
+static struct frame_words make_words(const struct renderer *renderer)
+{
+    struct frame_words words = {.frame = renderer->frame};
+    memcpy(words.sliders, renderer->sliders, sizeof words.sliders);
+    return words;
+}
+
+whit_result frame_create(struct renderer *renderer)
+{
+    const struct frame_words words = make_words(renderer);
+    return upload_words(renderer, &words, sizeof words, BUFFER_STORAGE, "frame",
+                        &renderer->scene_buffers.frame);
+}
+
 whit_result frame_upload(struct renderer *renderer)
 {
     whit_result result = frame_fill(renderer);
+    const struct frame_words words = make_words(renderer);
     if (result == WHIT_OK)
-        result = buffer_write(renderer->scene_buffers.frame, 0, &renderer->frame,
-                              sizeof renderer->frame);
+        result = buffer_write(renderer->scene_buffers.frame, 0, &words, sizeof words);
     return result;
 }

@@ -23,8 +23,7 @@ static whit_result create_parts(struct renderer *renderer)
     if (result == WHIT_OK)
         result = frame_fill(renderer);
     if (result == WHIT_OK)
-        result = upload_words(renderer, &renderer->frame, sizeof renderer->frame, BUFFER_STORAGE,
-                              "frame", &renderer->scene_buffers.frame);
+        result = frame_create(renderer);
     renderer->picture.stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
@@ -61,11 +60,14 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
     renderer->scene = accel->scene;
     if (params)
         renderer->params = *params;
+    hooks_take(renderer);
     scene_effects_scan(renderer->scene, &renderer->effects);
     effects_choose(&renderer->params, &renderer->effects);
     whit_result result = params_check(log, &renderer->params);
     if (result == WHIT_OK)
         result = effects_check(log, &renderer->params);
+    if (result == WHIT_OK)
+        result = hooks_read_sliders(renderer, renderer->params.sliders);
     if (renderer->scene->pictures_dropped) {
         log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
                   renderer->scene->name);

@@ -12,6 +12,7 @@
 #include "picture/media.h"
 #include "picture/sequence.h"
 #include "render/render.h"
+#include "shader/program.h"
 
 /* The scene in device memory. `none` stands in for what the scene lacks. */
 struct scene_buffers {
@@ -176,6 +177,7 @@ struct renderer {
     struct async_state async;
     struct commands *commands;
     struct gpu_frame frame;
+    float sliders[SLIDERS_MAX];         /* of params.shader */
     struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids;            /* of the last picture, where it has more than one band */
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
@@ -189,8 +191,9 @@ struct renderer {
 };
 
 enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
-enum { READ_SLICE = 4096 }; /* pixels that are read at once */
-enum { ADAPTIVE_MAX = 64 }; /* samples of a pixel of an adaptive picture */
+enum { STATUS_LOOP_AT = 8 }; /* byte of status_loop (shaders/bind/trees.glsl) */
+enum { READ_SLICE = 4096 };  /* pixels that are read at once */
+enum { ADAPTIVE_MAX = 64 };  /* samples of a pixel of an adaptive picture */
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
@@ -391,12 +394,21 @@ WHIT_CHECK whit_result async_prepare(struct renderer *renderer);
 /* Waits for the thread. */
 void async_finish(struct renderer *renderer);
 
+/* hooks.c: what the functions of params.shader call for, beside what the scene does. */
+void hooks_take(struct renderer *renderer);
+/* WHIT_ERROR_USAGE, logged, for sliders that the shader has not. */
+WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
+/* What ran out of iterations, as the status buffer names it. */
+void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
+
 /* trace.c */
 void trace_finish(struct trace_state *trace);
 
 /* frame_uniform.c: all of renderer->frame but the rows. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
-/* The same, and to the device. */
+/* The buffer that holds it, and the values of sliders behind it. */
+WHIT_CHECK whit_result frame_create(struct renderer *renderer);
+/* Fills the record and writes both to the device. */
 WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
 
 /* readback.c: a picture of one band and one pass stays on the device until it is asked for. */

@@ -39,6 +39,8 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
 {
     whit_renderer_params wanted = merge(&renderer->params, params);
     whit_result result = params_check(&renderer->log, &wanted);
+    if (result == WHIT_OK)
+        result = hooks_read_sliders(renderer, params->sliders);
     if (result != WHIT_OK)
         return result;
     bool moved = wanted.time_s != renderer->params.time_s;

@@ -45,15 +45,20 @@ whit_result status_check(struct target *target)
         {STATUS_NON_FINITE, "radiance is not finite"},
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
+        {STATUS_FUEL, "a loop of the shader took more iterations than it may"},
     };
-    char text[1024] = "", where[96] = "";
+    char text[1536] = "", where[96] = "", loop[768] = "";
     if (word & STATUS_NON_FINITE)
         describe_non_finite(target, where, sizeof where);
+    if (word & STATUS_FUEL)
+        hooks_describe_fuel(target, loop, sizeof loop);
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         size_t used = strlen(text);
         if (word & reasons[i].bit)
             snprintf(text + used, sizeof text - used, "%s%s%s", used ? "; " : "", reasons[i].text,
-                     reasons[i].bit == STATUS_NON_FINITE ? where : "");
+                     reasons[i].bit == STATUS_NON_FINITE ? where
+                     : reasons[i].bit == STATUS_FUEL     ? loop
+                                                         : "");
     }
     log_error(&target->renderer->log, "the result is not to be trusted: %s", text);
     return WHIT_ERROR_STATUS;

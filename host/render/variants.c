@@ -210,13 +210,16 @@ static struct bindings bind_trees(const struct target *target)
     return bindings;
 }
 
-static struct pipeline_params pass_params(enum kernel kernel, const struct gpu_spec *spec,
+/* A kernel's code: with the functions of the renderer's shader in it where it has any there. */
+static struct pipeline_params pass_params(const struct renderer *renderer, enum kernel kernel,
+                                          const struct gpu_spec *spec,
                                           const struct bindings *bindings, uint32_t binding_count,
                                           uint32_t push_bytes, const char *name)
 {
+    const struct shader_code *code = shader_code_of(renderer->params.shader, kernels[kernel].name);
     return (struct pipeline_params){
-        .spirv = kernels[kernel].words,
-        .spirv_bytes = kernels[kernel].bytes,
+        .spirv = code ? code->words : kernels[kernel].words,
+        .spirv_bytes = code ? code->bytes : kernels[kernel].bytes,
         .spec = (const uint32_t *)spec,
         .spec_count = GPU_SPEC_COUNT,
         .bindings = bindings->kinds,
@@ -329,7 +332,9 @@ uint32_t variant_classes(const struct target *target)
 {
     const struct renderer *renderer = target->renderer;
     struct scene_effects none = {.called = {false}};
-    bool both = !renderer->params.all_effects && !variant_few_kernels(target) &&
+    /* What a hook traces may meet materials of either class. */
+    bool hooked = shader_code_of(renderer->params.shader, kernels[KERNEL_SHADE].name) != NULL;
+    bool both = !hooked && !renderer->params.all_effects && !variant_few_kernels(target) &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) > 0;
     return both ? CLASSES_MAX : 1;
@@ -383,9 +388,10 @@ bool variant_calls_rays(const struct gpu_spec *spec)
                                     spec->SPEC_CUTOUTS || spec->SPEC_CATCHERS);
 }
 
-static uint32_t lit_parts(const struct gpu_spec *spec)
+static uint32_t lit_parts(const struct renderer *renderer, const struct gpu_spec *spec)
 {
-    bool bent = spec->SPEC_SMOOTH_NORMALS || spec->SPEC_NORMAL_MAPS;
+    bool bent = spec->SPEC_SMOOTH_NORMALS || spec->SPEC_NORMAL_MAPS ||
+                shader_has(renderer->params.shader, SHADER_HOOK_SURFACE);
     bool absorbing = spec->SPEC_FILTER_DETAIL && spec->SPEC_ABSORPTION && spec->SPEC_MEDIA;
     return (bent ? LIT_HAS_NG : 0) | (spec->SPEC_HIGHLIGHTS ? LIT_HAS_HIGHLIGHT : 0) |
            (absorbing ? LIT_HAS_ABSORPTION : 0);
@@ -415,7 +421,8 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     if (stage != STAGE_CAMERA && stage != STAGE_SHADOW)
         return;
     spec->SPEC_PACKETS = 1;
-    bool from_eye = stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE;
+    bool from_eye = stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE &&
+                    !shader_has(renderer->params.shader, SHADER_HOOK_CAMERA);
     bool to_point = stage == STAGE_SHADOW && !(spec->SPEC_LIGHTS & 1u << LIGHT_DIRECTIONAL);
     spec->SPEC_BEAM = spec->SPEC_INSTANCED ? BEAM_NONE
                       : from_eye           ? BEAM_STARTS
@@ -449,7 +456,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     struct gpu_spec *spec = &job->spec;
     memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
     spec->SPEC_SETTLES |= !stages[stage].deferred;
-    spec->SPEC_LIT_PARTS = lit_parts(spec);
+    spec->SPEC_LIT_PARTS = lit_parts(renderer, spec);
     spec->SPEC_CLASSES = classes;
     spec->SPEC_SEGMENTS = renderer->params.segments ? renderer->params.segments
                           : spec->SPEC_INTERLEAVE   ? 2
@@ -458,7 +465,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     choose_packets(renderer, stage, spec);
     if (classes > 1 && stages[stage].kernel == KERNEL_SHADE)
         narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN, spec);
-    job->params = pass_params(stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
+    job->params = pass_params(renderer, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
                               sizeof(struct gpu_chunk), stages[stage].name);
     job->params.bindings = job->kinds;
 }
@@ -497,11 +504,11 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams
         spec.SPEC_PACKET_STACK = renderer->packet_stack_size;
     }
     pass->rays_each = spec.SPEC_PACKET_RAYS;
-    const struct pipeline_params params =
-        pass_params(KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
-                    beams ? any ? "trace any together" : "trace closest together"
-                    : any ? "trace any"
-                          : "trace closest");
+    const struct pipeline_params params = pass_params(
+        renderer, KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
+        beams ? any ? "trace any together" : "trace closest together"
+        : any ? "trace any"
+              : "trace closest");
     whit_result result = create_pipelines(renderer->device, &params, pass);
     return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT) : result;
 }

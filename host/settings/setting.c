@@ -46,6 +46,7 @@ static uint64_t size_of(enum setting_kind kind)
     case SETTING_NAME:
         return sizeof(const char *);
     case SETTING_TEXT:
+    case SETTING_PAIRS:
         return SETTING_TEXT_BYTES;
     case SETTING_FOLDERS:
         return SETTING_FOLDERS_MAX * sizeof(folder);
@@ -161,6 +162,53 @@ static bool read_folder(const char *text, folder *out, char *why)
     return true;
 }
 
+/* Where the pair of that name stands in `list`, and its length; at the end: there is none. */
+static size_t find_pair(const char *list, const char *pair, size_t *length)
+{
+    size_t name = strcspn(pair, "=") + 1, at = 0;
+    while (list[at]) {
+        *length = strcspn(list + at, ",");
+        if (strncmp(list + at, pair, name) == 0)
+            return at;
+        at += *length + (list[at + *length] == ',');
+    }
+    *length = 0;
+    return at;
+}
+
+/* False: `list` has no room for the pair. */
+static bool put_pair(char list[SETTING_TEXT_BYTES], const char *pair)
+{
+    char joined[2 * SETTING_TEXT_BYTES + 2];
+    size_t length, at = find_pair(list, pair, &length);
+    int used = snprintf(joined, sizeof joined, "%.*s%s%s%s", (int)at, list,
+                        at && !list[at] ? "," : "", pair, list + at + length);
+    if (used < 0 || used >= SETTING_TEXT_BYTES)
+        return false;
+    strcpy(list, joined);
+    return true;
+}
+
+static bool read_pairs(const char *text, char *out, char *why)
+{
+    char list[SETTING_TEXT_BYTES], pair[SETTING_TEXT_BYTES];
+    strcpy(list, out);
+    const char *at = text;
+    do {
+        size_t length = strcspn(at, ",");
+        const char *equals = memchr(at, '=', length);
+        if (!equals || equals == at || equals + 1 == at + length || length >= sizeof pair)
+            return setting_refuse(why, " `%s`: NAME=VALUE is needed, several by commas", text);
+        snprintf(pair, sizeof pair, "%.*s", (int)length, at);
+        if (!put_pair(list, pair))
+            return setting_refuse(why, " `%s`: all of them together are more than %d bytes", text,
+                                  SETTING_TEXT_BYTES - 1);
+        at += length;
+    } while (*at++);
+    strcpy(out, list);
+    return true;
+}
+
 bool setting_read(const struct setting *setting, const char *text, void *record,
                   char why[SETTING_WHY_BYTES])
 {
@@ -184,6 +232,8 @@ bool setting_read(const struct setting *setting, const char *text, void *record,
         return read_text(text, at, why);
     case SETTING_FOLDERS:
         return read_folder(text, at, why);
+    case SETTING_PAIRS:
+        return read_pairs(text, at, why);
     case SETTING_NAME:
         *(const char **)at = text;
         return true;
@@ -250,6 +300,7 @@ bool setting_write(const struct setting *setting, const void *record, uint32_t i
     case SETTING_SIZE:
         return write_size(at, text);
     case SETTING_TEXT:
+    case SETTING_PAIRS:
         return put(text, at);
     case SETTING_FOLDERS:
         return index < SETTING_FOLDERS_MAX && put(text, ((const folder *)at)[index]);
@@ -271,7 +322,7 @@ bool setting_same(const struct setting *setting, const void *a, const void *b)
     if (setting->kind == SETTING_OWN)
         return setting_write(setting, a, 0, text_a) == setting_write(setting, b, 0, text_b) &&
                strcmp(text_a, text_b) == 0;
-    if (setting->kind == SETTING_TEXT)
+    if (setting->kind == SETTING_TEXT || setting->kind == SETTING_PAIRS)
         return strcmp(at_a, at_b) == 0;
     for (uint32_t i = 0; setting->kind == SETTING_FOLDERS && i < SETTING_FOLDERS_MAX; ++i) {
         if (strcmp(((const folder *)at_a)[i], ((const folder *)at_b)[i]) != 0)

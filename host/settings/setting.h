@@ -19,6 +19,8 @@ enum setting_kind {
     SETTING_BYTES,   /* uint64_t: more than 0; a whole number, or one with K, M or G behind it */
     SETTING_SIZE,    /* uint32_t[2]: WxH */
     SETTING_TEXT,    /* char[SETTING_TEXT_BYTES]; "": not given */
+    SETTING_PAIRS,   /* the same: "NAME=VALUE,NAME=VALUE"; the option adds pairs, or replaces those
+                        of the same name */
     SETTING_FOLDERS, /* char[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]: the option adds one */
     SETTING_NAME,    /* const char *, of the command line; NULL: not given */
     SETTING_OWN,     /* by `read` and `write` */
@@ -97,6 +99,8 @@ struct setting {
     .kind = SETTING_NAME, .offset = SETTING_AT(type, member, const char *)
 #define SETTING_AT_TEXT(type, member)                                                              \
     .kind = SETTING_TEXT, .offset = SETTING_AT(type, member, char *)
+#define SETTING_AT_PAIRS(type, member)                                                             \
+    .kind = SETTING_PAIRS, .offset = SETTING_AT(type, member, char *)
 /* `member` and `second` are neighbours. */
 #define SETTING_AT_SIZE(type, member, second)                                                      \
     .kind = SETTING_SIZE,                                                                          \

@@ -59,10 +59,24 @@ static bool light_is_given(const struct settings *settings)
     return false;
 }
 
+static bool check_shader(const struct settings *settings, char *why)
+{
+    if (settings->shader[0])
+        return true;
+    if (settings->sliders[0])
+        return setting_refuse(why, "--set: without --shader there are no sliders");
+    if (settings->trust)
+        return setting_refuse(why, "--trust: there is no --shader to be trusted");
+    return true;
+}
+
 static bool check_choice(const struct settings *settings, char *why)
 {
     bool budget = settings->budget_ms > 0.0, error = settings->max_error > 0.0;
     const char *name = budget ? "--budget-ms" : "--max-error";
+    if ((budget || error) && settings->shader[0])
+        return setting_refuse(why, "%s is measured against the reference, which has no --shader",
+                              name);
     if (budget && error)
         return setting_refuse(why, "--budget-ms and --max-error: one of them");
     if ((budget || error) && light_is_given(settings))
@@ -87,7 +101,7 @@ bool settings_check(struct settings *settings, char why[SETTING_WHY_BYTES])
                               rays ? "rays" : "scale");
     if (settings_given(settings, "frame"))
         settings->picture.time_s = (double)settings->frame / settings->fps;
-    return check_choice(settings, why);
+    return check_shader(settings, why) && check_choice(settings, why);
 }
 
 /* ---- For libwhit ---- */
@@ -105,6 +119,7 @@ whit_renderer_params settings_picture(const struct settings *settings)
 {
     whit_renderer_params params = settings->picture;
     params.camera = camera_of_text(settings->camera);
+    params.sliders = settings->sliders;
     params.count = params.count || settings->paint != PAINT_COLOR;
     if (settings->paint != PAINT_COLOR) /* costs are those of a fixed pattern */
         params.sampling.kind = WHIT_SAMPLING_FIXED;
@@ -189,13 +204,20 @@ bool settings_same_scene(const struct settings *a, const struct settings *b)
            same_rows(a, b, is_of_scene);
 }
 
+bool settings_same_shader(const struct settings *a, const struct settings *b)
+{
+    return strcmp(a->shader, b->shader) == 0 && a->trust == b->trust &&
+           a->shader_reload == b->shader_reload;
+}
+
 /* Kernels know whether rays are counted, whether there are bounces, and whether pixels are picked
    for more samples. */
 bool settings_same_kernel(const struct settings *a, const struct settings *b)
 {
     const whit_renderer_params p = settings_picture(a), q = settings_picture(b);
-    return settings_same_scene(a, b) && same_rows(a, b, is_of_kernel) && p.count == q.count &&
-           (p.depth == 0) == (q.depth == 0) && p.sampling.kind == q.sampling.kind;
+    return settings_same_scene(a, b) && same_rows(a, b, is_of_kernel) &&
+           settings_same_shader(a, b) && p.count == q.count && (p.depth == 0) == (q.depth == 0) &&
+           p.sampling.kind == q.sampling.kind;
 }
 
 bool settings_same_camera(const struct settings *a, const struct settings *b)
@@ -215,7 +237,7 @@ void settings_set_camera(struct settings *settings, const struct settings *from)
 
 bool settings_same_light(const struct settings *a, const struct settings *b)
 {
-    return same_rows(a, b, is_light);
+    return same_rows(a, b, is_light) && settings_same_shader(a, b);
 }
 
 void settings_set_light(struct settings *settings, const struct settings *from)
@@ -225,13 +247,14 @@ void settings_set_light(struct settings *settings, const struct settings *from)
 
 bool settings_same_pixels(const struct settings *a, const struct settings *b)
 {
-    return settings_same_scene(a, b) && same_rows(a, b, decides_pixels) && a->paint == PAINT_COLOR;
+    return settings_same_scene(a, b) && same_rows(a, b, decides_pixels) &&
+           settings_same_shader(a, b) && a->paint == PAINT_COLOR;
 }
 
 bool settings_same(const struct settings *a, const struct settings *b)
 {
-    return settings_same_scene(a, b) && same_rows(a, b, is_of_picture) && a->boxes == b->boxes &&
-           a->boxes_level == b->boxes_level;
+    return settings_same_scene(a, b) && same_rows(a, b, is_of_picture) &&
+           settings_same_shader(a, b) && a->boxes == b->boxes && a->boxes_level == b->boxes_level;
 }
 
 /* ---- Writing ---- */

@@ -38,6 +38,11 @@ struct settings {
     uint32_t frame;           /* in place of a time, with `fps`: see settings_check */
     double fps;
 
+    char shader[SETTING_TEXT_BYTES];  /* a file of functions; "": none */
+    char sliders[SETTING_TEXT_BYTES]; /* of it: "NAME=VALUE,NAME=VALUE" */
+    uint32_t shader_reload;           /* another number: the file is read again */
+    bool trust;                       /* its loops and indices are not bounded */
+
     uint32_t paint;              /* enum settings_paint */
     uint32_t paint_rays;         /* whit_ray_kind, or WHIT_RAY_KINDS: all */
     double paint_scale;          /* of the heat map; 0: by the picture */
@@ -66,6 +71,7 @@ enum settings_command {
     IN_HARD = 1 << 7,
     IN_COMPARE = 1 << 8,
     IN_BENCH = 1 << 9,
+    IN_SHADER = 1 << 10,
 };
 
 /* The table; it ends with a row that has no name. */
@@ -112,6 +118,8 @@ void settings_set_light(struct settings *settings, const struct settings *from);
 /* Whether ids and pixels of both pictures are the same bytes; what is left may change their time.
  */
 bool settings_same_pixels(const struct settings *a, const struct settings *b);
+/* Whether the shader of both is one, compiled once. */
+bool settings_same_shader(const struct settings *a, const struct settings *b);
 /* All that a picture shows. */
 bool settings_same(const struct settings *a, const struct settings *b);
 

@@ -291,6 +291,19 @@ const struct setting settings_table[] = {
      AT(EITHER, grid), .values = values_grid, .commands = IN_RENDER | IN_VIEW,
      .change = SETTING_LIGHT, .tells = overlays_tell, .title = "grid"},
 
+    {"shader", 0, "FILE",
+     "GLSL functions in the place of whit's own: see\n"
+     "docs/shaders.md and `whit shader`",
+     "", AT(TEXT, shader), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_KERNEL, .trusted = true},
+    {"set", 0, "NAME=VALUE",
+     "sliders of the shader; several by commas, or by several\n"
+     "--set",
+     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT},
+    {"trust", 0, NULL, "the shader's loops and indices are not bounded", AT(FLAG, trust),
+     .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_KERNEL, .trusted = true},
+
     {"budget-ms", 0, "T",
      "choose the best of these settings that take at most T ms, by\n"
      "`whit cost`, which measures the scene for 20 s the first time",

@@ -125,10 +125,20 @@ static void say_scene(const struct settings *settings, char text[CHOICE_WORDS])
              settings->reload ? ", read again" : "");
 }
 
-/* Effects have a panel of their own. */
+static void say_shader(const struct settings *settings, char text[CHOICE_WORDS])
+{
+    const char *slash = strrchr(settings->shader, '/');
+    snprintf(text, CHOICE_WORDS, "%.60s%s",
+             !settings->shader[0] ? "none"
+             : slash              ? slash + 1
+                                  : settings->shader,
+             settings->shader_reload ? ", read again" : "");
+}
+
+/* Effects have a panel of their own, and the shader is told above. */
 static bool is_told(const struct setting *row)
 {
-    return row->title || strcmp(row->name, "effects") == 0;
+    return row->title || strcmp(row->name, "effects") == 0 || strcmp(row->name, "set") == 0;
 }
 
 uint32_t choice_changes(const struct settings *a, const struct settings *b,
@@ -140,6 +150,12 @@ uint32_t choice_changes(const struct settings *a, const struct settings *b,
         changes[count].painted = false;
         say_scene(a, changes[count].a);
         say_scene(b, changes[count++].b);
+    }
+    if (!settings_same_shader(a, b)) {
+        changes[count].name = "shader";
+        changes[count].painted = false;
+        say_shader(a, changes[count].a);
+        say_shader(b, changes[count++].b);
     }
     for (const struct setting *row = settings_table; row->name; ++row) {
         struct choice_change *change = &changes[count];

@@ -14,6 +14,7 @@ struct engine_params {
     uint32_t sessions;        /* kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* from any thread: there is something to take. May be NULL. */
     void *wake_user;
+    whit_shader_compiler *compiler; /* of settings.shader, whose log is silent; NULL: none */
     whit_log log; /* from any thread: what the validation layers say. May be silent */
 };
 
@@ -36,13 +37,14 @@ enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MAX = 8192 };
 
 /* A picture that is done, or with an error in its place. */
 struct engine_frame {
-    uint64_t number;          /* counts up; 0: none yet */
-    uint64_t first;           /* number of the first picture of what was asked for */
-    struct settings settings; /* drawn */
-    struct scene_ref *scene;  /* held */
-    whit_image *color;        /* floats: linear RGBA, or of one channel where costs are painted */
-    whit_image *ids;          /* hit identities; NULL but for whole pictures */
-    uint8_t *rgba;            /* width * height * 4: as the window shows it */
+    uint64_t number;           /* counts up; 0: none yet */
+    uint64_t first;            /* number of the first picture of what was asked for */
+    struct settings settings;  /* drawn */
+    struct scene_ref *scene;   /* held */
+    struct shader_ref *shader; /* held; NULL: none */
+    whit_image *color;         /* floats: linear RGBA, or of one channel where costs are painted */
+    whit_image *ids;           /* hit identities; NULL but for whole pictures */
+    uint8_t *rgba;             /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
     bool refined;                    /* of more samples than the settings say; without ids, these

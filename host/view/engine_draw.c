@@ -200,6 +200,7 @@ static struct engine_frame begin_frame(const struct engine_task *task, uint32_t 
     return (struct engine_frame){
         .settings = task->settings,
         .scene = scene_ref_take(session->scene),
+        .shader = shader_ref_take(session->shader),
         .width = width,
         .height = height,
         .divisor = task->divisor,
@@ -270,5 +271,6 @@ void engine_frame_finish(struct engine_frame *frame)
     free(frame->rgba);
     whit_memory_destroy(frame->boxes);
     scene_ref_drop(frame->scene);
+    shader_ref_drop(frame->shader);
     *frame = (struct engine_frame){0};
 }

@@ -14,6 +14,7 @@ struct engine_job {
     struct session *session;
     struct settings settings;
     struct scene_ref *scene;
+    struct shader_ref *shader;
     struct session_progress progress;
     struct thread *thread;
     struct engine *engine;

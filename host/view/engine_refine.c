@@ -182,10 +182,11 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
         add_part(refine, image);
     whit_image_destroy(image);
     if (result == WHIT_OK && refine->part == PARTS) {
-        frame->scene = scene_ref_take(session->scene);
-        struct scene_ref *scene = frame->scene;
+        struct scene_ref *scene = scene_ref_take(session->scene);
+        struct shader_ref *shader = shader_ref_take(session->shader);
         result = finish_round(refine, frame);
         frame->scene = scene;
+        frame->shader = shader;
     }
     return result;
 }

@@ -48,8 +48,9 @@ static void run_job(void *context)
 {
     struct engine_job *job = context;
     struct engine *engine = job->engine;
+    const struct session_parts parts = {job->scene, job->shader, engine->params.compiler};
     whit_result result =
-        session_open(job->session, &job->settings, job->scene,
+        session_open(job->session, &job->settings, &parts,
                      &(whit_log){session_message, job->session, WHIT_LOG_WARNING},
                      &(whit_log){scene_message, engine, WHIT_LOG_WARNING}, &job->progress);
     pthread_mutex_lock(&engine->lock);
@@ -78,6 +79,7 @@ void engine_job_destroy(struct engine_job *job)
     if (job->session)
         engine_drop_session(job->engine, job->session);
     scene_ref_drop(job->scene);
+    shader_ref_drop(job->shader);
     free(job);
 }
 
@@ -88,6 +90,18 @@ static struct scene_ref *find_scene(const struct engine *engine, const struct se
         const struct session *session = engine->sessions[i];
         if (session && settings_same_scene(&session->scene->settings, settings))
             return scene_ref_take(session->scene);
+    }
+    return NULL;
+}
+
+/* The same of a shader. */
+static struct shader_ref *find_shader(const struct engine *engine, const struct settings *settings)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        const struct session *session = engine->sessions[i];
+        if (session && session->shader &&
+            settings_same_shader(&session->shader->settings, settings))
+            return shader_ref_take(session->shader);
     }
     return NULL;
 }
@@ -103,12 +117,14 @@ bool engine_start_job(struct engine *engine, const struct settings *settings)
         session->owner = engine;
         job->start_ms = whit_clock_ms();
         job->scene = find_scene(engine, settings);
+        job->shader = find_shader(engine, settings);
         job->thread = thread_start(run_job, job);
         if (job->thread) {
             engine->job = job;
             return true;
         }
         scene_ref_drop(job->scene);
+        shader_ref_drop(job->shader);
     }
     free(job);
     free(session);

@@ -313,8 +313,10 @@ void panels_step(struct view *view)
 
 void panels_draw(struct view *view)
 {
-    if (view->panels.settings)
+    if (view->panels.settings) {
+        shaders_draw(view);
         draw_settings(view);
+    }
     if (view->panels.effects)
         draw_effects(view);
 }

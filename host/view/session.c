@@ -1,4 +1,5 @@
 #include "view/session.h"
+#include "base/log.h"
 #include "whit/whit_program.h"
 
 #include <stdio.h>
@@ -22,9 +23,25 @@ void scene_ref_drop(struct scene_ref *ref)
     free(ref);
 }
 
+struct shader_ref *shader_ref_take(struct shader_ref *ref)
+{
+    if (ref)
+        atomic_fetch_add(&ref->refs, 1);
+    return ref;
+}
+
+void shader_ref_drop(struct shader_ref *ref)
+{
+    if (!ref || atomic_fetch_sub(&ref->refs, 1) > 1)
+        return;
+    whit_shader_destroy(ref->shader);
+    free(ref);
+}
+
 const char *session_stage_name(enum session_stage stage)
 {
-    static const char *const names[] = {"loading the scene", "building trees", "opening the device",
+    static const char *const names[] = {"compiling the shader", "loading the scene",
+                                        "building trees",       "opening the device",
                                         "compiling the kernel", ""};
     return names[stage <= SESSION_DONE ? stage : SESSION_DONE];
 }
@@ -33,6 +50,43 @@ static void tell(struct session_progress *progress, enum session_stage stage)
 {
     if (progress)
         atomic_store(&progress->stage, (int)stage);
+}
+
+/* The compiler keeps its errors to itself: they are those of the session. */
+static void log_shader_errors(const struct session *session, const whit_shader_compiler *compiler)
+{
+    const whit_shader_error *errors;
+    uint32_t count = whit_shader_compiler_errors(compiler, &errors);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (errors[i].line)
+            log_error(&session->log, "%s:%u: %s", errors[i].file, errors[i].line, errors[i].reason);
+        else
+            log_error(&session->log, "%s: %s", errors[i].file, errors[i].reason);
+    }
+    if (count == 0)
+        log_error(&session->log, "%s: could not be compiled", session->settings.shader);
+}
+
+static whit_result load_shader(struct session *session, whit_shader_compiler *compiler)
+{
+    const struct settings *settings = &session->settings;
+    struct shader_ref *ref = calloc(1, sizeof *ref);
+    if (!ref)
+        return WHIT_ERROR_MEMORY;
+    atomic_init(&ref->refs, 1);
+    ref->settings = *settings;
+    double start_ms = whit_clock_ms();
+    whit_result result =
+        whit_shader_load(compiler, settings->shader, settings->trust, &ref->shader);
+    ref->compile_ms = whit_clock_ms() - start_ms;
+    if (result != WHIT_OK) {
+        log_shader_errors(session, compiler);
+        free(ref);
+        return result;
+    }
+    whit_shader_get_info(ref->shader, &ref->info);
+    session->shader = ref;
+    return WHIT_OK;
 }
 
 static whit_result load(struct session *session, const whit_log *log)
@@ -94,6 +148,7 @@ static whit_result warm_up(struct session *session)
     params.height = WARM_HEIGHT;
     params.sampling.count = 1;
     params.many_pictures = true;
+    params.shader = session->shader ? session->shader->shader : NULL;
     params.cancel = &session->cancel;
     params.progress = note_part;
     params.step = note_step;
@@ -108,19 +163,23 @@ static whit_result warm_up(struct session *session)
 }
 
 whit_result session_open(struct session *session, const struct settings *settings,
-                         struct scene_ref *scene, const whit_log *log, const whit_log *scene_log,
-                         struct session_progress *progress)
+                         const struct session_parts *parts, const whit_log *log,
+                         const whit_log *scene_log, struct session_progress *progress)
 {
     const whit_device_params device = {.selector =
                                            settings->device[0] ? session->settings.device : NULL,
                                        .validation = settings->validation};
     session->settings = *settings;
     session->log = *log;
-    session->scene = scene_ref_take(scene);
+    session->scene = scene_ref_take(parts->scene);
+    session->shader = shader_ref_take(parts->shader);
     whit_device_opening *opening = whit_device_open_begin(&device, &session->log);
     whit_result result = WHIT_OK;
+    tell(progress, SESSION_SHADER);
+    if (!session->shader && parts->compiler && settings->shader[0])
+        result = load_shader(session, parts->compiler);
     tell(progress, SESSION_LOADING);
-    if (!session->scene)
+    if (result == WHIT_OK && !session->scene)
         result = load(session, scene_log);
     if (result == WHIT_OK)
         result = settings_choose_camera(&session->settings, session->scene->scene);
@@ -150,6 +209,7 @@ uint32_t session_close(struct session *session)
     whit_device_destroy(session->device);
     whit_accel_destroy(session->accel);
     scene_ref_drop(session->scene);
+    shader_ref_drop(session->shader);
     *session = (struct session){0};
     return messages;
 }

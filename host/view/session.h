@@ -18,7 +18,19 @@ struct scene_ref {
 struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
 void scene_ref_drop(struct scene_ref *ref);              /* likewise */
 
+/* A compiled file of hooks that sessions, and whoever shows its sliders, hold. */
+struct shader_ref {
+    atomic_uint refs;
+    whit_shader *shader;
+    whit_shader_info info;
+    struct settings settings; /* that it was compiled for */
+    double compile_ms;        /* from GLSL to SPIR-V */
+};
+struct shader_ref *shader_ref_take(struct shader_ref *ref); /* NULL is fine */
+void shader_ref_drop(struct shader_ref *ref);               /* likewise */
+
 enum session_stage {
+    SESSION_SHADER,
     SESSION_LOADING,
     SESSION_BUILDING,
     SESSION_OPENING,
@@ -32,6 +44,7 @@ struct session {
     void *step_user;
     struct settings settings; /* of scene, trees and kernel; of the picture: last drawn */
     struct scene_ref *scene;
+    struct shader_ref *shader; /* NULL: none */
     whit_accel *accel;
     whit_device *device;
     whit_renderer *renderer;
@@ -54,12 +67,19 @@ struct session_progress {
     _Atomic(int) stage; /* enum session_stage */
 };
 
-/* Loads, builds, opens and compiles. `scene`: that of the settings, where it is loaded already;
-   else NULL. Reasons are logged: those of the scene and its trees by `scene_log`, which lives as
-   long as the scene. `session` is zeroed but for `cancel` and what is its owner's; session_close
-   ends it, also after a failure. */
+/* What a session is made from: the scene and the shader of its settings, where they are loaded
+   already, else NULL; and the compiler of shaders, NULL where there is none. */
+struct session_parts {
+    struct scene_ref *scene;
+    struct shader_ref *shader;
+    whit_shader_compiler *compiler;
+};
+
+/* Loads, builds, opens and compiles. Reasons are logged: those of the scene and its trees by
+   `scene_log`, which lives as long as the scene. `session` is zeroed but for `cancel` and what is
+   its owner's; session_close ends it, also after a failure. */
 WHIT_CHECK whit_result session_open(struct session *session, const struct settings *settings,
-                                    struct scene_ref *scene, const whit_log *log,
+                                    const struct session_parts *parts, const whit_log *log,
                                     const whit_log *scene_log, struct session_progress *progress);
 /* How many messages the validation layers had of its device. */
 uint32_t session_close(struct session *session);

@@ -98,6 +98,7 @@ bool ui_checkbox(const char *label, bool *value);
 bool ui_choice(const char *label, const char *preview, const char *const *names, int count,
                int *value);
 bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic);
+bool ui_color(const char *label, float rgb[3]); /* sRGB, 0..1 */
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
 /* A bar of colours with labels below, evenly from its left to its right end. */
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);

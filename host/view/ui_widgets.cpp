@@ -140,6 +140,11 @@ bool ui_slider(const char *label, double *value, double lo, double hi, bool loga
     return noted(moved, label);
 }
 
+bool ui_color(const char *label, float rgb[3])
+{
+    return noted(ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_DisplayHex), label);
+}
+
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi)
 {
     ImGui::SetNextItemWidth(field_width());

@@ -38,6 +38,8 @@ void view_say(struct view *view, const char *format, ...)
 
 const char *view_error(const struct view *view)
 {
+    if (view->shaders.error[0])
+        return view->shaders.error;
     return view->refused[0] ? view->refused : view->status.error;
 }
 
@@ -122,6 +124,7 @@ static void take_frame(struct view *view)
         take_choices(view, frame);
     if (other_scene)
         scenes_show(view);
+    shaders_take(view);
     if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))
         view_learn_camera(view);
     count_picture(view);
@@ -145,6 +148,7 @@ bool view_go_back(struct view *view)
    go on with. */
 static whit_result take_failure(struct view *view)
 {
+    shaders_refuse(view);
     if (scenes_refuse(view))
         return WHIT_OK;
     if (view_go_back(view)) {
@@ -298,7 +302,7 @@ static double wait_seconds(struct view *view, bool goes_on)
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
     if (view->status.stage != SESSION_DONE || view->status.drawing)
         wait = fmin(wait, PROGRESS_S);
-    if (view->watch || view->watch_asked)
+    if (view->watch || view->watch_asked || view->shaders.watch)
         wait = fmin(wait, WATCH_S);
     wait = fmin(wait, replay_wait_s(view));
     return wait > 0.0 ? wait + 1e-3 : 0.0;
@@ -339,6 +343,7 @@ static whit_result step(struct view *view)
     take_events(view);
     replay_step(view);
     scenes_watch(view);
+    shaders_watch(view);
     if (view->toast[0] && view_now_ms(view) >= view->toast_until_ms) {
         view->toast[0] = '\0';
         view->dirty = true;
@@ -356,6 +361,7 @@ static whit_result step(struct view *view)
     prices_part(view);
     wish_step(view);
     panels_step(view);
+    shaders_step(view);
     ask(view); /* a switch that failed was taken back */
     if (view->params->frames > 0 && view->picture_set)
         view->dirty = true; /* until there were so many */
@@ -412,6 +418,7 @@ static whit_result open_all(struct view *view)
         .refine = !params->replay,
         .budget_ms = 1e3 / params->settings.fps_goal,
         .wake = window_wake,
+        .compiler = params->compiler,
         .log = {view->log.fn, view->log.user, view->log.level},
     };
     whit_result result = palette_init(&view->palette);
@@ -431,6 +438,7 @@ static whit_result open_all(struct view *view)
 static void close_all(struct view *view, uint32_t *validation)
 {
     scenes_end(view);
+    shaders_end(view);
     replay_close(view);
     prices_stop(view->prices);
     prices_stop(view->panels.measured);
@@ -467,6 +475,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     wish_begin(view);
     view->dirty = true;
     scenes_begin(view);
+    shaders_begin(view);
     whit_result result = open_all(view);
     while (result == WHIT_OK && !is_over(view))
         result = step(view);

@@ -6,6 +6,7 @@
 #include "view/camera.h"
 #include "view/compare.h"
 #include "view/panels.h"
+#include "view/shaders.h"
 #include "view/ui.h"
 #include "view/view.h"
 #include "view/window.h"
@@ -103,6 +104,7 @@ struct view {
     struct palette palette;
     struct compare compare;
     struct panels panels;
+    struct shaders shaders;
 
     struct view_input input;
     struct view_clock clock;

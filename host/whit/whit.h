@@ -24,6 +24,7 @@
 #include "whit_reference.h"
 #include "whit_renderer.h"
 #include "whit_scene.h"
+#include "whit_shader.h"
 
 #define WHIT_VERSION "0.2.0"
 

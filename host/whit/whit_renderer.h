@@ -2,6 +2,7 @@
 #ifndef WHIT_RENDERER_H
 #define WHIT_RENDERER_H
 
+#include "whit_shader.h"
 #include "whit_types.h"
 
 #ifdef __cplusplus
@@ -107,6 +108,12 @@ typedef struct whit_renderer_params {
     whit_classes classes;
     uint32_t segments;
     bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
+    /* Functions in the place of whit's own, borrowed as long as the renderer lives; NULL: none. Its
+       kernels are made before the first picture, whatever compile_async says. */
+    const whit_shader *shader;
+    const char *sliders; /* "NAME=VALUE,NAME=VALUE": values of its sliders; read during the call;
+                            NULL or "": as the file has them */
+    bool skip_sliders;   /* what the shader has no slider or use for is left out, not refused */
     uint32_t trace_rays; /* most rays that whit_trace will be given, so that buffers need not be
                             larger; 0: any number */
 } whit_renderer_params;
@@ -140,7 +147,8 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   sampling, light_samples, bailout, depth, exposure_ev and soft_highlights, and nothing else. Its
+   sampling, light_samples, bailout, depth, exposure_ev, soft_highlights and sliders, and nothing
+   else. Its
    camera is borrowed until the next call. The picture is that of a renderer made with these, byte
    for byte. After an error there is nothing to render before a call that succeeds: WHIT_ERROR_USAGE
    and others as of whit_renderer_create. */

@@ -24,6 +24,7 @@ typedef struct whit_accel whit_accel;       /* trees over one scene, on the CPU 
 typedef struct whit_device whit_device;     /* one Vulkan device */
 typedef struct whit_renderer whit_renderer; /* an accel on a device, with settings */
 typedef struct whit_image whit_image;       /* pixels in host memory */
+typedef struct whit_shader whit_shader;     /* functions in the place of whit's own */
 
 /* Which camera a picture is seen by. Zeroed: the first of the scene. */
 typedef struct whit_camera {

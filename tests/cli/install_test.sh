@@ -23,7 +23,7 @@ check "the picture is there" test -s "$OUT/cube.png"
 
 # The shared library: whit_* and no other name, and a program by pkg-config.
 library=$(find "$OUT/prefix" -name 'libwhit.so')
-nm -D --defined-only "$library" | awk '{ print $3 }' >"$OUT/names"
+nm -D --defined-only --extern-only "$library" | awk '{ print $3 }' >"$OUT/names"
 check "libwhit.so exports nothing but whit_*" test "$(grep -vc '^whit_' "$OUT/names")" -eq 0
 # declared HEADER...: the functions that these declare.
 declared() {

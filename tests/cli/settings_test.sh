@@ -7,6 +7,8 @@
 ROWS=$3
 mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 "$ROWS" rows >rows
+printf '%s\n' '//@ slider light 0 2 1' '//@ color tint #ffffff' \
+    'vec3 post(ivec2 at, vec3 color) { return color * light * tint; }' >bright.glsl
 expect 0 "a sky" render "$CUBE" -o sky.pfm --size 16x8 --quiet
 TAB=$(printf '\t')
 IN_RUN=0 IN_COST=1 # of enum setting_change

@@ -27,7 +27,12 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
         strcpy(text, "24x17");
         return;
     case SETTING_TEXT:
-        strcpy(text, strcmp(row->name, "environment") == 0 ? "sky.pfm" : "0");
+        strcpy(text, strcmp(row->name, "environment") == 0 ? "sky.pfm"
+                     : strcmp(row->name, "shader") == 0    ? "bright.glsl"
+                                                           : "0");
+        return;
+    case SETTING_PAIRS:
+        strcpy(text, "light=1.5,tint=#ffcc88");
         return;
     case SETTING_FOLDERS:
         strcpy(text, "/tmp");

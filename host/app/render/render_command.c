@@ -221,8 +221,11 @@ whit_result render_save(const struct job *job, const struct render_request *requ
 whit_result render_prepare(struct job *job, const struct render_request *request,
                            struct frames_progress *progress, whit_renderer **renderer)
 {
-    job_begin_device(job);
-    whit_result result = job_load(job);
+    whit_result result = job_load_shader(job);
+    if (result == WHIT_OK) {
+        job_begin_device(job);
+        result = job_load(job);
+    }
     if (result == WHIT_OK)
         result = check_camera(job, job->settings.camera);
     if (result == WHIT_OK) {

@@ -203,7 +203,13 @@ static int work(struct job *job, struct view_params *view)
     view->load_state = load_state;
     cli_keep_what_is_done(GRACE_MS);
     cli_set_saving();
-    whit_result result = view_run(view, &cli_log, &validation);
+    if (job->settings.shader[0]) {
+        view->settings.picture.skip_sliders = true; /* a file that is written again may have less */
+        if (job_begin_compiler(job, NULL) != WHIT_OK)
+            return EXIT_USAGE;
+        view->compiler = job->compiler;
+    }
+    whit_result result = view_run(view, &cli_log_notes, &validation);
     list_finish(&scenes);
     if (result == WHIT_OK && cli_cancel)
         result = WHIT_ERROR_CANCELLED;

@@ -1,0 +1,226 @@
+/* `whit shader`: what a file of hooks is made of, and how one begins. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/commands.h"
+
+struct shader_request {
+    struct job job;
+    const char *dump;
+    bool json;
+};
+
+static const struct setting options[] = {
+    {"dump", 0, "FOLDER", "write the kernels with the file in them there: SPIR-V",
+     SETTING_AT_NAME(struct shader_request, dump)},
+    {"json", 0, NULL, "print JSON", SETTING_AT_FLAG(struct shader_request, json)},
+    {0},
+};
+
+/* ---- new ---- */
+
+static int print_template(struct cli_reader *reader)
+{
+    char list[256] = "";
+    if (!reader->second) {
+        cli_misuse(reader, "new: which function? `whit shader new shade > my.glsl`");
+        return reader->status;
+    }
+    char *text = whit_shader_template(reader->second);
+    if (!text) {
+        for (uint32_t i = 0; whit_shader_hook_name(i); ++i)
+            snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "",
+                     whit_shader_hook_name(i));
+        cli_misuse(reader, "new %s: one of %s is needed", reader->second, list);
+        return reader->status;
+    }
+    fputs(text, stdout);
+    whit_memory_destroy(text);
+    return EXIT_FINE;
+}
+
+/* ---- A file ---- */
+
+static const char *const kind_words[] = {[WHIT_SLIDER_NUMBER] = "slider",
+                                         [WHIT_SLIDER_COLOR] = "color",
+                                         [WHIT_SLIDER_TOGGLE] = "toggle",
+                                         [WHIT_SLIDER_CHOICE] = "choice"};
+
+static void write_value(const whit_slider *slider, char *text, size_t bytes)
+{
+    const float *value = slider->value;
+    switch (slider->kind) {
+    case WHIT_SLIDER_NUMBER:
+        snprintf(text, bytes, "%g", (double)value[0]);
+        break;
+    case WHIT_SLIDER_COLOR:
+        snprintf(text, bytes, "#%02x%02x%02x", (unsigned)(value[0] * 255.0f + 0.5f),
+                 (unsigned)(value[1] * 255.0f + 0.5f), (unsigned)(value[2] * 255.0f + 0.5f));
+        break;
+    case WHIT_SLIDER_TOGGLE:
+        snprintf(text, bytes, "%s", value[0] != 0.0f ? "on" : "off");
+        break;
+    case WHIT_SLIDER_CHOICE:
+        snprintf(text, bytes, "%s", slider->words[(uint32_t)value[0]]);
+    }
+}
+
+static void print_text(const whit_shader *shader, const char *path)
+{
+    whit_shader_info info;
+    const uint32_t *words;
+    size_t bytes;
+    whit_shader_get_info(shader, &info);
+    printf("%s: %u file%s, functions", cli_shown(path), info.file_count,
+           info.file_count == 1 ? "" : "s");
+    for (uint32_t i = 0; i < info.hook_count; ++i)
+        printf("%s %s", i ? "," : "", info.hooks[i]);
+    printf("\n");
+    for (uint32_t i = 0; i < info.slider_count; ++i) {
+        const whit_slider *slider = &info.sliders[i];
+        char value[64], range[64] = "";
+        write_value(slider, value, sizeof value);
+        if (slider->kind == WHIT_SLIDER_NUMBER)
+            snprintf(range, sizeof range, " (%g to %g)", (double)slider->min, (double)slider->max);
+        printf("  --set %s=%s%s  %s\n", slider->name, value, range, cli_shown(slider->help));
+    }
+    printf("  kernels:");
+    for (uint32_t i = 0;; ++i) {
+        const char *name = whit_shader_kernel(shader, i, &words, &bytes);
+        if (!name)
+            break;
+        printf("%s %s", i ? "," : "", name);
+    }
+    printf("; %u instructions with all that they may need\n", info.instructions);
+    if (info.fuel)
+        printf("  fuel: %u iterations of loops in a call\n", info.fuel);
+    else
+        printf("  trusted: loops and indices are not bounded\n");
+}
+
+static json_t *describe_slider(const whit_slider *slider)
+{
+    char value[64];
+    json_t *object = document_object();
+    write_value(slider, value, sizeof value);
+    document_text(object, "name", slider->name);
+    document_text(object, "kind", kind_words[slider->kind]);
+    document_text(object, "value", value);
+    document_text(object, "help", slider->help);
+    if (slider->kind == WHIT_SLIDER_NUMBER) {
+        document_float(object, "min", slider->min);
+        document_float(object, "max", slider->max);
+    }
+    return object;
+}
+
+static json_t *list_texts(const char *const *texts, uint32_t count)
+{
+    json_t *list = document_array();
+    for (uint32_t i = 0; i < count; ++i) {
+        json_t *object = document_object();
+        document_text(object, "name", texts[i]);
+        document_append(list, object);
+    }
+    return list;
+}
+
+static json_t *list_kernels(const whit_shader *shader)
+{
+    const uint32_t *words;
+    size_t bytes;
+    const char *name;
+    json_t *list = document_array();
+    for (uint32_t i = 0; (name = whit_shader_kernel(shader, i, &words, &bytes)); ++i) {
+        json_t *object = document_object();
+        document_text(object, "name", name);
+        document_count(object, "spirv_bytes", bytes);
+        document_append(list, object);
+    }
+    return list;
+}
+
+static int print_json(const whit_shader *shader)
+{
+    whit_shader_info info;
+    whit_shader_get_info(shader, &info);
+    json_t *object = document_root(), *sliders = document_array();
+    for (uint32_t i = 0; i < info.slider_count; ++i)
+        document_append(sliders, describe_slider(&info.sliders[i]));
+    document_put(object, "files", list_texts(info.files, info.file_count));
+    document_put(object, "functions", list_texts(info.hooks, info.hook_count));
+    document_put(object, "sliders", sliders);
+    document_put(object, "kernels", list_kernels(shader));
+    document_count(object, "instructions", info.instructions);
+    document_flag(object, "trusted", info.fuel == 0);
+    document_count(object, "fuel", info.fuel);
+    document_hash(object, "hash", info.hash);
+    char *text = document_lines(object);
+    if (!text)
+        return cli_exit_of(WHIT_ERROR_MEMORY);
+    puts(text);
+    free(text);
+    return EXIT_FINE;
+}
+
+static whit_result dump(const whit_shader *shader, const char *folder)
+{
+    const uint32_t *words;
+    size_t bytes;
+    const char *name;
+    whit_result result = WHIT_OK;
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+        cli_error("%s: cannot be made: %s", folder, strerror(errno));
+        return WHIT_ERROR_INPUT;
+    }
+    for (uint32_t i = 0; result == WHIT_OK; ++i) {
+        char path[4096];
+        if (!(name = whit_shader_kernel(shader, i, &words, &bytes)))
+            break;
+        snprintf(path, sizeof path, "%s/%s.spv", folder, name);
+        result = whit_file_write(path, words, bytes, &cli_log);
+    }
+    return result;
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct shader_request request = {0};
+    struct job *job = &request.job;
+    job_init(job, command);
+    cli_reader_init(&reader, command, argc, argv);
+    if (!cli_read(&reader, &request, &job->settings))
+        return reader.status;
+    if (reader.positional && strcmp(reader.positional, "new") == 0)
+        return print_template(&reader);
+    if (!reader.positional || reader.second) {
+        cli_misuse(&reader, "one FILE is needed, or `new` and the name of a function");
+        return reader.status;
+    }
+    snprintf(job->settings.shader, sizeof job->settings.shader, "%s", reader.positional);
+    whit_result result = job_load_shader(job);
+    if (result == WHIT_OK && request.dump)
+        result = dump(job->shader, request.dump);
+    int status = cli_exit_of(result);
+    if (result == WHIT_OK && request.json)
+        status = print_json(job->shader);
+    else if (result == WHIT_OK)
+        print_text(job->shader, reader.positional);
+    job_finish(job);
+    return status;
+}
+
+const struct cli_command command_shader = {
+    .name = "shader",
+    .arguments = "FILE | new FUNCTION",
+    .summary = "Compiles a file of shader functions and lists what it has, or begins one.",
+    .details = "Functions: camera, surface, shade, scatter, miss, post. See docs/shaders.md.\n"
+               "Exit codes: 0 it compiles, 2 it does not: FILE:LINE says where.\n",
+    .options = options,
+    .settings = IN_SHADER,
+    .takes_two = true,
+    .run = run,
+};

@@ -1,0 +1,50 @@
+/* Functions of a user in the place of whit's own: what they change of how a picture is made. */
+#include <stdio.h>
+#include <string.h>
+
+#include "render/renderer.h"
+
+_Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
+
+void hooks_take(struct renderer *renderer)
+{
+    whit_renderer_params *params = &renderer->params;
+    if (!params->shader)
+        return;
+    params->compile_async = false; /* there is no general kernel of it yet */
+    if (shader_has(params->shader, SHADER_HOOK_SCATTER))
+        params->effects_added |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
+}
+
+whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
+{
+    char why[512];
+    if (!renderer->params.shader && (!sliders || !sliders[0] || renderer->params.skip_sliders))
+        return WHIT_OK;
+    if (!renderer->params.shader) {
+        log_error(&renderer->log, "sliders are set, and there is no shader that has any");
+        return WHIT_ERROR_USAGE;
+    }
+    if (shader_sliders_read(renderer->params.shader, sliders, renderer->params.skip_sliders,
+                            renderer->sliders, why, sizeof why))
+        return WHIT_OK;
+    log_error(&renderer->log, "%s", why);
+    return WHIT_ERROR_USAGE;
+}
+
+void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes)
+{
+    uint32_t number = 0, line = 0;
+    const char *file = "";
+    const whit_shader *shader = target->renderer->params.shader;
+    text[0] = 0;
+    if (buffer_read(target->buffers.status, STATUS_LOOP_AT, &number, sizeof number) == WHIT_OK &&
+        shader && shader_find_loop(shader, number, &file, &line))
+        snprintf(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
+                 line, shader->fuel, SHADER_FUEL_MAX);
+    number = 0;
+    /* The next picture begins without one. An error here is told by that picture. */
+    whit_result result =
+        buffer_write(target->buffers.status, STATUS_LOOP_AT, &number, sizeof number);
+    (void)result;
+}

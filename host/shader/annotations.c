@@ -1,0 +1,268 @@
+/* What a file of hooks says of itself: lines that begin with //@. */
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "shader/program.h"
+
+/* One such line, taken apart from left to right. */
+struct line {
+    const whit_log *log;
+    whit_shader *shader;
+    struct shader_errors *errors;
+    const char *at, *end;
+    uint32_t file, number;
+};
+
+static void complain(const struct line *line, const char *format, ...) WHIT_PRINTF(2, 3);
+static void complain(const struct line *line, const char *format, ...)
+{
+    char text[SHADER_REASON_BYTES];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    shader_error_add(line->log, line->errors, line->shader->text.files[line->file].name,
+                     line->number, "%s", text);
+}
+
+/* The next word, up to a blank; "" at the end. A word in quotes may have blanks. False: it is
+   longer than `text`. */
+static bool next_word(struct line *line, char *text, size_t text_bytes)
+{
+    while (line->at < line->end && isspace((unsigned char)*line->at))
+        line->at++;
+    bool quoted = line->at < line->end && *line->at == '"';
+    line->at += quoted;
+    size_t used = 0;
+    while (line->at < line->end &&
+           (quoted ? *line->at != '"' : !isspace((unsigned char)*line->at))) {
+        if (used + 1 >= text_bytes)
+            return false;
+        text[used++] = *line->at++;
+    }
+    line->at += quoted && line->at < line->end;
+    text[used] = 0;
+    return true;
+}
+
+static bool is_name(const char *text)
+{
+    bool fine = isalpha((unsigned char)text[0]) || text[0] == '_';
+    for (const char *c = text; *c; ++c)
+        fine = fine && (isalnum((unsigned char)*c) || *c == '_');
+    return fine && !strstr(text, "__") && strncmp(text, "gl_", 3) != 0 &&
+           strncmp(text, "whit_", 5) != 0;
+}
+
+static bool read_number(struct line *line, const char *what, double min, double max, double *number)
+{
+    char word[SHADER_NAME_BYTES], *end;
+    bool fits = next_word(line, word, sizeof word);
+    *number = strtod(word, &end);
+    if (fits && end != word && !*end && *number >= min && *number <= max)
+        return true;
+    complain(line, "%s is a number from %g to %g, not `%.60s`", what, min, max, word);
+    return false;
+}
+
+static bool read_slider_number(struct line *line, whit_slider *slider)
+{
+    double min, max, value;
+    if (!read_number(line, "the least value of a slider", -1e30, 1e30, &min) ||
+        !read_number(line, "the largest value of a slider", min, 1e30, &max) ||
+        !read_number(line, "the value of a slider", min, max, &value))
+        return false;
+    slider->min = (float)min;
+    slider->max = (float)max;
+    slider->value[0] = (float)value;
+    return true;
+}
+
+bool shader_color_read(const char *text, float srgb[3])
+{
+    unsigned rgb[3];
+    int length = 0;
+    if (sscanf(text, "#%2x%2x%2x%n", &rgb[0], &rgb[1], &rgb[2], &length) != 3 || length != 7 ||
+        text[length] || strspn(text + 1, "0123456789abcdefABCDEF") != 6)
+        return false;
+    for (int i = 0; i < 3; ++i)
+        srgb[i] = (float)rgb[i] / 255.0f;
+    return true;
+}
+
+static bool read_slider_color(struct line *line, whit_slider *slider)
+{
+    char word[SHADER_NAME_BYTES];
+    if (next_word(line, word, sizeof word) && shader_color_read(word, slider->value))
+        return true;
+    complain(line, "a colour is written as #ffcc88, not `%.60s`", word);
+    return false;
+}
+
+static bool read_slider_toggle(struct line *line, whit_slider *slider)
+{
+    char word[SHADER_NAME_BYTES];
+    const char *rest = line->at;
+    bool fits = next_word(line, word, sizeof word);
+    if (fits && (strcmp(word, "on") == 0 || strcmp(word, "off") == 0)) {
+        slider->value[0] = word[1] == 'n';
+        return true;
+    }
+    line->at = rest; /* it begins switched off */
+    return true;
+}
+
+static bool read_slider_choice(struct line *line, whit_slider *slider,
+                               struct shader_slider_text *texts)
+{
+    if (!next_word(line, texts->text, sizeof texts->text) || !texts->text[0]) {
+        complain(line, "a choice names its words, as in `choice mode a,b`");
+        return false;
+    }
+    slider->words = texts->words;
+    for (char *word = texts->text; word;) {
+        char *comma = strchr(word, ',');
+        if (comma)
+            *comma = 0;
+        if (!is_name(word) || slider->word_count == SHADER_WORDS_MAX) {
+            complain(line, "a choice has up to %d words of letters, digits and _, not `%.60s`",
+                     SHADER_WORDS_MAX, word);
+            return false;
+        }
+        texts->words[slider->word_count++] = word;
+        word = comma ? comma + 1 : NULL;
+    }
+    return true;
+}
+
+static const struct {
+    const char *word;
+    whit_slider_kind kind;
+    uint32_t values;
+} kinds[] = {{"slider", WHIT_SLIDER_NUMBER, 1},
+             {"color", WHIT_SLIDER_COLOR, 3},
+             {"toggle", WHIT_SLIDER_TOGGLE, 1},
+             {"choice", WHIT_SLIDER_CHOICE, 1}};
+
+static bool read_slider_value(struct line *line, whit_slider *slider,
+                              struct shader_slider_text *texts)
+{
+    switch (slider->kind) {
+    case WHIT_SLIDER_NUMBER:
+        return read_slider_number(line, slider);
+    case WHIT_SLIDER_COLOR:
+        return read_slider_color(line, slider);
+    case WHIT_SLIDER_TOGGLE:
+        return read_slider_toggle(line, slider);
+    case WHIT_SLIDER_CHOICE:
+        break;
+    }
+    return read_slider_choice(line, slider, texts);
+}
+
+static bool is_new_name(const struct line *line, const char *name)
+{
+    const whit_shader *shader = line->shader;
+    for (uint32_t i = 0; i < shader->slider_count; ++i) {
+        if (strcmp(shader->sliders[i].name, name) == 0) {
+            complain(line, "there is a slider `%s` already, in line %u", name,
+                     shader->slider_texts[i].line);
+            return false;
+        }
+    }
+    return true;
+}
+
+static void read_slider(struct line *line, size_t kind)
+{
+    whit_shader *shader = line->shader;
+    if (shader->value_count + kinds[kind].values > SHADER_SLIDERS_MAX) {
+        complain(line, "sliders have at most %d values together", SHADER_SLIDERS_MAX);
+        return;
+    }
+    struct shader_slider_text *texts = &shader->slider_texts[shader->slider_count];
+    whit_slider *slider = &shader->sliders[shader->slider_count];
+    *slider = (whit_slider){.name = texts->name, .help = texts->help, .kind = kinds[kind].kind};
+    if (!next_word(line, texts->name, sizeof texts->name) || !is_name(texts->name)) {
+        complain(line, "a %s has a name of letters, digits and _, not `%.60s`", kinds[kind].word,
+                 texts->name);
+        return;
+    }
+    if (!is_new_name(line, texts->name) || !read_slider_value(line, slider, texts))
+        return;
+    char rest[4];
+    if (!next_word(line, texts->help, sizeof texts->help) || !next_word(line, rest, sizeof rest) ||
+        rest[0]) {
+        complain(line,
+                 "behind the value of `%s` stands its help in quotes, up to %d bytes, and "
+                 "nothing more",
+                 texts->name, SHADER_HELP_BYTES - 1);
+        return;
+    }
+    slider->first = shader->value_count;
+    texts->file = line->file;
+    texts->line = line->number;
+    shader->value_count += kinds[kind].values;
+    shader->slider_count++;
+}
+
+static void read_fuel(struct line *line)
+{
+    double fuel;
+    if (read_number(line, "fuel", 1.0, SHADER_FUEL_MAX, &fuel))
+        line->shader->fuel = (uint32_t)fuel;
+}
+
+static void read_version(struct line *line)
+{
+    char word[SHADER_NAME_BYTES], own[16];
+    snprintf(own, sizeof own, "%d", WHIT_SHADER_VERSION);
+    if (!next_word(line, word, sizeof word) || strcmp(word, own) != 0)
+        complain(line,
+                 "the file is for version `%.60s` of what hooks may use; this whit has %s, "
+                 "the first one: see docs/shaders.md",
+                 word, own);
+}
+
+static void read_line(struct line *line)
+{
+    char word[SHADER_NAME_BYTES];
+    bool fits = next_word(line, word, sizeof word);
+    for (size_t i = 0; fits && i < sizeof kinds / sizeof *kinds; ++i) {
+        if (strcmp(word, kinds[i].word) == 0) {
+            read_slider(line, i);
+            return;
+        }
+    }
+    if (fits && strcmp(word, "fuel") == 0)
+        read_fuel(line);
+    else if (fits && strcmp(word, "whit") == 0)
+        read_version(line);
+    else
+        complain(line, "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel", word);
+}
+
+whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
+                                    struct shader_errors *errors)
+{
+    struct shader_errors own = {0};
+    errors = errors ? errors : &own;
+    uint32_t before = errors->count + errors->more;
+    for (uint32_t f = 0; f < shader->text.file_count; ++f) {
+        const char *at = shader->text.files[f].text;
+        for (uint32_t number = 1; at; ++number) {
+            const char *end = strchr(at, '\n');
+            const char *first = at + strspn(at, " \t");
+            if (strncmp(first, "//@", 3) == 0) {
+                struct line line = {
+                    log, shader, errors, first + 3, end ? end : first + strlen(first), f, number};
+                read_line(&line);
+            }
+            at = end ? end + 1 : NULL;
+        }
+    }
+    return errors->count + errors->more == before ? WHIT_OK : WHIT_ERROR_INPUT;
+}

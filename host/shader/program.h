@@ -1,0 +1,94 @@
+/* A user's file of hooks as a whole: its functions, its sliders, and the kernels with it. */
+#ifndef SHADER_PROGRAM_H
+#define SHADER_PROGRAM_H
+
+#include "shader/compile.h"
+#include "whit/whit_shader.h"
+
+/* The functions of shaders/hook/ that a file may stand in for. */
+enum shader_hook {
+    SHADER_HOOK_CAMERA,
+    SHADER_HOOK_SURFACE,
+    SHADER_HOOK_SHADE,
+    SHADER_HOOK_SCATTER,
+    SHADER_HOOK_MISS,
+    SHADER_HOOK_POST,
+    SHADER_HOOK_COUNT
+};
+
+/* The kernels that hooks are parts of. */
+enum shader_kernel {
+    SHADER_KERNEL_CLOSEST,
+    SHADER_KERNEL_SHADE,
+    SHADER_KERNEL_SHADOW,
+    SHADER_KERNEL_RESOLVE,
+    SHADER_KERNEL_COUNT
+};
+
+enum {
+    SHADER_SLIDERS_MAX = 64, /* values of all sliders: SLIDERS_MAX of shaders/abi/shade.h */
+    SHADER_NAME_BYTES = 64,
+    SHADER_HELP_BYTES = 128,
+    SHADER_WORDS_MAX = 16,
+    SHADER_FUEL_USUAL = 10000,
+    SHADER_FUEL_MAX = 30000, /* what lavapipe leaves of the 65,535 iterations of a group */
+};
+
+/* What whit_slider points to, and the line that says it. */
+struct shader_slider_text {
+    char name[SHADER_NAME_BYTES], help[SHADER_HELP_BYTES];
+    char text[SHADER_HELP_BYTES]; /* words, each ended by 0 */
+    const char *words[SHADER_WORDS_MAX];
+    uint32_t file, line;
+};
+
+struct whit_shader {
+    struct shader_text text;
+    uint32_t hooks; /* bits 1 << enum shader_hook */
+    uint32_t fuel;
+    bool trust;
+    whit_slider sliders[SHADER_SLIDERS_MAX];
+    struct shader_slider_text slider_texts[SHADER_SLIDERS_MAX];
+    uint32_t slider_count, value_count;
+    struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
+    const char *files[SHADER_TEXT_FILES_MAX];
+    const char *names[SHADER_HOOK_COUNT + 1]; /* of its hooks; NULL behind the last */
+};
+
+/* program.c */
+const char *shader_hook_name(enum shader_hook hook);
+const char *shader_kernel_name(enum shader_kernel kernel);
+static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
+{
+    return shader && (shader->hooks >> hook & 1);
+}
+/* Its code of kernel "closest", "shade", "shadow" or "resolve"; NULL: whit's own serves. */
+const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
+/* Where a loop begins, by the number that a kernel reports; false: no such loop. */
+bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file,
+                      uint32_t *line);
+/* WHIT_ERROR_INPUT and others as of whit_shader_load. */
+WHIT_CHECK whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
+                                             const char *path, bool trust, whit_shader **out,
+                                             struct shader_errors *errors);
+void shader_program_destroy(whit_shader *shader);
+/* whit_shader_template */
+char *shader_template(const char *hook);
+
+/* annotations.c: the lines `//@ ...` of all files, into `shader`. WHIT_ERROR_INPUT, with what is
+   wrong in `errors` and logged. */
+WHIT_CHECK whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
+                                               struct shader_errors *errors);
+
+/* A colour as #ffcc88; false: it is none. */
+bool shader_color_read(const char *text, float srgb[3]);
+
+/* sliders.c: the GLSL that declares the sliders; free() it. NULL: no memory. */
+char *shader_sliders_declare(const whit_shader *shader);
+/* The values of all sliders, of which `text`, "NAME=VALUE,NAME=VALUE", changes some; NULL or "":
+   none. Colours come out linear. With `skip`, pairs that are no use are left out. False: why not,
+   and `values` means nothing. */
+bool shader_sliders_read(const whit_shader *shader, const char *text, bool skip,
+                         float values[SHADER_SLIDERS_MAX], char *why, size_t why_bytes);
+
+#endif

@@ -1,0 +1,180 @@
+#include "view/shaders.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/watch.h"
+#include "view/view_private.h"
+
+enum { PAIR_BYTES = 256 };
+
+/* ---- The file ---- */
+
+/* What an error does not tell of, stays watched. */
+static void watch_files(struct view *view)
+{
+    const struct shader_ref *shown = view->shaders.shown;
+    watch_clear(view->shaders.watch);
+    watch_add(view->shaders.watch, view->settings.shader);
+    for (uint32_t i = 1; shown && i < shown->info.file_count; ++i)
+        watch_add(view->shaders.watch, shown->info.files[i]);
+}
+
+void shaders_begin(struct view *view)
+{
+    if (!view->settings.shader[0])
+        return;
+    view->shaders.watch = watch_create();
+    watch_files(view);
+}
+
+void shaders_end(struct view *view)
+{
+    watch_destroy(view->shaders.watch);
+    shader_ref_drop(view->shaders.shown);
+}
+
+void shaders_watch(struct view *view)
+{
+    struct shaders *shaders = &view->shaders;
+    if (!watch_changed(shaders->watch))
+        return;
+    shaders->read_ms = whit_clock_ms();
+    shaders->error[0] = '\0';
+    view->settings.shader_reload = ++view->reloads;
+    view->dirty = true;
+}
+
+void shaders_take(struct view *view)
+{
+    struct shaders *shaders = &view->shaders;
+    if (shaders->shown == view->frame.shader)
+        return;
+    shader_ref_drop(shaders->shown);
+    shaders->shown = shader_ref_take(view->frame.shader);
+    watch_files(view);
+}
+
+void shaders_refuse(struct view *view)
+{
+    struct shaders *shaders = &view->shaders;
+    if (settings_same_shader(&view->settings, &view->fallback) || view->frame.number == 0)
+        return;
+    memcpy(shaders->error, view->status.error, sizeof shaders->error);
+    log_error(&view->log, "%s", shaders->error);
+}
+
+/* ---- What a reload changed ---- */
+
+void shaders_step(struct view *view)
+{
+    struct shaders *shaders = &view->shaders;
+    const struct engine_change *change = &view->status.change;
+    if (shaders->change == change->number)
+        return;
+    shaders->change = change->number;
+    if (!shaders->read_ms || change->settings.shader_reload != view->settings.shader_reload)
+        return;
+    char line[256];
+    snprintf(line, sizeof line,
+             "%+.2f ms, %llu of %llu pixels other, ids %s, %.2f s after the file",
+             change->after_ms - change->before_ms, (unsigned long long)change->other_colors,
+             (unsigned long long)change->pixels, change->other_ids ? "other" : "equal",
+             (whit_clock_ms() - shaders->read_ms) * 1e-3);
+    shaders->read_ms = 0.0;
+    log_info(&view->log, "%s: %s", path_name(view->settings.shader), line);
+    view_say(view, "%s: %s", path_name(view->settings.shader), line);
+}
+
+/* ---- Sliders ---- */
+
+static void set_slider(struct view *view, const whit_slider *slider, const char *value)
+{
+    char pair[PAIR_BYTES], why[SETTING_WHY_BYTES];
+    snprintf(pair, sizeof pair, "%s=%s", slider->name, value);
+    if (!settings_read(settings_row("set"), pair, &view->settings, why))
+        view_say(view, "--set%s", why);
+}
+
+/* What stands behind NAME= in the settings; "": the file's own value counts. */
+static void get_slider(const struct view *view, const whit_slider *slider, char value[PAIR_BYTES])
+{
+    const char *at = view->settings.sliders;
+    size_t name = strlen(slider->name);
+    value[0] = '\0';
+    while (*at) {
+        size_t length = strcspn(at, ",");
+        if (length > name && at[name] == '=' && strncmp(at, slider->name, name) == 0)
+            snprintf(value, PAIR_BYTES, "%.*s", (int)(length - name - 1), at + name + 1);
+        at += length + (at[length] == ',');
+    }
+}
+
+static void draw_number(struct view *view, const whit_slider *slider, const char *value)
+{
+    double number = (double)slider->value[0];
+    char text[40];
+    if (value[0])
+        sscanf(value, "%lf", &number);
+    if (!ui_slider(slider->name, &number, (double)slider->min, (double)slider->max, false))
+        return;
+    setting_write_number((double)(float)number, text, sizeof text);
+    set_slider(view, slider, text);
+}
+
+static void draw_toggle(struct view *view, const whit_slider *slider, const char *value)
+{
+    bool on = value[0] ? strcmp(value, "on") == 0 : slider->value[0] != 0.0f;
+    if (ui_checkbox(slider->name, &on))
+        set_slider(view, slider, on ? "on" : "off");
+}
+
+static void draw_words(struct view *view, const whit_slider *slider, const char *value)
+{
+    int at = (int)slider->value[0];
+    for (uint32_t i = 0; i < slider->word_count; ++i)
+        at = strcmp(slider->words[i], value) == 0 ? (int)i : at;
+    if (ui_choice(slider->name, slider->words[at], slider->words, (int)slider->word_count, &at))
+        set_slider(view, slider, slider->words[at]);
+}
+
+static void draw_color(struct view *view, const whit_slider *slider, const char *value)
+{
+    unsigned rgb[3];
+    char text[16];
+    float color[3];
+    memcpy(color, slider->value, sizeof color);
+    if (sscanf(value, "#%2x%2x%2x", &rgb[0], &rgb[1], &rgb[2]) == 3) {
+        for (int i = 0; i < 3; ++i)
+            color[i] = (float)rgb[i] / 255.0f;
+    }
+    if (!ui_color(slider->name, color))
+        return;
+    snprintf(text, sizeof text, "#%02x%02x%02x", (unsigned)(color[0] * 255.0f + 0.5f),
+             (unsigned)(color[1] * 255.0f + 0.5f), (unsigned)(color[2] * 255.0f + 0.5f));
+    set_slider(view, slider, text);
+}
+
+void shaders_draw(struct view *view)
+{
+    static void (*const draw[])(struct view *, const whit_slider *,
+                                const char *) = {[WHIT_SLIDER_NUMBER] = draw_number,
+                                                 [WHIT_SLIDER_COLOR] = draw_color,
+                                                 [WHIT_SLIDER_TOGGLE] = draw_toggle,
+                                                 [WHIT_SLIDER_CHOICE] = draw_words};
+    const struct shader_ref *shown = view->shaders.shown;
+    if (!shown || shown->info.slider_count == 0)
+        return;
+    if (ui_panel_begin("Shader", 0.0f, 0.0f, UI_PANEL_HOLD)) {
+        char value[PAIR_BYTES];
+        for (uint32_t i = 0; i < shown->info.slider_count; ++i) {
+            const whit_slider *slider = &shown->info.sliders[i];
+            get_slider(view, slider, value);
+            draw[slider->kind](view, slider, value);
+            if (slider->help[0])
+                ui_text_dim("%s", slider->help);
+        }
+    }
+    ui_panel_end();
+}

@@ -1,0 +1,99 @@
+/* Part of whit.h: files of GLSL functions that stand in the place of whit's own (docs/shaders.md).
+ */
+#ifndef WHIT_SHADER_H
+#define WHIT_SHADER_H
+
+#include "whit_types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define WHIT_SHADER_VERSION 1 /* of what such files may use; they name it as `//@ whit 1` */
+
+/* Compiles such files, in a process of its own that is kept for the next file. */
+typedef struct whit_shader_compiler whit_shader_compiler;
+
+/* A zeroed one means the defaults. */
+typedef struct whit_shader_limits {
+    double cpu_s;          /* of the processor, for each kernel; 0: 5 */
+    uint64_t memory_bytes; /* of the compiler; 0: 1 GiB */
+    bool require_sandbox;  /* where it cannot be locked in: an error in place of a warning */
+    const volatile bool *cancel;
+} whit_shader_limits;
+
+/* Best made before scenes are loaded: its process has the memory of the caller as it then is.
+   `limits` may be NULL. Used by one thread at a time. No errors but WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_shader_compiler_create(const whit_shader_limits *limits,
+                                                   const whit_log *log, whit_shader_compiler **out);
+void whit_shader_compiler_destroy(whit_shader_compiler *compiler);
+
+/* What is wrong with a file, and where. */
+typedef struct whit_shader_error {
+    const char *file; /* as it was named */
+    uint32_t line;    /* from 1; 0: the file as a whole */
+    const char *reason;
+} whit_shader_error;
+/* The first of those of the last call of whit_shader_load: their number. They live up to the next
+   call. */
+uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
+                                     const whit_shader_error **errors);
+
+/* Reads the file with all that it includes and compiles the kernels that its functions are part of.
+   `trust`: its loops and indices are not bounded. WHIT_ERROR_INPUT with what is wrong in the log,
+   each as "FILE:line: reason"; WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE without a sandbox that is
+   required. */
+WHIT_CHECK whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path,
+                                        bool trust, whit_shader **out);
+void whit_shader_destroy(whit_shader *shader);
+
+typedef enum whit_slider_kind {
+    WHIT_SLIDER_NUMBER = 0,
+    WHIT_SLIDER_COLOR,
+    WHIT_SLIDER_TOGGLE,
+    WHIT_SLIDER_CHOICE,
+} whit_slider_kind;
+
+/* A value of the file that needs no other kernel: whit_renderer_params.sliders. All texts live as
+   long as the shader. */
+typedef struct whit_slider {
+    const char *name, *help; /* help: "" without one */
+    whit_slider_kind kind;
+    float min, max;           /* NUMBER */
+    float value[3];           /* that the file gives; COLOR: sRGB, 0..1; TOGGLE: 0 or 1; CHOICE:
+                                 number of the word, from 0 */
+    const char *const *words; /* CHOICE */
+    uint32_t word_count;
+    uint32_t first; /* of its values among those of all sliders; a COLOR has three */
+} whit_slider;
+
+/* What a file is made of. All texts live as long as the shader. */
+typedef struct whit_shader_info {
+    const char *const *files; /* the file and what it includes, as whit opened them */
+    uint32_t file_count;
+    const char *const *hooks; /* whit's functions that it stands in for */
+    uint32_t hook_count;
+    const whit_slider *sliders;
+    uint32_t slider_count;
+    uint32_t fuel; /* iterations of loops that a call may take; 0: trusted */
+    uint32_t kernel_count;
+    uint32_t instructions; /* SPIR-V, of all kernels, with all that they may need */
+    uint64_t hash;         /* of the texts of all files */
+} whit_shader_info;
+void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info);
+
+/* The kernels that the shader has part in, by index; NULL past the last. `words`: SPIR-V. */
+const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
+                               size_t *bytes);
+
+/* The file that `whit shader new` writes: whit's own function of that name, with what it may use in
+   comments; NULL: there is no such hook. To be released by whit_memory_destroy. */
+char *whit_shader_template(const char *hook);
+/* Names of hooks by index; NULL past the last. */
+const char *whit_shader_hook_name(uint32_t index);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
