@@ -9,6 +9,7 @@ struct extent {
     bool fixed;        /* `count` elements */
     uint32_t count;    /* 0: none, or it is not known */
     uint32_t count_id; /* else: a value that says how many; 0: nothing does */
+    bool is_uint;      /* count_id: for certain */
 };
 
 static struct extent extent_of(const struct spv_module *m, uint32_t type)
@@ -18,7 +19,7 @@ static struct extent extent_of(const struct spv_module *m, uint32_t type)
     if (!def || spv_length(def) < 4)
         return extent;
     if (spv_op(def) == SPV_TYPE_VECTOR || spv_op(def) == SPV_TYPE_MATRIX)
-        return (struct extent){true, def[3], 0};
+        return (struct extent){.fixed = true, .count = def[3]};
     if (spv_op(def) != SPV_TYPE_ARRAY)
         return extent;
     extent.fixed = spv_constant_value(m, def[3], &extent.count);
@@ -45,7 +46,8 @@ static uint32_t last_of(struct spv_module *m, struct extent extent)
     uint32_t u = spv_uint(m);
     if (extent.fixed)
         return spv_constant(m, u, extent.count - 1);
-    uint32_t count = as_uint(m, extent.count_id), some = m->next_id++, last = m->next_id++;
+    uint32_t count = extent.is_uint ? extent.count_id : as_uint(m, extent.count_id),
+             some = m->next_id++, last = m->next_id++;
     SPV_EMIT(m, SPV_EXT_INST, u, some, m->glsl, SPV_GLSL_UMAX, count, spv_constant(m, u, 1));
     SPV_EMIT(m, SPV_I_SUB, u, last, some, spv_constant(m, u, 1));
     return last;
@@ -79,6 +81,7 @@ static struct extent extent_of_buffer(struct spv_module *m, const uint32_t *chai
         !spv_constant_value(m, chain[4], &member))
         return extent;
     extent.count_id = m->next_id++;
+    extent.is_uint = true;
     SPV_EMIT(m, SPV_ARRAY_LENGTH, u, extent.count_id, chain[3], member);
     return extent;
 }

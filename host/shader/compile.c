@@ -209,6 +209,24 @@ static void add_own_error(const struct place *place, const struct glslang_error 
                      reason);
 }
 
+static uint32_t count_lines(const struct shader_file *file)
+{
+    uint32_t count = 1;
+    for (size_t i = 0; i + 1 < file->bytes; ++i)
+        count += file->text[i] == '\n' || (file->text[i] == '\r' && file->text[i + 1] != '\n');
+    return count;
+}
+
+/* What a file leaves open may be told behind its end. */
+static void add_user_error(const struct place *place, const struct glslang_error *error,
+                           const char *reason)
+{
+    const struct shader_file *file = &place->text->files[error->file];
+    uint32_t last = count_lines(file);
+    shader_error_add(place->log, place->errors, file->name, error->line < last ? error->line : last,
+                     "%s", reason);
+}
+
 /* What a child tells is not to be believed. */
 static void add_errors(const struct place *place, const struct glslang_answer *answer)
 {
@@ -222,8 +240,7 @@ static void add_errors(const struct place *place, const struct glslang_answer *a
         char reason[SHADER_REASON_BYTES];
         foreign_text(error->reason, sizeof error->reason, reason, sizeof reason);
         if (error->own == 0 && place->text && error->file < place->text->file_count) {
-            shader_error_add(place->log, place->errors, place->text->files[error->file].name,
-                             error->line, "%s", reason);
+            add_user_error(place, error, reason);
         } else if (error->own == 1 && !user) {
             add_own_error(place, error, reason);
             break; /* the others follow from it */

@@ -5,6 +5,17 @@
 
 #include "base/array.h"
 
+/* The number of the first loop that had none left stays. */
+static void put_number(struct spv_module *m, uint32_t number)
+{
+    uint32_t u = spv_uint(m), zero = spv_constant(m, u, 0);
+    uint32_t before = m->next_id++, first = m->next_id++, after = m->next_id++;
+    SPV_EMIT(m, SPV_LOAD, u, before, m->fuel_loop);
+    SPV_EMIT(m, SPV_I_EQUAL, spv_bool(m), first, before, zero);
+    SPV_EMIT(m, SPV_SELECT, u, after, first, spv_constant(m, u, number), before);
+    SPV_EMIT(m, SPV_STORE, m->fuel_loop, after);
+}
+
 /* Opens the loop's guard behind its header: a block that leaves the loop where there is no fuel,
    and one in which it goes on, which gets what the header ended with. */
 static void put_guard(struct fuel *fuel, struct spv_module *m)
@@ -22,7 +33,7 @@ static void put_guard(struct fuel *fuel, struct spv_module *m)
     SPV_EMIT(m, SPV_BRANCH_CONDITIONAL, none, loop->out, loop->in);
     SPV_EMIT(m, SPV_LABEL, loop->out);
     if (m->fuel_loop)
-        SPV_EMIT(m, SPV_STORE, m->fuel_loop, spv_constant(m, u, fuel->count));
+        put_number(m, fuel->count);
     SPV_EMIT(m, SPV_BRANCH, loop->merge);
     SPV_EMIT(m, SPV_LABEL, loop->in);
     SPV_EMIT(m, SPV_I_SUB, u, less, left, spv_constant(m, u, 1));

@@ -40,7 +40,9 @@ static glslang_input_t input_of(const char *text)
         .code = text,
         .default_version = 460,
         .default_profile = GLSLANG_NO_PROFILE,
-        .messages = (glslang_messages_t)(GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT),
+        /* All errors; messages.c keeps the first of a line, from which others often follow. */
+        .messages = (glslang_messages_t)(GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT |
+                                         GLSLANG_MSG_CASCADING_ERRORS_BIT),
         .resource = glslang_default_resource(),
     };
 }

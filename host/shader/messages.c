@@ -10,9 +10,22 @@
 
 enum { NOBODY = 2, LINE_BYTES = 2048 };
 
+static bool has_error(const struct glslang_answer *answer, uint32_t own, uint32_t file,
+                      uint32_t line)
+{
+    for (uint32_t i = 0; i < answer->error_count; ++i) {
+        const struct glslang_error *error = &answer->errors[i];
+        if (error->own == own && error->file == file && error->line == line)
+            return true;
+    }
+    return false;
+}
+
 void messages_add(struct glslang_answer *answer, uint32_t own, uint32_t file, uint32_t line,
                   const char *reason)
 {
+    if (own != NOBODY && has_error(answer, own, file, line))
+        return; /* others of a line follow from the first */
     if (answer->error_count == SHADER_ERROR_MAX) {
         answer->more++;
         return;
@@ -233,6 +246,8 @@ static void take_error(struct glslang_answer *answer, const struct glslang_quest
         own = NOBODY;
     }
     tidy(line, why);
+    if (strcmp(why, "memory exhausted") == 0) /* as bison says it */
+        snprintf(why, sizeof why, "brackets or blocks that are too deep");
     if (!strstr(why, "compilation terminated") && !strstr(why, "compilation errors.") && why[0])
         messages_add(answer, own, number, at, why);
 }

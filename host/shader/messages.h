@@ -4,6 +4,7 @@
 
 #include "shader/glslang.h"
 
+/* The first one of a line is kept. `own` as in struct glslang_error. */
 void messages_add(struct glslang_answer *answer, uint32_t own, uint32_t file, uint32_t line,
                   const char *reason);
 /* A log of glslang's: its errors, without what follows from them. One at least. */

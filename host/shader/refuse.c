@@ -70,7 +70,9 @@ const char *refuse_instruction(const struct spv_module *m, const uint32_t *words
     const char *why = op == SPV_STORE || op == SPV_COPY_MEMORY ? refused_write(m, words) : NULL;
     if (!why)
         why = refused_operation(op);
-    return why ? why : refused_type(m, words[1]);
+    if (why)
+        return why;
+    return refused_type(m, op == SPV_STORE ? spv_type_of(m, words[2]) : words[1]);
 }
 
 static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint32_t table)

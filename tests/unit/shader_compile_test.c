@@ -1,0 +1,444 @@
+/* Kernels with texts of users: what is compiled is what the build compiles, errors name the user's
+   file and line, and whatever the text is, the compiler is there for the next one. */
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "kernels.h"
+#include "shader_fixture.h"
+#include "sources.h"
+
+#define FINE "float f(float x, int n) { return x + 1.0; }\n"
+
+/* ---- The same as at build time ---- */
+
+TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_end)
+{
+    for (uint32_t i = 0; i < KERNEL_COUNT; ++i) {
+        char name[64];
+        snprintf(name, sizeof name, "kernel/%s.comp", kernels[i].name);
+        const struct shader_request request = {.kernel = name};
+        struct shader_code code;
+        assert_int_equal(shader_compile(compiler, NULL, &request, &code, &errors), WHIT_OK);
+        char *built = disassemble(kernels[i].words, kernels[i].bytes);
+        char *made = disassemble(code.words, code.bytes);
+        assert_true(strlen(built) > 1000 && strstr(built, "NoContraction"));
+        assert_true(strcmp(built, made) == 0);
+        assert_int_equal(code.loop_count, 0);
+        assert_true(code.instructions > 10);
+        free(built);
+        free(made);
+        shader_code_free(&code);
+    }
+    assert_string_equal(logged, "");
+}
+
+TEST(all_shaders_are_embedded_as_they_are)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < shader_source_count; ++i) {
+        char path[512], *text = malloc(shader_sources[i].bytes + 2);
+        snprintf(path, sizeof path, WHIT_SCENES_DIR "/../shaders/%s", shader_sources[i].path);
+        FILE *file = fopen(path, "rb");
+        assert_non_null(file);
+        assert_int_equal(fread(text, 1, shader_sources[i].bytes + 1, file),
+                         shader_sources[i].bytes);
+        assert_memory_equal(text, shader_sources[i].text, shader_sources[i].bytes);
+        assert_int_equal(shader_sources[i].text[shader_sources[i].bytes], 0);
+        assert_true(i == 0 || strcmp(shader_sources[i - 1].path, shader_sources[i].path) < 0);
+        count += strncmp(shader_sources[i].path, "kernel/", 7) == 0;
+        fclose(file);
+        free(text);
+    }
+    assert_int_equal(count, KERNEL_COUNT);
+    FILE *list =
+        popen("cd " WHIT_SCENES_DIR "/../shaders && ls */*.comp */*.glsl */*.h | wc -l", "r");
+    unsigned files = 0;
+    assert_non_null(list);
+    assert_int_equal(fscanf(list, "%u", &files), 1);
+    assert_int_equal(pclose(list), 0);
+    assert_int_equal(files, shader_source_count);
+}
+
+TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
+{
+    const char *const defines[] = {"HOOK_A", "HOOK_B 7"};
+    struct shader_request request = {.kernel = "kernel/test.comp",
+                                     .kernel_text =
+                                         "// first\n"
+                                         "#version 460\n"
+                                         "#extension GL_GOOGLE_include_directive : require\n"
+                                         "layout(local_size_x = 1) in;\n"
+                                         "#ifdef HOOK_A\n"
+                                         "#include \"../lib/turn.glsl\"\n"
+                                         "#endif\n"
+                                         "#include \"../lib/turn.glsl\"\n"
+                                         "void main() {}\n",
+                                     .defines = defines,
+                                     .define_count = 2};
+    size_t bytes;
+    char *text = shader_expand(&shader_log, NULL, &request, &bytes, &errors);
+    assert_non_null(text);
+    assert_int_equal(strlen(text), bytes);
+    const char *extension = strstr(text, "#extension GL_GOOGLE_include_directive");
+    const char *define = strstr(text, "\n#define HOOK_A\n#define HOOK_B 7\n#line 4 ");
+    assert_true(extension && define && extension < define);
+    assert_true(define < strstr(text, "layout(local_size_x = 1) in;\n"));
+    /* What stands under a condition is no reason to leave it out below. */
+    const char *first = strstr(text, "#ifndef LIB_TURN_GLSL");
+    assert_true(first && strstr(first + 1, "#ifndef LIB_TURN_GLSL"));
+    free(text);
+    request.kernel = "kernel/none.comp";
+    request.kernel_text = NULL;
+    struct shader_code code;
+    errors.count = 0;
+    assert_int_equal(shader_compile(compiler, NULL, &request, &code, &errors), WHIT_ERROR_INPUT);
+    assert_non_null(strstr(logged, "no shader kernel/none.comp is embedded"));
+}
+
+/* ---- Errors ---- */
+
+static const struct {
+    const char *content;
+    uint32_t line;
+    const char *reason;
+} broken[] = {
+    {"float f(float x, int n) { return y; }\n", 1, "'y': undeclared identifier"},
+    {"\n\nfloat f(float x, int n) {\n  return x\n}\n", 5, "unexpected '}'"},
+    {"float f(float x, int n) { return vec3(1.0); }\n", 1, "return"},
+    {"float f(float x, int n) {\n  int i = 1.0;\n  return x;\n}\n", 2, "cannot convert"},
+    {"float f(float x, int n) {\n  return g(x);\n}\n", 2, "no matching overloaded function"},
+    {"float f(float x, int n) {\n  vec3 v = vec3(1.0);\n  return v.w;\n}\n", 3, "w"},
+    {"float f(float x, int n) {\n  float x2 = 1.0;\n  float x2 = 2.0;\n  return x2;\n}\n", 3,
+     "redefinition"},
+    {FINE "\n" FINE, 3, "already has a body"},
+    {FINE "struct S { float a; float a; };\n", 2, "duplicate"},
+    {FINE "float a[0];\n", 2, "array size"},
+    {FINE "float a[-1];\n", 2, "array size"},
+    {FINE "const float c;\n", 2, "const"},
+    {"float f(float x, int n) {\n  const float c = 1.0;\n  c = 2.0;\n  return c;\n}\n", 3, "const"},
+    {"float f(float x, int n) {\n  float a[4];\n  return a[4];\n}\n", 3, "out of range"},
+    {"float f(float x, int n) {\n  if (x) return 1.0;\n  return x;\n}\n", 2, "boolean"},
+    {"float f(float x, int n) {\n  break;\n  return x;\n}\n", 2, "break"},
+    {"float f(float x, int n) {\n  continue;\n  return x;\n}\n", 2, "continue"},
+    {"float f(float x, int n) {\n  case 1: return x;\n}\n", 2, "case"},
+    {"float f(float x, int n) {\n  return;\n}\n", 2, "return"},
+    {"float f(float x, int n) {\n  discard;\n  return x;\n}\n", 2, "discard"},
+    {"float f(float x, int n) {\n  x = x @ 1.0;\n  return x;\n}\n", 2, "bad"},
+    {"float f(float x, int n) {\n  return 1.0e;\n}\n", 2, ""},
+    {"float f(float x, int n) {\n  return 99999999999;\n}\n", 2, "too big"},
+    {"float f(float x, int n) {\n  return texture(s, vec2(x)).x;\n}\n", 2, "undeclared"},
+    {"float f(float x, int n) {\n  return x % 2.0;\n}\n", 2, "%"},
+    {"float f(float x, int n) {\n  mat3 m = mat2(1.0) * mat3(1.0);\n  return m[0].x;\n}\n", 2, "*"},
+    {"#define A(x) x\nfloat f(float x, int n) { return A(1.0; }\n", 2, ""},
+    {FINE "#if X(\n#endif\n", 2, ""},
+    {FINE "#error \"stop\"\n", 2, "stop"},
+    {FINE "#foo\n", 2, "directive"},
+    {FINE "\n#undef GL_x\n", 3, "GL_"},
+    {"import x;\n" FINE, 1, "unexpected"},
+    {FINE "float half = 1.0;\n", 2, "half"},
+    {FINE "float gl_x;\n", 2, "gl_"},
+    {"float g(float x);\nfloat f(float x, int n) { return g(x); }\n", 1,
+     "g is called and has no body"},
+    {"float f(float x, int n) {\n  dvec2 v = dvec2(1.0);\n  return float(v.x);\n}\n", 2,
+     "no double"},
+    {"float f(float x, int n) {\n  while (true) {\n  return x;\n}\n", 1, "brace"},
+    {FINE "}\n", 2, ""},
+    {"float f(float x) {\n return x;\n}\n", 0, "whit's own text"},
+    {"float f(float x, int n) {\n  return dFdx(x);\n}\n", 2, "dFdx"},
+    {"float f(float x, int n) {\n  return float(gl_FragCoord.x);\n}\n", 2, "gl_FragCoord"},
+    {"#extension_of mine\n" FINE, 1, "directive"},
+};
+
+TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
+{
+    uint32_t bad = 0;
+    for (size_t i = 0; i < sizeof broken / sizeof *broken; ++i) {
+        struct shader_code code;
+        if (compile_files(broken[i].content, NULL, false, &code) != WHIT_ERROR_INPUT)
+            fail_msg("no error: %s", broken[i].content);
+        assert_true(!code.words && !code.loops);
+        assert_true(errors.count >= 1);
+        const struct shader_error *error = &errors.items[0];
+        bool own = broken[i].line == 0;
+        char place[64];
+        snprintf(place, sizeof place,
+                 own ? "whit:kernel/test.comp:13: " : "a.glsl:%u: ", broken[i].line);
+        bool right = strcmp(error->file, own ? "whit:kernel/test.comp" : "a.glsl") == 0 &&
+                     error->line == (own ? 13 : broken[i].line) &&
+                     strstr(error->reason, broken[i].reason) &&
+                     strncmp(logged, place, strlen(place)) == 0 &&
+                     !strstr(logged, "compilation terminated") && !strstr(logged, "No code");
+        if (!right)
+            print_error("%s\nline %u, %s:\n%s\n", broken[i].content, broken[i].line,
+                        broken[i].reason, logged);
+        bad += !right;
+    }
+    assert_int_equal(bad, 0);
+}
+
+TEST_IN(lines_are_right_through_two_levels, compiler_begin, compiler_end)
+{
+    static const char kernel[] = "float f(float x, int n) { return g(x); }\n";
+    const struct shader_text_source sources[] = {
+        {"a.glsl", "// a\n#include \"lib/b.glsl\"\n#include \"lib/c.glsl\"\nfloat h = missing_a;\n",
+         0},
+        {"lib/b.glsl", "#include \"c.glsl\"\r\n\r\nfloat g(float x) { return missing_b; }\r\n", 0},
+        {"lib/c.glsl", "#ifndef C\n#define C\n/*\n*/ float c = missing_c; // \\\n\n#endif", 0},
+    };
+    struct shader_text_source whole[3];
+    struct shader_text text;
+    struct shader_code code;
+    const struct shader_request request = {.kernel = "kernel/test.comp",
+                                           .kernel_text = test_kernel};
+    char first[512];
+    snprintf(first, sizeof first, "%s%s", sources[0].text, kernel);
+    for (uint32_t i = 0; i < 3; ++i)
+        whole[i] = sources[i];
+    whole[0].text = first;
+    for (uint32_t i = 0; i < 3; ++i)
+        whole[i].bytes = strlen(whole[i].text);
+    errors.count = 0;
+    assert_int_equal(shader_text_from(&shader_log, whole, 3, &text, &errors), WHIT_OK);
+    assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
+    assert_non_null(strstr(logged, "lib/c.glsl:4: 'missing_c'"));
+    assert_non_null(strstr(logged, "lib/b.glsl:3: 'missing_b'"));
+    assert_non_null(strstr(logged, "a.glsl:4: 'missing_a'"));
+    shader_text_free(&text);
+}
+
+TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
+{
+    struct shader_code code;
+    assert_int_equal(
+        compile_files("\nfloat f(float x, int n) { return n < 1 ? x : f(x, n - 1); }\n", NULL,
+                      false, &code),
+        WHIT_ERROR_INPUT);
+    assert_non_null(strstr(logged, "a.glsl:2: f calls itself"));
+    assert_int_equal(compile_files("float g(float x, int n);\n"
+                                   "float f(float x, int n) { return n < 1 ? x : g(x, n - 1); }\n"
+                                   "float g(float x, int n) { return f(x, n); }\n",
+                                   NULL, false, &code),
+                     WHIT_ERROR_INPUT);
+    assert_non_null(strstr(logged, "which leads back to it"));
+    assert_true(strstr(logged, "a.glsl:2: f calls g") || strstr(logged, "a.glsl:3: g calls f"));
+}
+
+/* A line of the user's is no line of whit's. */
+TEST_IN(macros_of_users_end_with_their_text, compiler_begin, compiler_end)
+{
+    struct shader_code code = must_compile("#define uint while(true) uint\n"
+                                           "#define i j\n"
+                                           "#define answers cases\n"
+                                           "#define __x 1\n"
+                                           "float f(float x, int n) { return x; }\n");
+    assert_int_equal(code.loop_count, 0);
+    shader_code_free(&code);
+    code = must_compile("float f(float x, int n) { return x; } // \\");
+    shader_code_free(&code);
+    code = must_compile("float f(float x, int n) { return x; } \\\n");
+    shader_code_free(&code);
+}
+
+TEST_IN(a_file_included_again_and_again_is_refused, compiler_begin, compiler_end)
+{
+    struct shader_text_source sources[14];
+    char texts[14][512], names[14][16], *filler = malloc(10000);
+    memset(filler, '/', 9999);
+    filler[9999] = 0;
+    for (int i = 0; i < 14; ++i) {
+        snprintf(names[i], sizeof names[i], "%c.glsl", 'a' + i);
+        size_t used = (size_t)snprintf(texts[i], sizeof texts[i], i ? "" : FINE);
+        for (int j = 0; i < 13 && j < 3; ++j)
+            used += (size_t)snprintf(texts[i] + used, sizeof texts[i] - used,
+                                     "#include \"%c.glsl\"\n", 'a' + i + 1);
+        sources[i] = (struct shader_text_source){names[i], texts[i], strlen(texts[i])};
+    }
+    sources[13] = (struct shader_text_source){names[13], filler, 9999};
+    struct shader_text text;
+    struct shader_code code;
+    const struct shader_request request = {.kernel = "kernel/test.comp",
+                                           .kernel_text = test_kernel};
+    assert_int_equal(shader_text_from(&shader_log, sources, 14, &text, &errors), WHIT_OK);
+    errors.count = 0;
+    assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
+    assert_non_null(strstr(errors.items[0].reason, "larger than 16 MiB"));
+    shader_text_free(&text);
+    free(filler);
+}
+
+/* ---- What means harm ---- */
+
+static char *repeat(const char *before, const char *what, size_t count, const char *behind)
+{
+    size_t length = strlen(what), used = strlen(before);
+    char *text = malloc(used + count * length + strlen(behind) + 1);
+    memcpy(text, before, used);
+    for (size_t i = 0; i < count; ++i, used += length)
+        memcpy(text + used, what, length);
+    strcpy(text + used, behind);
+    return text;
+}
+
+/* One error, and the compiler goes on. */
+static void assert_survives(char *content, const char *reason)
+{
+    struct shader_code code;
+    whit_result result = compile_files(content, NULL, false, &code);
+    if (reason && (result != WHIT_ERROR_INPUT || !strstr(logged, reason)))
+        fail_msg("\"%s\" is not in \"%s\"", reason, logged);
+    if (result != WHIT_OK)
+        assert_true(errors.count >= 1 && strncmp(errors.items[0].file, "a.glsl", 6) == 0);
+    shader_code_free(&code);
+    free(content);
+    code = must_compile(FINE);
+    shader_code_free(&code);
+}
+
+static void try_harm(void)
+{
+    assert_survives(repeat("float f(float x, int n) { return ", "(", 100000, "x; }"), "a.glsl:1: ");
+    assert_survives(repeat("float f(float x, int n) { ", "{", 100000, "return x; }"), "a.glsl");
+    assert_survives(repeat("float f(float x, int n) { return ", "-(", 100000, "x; }"), "a.glsl");
+    assert_survives(repeat("#if ", "(", 100000, "\n#endif\n" FINE), "a.glsl");
+    assert_survives(repeat("float f(float x, int n) { return x", " + x", 250000, "; }"), NULL);
+    assert_survives(repeat("// ", "x", 1000000, "\n" FINE), NULL);
+    assert_survives(repeat("float ", "x", 1000000, ";\n" FINE), NULL);
+    assert_survives(
+        repeat("float f(float x, int n) { float a[2684354560]; return a[n]; }", "", 0, ""),
+        "a.glsl:1");
+    assert_survives(
+        repeat("float f(float x, int n) { float a[2000000000]; a[1] = x; return a[n]; }", "", 0,
+               ""),
+        "a.glsl:1: variables of more than 16 KiB");
+    assert_survives(
+        repeat("\nfloat a[1000000];\nfloat f(float x, int n) { a[n] = x; return a[1]; }", "", 0,
+               ""),
+        "a.glsl:2: variables of more than 16 KiB");
+    /* Macros that double: 2^40 words. */
+    char *bomb = malloc(8192);
+    size_t used = (size_t)sprintf(bomb, "#define B0 x + x\n");
+    for (int i = 1; i < 40; ++i)
+        used += (size_t)sprintf(bomb + used, "#define B%d B%d + B%d\n", i, i - 1, i - 1);
+    sprintf(bomb + used, "float f(float x, int n) { return B39; }\n");
+    assert_survives(bomb, "a.glsl: ");
+}
+
+TEST_IN(texts_that_mean_harm_are_one_error, NULL, compiler_end)
+{
+    const struct shader_limits limits = {.cpu_s = 2.0, .memory_bytes = 300u << 20};
+    compiler_open(&limits);
+    try_harm();
+}
+
+/* ---- The process ---- */
+
+static uint32_t children(void)
+{
+    char path[64];
+    uint32_t count = 0;
+    snprintf(path, sizeof path, "/proc/self/task/%d/children", getpid());
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    for (int pid; fscanf(file, "%d", &pid) == 1;)
+        count++;
+    fclose(file);
+    return count;
+}
+
+static pid_t only_child(void)
+{
+    char path[64];
+    int pid = 0;
+    snprintf(path, sizeof path, "/proc/self/task/%d/children", getpid());
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%d", &pid), 1);
+    fclose(file);
+    return pid;
+}
+
+TEST(one_process_is_kept_and_none_is_left)
+{
+    assert_int_equal(children(), 0);
+    compiler_open(NULL);
+    assert_int_equal(children(), 1);
+    pid_t first = only_child();
+    for (int i = 0; i < 3; ++i) {
+        struct shader_code code = must_compile(FINE);
+        shader_code_free(&code);
+        assert_int_equal(children(), 1);
+        assert_int_equal(only_child(), first);
+    }
+    /* Where it dies there is another one. */
+    assert_int_equal(kill(first, SIGKILL), 0);
+    struct shader_code code = must_compile(FINE);
+    shader_code_free(&code);
+    assert_int_equal(children(), 1);
+    assert_true(only_child() != first);
+    /* One that stops is given up. */
+    shader_compiler_destroy(compiler);
+    assert_int_equal(children(), 0);
+}
+
+TEST(limits_are_kept)
+{
+    volatile bool cancel = true;
+    char *long_text = repeat("float f(float x, int n) { return x", " + sin(x)", 60000, "; }");
+    const struct {
+        struct shader_limits limits;
+        whit_result result;
+        const char *reason;
+    } cases[] = {
+        {{.memory_bytes = 8 << 20}, WHIT_ERROR_INPUT, "memory"},
+        {{.cpu_s = 0.01}, WHIT_ERROR_INPUT, "not compiled within 0.01 s"},
+        {{.clock_s = 0.01}, WHIT_ERROR_INPUT, "0.01 s by the clock"},
+        {{.cancel = &cancel}, WHIT_ERROR_CANCELLED, "cancelled"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct shader_code code;
+        compiler_open(&cases[i].limits);
+        assert_int_equal(compile_files(long_text, NULL, false, &code), cases[i].result);
+        if (!strstr(logged, cases[i].reason))
+            fail_msg("\"%s\" is not in \"%s\"", cases[i].reason, logged);
+        shader_compiler_destroy(compiler);
+        assert_int_equal(children(), 0);
+    }
+    free(long_text);
+}
+
+/* The process that is kept ends with its parent. */
+TEST(no_process_outlives_its_parent)
+{
+    int ends[2];
+    pid_t kept = 0;
+    assert_int_equal(pipe(ends), 0);
+    pid_t parent = fork();
+    if (parent == 0) {
+        struct shader_compiler *own = shader_compiler_create(NULL, NULL);
+        kept = own ? only_child() : 0;
+        ssize_t written = write(ends[1], &kept, sizeof kept);
+        _exit(written == sizeof kept ? 0 : 1);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], &kept, sizeof kept), sizeof kept);
+    /* The pipe ends when nobody has it any more: neither of the two. */
+    char byte;
+    assert_int_equal(read(ends[0], &byte, 1), 0);
+    close(ends[0]);
+    assert_int_equal(waitpid(parent, NULL, 0), parent);
+    assert_true(kept > 0);
+    for (int i = 0; i < 1000 && kill(kept, 0) == 0; ++i) {
+        char path[64], how = 0;
+        snprintf(path, sizeof path, "/proc/%d/stat", kept);
+        FILE *file = fopen(path, "r");
+        if (file && fscanf(file, "%*d %*s %c", &how) != 1)
+            how = 0;
+        if (file)
+            fclose(file);
+        if (how == 'Z' || how == 0)
+            return; /* whoever takes orphans has not looked yet */
+        usleep(10000);
+    }
+    assert_int_not_equal(kill(kept, 0), 0);
+}

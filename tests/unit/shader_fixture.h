@@ -1,0 +1,151 @@
+/* Texts of users, and a kernel of a few lines that calls them. */
+#ifndef SHADER_FIXTURE_H
+#define SHADER_FIXTURE_H
+
+#include <ctype.h>
+
+#include <spirv-tools/libspirv.h>
+
+#include "shader/compile.h"
+#include "unit.h"
+
+/* f(x, n) of the user's for each invocation, and which loop was without fuel. */
+static const char test_kernel[] =
+    "#version 460\n"
+    "#extension GL_GOOGLE_include_directive : require\n"
+    "layout(local_size_x = 64) in;\n"
+    "layout(set = 0, binding = 0) readonly buffer Cases { ivec2 cases[]; };\n"
+    "layout(set = 0, binding = 1) writeonly buffer Answers { uvec2 answers[]; };\n"
+    "uint whit_fuel = 1000u;\n"
+    "uint whit_fuel_loop = 0u;\n"
+    "#include \"../hook/user.glsl\"\n"
+    "void main()\n"
+    "{\n"
+    "    uint i = gl_GlobalInvocationID.x;\n"
+    "    if (i < cases.length())\n"
+    "        answers[i].x = uint(f(float(cases[i].x), cases[i].y));\n"
+    "    if (i < cases.length())\n"
+    "        answers[i].y = whit_fuel_loop;\n"
+    "}\n";
+
+static struct shader_compiler *compiler;
+static struct shader_errors errors;
+static char logged[8192]; /* errors and warnings, one a line */
+
+static inline void keep_message(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    size_t used = strlen(logged);
+    snprintf(logged + used, sizeof logged - used, "%s\n", message);
+}
+
+static const whit_log shader_log = {.fn = keep_message, .level = WHIT_LOG_WARNING};
+
+static inline void compiler_open(const struct shader_limits *limits)
+{
+    compiler = shader_compiler_create(&shader_log, limits);
+    assert_non_null(compiler);
+}
+
+static inline int compiler_begin(void **state)
+{
+    (void)state;
+    logged[0] = 0;
+    compiler_open(NULL);
+    return 0;
+}
+
+static inline int compiler_end(void **state)
+{
+    (void)state;
+    shader_compiler_destroy(compiler);
+    return 0;
+}
+
+/* Texts as files "a.glsl", which is the user's, and, where it is not NULL, "b.glsl". */
+static inline whit_result compile_files(const char *a, const char *b, bool trust,
+                                        struct shader_code *code)
+{
+    const struct shader_text_source sources[] = {{"a.glsl", a, strlen(a)},
+                                                 {"b.glsl", b, b ? strlen(b) : 0}};
+    const struct shader_request request = {
+        .kernel = "kernel/test.comp", .kernel_text = test_kernel, .trust = trust};
+    struct shader_text text;
+    errors = (struct shader_errors){0};
+    *code = (struct shader_code){0};
+    logged[0] = 0;
+    whit_result result = shader_text_from(&shader_log, sources, b ? 2 : 1, &text, &errors);
+    if (result == WHIT_OK)
+        result = shader_compile(compiler, &text, &request, code, &errors);
+    shader_text_free(&text);
+    return result;
+}
+
+static inline bool is_remark(const char *line)
+{
+    static const char *const remarks[] = {"OpSource", "OpName",   "OpMemberName",     "OpString",
+                                          "OpLine",   "OpNoLine", "OpModuleProcessed"};
+    const char *equals = strstr(line, " = ");
+    line = equals && line[0] == '%' ? equals + 3 : line;
+    for (size_t i = 0; i < sizeof remarks / sizeof *remarks; ++i) {
+        if (strncmp(line, remarks[i], strlen(remarks[i])) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* The text of a module without remarks, its ids numbered in the order of the text; free() it. */
+static inline char *disassemble(const uint32_t *words, size_t bytes)
+{
+    spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_2);
+    spv_text text = NULL;
+    assert_int_equal(spvBinaryToText(context, words, bytes / 4, SPV_BINARY_TO_TEXT_OPTION_NO_HEADER,
+                                     &text, NULL),
+                     SPV_SUCCESS);
+    char *out = malloc(2 * text->length + 1), *to = out;
+    uint32_t *numbers = calloc(words[3], sizeof *numbers), count = 0;
+    for (char *line = strtok((char *)text->str, "\n"); line; line = strtok(NULL, "\n")) {
+        if (is_remark(line))
+            continue;
+        for (const char *at = line; *at;) {
+            if (*at == '%' && isdigit((unsigned char)at[1])) {
+                uint32_t id = (uint32_t)strtoul(at + 1, (char **)&at, 10);
+                assert_true(id < words[3]);
+                numbers[id] = numbers[id] ? numbers[id] : ++count;
+                to += sprintf(to, "%%%u", numbers[id]);
+            } else {
+                *to++ = *at++;
+            }
+        }
+        *to++ = '\n';
+    }
+    *to = 0;
+    free(numbers);
+    spvTextDestroy(text);
+    spvContextDestroy(context);
+    return out;
+}
+
+/* spirv-val for Vulkan 1.2. */
+static inline void assert_valid(const struct shader_code *code)
+{
+    spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_2);
+    spv_diagnostic diagnostic = NULL;
+    if (spvValidateBinary(context, code->words, code->bytes / 4, &diagnostic) != SPV_SUCCESS)
+        fail_msg("%s\n%s", diagnostic ? diagnostic->error : "not valid",
+                 disassemble(code->words, code->bytes));
+    spvDiagnosticDestroy(diagnostic);
+    spvContextDestroy(context);
+}
+
+/* Fails with what was logged. */
+static inline struct shader_code must_compile(const char *a)
+{
+    struct shader_code code;
+    if (compile_files(a, NULL, false, &code) != WHIT_OK)
+        fail_msg("%s\n%s", a, logged);
+    return code;
+}
+
+#endif

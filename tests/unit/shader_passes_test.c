@@ -1,0 +1,248 @@
+/* What is changed in functions of users and what is refused, and that the rest stays: every module
+   here is valid SPIR-V. */
+#include "shader_fixture.h"
+
+/* ---- Fuel ---- */
+
+static uint32_t count(const char *text, const char *what)
+{
+    uint32_t found = 0;
+    for (const char *at = text; (at = strstr(at, what)); at += strlen(what))
+        found++;
+    return found;
+}
+
+/* Loops of f(), each with the line that it begins on. */
+static const struct {
+    const char *content;
+    uint32_t count, lines[4];
+} looping[] = {
+    {"float f(float x, int n) {\n for (int i = 0; i < n; i++)\n  x += 1.0;\n return x; }\n",
+     1,
+     {2}},
+    {"float f(float x, int n) {\n while (x < 9.0)\n  x += 1.0;\n return x; }\n", 1, {2}},
+    {"float f(float x, int n) {\n do {\n  x += 1.0;\n } while (x < 9.0);\n return x; }\n", 1, {4}},
+    {"float f(float x, int n) {\n do\n  if (x > 1.0) continue;\n while (x++ < 9.0);\n return x; "
+     "}\n",
+     1,
+     {4}},
+    {"float f(float x, int n) {\n for (;;) {\n  if (x > 9.0) return x; x++; }\n}\n", 1, {2}},
+    {"float f(float x, int n) { for (int i = 0; i < n; i++)\n for (int j = 0; j < n; j++)\n"
+     "  while (x < 5.0) x += 1.0;\n return x; }\n",
+     3,
+     {1, 2, 3}},
+    {"float f(float x, int n) {\n while (true) {\n  if (x > 3.0) break;\n  if (x > 2.0) continue;\n"
+     "  x += 1.0; }\n return x; }\n",
+     1,
+     {2}},
+    {"float f(float x, int n) {\n for (;;) {\n  switch (n) { case 1: x++; break; case 2: "
+     "continue;\n"
+     "  default: return x; }\n  if (x > 9.0 && n > 3 || x < 1.0) break; }\n return x; }\n",
+     1,
+     {2}},
+    {"float f(float x, int n) {\n switch (n) { case 1:\n  for (;;) { x++; break; }\n  break;\n"
+     " default: while (x < 1.0 || n > 2 && x > 2.0) x++; }\n return x; }\n",
+     2,
+     {3, 5}},
+    {"#define TIMES(n) for (int i_ = 0; i_ < n; ++i_)\nfloat f(float x, int n) {\n TIMES(3)\n"
+     " TIMES(4) x += 1.0;\n return x; }\n",
+     2,
+     {3, 4}},
+    {"bool g(float x) { while (x > 1.0) x *= 0.5; return x > 0.5; }\nfloat f(float x, int n) {\n"
+     " for (bool on = g(x); on && g(x); on = g(x)) x += g(x) ? 1.0 : 2.0;\n return x; }\n",
+     2,
+     {1, 3}},
+    {"void g(inout float x) { for (;;) ; }\nfloat f(float x, int n) { g(x); return x; }\n", 1, {1}},
+    {"struct S { float a; mat3 m; vec4 v[3]; };\nS g(int n) { for (;;) { if (n > 9) return S(1.0, "
+     "mat3(1.0), vec4[3](vec4(1), vec4(1), vec4(1))); n++; } }\n"
+     "float f(float x, int n) { return g(n).a; }\n",
+     1,
+     {2}},
+    {"float g(float x) { while (x > 1.0) x -= 1.0; return x; } float f(float x, int n) { while (x "
+     "> "
+     "2.0) x = g(x); return x; }\n",
+     2,
+     {1, 1}},
+    {"float f(float x, int n) { return x; }\n", 0, {0}},
+};
+
+TEST_IN(loops_have_fuel_and_lines, compiler_begin, compiler_end)
+{
+    for (size_t i = 0; i < sizeof looping / sizeof *looping; ++i) {
+        struct shader_code code = must_compile(looping[i].content), trusted;
+        assert_valid(&code);
+        if (code.loop_count != looping[i].count)
+            fail_msg("%u loops: %s", code.loop_count, looping[i].content);
+        for (uint32_t j = 0; j < code.loop_count; ++j) {
+            assert_int_equal(code.loops[j].file, 0);
+            bool found = false;
+            for (uint32_t k = 0; k < looping[i].count; ++k)
+                found = found || looping[i].lines[k] == code.loops[j].line;
+            if (!found)
+                fail_msg("line %u: %s", code.loops[j].line, looping[i].content);
+        }
+        assert_int_equal(compile_files(looping[i].content, NULL, true, &trusted), WHIT_OK);
+        assert_valid(&trusted);
+        assert_int_equal(trusted.loop_count, 0);
+        char *with = disassemble(code.words, code.bytes);
+        char *without = disassemble(trusted.words, trusted.bytes);
+        assert_int_equal(count(with, "OpLoopMerge"), looping[i].count);
+        assert_int_equal(count(with, "OpISub"), count(without, "OpISub") + looping[i].count);
+        assert_int_equal(count(with, "OpUnreachable"), 0);
+        free(with);
+        free(without);
+        shader_code_free(&code);
+        shader_code_free(&trusted);
+    }
+}
+
+TEST_IN(loops_of_whit_have_no_fuel, compiler_begin, compiler_end)
+{
+    char kernel[4096];
+    snprintf(kernel, sizeof kernel, "%s", test_kernel);
+    char *end = strrchr(kernel, '}');
+    strcpy(end, "    for (uint j = 0u; j < i; j++) answers[i].y += j;\n}\n");
+    const struct shader_text_source source = {"a.glsl", "float f(float x, int n) { return x; }",
+                                              37};
+    struct shader_request request = {.kernel = "kernel/test.comp", .kernel_text = kernel};
+    struct shader_text text;
+    struct shader_code code;
+    assert_int_equal(shader_text_from(NULL, &source, 1, &text, NULL), WHIT_OK);
+    assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_OK);
+    assert_int_equal(code.loop_count, 0);
+    shader_code_free(&code);
+    shader_text_free(&text);
+}
+
+TEST_IN(loops_in_included_files_have_their_place, compiler_begin, compiler_end)
+{
+    struct shader_code code;
+    assert_int_equal(
+        compile_files("// one\n#include \"b.glsl\"\nfloat f(float x, int n) {\n"
+                      " while (x > 1.0) x = g(x);\n return x; }\n",
+                      "\n\nfloat g(float x) {\n\n while (x > 2.0) x -= 1.0;\n return x; }", false,
+                      &code),
+        WHIT_OK);
+    assert_int_equal(code.loop_count, 2);
+    bool first = code.loops[0].file == 1;
+    const struct shader_loop *a = &code.loops[first ? 1 : 0], *b = &code.loops[first ? 0 : 1];
+    assert_true(a->file == 0 && a->line == 4 && b->file == 1 && b->line == 5);
+    assert_valid(&code);
+    shader_code_free(&code);
+}
+
+/* ---- Bounds ---- */
+
+static const struct {
+    const char *content;
+    uint32_t clamps; /* that are needed */
+} indexing[] = {
+    {"float f(float x, int n) {\n float a[8]; a[2] = x; return a[n]; }\n", 1},
+    {"float f(float x, int n) {\n float a[8]; a[n] = x; a[7] = x; return a[7]; }\n", 1},
+    {"float f(float x, int n) {\n float a[3][5]; a[n][n + 1] = x; return a[1][2]; }\n", 2},
+    {"float f(float x, int n) {\n vec3 v = vec3(x); v[n] = 1.0; return v[n]; }\n", 2},
+    {"float f(float x, int n) {\n mat4x3 m = mat4x3(x); m[n][n] = 1.0; return m[n].x; }\n", 3},
+    {"float f(float x, int n) {\n return vec3(1, 2, 3)[n]; }\n", 1},
+    {"vec3 g(float x) { return vec3(x); }\nfloat f(float x, int n) {\n return g(x)[n]; }\n", 1},
+    {"const float t[4] = float[4](1.0, 2.0, 3.0, 4.0);\nfloat f(float x, int n) {\n return t[n]; "
+     "}\n",
+     1},
+    {"float t[4];\nfloat f(float x, int n) {\n t[uint(n)] = x; return t[0]; }\n", 1},
+    {"struct S { float a[4]; mat3 m; };\nfloat f(float x, int n) {\n S s[3]; s[n].a[n] = x;\n"
+     " return s[n].m[n][n]; }\n",
+     5},
+    {"float g(float a[4], int n) { return a[n]; }\nfloat f(float x, int n) {\n float a[4];\n"
+     " return g(a, n); }\n",
+     1},
+    {"void g(inout float a[4], int n) { a[n] = 1.0; }\nfloat f(float x, int n) {\n float a[4][2 + "
+     "2];\n"
+     " g(a[n], n); return a[1][1]; }\n",
+     3},
+    {"float f(float x, int n) {\n return float(cases[n].x); }\n", 1},
+    {"float g = vec3(1.0)[gl_LocalInvocationID.x];\nfloat f(float x, int n) {\n return g; }\n", 1},
+    {"float f(float x, int n) {\n return float(gl_LocalInvocationID[n]); }\n", 1},
+};
+
+TEST_IN(indices_stay_within, compiler_begin, compiler_end)
+{
+    for (size_t i = 0; i < sizeof indexing / sizeof *indexing; ++i) {
+        struct shader_code code = must_compile(indexing[i].content), trusted;
+        assert_valid(&code);
+        char *text = disassemble(code.words, code.bytes);
+        if (count(text, " UMin ") != indexing[i].clamps)
+            fail_msg("%u: %s\n%s", count(text, " UMin "), indexing[i].content, text);
+        free(text);
+        shader_code_free(&code);
+        assert_int_equal(compile_files(indexing[i].content, NULL, true, &trusted), WHIT_OK);
+        assert_valid(&trusted);
+        text = disassemble(trusted.words, trusted.bytes);
+        assert_int_equal(count(text, " UMin "), 0);
+        free(text);
+        shader_code_free(&trusted);
+    }
+}
+
+/* ---- Refusals ---- */
+
+static const struct {
+    const char *content;
+    uint32_t line;
+    const char *reason;
+} refused[] = {
+    {"float f(float x, int n) {\n barrier();\n return x; }\n", 2, "barriers are whit's own"},
+    {"float f(float x, int n) {\n memoryBarrier();\n return x; }\n", 2, "barriers are whit's own"},
+    {"float f(float x, int n) {\n groupMemoryBarrier();\n return x; }\n", 2, "barriers"},
+    {"float f(float x, int n) {\n answers[0].x = 1u;\n return x; }\n", 2, "writes into buffers"},
+    {"float f(float x, int n) {\n return float(atomicAdd(answers[0].x, 1u)); }\n", 2, "atomic"},
+    {"float f(float x, int n) {\n whit_fuel = 9u;\n return x; }\n", 2, "whit_fuel is"},
+    {"float f(float x, int n) {\n return float(whit_fuel); }\n", 2, "whit_fuel is"},
+    {"#define F whit_fuel_loop\nfloat f(float x, int n) {\n F++;\n return x; }\n", 3,
+     "whit_fuel is"},
+    {"float f(float x, int n) {\n float a[5000];\n a[n] = x;\n return a[0]; }\n", 1, "16 KiB"},
+    {"float a[2000];\nfloat b[3000];\nfloat f(float x, int n) {\n a[n] = x; b[n] = x;\n return "
+     "a[0] + "
+     "b[0]; }\n",
+     2, "16 KiB"},
+    {"struct S { vec4 v[20][30]; };\nfloat f(float x, int n) {\n S s, t;\n s.v[1][1].x = x; t = "
+     "s;\n"
+     " return t.v[1][n].x; }\n",
+     2, "16 KiB"},
+    {"float f(float x, int n) {\n double d = double(x) * 2.0LF;\n return float(d); }\n", 2,
+     "no double"},
+    {"float f(float x, int n) {\n return subgroupAdd(x); }\n", 2, ""},
+};
+
+TEST_IN(what_users_may_not_do_is_refused, compiler_begin, compiler_end)
+{
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
+        for (int trust = 0; trust < 2; ++trust) {
+            struct shader_code code;
+            if (compile_files(refused[i].content, NULL, trust, &code) != WHIT_ERROR_INPUT)
+                fail_msg("it is not refused: %s", refused[i].content);
+            if (errors.items[0].line != refused[i].line ||
+                !strstr(errors.items[0].reason, refused[i].reason))
+                fail_msg("%s\n%s", refused[i].content, logged);
+        }
+    }
+    /* A table is one, however often it is looked into. */
+    struct shader_code code = must_compile(
+        "const mat4 t[128] = mat4[128](\n"
+#define ROW  "mat4(1),mat4(2),mat4(3),mat4(4)"
+#define ROWS ROW "," ROW "," ROW "," ROW "," ROW "," ROW "," ROW "," ROW
+        ROWS "," ROWS "," ROWS "," ROWS
+        ");\nfloat f(float x, int n) { return t[n][0].x + t[n + 1][1].y + t[n + 2][2].z; }\n");
+    assert_valid(&code);
+    shader_code_free(&code);
+}
+
+TEST_IN(operations_stay_exact, compiler_begin, compiler_end)
+{
+    struct shader_code code = must_compile("float f(float x, int n) { return x * 3.0 + 1.0; }\n");
+    char *text = disassemble(code.words, code.bytes);
+    assert_true(count(text, "NoContraction") == 2);
+    assert_int_equal(count(text, "OpLine") + count(text, "OpName") + count(text, "OpString"), 0);
+    free(text);
+    for (size_t at = 5; at < code.bytes / 4; at += code.words[at] >> 16)
+        assert_false((code.words[at] & 0xffff) >= 2 && (code.words[at] & 0xffff) <= 8);
+    shader_code_free(&code);
+}
