@@ -301,6 +301,22 @@ static void branch_either(struct evaluation *e, struct instance *in, const uint3
     enter(e, at[3]);
 }
 
+/* All ways stay, even where the selector is known: blocks leave a switch from within. */
+static void branch_among(struct evaluation *e, struct instance *in, const uint32_t *at)
+{
+    e->source[in->label].end_label = e->label;
+    put_merge(e, in);
+    evaluate_copy(e, at);
+    enter(e, at[2]);
+    for (uint32_t i = 4; i < spirv_length(at); i += 2) {
+        bool again = at[i] == at[2];
+        for (uint32_t j = 4; j < i; j += 2)
+            again = again || at[j] == at[i];
+        if (!again)
+            enter(e, at[i]);
+    }
+}
+
 /* Whether control can come to the current block from `from`, a block that a phi names. */
 static bool arrives(const struct evaluation *e, const struct instance *in, uint32_t from)
 {
@@ -530,7 +546,7 @@ static void walk_instruction(struct evaluation *e, struct instance *in, const ui
         walk_return(e, in, at);
         return;
     case OP_SWITCH:
-        e->failed = true;
+        branch_among(e, in, at);
         return;
     default:
         walk_plain(e, at);

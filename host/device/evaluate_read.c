@@ -9,7 +9,7 @@ static uint32_t min_words(uint32_t op)
            : op == OP_VARIABLE || op == OP_LOAD || op == OP_ACCESS_CHAIN   ? 4
            : op == OP_FUNCTION_CALL || op == OP_BRANCH_CONDITIONAL         ? 4
            : op >= OP_ATOMIC_LOAD && op <= OP_ATOMIC_XOR                   ? 4
-           : op == OP_STORE || op == OP_LOOP_MERGE                         ? 3
+           : op == OP_STORE || op == OP_LOOP_MERGE || op == OP_SWITCH      ? 3
            : op == OP_FUNCTION || op == OP_FUNCTION_PARAMETER              ? 3
            : op == OP_SELECTION_MERGE || op == OP_BRANCH || op == OP_LABEL ? 2
            : op == OP_RETURN_VALUE                                         ? 2

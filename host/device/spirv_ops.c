@@ -7,7 +7,8 @@ static bool is_plain(uint32_t op)
 {
     return op == OP_UNDEF || op == OP_ACCESS_CHAIN || op == OP_COMPOSITE_CONSTRUCT ||
            op == OP_COPY_OBJECT || op == OP_IMAGE || op == OP_COPY_LOGICAL ||
-           (op >= OP_CONVERT_FIRST && op <= OP_BITCAST) ||
+           op == OP_VECTOR_EXTRACT_DYNAMIC || op == OP_VECTOR_INSERT_DYNAMIC ||
+           op == OP_TRANSPOSE || (op >= OP_CONVERT_FIRST && op <= OP_BITCAST) ||
            (op >= OP_S_NEGATE && op <= OP_S_MUL_EXTENDED) ||
            (op >= OP_ANY && op <= OP_F_UNORD_GREATER_EQUAL) ||
            (op >= OP_SHIFT_RIGHT && op <= OP_BIT_COUNT) || op == OP_PHI;
@@ -32,6 +33,7 @@ struct spirv_shape spirv_shape(uint32_t op)
     case OP_VARIABLE: /* a storage class first */
         return (struct spirv_shape){true, true, false, all & ~1u};
     case OP_LOAD:
+    case OP_ARRAY_LENGTH: /* a buffer, and the number of its member */
     case OP_COMPOSITE_EXTRACT:
         return (struct spirv_shape){true, true, false, 1};
     case OP_VECTOR_SHUFFLE:

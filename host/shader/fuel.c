@@ -71,21 +71,6 @@ static void put_phi(const struct fuel *fuel, struct spv_module *m, const uint32_
     }
 }
 
-static bool is_void(const struct spv_module *m, uint32_t type)
-{
-    const uint32_t *def = spv_def(m, type);
-    return def && spv_op(def) == SPV_TYPE_VOID;
-}
-
-/* What nothing reached before, loops without fuel may. */
-static void put_return(struct spv_module *m)
-{
-    if (is_void(m, m->return_type))
-        spv_emit(m, SPV_RETURN, NULL, 0);
-    else
-        SPV_EMIT(m, SPV_RETURN_VALUE, spv_null(m, m->return_type));
-}
-
 bool fuel_take(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
@@ -105,9 +90,6 @@ bool fuel_take(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
         return true;
     case SPV_PHI:
         put_phi(fuel, m, words);
-        return true;
-    case SPV_UNREACHABLE:
-        put_return(m);
         return true;
     default:
         return false;

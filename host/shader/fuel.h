@@ -1,5 +1,5 @@
-/* Loops of users that end: each round of any of them takes one from whit_fuel, and where that is 0
-   loops are left, with the number of the first one in whit_fuel_loop. */
+/* Loops of users that end: each time that the start of one is reached, one is taken from whit_fuel,
+   and where that is 0 the loop is left, with the number of the first one in whit_fuel_loop. */
 #ifndef SHADER_FUEL_H
 #define SHADER_FUEL_H
 

@@ -13,6 +13,7 @@
 #include "shader/messages.h"
 #include "shader/module.h"
 #include "shader/refuse.h"
+#include "shader/returns.h"
 
 struct compilation {
     const struct glslang_question *question;
@@ -145,13 +146,32 @@ static void check_module(struct compilation *c, struct spv_module *m)
     report(c, (struct spv_place){0, 0}, why);
 }
 
+/* Without a user there is nothing to rewrite; no words: no memory. */
+static struct spv_words rewrite_returns(struct compilation *c, const uint32_t *words, size_t count)
+{
+    struct spv_module m;
+    struct spv_words out = {0};
+    if (spv_read(&m, words, count, c->question->own))
+        out = returns_rewrite(&m);
+    if (m.failed)
+        out.count = 0;
+    spv_finish(&m);
+    return out;
+}
+
 /* The module with passes behind it; no words: there are errors, or there is no memory. */
 static struct spv_words make_module(struct compilation *c, const uint32_t *words, size_t count)
 {
     struct spv_module m;
-    struct spv_words out = {0};
+    struct spv_words out = {0}, returned = {0};
+    bool has_user = c->question->user_at != c->question->user_end;
+    if (has_user) {
+        returned = rewrite_returns(c, words, count);
+        words = returned.words;
+        count = returned.count;
+    }
     bool whole = spv_read(&m, words, count, c->question->own);
-    m.has_user = c->question->user_at != c->question->user_end;
+    m.has_user = has_user;
     for (size_t at = m.functions_at; whole && at < count; at += spv_length(words + at))
         take_instruction(c, &m, words + at);
     if (whole)
@@ -159,10 +179,11 @@ static struct spv_words make_module(struct compilation *c, const uint32_t *words
     else
         report(c, (struct spv_place){UINT32_MAX, 0}, "glslang wrote a module that cannot be read");
     if (whole && !c->answer.error_count)
-        out = spv_write(&m);
+        out = spv_write(&m, false);
     if (m.failed)
         out.count = 0;
     spv_finish(&m);
+    free(returned.words);
     return out;
 }
 

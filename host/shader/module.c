@@ -244,7 +244,10 @@ static uint32_t find_constant(const struct spv_module *m, uint32_t type, uint32_
     return 0;
 }
 
-enum { LOOKED_UP = UINT32_MAX, NULL_OF = UINT32_MAX - 1 };
+#define LOOKED_UP  UINT32_MAX
+#define NULL_OF    (UINT32_MAX - 1)
+#define POINTER_TO (UINT32_MAX - 2)
+#define TRUE_OF    (UINT32_MAX - 3)
 
 static uint32_t find_or_add(struct spv_module *m, uint32_t op)
 {
@@ -281,15 +284,51 @@ uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
     return keep_constant(m, (struct spv_constant){type, value, id});
 }
 
-uint32_t spv_null(struct spv_module *m, uint32_t type)
+/* A constant that is named by its type alone. */
+static uint32_t plain_constant(struct spv_module *m, uint32_t key, uint32_t op, uint32_t type)
 {
-    uint32_t id = find_constant(m, NULL_OF, type);
+    uint32_t id = find_constant(m, key, type);
     if (id)
         return id;
     id = m->next_id++;
     const uint32_t operands[] = {type, id};
-    put_instruction(m, &m->globals, SPV_CONSTANT_NULL, operands, 2);
-    return keep_constant(m, (struct spv_constant){NULL_OF, type, id});
+    put_instruction(m, &m->globals, op, operands, 2);
+    return keep_constant(m, (struct spv_constant){key, type, id});
+}
+
+uint32_t spv_null(struct spv_module *m, uint32_t type)
+{
+    return plain_constant(m, NULL_OF, SPV_CONSTANT_NULL, type);
+}
+
+uint32_t spv_true(struct spv_module *m, uint32_t type)
+{
+    return plain_constant(m, TRUE_OF, SPV_CONSTANT_TRUE, type);
+}
+
+static uint32_t find_pointer(const struct spv_module *m, uint32_t type)
+{
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        if (spv_op(words) == SPV_TYPE_POINTER && words[2] == SPV_STORAGE_FUNCTION &&
+            words[3] == type)
+            return words[1];
+    }
+    return 0;
+}
+
+uint32_t spv_pointer(struct spv_module *m, uint32_t type)
+{
+    uint32_t id = find_constant(m, POINTER_TO, type);
+    if (id)
+        return id;
+    id = find_pointer(m, type);
+    if (!id) {
+        id = m->next_id++;
+        const uint32_t operands[] = {id, SPV_STORAGE_FUNCTION, type};
+        put_instruction(m, &m->globals, SPV_TYPE_POINTER, operands, 3);
+    }
+    return keep_constant(m, (struct spv_constant){POINTER_TO, type, id});
 }
 
 static bool is_remark(uint32_t op)
@@ -298,17 +337,17 @@ static bool is_remark(uint32_t op)
            op == SPV_MODULE_PROCESSED;
 }
 
-struct spv_words spv_write(struct spv_module *m)
+struct spv_words spv_write(struct spv_module *m, bool keeps_remarks)
 {
     struct spv_words out = {0};
     spv_put(m, &out, m->words, SPV_HEADER_WORDS);
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (!is_remark(spv_op(m->words + at)))
+        if (keeps_remarks || !is_remark(spv_op(m->words + at)))
             spv_put(m, &out, m->words + at, spv_length(m->words + at));
     }
     spv_put(m, &out, m->globals.words, m->globals.count);
     for (uint32_t at = 0; at < m->body.count; at += spv_length(m->body.words + at)) {
-        if (!is_remark(spv_op(m->body.words + at)))
+        if (keeps_remarks || !is_remark(spv_op(m->body.words + at)))
             spv_put(m, &out, m->body.words + at, spv_length(m->body.words + at));
     }
     if (!m->failed)

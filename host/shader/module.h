@@ -70,7 +70,9 @@ const char *spv_string(const struct spv_module *m, uint32_t id);
 uint32_t spv_uint(struct spv_module *m);
 uint32_t spv_bool(struct spv_module *m);
 uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value);
+uint32_t spv_true(struct spv_module *m, uint32_t type);
 uint32_t spv_null(struct spv_module *m, uint32_t type);
+uint32_t spv_pointer(struct spv_module *m, uint32_t type); /* to variables of functions */
 
 void spv_put(struct spv_module *m, struct spv_words *to, const uint32_t *words, uint32_t count);
 /* SPV_EMIT(m, op, operands...) adds an instruction to the function in hand. */
@@ -81,8 +83,8 @@ void spv_put(struct spv_module *m, struct spv_words *to, const uint32_t *words, 
     } while (0)
 void spv_emit(struct spv_module *m, uint32_t op, const uint32_t *operands, uint32_t count);
 
-/* The module with what was added, and `body` for its functions, without debug information. Free
-   ->words. */
-struct spv_words spv_write(struct spv_module *m);
+/* The module with what was added, and `body` for its functions; without debug information where it
+   is not kept. Free ->words. */
+struct spv_words spv_write(struct spv_module *m, bool keeps_remarks);
 
 #endif

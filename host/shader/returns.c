@@ -1,0 +1,190 @@
+#include "shader/returns.h"
+
+#include <stdlib.h>
+
+#include "base/array.h"
+
+/* A loop or a switch that is open. */
+struct construct {
+    uint32_t merge;
+    bool is_left; /* by a return */
+};
+
+/* A block that goes on in another one. */
+struct moved {
+    uint32_t from, to;
+};
+
+struct returns {
+    struct construct *open;
+    uint32_t open_count, open_capacity;
+    struct moved *moved; /* of the function in hand */
+    uint32_t moved_count, moved_capacity;
+    uint32_t label, flag, value;  /* variables of the function in hand; 0: it needs none */
+    bool is_void, needed, begins; /* begins: variables go behind its first label */
+    bool waits;                   /* a way out goes behind the values that the block begins with */
+    uint32_t selection;           /* the merge block of an OpSelectionMerge just seen */
+};
+
+static bool is_return(uint32_t op)
+{
+    return op == SPV_RETURN || op == SPV_RETURN_VALUE;
+}
+
+/* Whether a function returns from within a loop or a switch. */
+static bool is_needed(const uint32_t *at)
+{
+    uint32_t open[64], count = 0, selection = 0;
+    for (; spv_op(at) != SPV_FUNCTION_END; at += spv_length(at)) {
+        uint32_t op = spv_op(at);
+        while (op == SPV_LABEL && count && open[count - 1] == at[1])
+            count--;
+        if ((op == SPV_LOOP_MERGE || op == SPV_SWITCH) && count < sizeof open / sizeof *open)
+            open[count++] = op == SPV_SWITCH ? selection : at[1];
+        selection = op == SPV_SELECTION_MERGE ? at[1] : selection;
+        if (is_return(op) && count)
+            return true;
+    }
+    return false;
+}
+
+static void push(struct returns *r, struct spv_module *m, uint32_t merge)
+{
+    const struct construct construct = {merge, false};
+    if (!ARRAY_PUSH(r->open, r->open_count, r->open_capacity, construct))
+        m->failed = true;
+}
+
+static void begin_function(struct returns *r, struct spv_module *m, const uint32_t *words)
+{
+    const uint32_t *type = spv_def(m, words[1]);
+    r->is_void = type && spv_op(type) == SPV_TYPE_VOID;
+    r->needed = is_needed(words);
+    r->begins = r->needed;
+    r->open_count = r->moved_count = 0;
+    r->flag = r->value = 0;
+    r->waits = false;
+}
+
+static void put_variables(struct returns *r, struct spv_module *m)
+{
+    uint32_t b = spv_bool(m);
+    r->begins = false;
+    r->flag = m->next_id++;
+    SPV_EMIT(m, SPV_VARIABLE, spv_pointer(m, b), r->flag, SPV_STORAGE_FUNCTION, spv_null(m, b));
+    if (r->is_void)
+        return;
+    r->value = m->next_id++;
+    SPV_EMIT(m, SPV_VARIABLE, spv_pointer(m, m->return_type), r->value, SPV_STORAGE_FUNCTION);
+}
+
+/* To the end of what is open, or out of the function. */
+static void put_way_out(struct returns *r, struct spv_module *m)
+{
+    if (r->open_count) {
+        struct construct *around = &r->open[r->open_count - 1];
+        around->is_left = true;
+        SPV_EMIT(m, SPV_BRANCH, around->merge);
+    } else if (r->is_void) {
+        spv_emit(m, SPV_RETURN, NULL, 0);
+    } else {
+        uint32_t value = m->next_id++;
+        SPV_EMIT(m, SPV_LOAD, m->return_type, value, r->value);
+        SPV_EMIT(m, SPV_RETURN_VALUE, value);
+    }
+}
+
+/* Behind a loop or a switch that a return may have left. */
+static void put_question(struct returns *r, struct spv_module *m)
+{
+    uint32_t left = m->next_id++, out = m->next_id++, on = m->next_id++;
+    const struct moved moved = {r->label, on};
+    if (!ARRAY_PUSH(r->moved, r->moved_count, r->moved_capacity, moved))
+        m->failed = true;
+    r->waits = false;
+    SPV_EMIT(m, SPV_LOAD, spv_bool(m), left, r->flag);
+    SPV_EMIT(m, SPV_SELECTION_MERGE, on, 0);
+    SPV_EMIT(m, SPV_BRANCH_CONDITIONAL, left, out, on);
+    SPV_EMIT(m, SPV_LABEL, out);
+    put_way_out(r, m);
+    SPV_EMIT(m, SPV_LABEL, on);
+}
+
+static void begin_block(struct returns *r, struct spv_module *m, const uint32_t *words)
+{
+    spv_put(m, &m->body, words, spv_length(words));
+    r->label = words[1];
+    while (r->open_count && r->open[r->open_count - 1].merge == words[1])
+        r->waits = r->open[--r->open_count].is_left || r->waits;
+    if (r->begins)
+        put_variables(r, m);
+}
+
+static void put_phi(const struct returns *r, struct spv_module *m, const uint32_t *words)
+{
+    uint32_t at = m->body.count, length = spv_length(words);
+    spv_put(m, &m->body, words, length);
+    for (uint32_t i = 4; i < length && !m->failed; i += 2) {
+        for (uint32_t j = 0; j < r->moved_count; ++j) {
+            if (words[i] == r->moved[j].from)
+                m->body.words[at + i] = r->moved[j].to;
+        }
+    }
+}
+
+static void put_return(struct returns *r, struct spv_module *m, const uint32_t *words)
+{
+    uint32_t b = spv_bool(m);
+    if (spv_op(words) == SPV_RETURN_VALUE)
+        SPV_EMIT(m, SPV_STORE, r->value, words[1]);
+    SPV_EMIT(m, SPV_STORE, r->flag, spv_true(m, b));
+    put_way_out(r, m);
+}
+
+/* What nothing reached before, loops that run out of fuel may. */
+static void put_end(struct returns *r, struct spv_module *m)
+{
+    if (r->is_void)
+        spv_emit(m, SPV_RETURN, NULL, 0);
+    else
+        SPV_EMIT(m, SPV_RETURN_VALUE, spv_null(m, m->return_type));
+}
+
+static void take(struct returns *r, struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words);
+    if (op == SPV_FUNCTION)
+        begin_function(r, m, words);
+    if (r->waits && op != SPV_PHI && op != SPV_LINE && op != SPV_NO_LINE)
+        put_question(r, m);
+    if (r->needed && op == SPV_LABEL) {
+        begin_block(r, m, words);
+    } else if (r->needed && op == SPV_PHI) {
+        put_phi(r, m, words);
+    } else if (r->needed && is_return(op) && r->open_count) {
+        put_return(r, m, words);
+    } else if (op == SPV_UNREACHABLE) {
+        put_end(r, m);
+    } else {
+        if (r->needed && (op == SPV_LOOP_MERGE || op == SPV_SWITCH))
+            push(r, m, op == SPV_SWITCH ? r->selection : words[1]);
+        r->selection = op == SPV_SELECTION_MERGE ? words[1] : r->selection;
+        spv_put(m, &m->body, words, spv_length(words));
+    }
+}
+
+struct spv_words returns_rewrite(struct spv_module *m)
+{
+    struct returns r = {.open = NULL};
+    for (size_t at = m->functions_at; at < m->count; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        spv_follow(m, words);
+        if (m->user_function && !m->failed)
+            take(&r, m, words);
+        else
+            spv_put(m, &m->body, words, spv_length(words));
+    }
+    free(r.open);
+    free(r.moved);
+    return spv_write(m, true);
+}
