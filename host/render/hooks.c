@@ -32,6 +32,12 @@ whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
     return WHIT_ERROR_USAGE;
 }
 
+whit_result hooks_clear_fuel(const struct target *target)
+{
+    const uint32_t none = 0;
+    return buffer_write(target->buffers.status, STATUS_LOOP_AT, &none, sizeof none);
+}
+
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes)
 {
     uint32_t number = 0, line = 0;
@@ -42,9 +48,7 @@ void hooks_describe_fuel(const struct target *target, char *text, size_t text_by
         shader && shader_find_loop(shader, number, &file, &line))
         snprintf(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
                  line, shader->fuel, SHADER_FUEL_MAX);
-    number = 0;
     /* The next picture begins without one. An error here is told by that picture. */
-    whit_result result =
-        buffer_write(target->buffers.status, STATUS_LOOP_AT, &number, sizeof number);
+    whit_result result = hooks_clear_fuel(target);
     (void)result;
 }

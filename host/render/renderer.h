@@ -398,6 +398,8 @@ void async_finish(struct renderer *renderer);
 void hooks_take(struct renderer *renderer);
 /* WHIT_ERROR_USAGE, logged, for sliders that the shader has not. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
+/* Forgets loops that had no fuel left. */
+WHIT_CHECK whit_result hooks_clear_fuel(const struct target *target);
 /* What ran out of iterations, as the status buffer names it. */
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
 

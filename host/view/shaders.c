@@ -95,6 +95,7 @@ static void set_slider(struct view *view, const whit_slider *slider, const char 
     snprintf(pair, sizeof pair, "%s=%s", slider->name, value);
     if (!settings_read(settings_row("set"), pair, &view->settings, why))
         view_say(view, "--set%s", why);
+    view->dirty = true; /* it is asked for before the window is drawn again */
 }
 
 /* What stands behind NAME= in the settings; "": the file's own value counts. */

@@ -42,6 +42,20 @@ static void put_hash(json_t *object, const char *name, const void *data, size_t 
     put_text(object, name, text);
 }
 
+static json_t *shader_json(const struct shaders *shaders)
+{
+    const struct shader_ref *shown = shaders->shown;
+    char hash[17];
+    if (!shown)
+        return json_null();
+    json_t *object = json_object();
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)shown->info.hash);
+    put_text(object, "hash", hash);
+    put_count(object, "files", shown->info.file_count);
+    put_count(object, "sliders", shown->info.slider_count);
+    return object;
+}
+
 static json_t *frame_json(const struct engine_frame *frame)
 {
     char words[4096];
@@ -294,6 +308,7 @@ static json_t *state_json(struct view *view, const char *name)
     json_object_set_new(root, "memory_kb", memory_json());
     json_object_set_new(root, "keys", keys_json(view));
     json_object_set_new(root, "frame", frame_json(&view->frame));
+    json_object_set_new(root, "shader", shader_json(&view->shaders));
     put_bool(root, "picked", view->picked);
     json_object_set_new(root, "probe", probe_json(&view->probe));
     put_number(root, "fps_goal", view->settings.fps_goal);

@@ -1,0 +1,36 @@
+//@ whit 1
+// A path tracer: what is diffuse sends a ray on as well, at random. Needs many samples: --aa 256, or the
+// viewer, which goes on by itself.
+//@ slider bounce 0 1 1 "share of the indirect light"
+
+vec3 cosine_direction(vec3 n, float u, float v)
+{
+    float turn = 6.2831853 * u, z = 2.0 * v - 1.0, r = sqrt(max(1.0 - z * z, 0.0));
+    vec3 dir = n + vec3(r * cos(turn), r * sin(turn), z);
+    return dot(dir, dir) > 1e-6 ? normalize(dir) : n;
+}
+
+// Direct light as whit's own, without what is said to come from everywhere: rays find that.
+vec3 shade(Surface s, Optics o, vec3 to_eye)
+{
+    Optics direct = o;
+    direct.ambient = vec3(0.0);
+    return whit_shade(s, direct, to_eye);
+}
+
+void scatter(Surface s, Optics o, inout Rays rays)
+{
+    whit_scatter(s, o, rays);
+    float mirror = max(rays.reflected.r, max(rays.reflected.g, rays.reflected.b));
+    float diffuse = max(o.diffuse.r, max(o.diffuse.g, o.diffuse.b)) * bounce * (1.0 - o.straight);
+    float sum = mirror + diffuse;
+    if (o.unlit || !(diffuse > 0.0))
+        return;
+    // One ray stands for both, as often as each brings light.
+    if (random(0u) * sum < diffuse) {
+        rays.reflected = o.diffuse * (bounce * (1.0 - o.straight) * sum / diffuse);
+        rays.reflected_dir = cosine_direction(s.ns, random(1u), random(2u));
+    } else {
+        rays.reflected *= sum / mirror;
+    }
+}

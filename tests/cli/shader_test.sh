@@ -1,0 +1,215 @@
+#!/bin/sh
+# Functions of a user in the place of whit's own: files, errors, sliders, pictures, recipes.
+. "$(dirname "$0")/common.sh"
+needs jq
+EXAMPLES=$(cd "$SCENES/../shaders/examples" && pwd)
+mkdir "$OUT/work" && cd "$OUT/work" || exit 1
+SMALL="--size 48x32 --quiet"
+draw_usual() { expect 0 "as usual" render "$SCENES/default.json" --size 48x32 --quiet --light-samples 1 --depth 3 -o usual.png; }
+# shellcheck disable=SC2086 # options are split where they are used
+draw() { # WHAT OUTPUT SCENE OPTION...
+    what=$1 output=$2 scene=$3
+    shift 3
+    expect 0 "$what" render "$SCENES/$scene.json" $SMALL "$@" -o "$output"
+}
+said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
+
+# ---- What a file is ----
+
+for hook in camera surface shade scatter miss post; do
+    expect 0 "new $hook" shader new $hook
+    cp "$OUT/stdout" $hook.glsl
+    expect 0 "the new $hook compiles" shader $hook.glsl
+done
+expect 2 "new nothing" shader new nothing
+said "names what there is" "camera, surface, shade, scatter, miss, post"
+expect 2 "new alone" shader new
+mkdir part
+cat >all.glsl <<'END'
+//@ whit 1
+#include "part/tint.glsl"
+//@ slider bands 1 8 3 "steps of light"
+//@ color rim #ffcc88
+//@ toggle on on "whether"
+//@ choice mode plain,warm
+//@ fuel 20000
+vec3 post(ivec2 at, vec3 color)
+{
+    return tint(on ? ceil(color * bands) / bands : color) + (mode == mode_warm ? rim : vec3(0.0));
+}
+END
+echo 'vec3 tint(vec3 c) { return c; }' >part/tint.glsl
+expect 0 "a file" shader all.glsl --json
+cp "$OUT/stdout" all.json
+check "its files" test "$(jq -r '[.files[].name] | join(" ")' all.json)" = "all.glsl part/tint.glsl"
+check "its functions" test "$(jq -r '[.functions[].name] | join(" ")' all.json)" = post
+check "its sliders" test "$(jq -r '[.sliders[] | "\(.name)=\(.value)"] | join(",")' all.json)" = \
+    "bands=3,rim=#ffcc88,on=on,mode=plain"
+check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = resolve
+check "its fuel" test "$(jq .fuel all.json)" = 20000
+expect 0 "dump" shader all.glsl --dump spirv
+check "SPIR-V" spirv-val --target-env vulkan1.2 spirv/resolve.spv
+
+# broken NAME LINE REASON, of the text on standard input, which begins in line 1.
+broken() {
+    cat >broken.glsl
+    expect 2 "$1" shader broken.glsl
+    check "$1: broken.glsl:$2 ($(head -1 "$OUT/stderr"))" grep -qE "broken\.glsl:$2: .*$3" "$OUT/stderr"
+    check "$1: said once" test "$(sort "$OUT/stderr" | uniq -d | wc -l)" -eq 0
+}
+broken "no semicolon" 2 "syntax error" <<'END'
+vec3 miss(vec3 dir) {
+    float x = 1.0 return vec3(x);
+}
+END
+broken "another version" 1 "version .9" <<'END'
+//@ whit 9
+vec3 miss(vec3 dir) { return dir; }
+END
+broken "no annotation" 2 "none of whit, slider" <<'END'
+vec3 miss(vec3 dir) { return dir; }
+//@ slidr x 0 1 0
+END
+broken "a slider beyond itself" 1 "0 to 1" <<'END'
+//@ slider x 0 1 2
+vec3 miss(vec3 dir) { return dir; }
+END
+broken "two of a name" 2 "already, in line 1" <<'END'
+//@ slider x 0 1 1
+//@ toggle x
+vec3 miss(vec3 dir) { return dir; }
+END
+broken "too much fuel" 1 "30000" <<'END'
+//@ fuel 30001
+vec3 miss(vec3 dir) { return dir; }
+END
+broken "a colour" 1 "#ffcc88" <<'END'
+//@ color x red
+vec3 miss(vec3 dir) { return dir; }
+END
+echo 'float f() { return 1.0; }' >none.glsl
+expect 2 "no hook" shader none.glsl
+said "says which there are" "none of the functions camera, surface"
+expect 2 "no file" shader missing.glsl
+said "names it" "missing.glsl"
+
+# ---- Pictures ----
+
+cat camera.glsl surface.glsl shade.glsl scatter.glsl miss.glsl post.glsl | grep -v '^//@' >own.glsl
+for scene in default whitted glass-of-water; do
+    draw "$scene" a.exr $scene --shadows tinted
+    draw "$scene by the defaults in a file" b.exr $scene --shader own.glsl
+    expect 0 "$scene: the same picture" compare a.exr b.exr --metric rmse --tolerance 1e-4
+    expect 0 "$scene: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
+done
+draw "a file" a.pfm glass-of-water --shader own.glsl
+draw "in other tiles" b.pfm glass-of-water --shader own.glsl --tile-size 16 --segments 1
+check "the same bytes" cmp a.pfm b.pfm
+draw "exact" a.exr default --numerics exact
+draw "exact, by a file" b.exr default --numerics exact --shader own.glsl
+expect 0 "exact: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
+
+draw "usual sliders" a.pfm cube --shader all.glsl
+draw "others" b.pfm cube --shader all.glsl --set bands=2 --set on=off,mode=warm
+draw "the last of a name" c.pfm cube --shader all.glsl --set bands=5,on=off --set mode=warm,bands=2
+check "sliders count" sh -c '! cmp -s a.pfm b.pfm'
+check "the last one of a name counts" cmp b.pfm c.pfm
+draw "by the file's own values" c.pfm cube --shader all.glsl --set bands=3,rim=#ffcc88,on=on,mode=plain
+check "those of the file are the usual ones" cmp a.pfm c.pfm
+for pair in band=2 bands=9 bands=x rim=red on=1 mode=cold; do
+    # shellcheck disable=SC2086
+    expect 2 "--set $pair" render "$CUBE" $SMALL --shader all.glsl --set $pair -o no.png
+    check "no picture of --set $pair" test ! -e no.png
+done
+draw "with a recipe" a.png cube --shader all.glsl --set bands=2
+check "the recipe names file and sliders" grep -aq -- '--shader all.glsl --set bands=2' a.png
+
+draw "a camera of its own" a.pfm 34k --shader camera.glsl
+draw "and without" b.pfm 34k
+check "the empty camera changes nothing" cmp a.pfm b.pfm
+echo 'void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += 0.2 * random(1u); }' >shaky.glsl
+draw "random" a.pfm cube --shader shaky.glsl
+draw "random again" b.pfm cube --shader shaky.glsl --tile-size 16 --packets on
+check "the same numbers in every run" cmp a.pfm b.pfm
+
+draw_usual
+for example in "$EXAMPLES"/*.glsl; do
+    name=$(basename "$example" .glsl)
+    check "$name has less than 100 lines" test "$(wc -l <"$example")" -lt 100
+    draw "example $name" "$name.png" default --shader "$example" --light-samples 1 --depth 3
+    run compare usual.png "$name.png" --metric flip --tolerance 0.001
+    check "$name is no usual picture" test "$status" -eq 1
+done
+
+# ---- What must not be ----
+
+# refused NAME CODE REASON, of the function on standard input: no picture, one reason.
+refused() {
+    cat >bad.glsl
+    rm -f no.png
+    # shellcheck disable=SC2086
+    expect "$2" "$1" render "$SCENES/default.json" $SMALL --shader bad.glsl -o no.png
+    check "$1: says so ($(head -1 "$OUT/stderr"))" grep -qE "$3" "$OUT/stderr"
+    check "$1: no picture" test ! -e no.png
+}
+refused "a loop without end" 1 "bad\.glsl:4: .*fuel" <<'END'
+vec3 shade(Surface s, Optics o, vec3 to_eye)
+{
+    float sum = 0.0;
+    while (sum >= 0.0)
+        sum += 1.0;
+    return vec3(sum);
+}
+END
+refused "loops in loops" 1 "bad\.glsl:[34]: .*fuel" <<'END'
+vec3 miss(vec3 dir)
+{
+    for (int i = 0; i < 1000; ++i)
+        for (int k = 0; k < 1000; ++k)
+            dir += 1e-9;
+    return dir;
+}
+END
+refused "a loop without end after the picture" 1 "bad\.glsl:1: .*fuel" <<'END'
+vec3 post(ivec2 at, vec3 color) { do color.r += 1.0; while (true); return color; }
+END
+refused "a loop without end in the camera" 1 "bad\.glsl:1: .*fuel" <<'END'
+void camera(vec2 at, inout vec3 origin, inout vec3 dir) { for (;;) dir.x += 1.0; }
+END
+NAN="not finite"
+refused "no number from miss" 1 "$NAN" <<'END'
+vec3 miss(vec3 dir) { return vec3(sqrt(-1.0 - dir.x * dir.x)); }
+END
+refused "no number from shade" 1 "$NAN" <<'END'
+vec3 shade(Surface s, Optics o, vec3 to_eye) { return vec3(1e30) * 1e30 * (1.0 + s.u); }
+END
+refused "no normal from surface" 1 "$NAN" <<'END'
+void surface(inout Surface s) { s.ns = vec3(sqrt(-1.0 - s.u * s.u)); }
+END
+refused "no ray from scatter" 1 "$NAN" <<'END'
+void scatter(Surface s, Optics o, inout Rays r) { r.reflected = vec3(1.0); r.reflected_dir = vec3(sqrt(-1.0 - s.u * s.u)); }
+END
+refused "no ray from camera" 1 "$NAN" <<'END'
+void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir = vec3(0.0); }
+END
+refused "no number from post" 1 "$NAN" <<'END'
+vec3 post(ivec2 at, vec3 color) { return vec3(sqrt(-1.0 - color.r * color.r)); }
+END
+cat >trusted.glsl <<'END'
+vec3 miss(vec3 dir) { for (int i = 0; i < 12000; ++i) dir.x += 1e-9; return dir * dir; }
+END
+# shellcheck disable=SC2086
+expect 1 "12,000 iterations" render "$CUBE" $SMALL --shader trusted.glsl -o no.png
+draw "trusted" trusted.pfm cube --shader trusted.glsl --trust
+sed 's/^/\/\/@ fuel 12001\n/' trusted.glsl >fuel.glsl
+draw "with fuel" fuel.pfm cube --shader fuel.glsl
+check "the same as trusted" cmp trusted.pfm fuel.pfm
+# shellcheck disable=SC2086
+{
+    expect 2 "--max-error" render "$CUBE" $SMALL --shader own.glsl --max-error 0.1 -o no.png
+    said "says why" "the reference, which has no --shader"
+    expect 2 "--set alone" render "$CUBE" $SMALL --set x=1 -o no.png
+    expect 2 "--trust alone" render "$CUBE" $SMALL --trust -o no.png
+    expect 2 "in a probe" probe "$CUBE" --pixel 1,1 --shader own.glsl
+}
+finish

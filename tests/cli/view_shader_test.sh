@@ -1,0 +1,73 @@
+#!/bin/sh
+# The viewer and a file of functions that is written while it is shown.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/view_common.sh"
+mkdir -p "$OUT/work/live/part" && cd "$OUT/work" || exit 1
+
+cat >live/a.glsl <<'END'
+#include "part/tint.glsl"
+//@ slider bands 1 8 3 "steps of light"
+//@ toggle stepped on "in steps"
+vec3 post(ivec2 at, vec3 color)
+{
+    return tint(stepped ? ceil(color * bands) / bands : color);
+}
+END
+# tint NAME COLOUR: live/part/tint.glsl as it will be, and what whit calls it.
+tint() {
+    echo "vec3 tint(vec3 c) { return c * vec3($2); }" >"live/part/tint.glsl"
+    "$WHIT" shader live/a.glsl --json >"$OUT/$1.json"
+    cp live/part/tint.glsl "$1.new"
+    eval "$1=$(jq -r .hash "$OUT/$1.json")"
+}
+tint green '0.2, 1.0, 0.2'
+tint blue '0.2, 0.2, 1.0'
+tint violet '1.0, 0.2, 1.0'
+tint red '1.0, 0.2, 0.2'
+tint white '1.0, 1.0, 1.0'
+check "five versions" test "$(printf '%s\n' "$green" "$blue" "$violet" "$red" "$white" | sort -u | wc -l)" -eq 5
+# The second line has the error: the one that the file had is still shown.
+printf 'vec3 tint(vec3 c) {\n    return c }\n' >broken.new
+mkfifo "$OUT/pipe"
+NONE=
+steps >"$OUT/replay" <<END
+start: | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
+until shader.hash = $red
+red: | frame.ids as start | frame.pixels not as start | error =
+until error
+broken: press R | error has live/part/tint.glsl:2: | frame.pixels as red | frame.ids as start | shader.hash = $red
+turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
+until error = $NONE
+mended: | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
+until shader.hash = $violet
+twice: | frame.pixels not as mended | error =
+panel: press Tab
+off: choose stepped | render has --set stepped=off | frame.pixels not as twice | shader.hash = $violet
+on: choose stepped | render has --set stepped=on | frame.pixels as twice
+END
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 400x300 --shader live/a.glsl \
+    --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
+viewer=$!
+while read -r state; do
+    echo "$state" >>"$OUT/read"
+    case $state in
+    *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
+    *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
+    *'"at":"turned"'*) cp green.new live/new && mv live/new live/part/tint.glsl ;; # put in its place
+    *'"at":"mended"'*) cp blue.new live/part/tint.glsl && cp violet.new live/part/tint.glsl ;;
+    esac
+done <"$OUT/pipe"
+wait $viewer
+check "exit code 0" test $? -eq 0
+check "the error is said once" test "$(grep -c 'error: live/part/tint.glsl:2: ' "$OUT/stderr")" -eq 1
+check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 1
+check "each change is said" grep -q "note: a.glsl: .* pixels other, ids equal" "$OUT/stderr"
+mv "$OUT/read" "$OUT/states"
+read_states
+as_wanted
+
+# A file that does not compile at the start is an error at once.
+printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
+expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet
+check "says where" grep -q 'live/bad.glsl:1: ' "$OUT/stderr"
+finish
