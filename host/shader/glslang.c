@@ -98,8 +98,11 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
     bool user = spv_follow(m, words), taken = false;
     uint32_t op = spv_op(words);
     const char *why = user ? refuse_instruction(m, words) : NULL;
+    char called[SHADER_REASON_BYTES];
     if (!why && user && op == SPV_VARIABLE)
         why = refuse_variable(&c->variables, m, words);
+    if (!why && m->user_function && op == SPV_FUNCTION_CALL && refuse_call(m, words, called))
+        why = called;
     if (why)
         report(c, m->place, why);
     c->answer.instructions += op != SPV_LINE && op != SPV_NO_LINE && op != SPV_LABEL;

@@ -56,6 +56,16 @@ const char *spv_string(const struct spv_module *m, uint32_t id)
     return memchr(text, 0, 4 * (size_t)(spv_length(def) - 2)) ? text : "";
 }
 
+const char *spv_name(const struct spv_module *m, uint32_t id)
+{
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        if (spv_op(words) == SPV_NAME && spv_length(words) > 2 && words[1] == id)
+            return (const char *)(words + 2);
+    }
+    return "";
+}
+
 static uint64_t times(uint64_t size, uint64_t count)
 {
     return size && count > UINT64_MAX / size ? UINT64_MAX : size * count;

@@ -65,6 +65,8 @@ bool spv_constant_value(const struct spv_module *m, uint32_t id, uint32_t *value
 uint64_t spv_size(const struct spv_module *m, uint32_t type);
 /* The text of an OpString; "" where it is none. */
 const char *spv_string(const struct spv_module *m, uint32_t id);
+/* What an id is called in the text; "" where nothing says. */
+const char *spv_name(const struct spv_module *m, uint32_t id);
 
 /* Types and constants that are there, or are added. */
 uint32_t spv_uint(struct spv_module *m);

@@ -1,8 +1,11 @@
 #include "shader/refuse.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
+#include "sources.h"
 
 /* The last number of what SPIR-V has without extensions; above stand those of extensions. */
 enum { LAST_PLAIN = 403, DEMOTE = 5380, TERMINATE = 4416 };
@@ -73,6 +76,47 @@ const char *refuse_instruction(const struct spv_module *m, const uint32_t *words
     if (why)
         return why;
     return refused_type(m, op == SPV_STORE ? spv_type_of(m, words[2]) : words[1]);
+}
+
+/* Files whose functions are for users, by what their paths begin with; and single functions. */
+static const char *const open_files[] = {"hook/", "lib/", "bind/hook.glsl"};
+static const char *const open_functions[] = {"environment("};
+
+static bool begins_with_any(const char *text, const char *const *starts, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        if (strncmp(text, starts[i], strlen(starts[i])) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* The file that a function stands in; NULL: it is one of the user's. */
+static const char *file_of_function(const struct spv_module *m, const uint32_t *function)
+{
+    const uint32_t *line = function - 4; /* where glslang puts it */
+    if (line < m->words + m->functions_at - 4 || line[0] != spv_head(SPV_LINE, 4))
+        return "";
+    const char *name = spv_string(m, line[1]);
+    size_t length = strlen(m->own);
+    if (strncmp(name, m->own, length) != 0)
+        return NULL;
+    unsigned long index = strtoul(name + length, NULL, 10);
+    return index < shader_source_count ? shader_sources[index].path : "";
+}
+
+bool refuse_call(const struct spv_module *m, const uint32_t *words, char *why)
+{
+    const uint32_t *function = spv_def(m, words[3]);
+    const char *file = function ? file_of_function(m, function) : "";
+    const char *name = file ? spv_name(m, words[3]) : NULL;
+    if (!file || begins_with_any(file, open_files, sizeof open_files / sizeof *open_files) ||
+        begins_with_any(name, open_functions, sizeof open_functions / sizeof *open_functions))
+        return false;
+    snprintf(why, SHADER_REASON_BYTES,
+             "%.*s is whit's own: what can be called stands in shaders/hook/prelude.glsl",
+             (int)strcspn(name, "("), name);
+    return true;
 }
 
 static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint32_t table)

@@ -9,6 +9,10 @@ enum { REFUSE_VARIABLE_BYTES = 16 << 10 }; /* of all variables of the user's tog
 /* Why an instruction of the user's is refused; NULL: it is not. */
 const char *refuse_instruction(const struct spv_module *m, const uint32_t *words);
 
+/* Whether an OpFunctionCall of the user's calls what is neither the user's nor meant for users:
+   what reads and writes whit's buffers checks no index. `why` has room for SHADER_REASON_BYTES. */
+bool refuse_call(const struct spv_module *m, const uint32_t *words, char *why);
+
 /* Variables of the user's functions, one after the other. */
 struct refuse_variables {
     uint64_t bytes;

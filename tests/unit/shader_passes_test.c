@@ -235,6 +235,41 @@ TEST_IN(what_users_may_not_do_is_refused, compiler_begin, compiler_end)
     shader_code_free(&code);
 }
 
+TEST_IN(what_is_not_for_users_is_not_called, compiler_begin, compiler_end)
+{
+    static const struct {
+        const char *content, *reason; /* NULL: it is fine */
+    } cases[] = {
+        {"float f(float x, int n) { return octahedron_from_dir(vec3(x)).x; }", NULL},
+        {"float f(float x, int n) { return answer_of(n); }", "answer_of is whit's own"},
+        {"float g(int n) {\n return answer_of(n); }\nfloat f(float x, int n) { return g(n); }",
+         "a.glsl:2: answer_of"},
+        {"#define h answer_of\nfloat f(float x, int n) { return h(n); }", "a.glsl:2: answer_of"},
+    };
+    char kernel[4096];
+    const char *place = strstr(test_kernel, "#include \"../hook");
+    snprintf(kernel, sizeof kernel,
+             "%.*s#include \"../lib/octahedron.glsl\"\n"
+             "float answer_of(int n) { return float(cases[n].x); }\n%s",
+             (int)(place - test_kernel), test_kernel, place);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        const struct shader_text_source source = {"a.glsl", cases[i].content,
+                                                  strlen(cases[i].content)};
+        const struct shader_request request = {.kernel = "kernel/test.comp", .kernel_text = kernel};
+        struct shader_text text;
+        struct shader_code code;
+        logged[0] = 0;
+        errors.count = 0;
+        assert_int_equal(shader_text_from(&shader_log, &source, 1, &text, &errors), WHIT_OK);
+        whit_result result = shader_compile(compiler, &text, &request, &code, &errors);
+        if (cases[i].reason ? result == WHIT_OK || !strstr(logged, cases[i].reason)
+                            : result != WHIT_OK)
+            fail_msg("%s: %s", cases[i].content, logged);
+        shader_code_free(&code);
+        shader_text_free(&text);
+    }
+}
+
 TEST_IN(operations_stay_exact, compiler_begin, compiler_end)
 {
     struct shader_code code = must_compile("float f(float x, int n) { return x * 3.0 + 1.0; }\n");
