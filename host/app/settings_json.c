@@ -33,8 +33,10 @@ static void put(json_t *object, const struct setting *row, const struct settings
     snprintf(key, sizeof key, "%s", row->json ? row->json : row->name);
     for (char *at = key; *at; ++at)
         *at = *at == '-' ? '_' : *at;
-    setting_write(row, settings, 0, text);
-    if (row->kind == SETTING_SIZE) {
+    bool set = setting_write(row, settings, 0, text);
+    if (row->kind == SETTING_FLAG) {
+        document_flag(object, key, set);
+    } else if (row->kind == SETTING_SIZE) {
         document_count(object, "width", settings->picture.width);
         document_count(object, "height", settings->picture.height);
     } else if (row->kind == SETTING_TEXT) { /* a camera of the name 1 is no number */

@@ -299,7 +299,8 @@ const struct setting settings_table[] = {
     {"set", 0, "NAME=VALUE",
      "sliders of the shader; several by commas, or by several\n"
      "--set",
-     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT},
+     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT,
+     .trusted = true},
     {"trust", 0, NULL, "the shader's loops and indices are not bounded", AT(FLAG, trust),
      .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .trusted = true},

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "shader/program.h"
+#include "sources.h"
 
 /* One such line, taken apart from left to right. */
 struct line {
@@ -163,9 +164,31 @@ static bool read_slider_value(struct line *line, whit_slider *slider,
     return read_slider_choice(line, slider, texts);
 }
 
+/* Whether some shader of whit's has a function of that name, which no global variable may have. */
+static bool is_function(const char *name)
+{
+    char call[SHADER_NAME_BYTES + 2];
+    snprintf(call, sizeof call, " %s(", name);
+    for (uint32_t i = 0; i < shader_source_count; ++i) {
+        const char *text = shader_sources[i].text;
+        for (const char *at = strstr(text, call); at; at = strstr(at + 1, call)) {
+            const char *begin = at;
+            while (begin > text && begin[-1] != '\n')
+                --begin;
+            if (isalpha((unsigned char)*begin))
+                return true;
+        }
+    }
+    return false;
+}
+
 static bool is_new_name(const struct line *line, const char *name)
 {
     const whit_shader *shader = line->shader;
+    if (is_function(name)) {
+        complain(line, "`%s` is a function of whit's: a slider needs another name", name);
+        return false;
+    }
     for (uint32_t i = 0; i < shader->slider_count; ++i) {
         if (strcmp(shader->sliders[i].name, name) == 0) {
             complain(line, "there is a slider `%s` already, in line %u", name,

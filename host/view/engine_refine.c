@@ -193,13 +193,23 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
 
 /* ---- When ---- */
 
+/* What a function makes of the mean of samples is not the mean of what it makes of them. */
+static bool has_post(const struct session *session)
+{
+    bool has = false;
+    for (uint32_t i = 0; session->shader && i < session->shader->info.hook_count; ++i)
+        has = has || strcmp(session->shader->info.hooks[i], "post") == 0;
+    return has;
+}
+
 bool engine_can_refine(const struct engine *engine)
 {
     const struct engine_lane *lane = &engine->lanes[0];
     const struct engine_refine *refine = &engine->refine;
     return engine->params.refine && refine->samples > 0 && !refine->done && lane->session &&
-           engine_is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0 &&
-           !engine->lanes[1].wanted && !engine->job && !engine->probe_wanted;
+           !has_post(lane->session) && engine_is_done(lane) && !lane->failed && !lane->moving &&
+           lane->frame.number == 0 && !engine->lanes[1].wanted && !engine->job &&
+           !engine->probe_wanted;
 }
 
 void engine_refine_one(struct engine *engine)

@@ -7,8 +7,8 @@
 ROWS=$3
 mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 "$ROWS" rows >rows
-printf '%s\n' '//@ slider light 0 2 1' '//@ color tint #ffffff' \
-    'vec3 post(ivec2 at, vec3 color) { return color * light * tint; }' >bright.glsl
+printf '%s\n' '//@ slider bright 0 2 1' '//@ toggle tint' \
+    'vec3 post(ivec2 at, vec3 color) { return color * (tint ? bright : 1.0); }' >bright.glsl
 expect 0 "a sky" render "$CUBE" -o sky.pfm --size 16x8 --quiet
 TAB=$(printf '\t')
 IN_RUN=0 IN_COST=1 # of enum setting_change
@@ -21,6 +21,8 @@ has_json() {
         'if $key == "size" then "\(.width)x\(.height)" == $value
             else has($key) and (.[$key] | tostring) == $value end' "$1" >/dev/null
 }
+# option: --name with its value, which flags have none of.
+option() { test "$value" = - && echo "--$name" || echo "--$name=$value"; }
 # quoted VALUE: as a shell needs it.
 quoted() { case $1 in '#'*) echo "'$1'" ;; *) echo "$1" ;; esac; }
 command_of() { grep -a -o 'whit render [^"]* -o whit\.png' "$1"; }
@@ -37,9 +39,9 @@ for pass in colours costs; do
         [ $of = $pass ] || [ "$name" = size ] || continue
         count=$((count + 1))
         if has $VIEW && [ "$held" -eq 0 ] && [ $of = $pass ]; then echo "--$name $(quoted "$value")"; fi >>all.view
-        has $RENDER && render="$render --$name=$value"
-        has $PROBE && probe="$probe --$name=$value"
-        has $PRICES && prices="$prices --$name=$value"
+        has $RENDER && render="$render $(option)"
+        has $PROBE && probe="$probe $(option)"
+        has $PRICES && prices="$prices $(option)"
     done <rows
     # shellcheck disable=SC2086
     {
@@ -55,6 +57,7 @@ jq .picture cost.json >cost.options
 while IFS=$TAB read -r name value commands change _ _ json _; do
     if [ "$change" -eq $IN_RUN ] || [ "$name" = device ]; then continue; fi
     words="--$name $(quoted "$value")"
+    test "$value" = - && words=--$name value=true
     pass=$(expr "$name" : view >/dev/null && echo costs || echo colours)
     command_of $pass.png >command
     grep -a -o '{"width":[^}]*}' $pass.png >options

@@ -32,7 +32,7 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
                                                            : "0");
         return;
     case SETTING_PAIRS:
-        strcpy(text, "light=1.5,tint=#ffcc88");
+        strcpy(text, "bright=1.5,tint=on");
         return;
     case SETTING_FOLDERS:
         strcpy(text, "/tmp");
