@@ -210,7 +210,8 @@ void spv_put(struct spv_module *m, struct spv_words *to, const uint32_t *words, 
             return;
         }
     }
-    memcpy(to->words + to->count, words, count * sizeof *words);
+    if (count)
+        memcpy(to->words + to->count, words, count * sizeof *words);
     to->count += count;
 }
 

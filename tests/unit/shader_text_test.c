@@ -180,6 +180,7 @@ TEST_IN(the_first_file_is_refused_as_any, begin, end)
     put("real.glsl", FUNCTION);
     assert_int_equal(symlink("real.glsl", in_folder("a.glsl")), 0);
     assert_int_equal(read_first(), WHIT_OK); /* what the user names may be a link */
+    shader_text_free(&text);
     assert_int_equal(shader_text_read(NULL, in_folder("none"), &text, NULL), WHIT_ERROR_INPUT);
 }
 
