@@ -218,6 +218,25 @@ TEST_IN(lines_are_right_through_two_levels, compiler_begin, compiler_end)
     shader_text_free(&text);
 }
 
+TEST_IN(a_line_has_one_error_and_a_text_has_many, compiler_begin, compiler_end)
+{
+    struct shader_code code;
+    char text[4096] = "float f(float x, int n) {\n";
+    assert_int_equal(
+        compile_files("float f(float x, int n) {\n vec2 a = b + c + d;\n return e; }\n", NULL,
+                      false, &code),
+        WHIT_ERROR_INPUT);
+    assert_int_equal(errors.count, 2);
+    assert_true(errors.items[0].line == 2 && errors.items[1].line == 3);
+    for (int i = 0; i < 40; ++i)
+        sprintf(text + strlen(text), " x += missing_%d;\n", i);
+    strcat(text, " return x; }\n");
+    assert_int_equal(compile_files(text, NULL, false, &code), WHIT_ERROR_INPUT);
+    assert_int_equal(errors.count, 32);
+    assert_int_equal(errors.more, 8);
+    assert_int_equal(errors.items[31].line, 33);
+}
+
 TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
 {
     struct shader_code code;

@@ -161,6 +161,10 @@ static const struct {
     {"float f(float x, int n) {\n return float(cases[n].x); }\n", 1},
     {"float g = vec3(1.0)[gl_LocalInvocationID.x];\nfloat f(float x, int n) {\n return g; }\n", 1},
     {"float f(float x, int n) {\n return float(gl_LocalInvocationID[n]); }\n", 1},
+    {"float h(float x) { return x; } float g = vec3(1.0)[gl_LocalInvocationID.x]; float f(float x, "
+     "int n) "
+     "{ return g + h(x); }\n",
+     1},
 };
 
 TEST_IN(indices_stay_within, compiler_begin, compiler_end)
@@ -180,6 +184,25 @@ TEST_IN(indices_stay_within, compiler_begin, compiler_end)
         free(text);
         shader_code_free(&trusted);
     }
+}
+
+/* Whether a module has a constant of this value. */
+static bool has_constant(const struct shader_code *code, uint32_t value)
+{
+    for (size_t at = 5; at < code->bytes / 4; at += code->words[at] >> 16) {
+        if ((code->words[at] & 0xffff) == 43 && code->words[at] >> 16 == 4 &&
+            code->words[at + 3] == value)
+            return true;
+    }
+    return false;
+}
+
+TEST_IN(the_last_element_is_the_limit, compiler_begin, compiler_end)
+{
+    struct shader_code code =
+        must_compile("float f(float x, int n) { float a[78]; return a[n]; }\n");
+    assert_true(has_constant(&code, 77) && has_constant(&code, 78) && !has_constant(&code, 79));
+    shader_code_free(&code);
 }
 
 /* ---- Refusals ---- */
