@@ -174,7 +174,6 @@ static struct spv_words make_module(struct compilation *c, const uint32_t *words
         count = returned.count;
     }
     bool whole = spv_read(&m, words, count, c->question->own);
-    m.has_user = has_user;
     for (size_t at = m.functions_at; whole && at < count; at += spv_length(words + at))
         take_instruction(c, &m, words + at);
     if (whole)

@@ -151,8 +151,6 @@ bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const c
             read_name(m, words + at);
         if (op == SPV_EXT_INST_IMPORT)
             m->glsl = words[at + 1];
-        if (op == SPV_ENTRY_POINT && length > 2)
-            m->entry = words[at + 2];
     }
     m->fuel = is_private(m, m->fuel) ? m->fuel : 0;
     m->fuel_loop = is_private(m, m->fuel_loop) ? m->fuel_loop : 0;
@@ -191,10 +189,6 @@ bool spv_follow(struct spv_module *m, const uint32_t *words)
         m->function = words[2];
         m->return_type = words[1];
         m->user_function = m->place.file != WHIT_OWN;
-        /* main() begins with what globals start as, and no OpLine where that stands on the line of
-           what glslang wrote last. */
-        if (words[2] == m->entry && m->has_user)
-            m->place.file = 0;
     }
     return m->user_function || m->place.file != WHIT_OWN;
 }

@@ -35,8 +35,6 @@ struct spv_module {
     uint32_t glsl;        /* GLSL.std.450; 0: not imported */
     uint32_t fuel, fuel_loop; /* whit_fuel, whit_fuel_loop; 0: not declared */
     const char *own;          /* how names of whit's own files begin */
-    uint32_t entry;           /* main() */
-    bool has_user;            /* set by the caller: there is text of a user in it */
     bool failed;              /* no memory */
 
     /* What goes out: added types and constants, and functions. */

@@ -112,6 +112,10 @@ static const struct {
      "}\n"
      " while (x < 15.0); return n > 1 ? x : -x + 30.0; }\n",
      {15, 15, 15, 2, 1}},
+    {"bool h(float x) { return x > 11.0; }\n"
+     "float f(float x, int n) { for (int i = 0; i < 4; i++) { if (i == n) return x; x++; }\n"
+     " return n > 1 && h(x) ? 1.0 : 2.0; }\n",
+     {10, 11, 12, 13, 1}},
     {"mat2 g(int n) { for (int i = 0; ; i++) { if (i == n) return mat2(float(i)); } }\n"
      "float f(float x, int n) { return g(n)[1][1] + (n > 1 && x > 1.0 || n == 0 ? 1.0 : 0.0); }\n",
      {1, 1, 3, 4, 5}},
