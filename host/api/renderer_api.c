@@ -159,6 +159,19 @@ whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                                params ? params : &defaults, kernels, count);
 }
 
+static whit_result read_aov(struct renderer *renderer, whit_aov aov, struct image *out)
+{
+    switch (aov) {
+    case WHIT_AOV_IDS:
+        return renderer_read_ids(renderer, out);
+    case WHIT_AOV_CUTS:
+        return renderer_read_cuts(renderer, out);
+    case WHIT_AOV_COLOR:
+        break;
+    }
+    return renderer_read_color(renderer, out);
+}
+
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
 {
     *out = NULL;
@@ -170,8 +183,7 @@ whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_imag
         log_error(&renderer->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    result = aov == WHIT_AOV_IDS ? renderer_read_ids(renderer->renderer, &image->image)
-                                 : renderer_read_color(renderer->renderer, &image->image);
+    result = read_aov(renderer->renderer, aov, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;

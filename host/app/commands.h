@@ -5,6 +5,7 @@
 #include "app/document.h"
 #include "app/job.h"
 #include "app/render/frames.h"
+#include "app/render/refine.h"
 #include "app/render/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
@@ -16,8 +17,9 @@ struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
     bool counters;            /* costs in --stats */
     bool fresh;               /* for a choice what is kept with the scene is measured anew */
-    struct frames frames;     /* with them `output` and `ids` are patterns */
-    uint32_t thumbnail;       /* pixels on a side, of a PNG whatever its name; 0: none */
+    struct refine_goal refine;
+    struct frames frames; /* with them `output` and `ids` are patterns */
+    uint32_t thumbnail;   /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 
 /* Makes the kernels of a picture and prints them (kernels.c). Gives the exit code. */
@@ -43,9 +45,10 @@ WHIT_CHECK whit_result render_create(const struct job *job, const struct render_
 WHIT_CHECK whit_result render_choose(struct job *job, const struct render_request *request,
                                      struct frames_progress *progress, whit_renderer **renderer);
 
-/* Saves what `request` names of the picture just rendered (render_command.c). */
+/* Saves what `request` names of the picture just rendered (render_command.c). `color`: its colours
+   where they are not the renderer's, else NULL; what is drawn over is drawn into it. */
 whit_result render_save(const struct job *job, const struct render_request *request,
-                        whit_renderer *renderer, const whit_stats *stats);
+                        whit_renderer *renderer, whit_image *color, const whit_stats *stats);
 
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */
@@ -69,9 +72,10 @@ void recipe_finish(struct recipe *recipe);
 /* The device's driver without the name of the device in front. */
 const char *stats_driver(const whit_device_info *device);
 
-/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL. */
+/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL; `refined`:
+   with --refine, else NULL. */
 int stats_print(const struct job *job, const struct render_request *request,
                 const whit_renderer *renderer, const whit_stats *stats, double save_ms,
-                const struct sequence *sequence);
+                const struct sequence *sequence, const struct refined *refined);
 
 #endif

@@ -1,3 +1,3 @@
 whit_module(image
-  SOURCES image.c compare.c display.c edges.c exr.c flip.c hdr.c heat.c image_reply.c legend.c pfm.c png.c
+  SOURCES image.c compare.c display.c edges.c estimate.c exr.c flip.c hdr.c heat.c image_reply.c legend.c pfm.c png.c
   LINK whit_base PNG::PNG OpenEXR::OpenEXRCore PkgConfig::STB)

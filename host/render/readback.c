@@ -24,6 +24,14 @@ static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint
                        (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
 }
 
+/* Where nothing calls for rays there is nothing to read, and nothing is cut. */
+static whit_result read_cuts(const struct renderer *renderer, uint32_t rows, float *weights)
+{
+    struct buffer *sums = renderer->picture.buffers.queues.cut_sums;
+    uint64_t bytes = (uint64_t)renderer->params.width * rows * 2 * sizeof *weights;
+    return sums ? buffer_read(sums, 0, weights, bytes) : WHIT_OK;
+}
+
 /* Those that the pass drew, of `count` pixels of the band, into the picture from pixel `first` on.
  */
 static whit_result read_listed(struct renderer *renderer, const struct progress *progress,
@@ -82,6 +90,8 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
         result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
         if (result == WHIT_OK)
             result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
+        if (result == WHIT_OK && renderer->cuts.pixels)
+            result = read_cuts(renderer, rows, &renderer->cuts.pixels[2 * first]);
     }
     return result;
 }
@@ -117,6 +127,22 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
         return read_ids(renderer, out->height, out->words);
     memcpy(out->words, renderer->ids.words,
            (size_t)out->width * out->height * 2 * sizeof(uint32_t));
+    return WHIT_OK;
+}
+
+whit_result renderer_read_cuts(struct renderer *renderer, struct image *out)
+{
+    if (renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE) {
+        log_error(&renderer->log, "weights that were cut are not kept with adaptive samples");
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result = begin_read(renderer, 2, false, out);
+    if (result != WHIT_OK)
+        return result;
+    if (readback_is_late(renderer))
+        return read_cuts(renderer, out->height, out->pixels);
+    memcpy(out->pixels, renderer->cuts.pixels,
+           (size_t)out->width * out->height * 2 * sizeof(float));
     return WHIT_OK;
 }
 

@@ -118,6 +118,7 @@ void renderer_finish(struct renderer *renderer)
     scene_pose_finish(&renderer->pose);
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
+    image_finish(&renderer->cuts);
 }
 
 void renderer_destroy(struct renderer *renderer)

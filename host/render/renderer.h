@@ -179,7 +179,7 @@ struct renderer {
     struct gpu_frame frame;
     float sliders[SLIDERS_MAX];         /* of params.shader */
     struct bodies bodies;               /* of media, of the frame's pose */
-    struct image color, ids;            /* of the last picture, where it has more than one band */
+    struct image color, ids, cuts;      /* of the last picture, where it has more than one band */
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
     double create_ms;
     /* What the pipelines were made for. */

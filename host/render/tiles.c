@@ -329,6 +329,7 @@ whit_result renderer_render(struct renderer *renderer)
     }
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
+    image_finish(&renderer->cuts);
     costs_clear(renderer);
     whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK)
@@ -337,6 +338,9 @@ whit_result renderer_render(struct renderer *renderer)
         result = image_init(&renderer->color, params->width, params->height, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->ids, params->width, params->height, 2, true);
+    if (result == WHIT_OK && !readback_is_late(renderer) &&
+        params->sampling.kind == WHIT_SAMPLING_FIXED)
+        result = image_init(&renderer->cuts, params->width, params->height, 2, false);
     stats_clear(&renderer->picture);
     material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);

@@ -22,6 +22,7 @@
 #include "whit_image.h"
 #include "whit_probe.h"
 #include "whit_reference.h"
+#include "whit_refine.h"
 #include "whit_renderer.h"
 #include "whit_scene.h"
 #include "whit_shader.h"

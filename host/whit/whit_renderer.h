@@ -186,8 +186,11 @@ WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
 typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
+    WHIT_AOV_CUTS,      /* 2 floats: weights of rays that were not traced, for params.depth and for
+                           params.bailout: sums of largest channels, means over samples */
 } whit_aov;
-/* WHIT_ERROR_USAGE where nothing was rendered, WHIT_ERROR_DEVICE. */
+/* WHIT_ERROR_USAGE where nothing was rendered, and for cuts of a picture of adaptive samples;
+   WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 /* From here on an image of colours is displayed as a picture with these params is, which those of
    renderers and references are from the beginning. */
@@ -273,6 +276,10 @@ typedef struct whit_stats {
     uint32_t share_count;
 } whit_stats;
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
+/* Adds what one more picture took to what others took: sums, of weights and bounds the largest; of
+   tiles and memory those of the last. Shares of materials, upload and compilation stay as they
+   are. */
+void whit_stats_add(const whit_stats *from, whit_stats *to);
 
 /* ---- Rays ---- */
 

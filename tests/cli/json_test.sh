@@ -33,6 +33,7 @@ saved() {
 # shellcheck disable=SC2086
 {
     made render render "$SCENES/glass-of-water.json" -o p.png $SMALL --stats json --counters
+    made render render "$CUBE" -o p.png $SMALL --stats json --refine 1
     made render render "$CUBE" -o p.png $SMALL --stats json --aa adaptive:0.05
     grep -a -o '{"width":[^}]*}' p.png >options && keys whit:options options
     grep -a -o '{"rays":{[^}]*}[^}]*}' p.png >counters && keys whit:counters counters

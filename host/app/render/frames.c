@@ -114,72 +114,13 @@ static void watch_budget(struct frames_progress *progress, double done)
 void frames_progress_update(void *user, double done)
 {
     struct frames_progress *progress = user;
+    double parts = progress->parts ? progress->parts : 1;
     watch_budget(progress, done);
-    cli_progress_update(&progress->bar, ((double)progress->done + done) / (double)progress->count);
+    cli_progress_update(&progress->bar,
+                        ((double)progress->done + parts * done) / (double)progress->count);
 }
 
 /* ---- Times ---- */
-
-static uint32_t larger(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
-}
-
-static void add_cost(const whit_cost *from, whit_cost *to)
-{
-    to->rays += from->rays;
-    to->inner_nodes += from->inner_nodes;
-    to->leaves += from->leaves;
-    to->instances += from->instances;
-    to->triangles += from->triangles;
-    to->stack = larger(from->stack, to->stack);
-    to->depth = larger(from->depth, to->depth);
-    to->records += from->records;
-    to->stack_sum += from->stack_sum;
-    to->depth_sum += from->depth_sum;
-    to->max_inner_nodes = larger(from->max_inner_nodes, to->max_inner_nodes);
-    to->max_leaves = larger(from->max_leaves, to->max_leaves);
-    to->max_instances = larger(from->max_instances, to->max_instances);
-    to->max_triangles = larger(from->max_triangles, to->max_triangles);
-}
-
-static void add_stage(const whit_stage *from, whit_stage *to)
-{
-    bool measured = from->ms >= 0.0 && to->ms >= 0.0;
-    memcpy(to->name, from->name, sizeof to->name);
-    to->rays += from->rays;
-    to->ms = measured ? to->ms + from->ms : -1.0;
-}
-
-static void add_stats(const whit_stats *from, whit_stats *to)
-{
-    to->render_ms += from->render_ms;
-    bool measured = from->render_device_ms >= 0.0 && to->render_device_ms >= 0.0;
-    to->render_device_ms = measured ? to->render_device_ms + from->render_device_ms : -1.0;
-    to->rays_primary += from->rays_primary;
-    to->rays_shadow += from->rays_shadow;
-    to->rays_reflected += from->rays_reflected;
-    to->rays_refracted += from->rays_refracted;
-    to->rays_cut_depth += from->rays_cut_depth;
-    to->rays_cut_bailout += from->rays_cut_bailout;
-    to->weight_cut_depth = fmax(to->weight_cut_depth, from->weight_cut_depth);
-    to->weight_cut_bailout = fmax(to->weight_cut_bailout, from->weight_cut_bailout);
-    bool bounded = from->bailout_bound >= 0.0 && to->bailout_bound >= 0.0;
-    to->bailout_bound = bounded ? fmax(to->bailout_bound, from->bailout_bound) : -1.0;
-    for (int i = 0; i < WHIT_SAMPLE_LEVELS; ++i)
-        to->pixels_by_samples[i] += from->pixels_by_samples[i];
-    to->dispatches += from->dispatches;
-    to->tiles += from->tiles;
-    to->deferred += from->deferred;
-    to->tile_size = from->tile_size;
-    to->device_bytes = from->device_bytes;
-    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
-        add_cost(&from->costs[kind], &to->costs[kind]);
-    for (int i = 0; i < WHIT_STAGES; ++i)
-        add_stage(&from->stages[i], &to->stages[i]);
-    uint64_t rays = to->rays_primary + to->rays_shadow + to->rays_reflected + to->rays_refracted;
-    to->mrays_per_s = to->render_ms > 0.0 ? (double)rays / to->render_ms * 1e-3 : 0.0;
-}
 
 static whit_result keep_times(struct sequence *sequence, const struct frame_times *times)
 {
@@ -241,7 +182,7 @@ static whit_result save_frame(const struct job *job, const struct render_request
     single.output = output;
     single.ids = ids;
     if (output && (ids || !request->ids))
-        result = render_save(job, &single, renderer, stats);
+        result = render_save(job, &single, renderer, NULL, stats);
     else
         cli_error("out of memory");
     free(output);
@@ -267,7 +208,7 @@ static whit_result render_frame(struct job *job, const struct render_request *re
     double save_ms = whit_clock_ms() - start_ms;
     ++sequence->written;
     sequence->save_ms += save_ms;
-    add_stats(&stats, &sequence->stats);
+    whit_stats_add(&stats, &sequence->stats);
     if (job->settings.stats == STATS_NONE)
         return WHIT_OK;
     whit_accel_info tree;

@@ -43,7 +43,8 @@ char *frames_path(const char *pattern, uint32_t frame);
 /* whit_renderer_params.progress of one picture or of many. */
 struct frames_progress {
     struct cli_progress bar;
-    uint32_t done, count; /* pictures */
+    uint32_t done, count; /* pictures; or samples of one that is refined, as far as is known */
+    uint32_t parts;       /* of these that are drawn at once; 0: 1 */
     double budget_ms;     /* of a picture; 0: none. One that will take more is said, once */
     bool said;
 };

@@ -21,6 +21,10 @@ static const struct setting options[] = {
      "for file managers: N x N pixels, and a PNG whatever the\n"
      "picture is called; says errors only",
      SETTING_AT_COUNT(struct render_request, thumbnail), .min = 1, .max = 4096},
+    {"refine", 0, "ERROR|MSms",
+     "1, 2, 4, 8 ... samples, until by an estimate no more than an\n"
+     "RMSE of ERROR is left, or as far as MS milliseconds go",
+     .kind = SETTING_OWN, .read = refine_read},
     {"counters", 0, NULL, "--stats (text) with what traversals cost",
      SETTING_AT_FLAG(struct render_request, counters)},
     {"fresh", 0, NULL,
@@ -132,6 +136,8 @@ whit_result render_create(const struct job *job, const struct render_request *re
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count |= request->counters;
+    if (refine_is_wanted(&request->refine)) /* what kernels are chosen for */
+        params.sampling.count = REFINE_SAMPLES_USUAL;
     whit_result result = whit_renderer_create(job->device, job->accel, &params, renderer);
     /* The renderer counts its time from its creation on. */
     return result == WHIT_OK ? job_still_wanted() : result;
@@ -163,20 +169,26 @@ static whit_result save_thumbnail(const whit_image *image, const char *path)
 }
 
 static whit_result save_colors(whit_renderer *renderer, const struct settings *settings,
-                               const struct render_request *request, const struct recipe *recipe)
+                               const struct render_request *request, whit_image *image,
+                               const struct recipe *recipe)
 {
     const whit_overlay overlay = settings_overlay(settings);
-    whit_image *image;
-    if (cli_cancel)
-        return WHIT_ERROR_CANCELLED;
-    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
-    if (result != WHIT_OK)
-        return result;
-    result = whit_renderer_draw_over(renderer, &overlay, image);
+    whit_result result = whit_renderer_draw_over(renderer, &overlay, image);
     if (result == WHIT_OK)
         result = request->thumbnail ? save_thumbnail(image, request->output)
                                     : whit_image_save(image, request->output, recipe->texts,
                                                       recipe->count, &cli_log);
+    return result;
+}
+
+static whit_result save_own_colors(whit_renderer *renderer, const struct settings *settings,
+                                   const struct render_request *request,
+                                   const struct recipe *recipe)
+{
+    whit_image *image;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    if (result == WHIT_OK)
+        result = save_colors(renderer, settings, request, image, recipe);
     whit_image_destroy(image);
     return result;
 }
@@ -186,8 +198,6 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
 {
     whit_image *image;
     struct view_figures figures;
-    if (cli_cancel)
-        return WHIT_ERROR_CANCELLED;
     whit_result result = view_image(renderer, settings, output, &figures, &image);
     if (result != WHIT_OK)
         return result;
@@ -199,7 +209,7 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
 }
 
 whit_result render_save(const struct job *job, const struct render_request *request,
-                        whit_renderer *renderer, const whit_stats *stats)
+                        whit_renderer *renderer, whit_image *color, const whit_stats *stats)
 {
     const struct settings *settings = &job->settings;
     struct recipe recipe;
@@ -210,10 +220,13 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     whit_result result = WHIT_OK;
     if (request->ids)
         result = save_ids(renderer, request->ids, &recipe);
-    if (result == WHIT_OK)
-        result = settings->paint != PAINT_COLOR
-                     ? save_view(renderer, settings, request->output, &recipe)
-                     : save_colors(renderer, settings, request, &recipe);
+    if (result == WHIT_OK && cli_cancel)
+        result = WHIT_ERROR_CANCELLED;
+    if (result == WHIT_OK && settings->paint != PAINT_COLOR)
+        result = save_view(renderer, settings, request->output, &recipe);
+    else if (result == WHIT_OK)
+        result = color ? save_colors(renderer, settings, request, color, &recipe)
+                       : save_own_colors(renderer, settings, request, &recipe);
     recipe_finish(&recipe);
     return result;
 }
@@ -243,6 +256,11 @@ whit_result render_prepare(struct job *job, const struct render_request *request
     return result;
 }
 
+static bool is_told(const struct job *job)
+{
+    return !job->settings.quiet && job->settings.stats == STATS_NONE;
+}
+
 static void say_done(const struct job *job, const struct render_request *request,
                      const whit_stats *stats)
 {
@@ -252,7 +270,7 @@ static void say_done(const struct job *job, const struct render_request *request
     whit_device_get_info(job->device, &device);
     if (frames->given)
         snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
-    if (!job->settings.quiet && job->settings.stats == STATS_NONE)
+    if (is_told(job))
         fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
                 cli_shown(request->output), about, job->settings.picture.width,
                 job->settings.picture.height, stats->render_ms * 1e-3, stats->mrays_per_s,
@@ -264,20 +282,36 @@ static void say_done(const struct job *job, const struct render_request *request
                                               : "");
 }
 
+/* *color: NULL where it is the renderer's. */
+static whit_result draw_one(struct job *job, const struct render_request *request,
+                            whit_renderer *renderer, struct frames_progress *progress,
+                            struct refined *refined, whit_image **color, whit_stats *stats)
+{
+    *color = NULL;
+    if (refine_is_wanted(&request->refine))
+        return refine_render(job, request, renderer, progress, refined, color, stats);
+    whit_result result = whit_renderer_render(renderer);
+    if (result == WHIT_OK)
+        whit_renderer_get_stats(renderer, stats);
+    return result;
+}
+
 static whit_result render_one(struct job *job, const struct render_request *request,
                               whit_renderer *renderer, struct frames_progress *progress,
-                              struct sequence *sequence)
+                              struct refined *refined, struct sequence *sequence)
 {
-    whit_result result = whit_renderer_render(renderer);
+    whit_image *color;
+    whit_result result =
+        draw_one(job, request, renderer, progress, refined, &color, &sequence->stats);
     cli_progress_finish(&progress->bar);
     if (result != WHIT_OK)
         return result;
     double start_ms = whit_clock_ms();
-    whit_renderer_get_stats(renderer, &sequence->stats);
     if (!cli_cancel)
         cli_set_saving();
-    result = render_save(job, request, renderer, &sequence->stats);
+    result = render_save(job, request, renderer, color, &sequence->stats);
     sequence->save_ms = whit_clock_ms() - start_ms;
+    whit_image_destroy(color);
     return result;
 }
 
@@ -296,6 +330,7 @@ static int work(struct job *job, const struct render_request *request)
     struct frames_progress progress = {.count = frames->last - frames->first + 1};
     whit_renderer *renderer = NULL;
     struct sequence sequence = {0};
+    struct refined refined = {0};
     int status = EXIT_FINE;
     cli_progress_init(&progress.bar, job->settings.quiet);
     whit_result result = render_prepare(job, request, &progress, &renderer);
@@ -303,12 +338,17 @@ static int work(struct job *job, const struct render_request *request)
     progress.budget_ms = job->settings.budget_ms;
     if (result == WHIT_OK)
         result = frames->given ? frames_render(job, request, renderer, &progress, &sequence)
-                               : render_one(job, request, renderer, &progress, &sequence);
+                               : render_one(job, request, renderer, &progress, &refined, &sequence);
     cli_progress_finish(&progress.bar);
     if (result == WHIT_OK) {
         say_done(job, request, &sequence.stats);
         status = stats_print(job, request, renderer, &sequence.stats, sequence.save_ms,
-                             frames->given ? &sequence : NULL);
+                             frames->given ? &sequence : NULL, refined.samples ? &refined : NULL);
+        bool missed = refined.samples && !refined.reached;
+        if (refined.samples && (missed || is_told(job)))
+            refine_say(&request->refine, &refined);
+        if (missed && status == EXIT_FINE)
+            status = EXIT_DIFFERS;
     } else {
         status = cli_exit_of(result);
         if (frames->given && renderer)
@@ -341,7 +381,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
     if (!job_read(&job, &reader, &request, false) || !frames_check(&reader, &job, &request) ||
-        !check_choice(&reader, &job.settings, &request) || !check_outputs(&reader, &request))
+        !check_choice(&reader, &job.settings, &request) || !refine_check(&reader, &job, &request) ||
+        !check_outputs(&reader, &request))
         return reader.status;
     if (request.thumbnail) {
         job.settings.picture.width = job.settings.picture.height = request.thumbnail;

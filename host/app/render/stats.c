@@ -10,14 +10,16 @@ struct figures {
     whit_kernel_info kernel; /* zeros where it cannot be known */
     const whit_stats *render;
     const struct sequence *sequence; /* or NULL */
+    const struct refined *refined;   /* likewise */
     double save_ms, total_ms;
     uint64_t rays;
 };
 
 static void collect(const struct job *job, const whit_renderer *renderer, const whit_stats *stats,
-                    double save_ms, const struct sequence *sequence, struct figures *out)
+                    double save_ms, struct figures *out)
 {
-    *out = (struct figures){.render = stats, .save_ms = save_ms, .sequence = sequence};
+    out->render = stats;
+    out->save_ms = save_ms;
     whit_scene_get_info(job->scene, &out->scene);
     whit_accel_get_info(job->accel, &out->tree);
     whit_device_get_info(job->device, &out->device);
@@ -161,6 +163,23 @@ static json_t *pixels_document(const struct figures *figures)
     return pixels;
 }
 
+static json_t *refined_document(const struct refined *refined)
+{
+    json_t *object = document_object();
+    document_count(object, "samples", refined->samples);
+    if (refined->error >= 0.0)
+        document_number(object, "rmse_estimate", refined->error);
+    else
+        document_put(object, "rmse_estimate", json_null());
+    if (refined->error_of_cuts >= 0.0)
+        document_number(object, "rmse_estimate_of_cuts", refined->error_of_cuts);
+    else
+        document_put(object, "rmse_estimate_of_cuts", json_null());
+    document_number(object, "cut_radiance", refined->cut_radiance);
+    document_flag(object, "reached", refined->reached);
+    return object;
+}
+
 static json_t *tree_document(const whit_accel_info *info)
 {
     json_t *tree = document_object();
@@ -222,6 +241,8 @@ static int print_json(const struct job *job, const struct render_request *reques
     if (job->settings.paint != PAINT_COLOR || request->counters)
         document_put(root, "costs", costs_document(figures->render));
     document_put(root, "tree", tree_document(&figures->tree));
+    if (figures->refined)
+        document_put(root, "refine", refined_document(figures->refined));
     if (figures->sequence)
         document_put(root, "frames", frames_document(job, figures->sequence));
     json_t *work = document_object();
@@ -325,6 +346,15 @@ static void print_samples(const struct figures *figures)
            (unsigned long long)pixels[2], (unsigned long long)pixels[3]);
 }
 
+static void print_refined(const struct refined *refined)
+{
+    printf("refined\n  %u samples a pixel", refined->samples);
+    if (refined->error >= 0.0)
+        printf(", an RMSE of %.3g may be left, %.3g of it of rays that were cut", refined->error,
+               refined->error_of_cuts);
+    putchar('\n');
+}
+
 static void print_kernel(const struct figures *figures)
 {
     const whit_kernel_info *kernel = &figures->kernel;
@@ -380,6 +410,8 @@ static int print_text(const struct job *job, const struct render_request *reques
     print_stages(job, figures);
     if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         print_samples(figures);
+    if (figures->refined)
+        print_refined(figures->refined);
     print_kernel(figures);
     if (job->settings.paint != PAINT_COLOR || request->counters)
         costs_print(figures->render);
@@ -401,12 +433,12 @@ static int print_text(const struct job *job, const struct render_request *reques
 
 int stats_print(const struct job *job, const struct render_request *request,
                 const whit_renderer *renderer, const whit_stats *stats, double save_ms,
-                const struct sequence *sequence)
+                const struct sequence *sequence, const struct refined *refined)
 {
-    struct figures figures;
+    struct figures figures = {.sequence = sequence, .refined = refined};
     if (job->settings.stats == STATS_NONE)
         return EXIT_FINE;
-    collect(job, renderer, stats, save_ms, sequence, &figures);
+    collect(job, renderer, stats, save_ms, &figures);
     if (job->settings.stats == STATS_JSON)
         return print_json(job, request, &figures);
     if (job->settings.stats == STATS_TEXT)

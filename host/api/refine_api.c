@@ -1,0 +1,246 @@
+/* Pictures that get better: parts that are as large as what there is, and sums of them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/handles.h"
+#include "image/estimate.h"
+
+struct whit_refine {
+    whit_renderer *renderer; /* borrowed */
+    whit_renderer_params params;
+    uint32_t samples;
+    bool cut;            /* rays were, in the first sample or later */
+    bool radiance_known; /* cut_radiance was measured, where it is needed */
+    double cut_radiance;
+    struct image color;   /* the mean of all samples */
+    struct image cuts;    /* as WHIT_AOV_CUTS, of all samples */
+    struct image changes; /* see estimate_note_change; one channel */
+    struct image errors;  /* estimate_error, of 2 samples and more */
+    double error, error_of_cuts;
+    whit_stats stats;
+};
+
+/* No ray brings as much, so that none is sent on. */
+static const double BAILOUT_ALL = 1e30;
+
+whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_params *params,
+                               whit_refine **out)
+{
+    *out = NULL;
+    whit_result result = api_need_device(renderer);
+    if (result != WHIT_OK)
+        return result;
+    whit_refine *refine = calloc(1, sizeof *refine);
+    if (!refine) {
+        log_error(&renderer->log, "out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    refine->renderer = renderer;
+    refine->params = *params;
+    refine->params.sampling = (whit_sampling){.count = 1};
+    result = whit_renderer_set_view(renderer, &refine->params);
+    if (result != WHIT_OK) {
+        whit_refine_destroy(refine);
+        return result;
+    }
+    *out = refine;
+    return WHIT_OK;
+}
+
+void whit_refine_destroy(whit_refine *refine)
+{
+    if (!refine)
+        return;
+    image_finish(&refine->color);
+    image_finish(&refine->cuts);
+    image_finish(&refine->changes);
+    image_finish(&refine->errors);
+    free(refine);
+}
+
+/* ---- Parts ---- */
+
+struct part {
+    struct image color, cuts;
+    whit_stats stats;
+};
+
+static void part_finish(struct part *part)
+{
+    image_finish(&part->color);
+    image_finish(&part->cuts);
+}
+
+static whit_result draw_part(const whit_refine *refine, uint32_t first, uint32_t count,
+                             double bailout, struct part *part)
+{
+    whit_renderer_params params = refine->params;
+    params.sampling = (whit_sampling){.first = first, .count = count};
+    params.bailout = bailout;
+    whit_result result = whit_renderer_set_view(refine->renderer, &params);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(refine->renderer);
+    if (result == WHIT_OK)
+        result = renderer_read_color(refine->renderer->renderer, &part->color);
+    if (result == WHIT_OK)
+        result = renderer_read_cuts(refine->renderer->renderer, &part->cuts);
+    if (result == WHIT_OK)
+        whit_renderer_get_stats(refine->renderer, &part->stats);
+    return result;
+}
+
+/* The mean of two images of as many samples, into the first one, as resolve.comp adds up. */
+static void add_half(struct image *image, const struct image *half)
+{
+    size_t count = (size_t)image->width * image->height * image->channels;
+    for (size_t i = 0; i < count; ++i)
+        image->pixels[i] = 0.5f * (image->pixels[i] + half->pixels[i]);
+}
+
+static bool is_any_cut(const struct image *cuts)
+{
+    size_t count = (size_t)cuts->width * cuts->height * 2;
+    for (size_t i = 0; i < count; ++i) {
+        if (cuts->pixels[i] > 0.0f)
+            return true;
+    }
+    return false;
+}
+
+/* ---- Steps ---- */
+
+static whit_result begin(whit_refine *refine, struct part *part)
+{
+    struct image *color = &part->color;
+    whit_result result = image_init(&refine->changes, color->width, color->height, 1, false);
+    if (result == WHIT_OK)
+        result = image_init(&refine->errors, color->width, color->height, 1, false);
+    if (result != WHIT_OK) {
+        image_finish(&refine->changes);
+        return result;
+    }
+    refine->color = part->color;
+    refine->cuts = part->cuts;
+    part->color = part->cuts = (struct image){0};
+    refine->stats = part->stats;
+    refine->samples = 1;
+    return WHIT_OK;
+}
+
+static void add_part(whit_refine *refine, const struct part *part)
+{
+    const struct image *const halves[2] = {&refine->color, &part->color};
+    estimate_note_change(halves, &refine->changes);
+    add_half(&refine->color, &part->color);
+    add_half(&refine->cuts, &part->cuts);
+    whit_stats_add(&part->stats, &refine->stats);
+    refine->samples *= 2;
+}
+
+static void take_radiance(whit_refine *refine, const struct part *part)
+{
+    refine->cut_radiance = estimate_cut_radiance(&refine->color, &part->color, &part->cuts);
+    refine->radiance_known = true;
+    refine->stats.render_ms += part->stats.render_ms;
+    if (refine->stats.render_device_ms >= 0.0 && part->stats.render_device_ms >= 0.0)
+        refine->stats.render_device_ms += part->stats.render_device_ms;
+}
+
+whit_result whit_refine_step(whit_refine *refine)
+{
+    struct part part = {0};
+    uint32_t samples = refine->samples;
+    bool radiance = refine->cut && !refine->radiance_known;
+    if (samples >= WHIT_SAMPLES_MAX) {
+        log_error(&refine->renderer->log, "a pixel has no more than %d samples", WHIT_SAMPLES_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result =
+        radiance ? draw_part(refine, 0, 1, BAILOUT_ALL, &part)
+                 : draw_part(refine, samples, samples ? samples : 1, refine->params.bailout, &part);
+    if (result == WHIT_OK && radiance)
+        take_radiance(refine, &part);
+    else if (result == WHIT_OK && samples == 0)
+        result = begin(refine, &part);
+    else if (result == WHIT_OK)
+        add_part(refine, &part);
+    part_finish(&part);
+    if (result != WHIT_OK)
+        return result;
+    refine->cut = is_any_cut(&refine->cuts);
+    if (refine->samples >= 2)
+        refine->error = estimate_error(&refine->changes, &refine->cuts, refine->cut_radiance,
+                                       &refine->errors, &refine->error_of_cuts);
+    return WHIT_OK;
+}
+
+/* ---- What there is ---- */
+
+void whit_refine_get_info(const whit_refine *refine, whit_refine_info *info)
+{
+    *info = (whit_refine_info){.samples = refine->samples,
+                               .error = refine->samples >= 2 ? refine->error : -1.0,
+                               .error_of_cuts = refine->samples >= 2 ? refine->error_of_cuts : -1.0,
+                               .cut_radiance = refine->cut_radiance,
+                               .last = refine->samples >= WHIT_SAMPLES_MAX};
+}
+
+static whit_result copy(const whit_refine *refine, const struct image *from, whit_image **out)
+{
+    whit_result result =
+        whit_image_create(from->width, from->height, from->channels, from->pixels, out);
+    if (result != WHIT_OK)
+        log_error(&refine->renderer->log, "out of memory");
+    return result;
+}
+
+whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
+{
+    *out = NULL;
+    if (refine->samples == 0) {
+        log_error(&refine->renderer->log, "no picture was rendered yet");
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result = copy(refine, &refine->color, out);
+    if (result == WHIT_OK)
+        whit_image_display_as(*out, &refine->params);
+    return result;
+}
+
+whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out)
+{
+    *out = NULL;
+    if (refine->samples < 2) {
+        log_error(&refine->renderer->log, "an error can be told from 2 samples on");
+        return WHIT_ERROR_USAGE;
+    }
+    return copy(refine, &refine->errors, out);
+}
+
+static double largest(const struct image *cuts, size_t channel)
+{
+    float max = 0.0f;
+    size_t count = (size_t)cuts->width * cuts->height;
+    for (size_t i = 0; i < count; ++i)
+        max = fmaxf(max, cuts->pixels[2 * i + channel]);
+    return (double)max;
+}
+
+/* Those of parts were added as if they were pictures. */
+void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats)
+{
+    *stats = refine->stats;
+    if (refine->samples == 0)
+        return;
+    double bailout = largest(&refine->cuts, 1);
+    if (stats->bailout_bound > 0.0 && stats->weight_cut_bailout > 0.0)
+        stats->bailout_bound *= bailout / stats->weight_cut_bailout;
+    stats->weight_cut_bailout = bailout;
+    stats->weight_cut_depth = largest(&refine->cuts, 0);
+    memset(stats->pixels_by_samples, 0, sizeof stats->pixels_by_samples);
+    uint32_t level = 0;
+    while (1u << (2 * level) < refine->samples)
+        ++level;
+    stats->pixels_by_samples[level] = (uint64_t)refine->color.width * refine->color.height;
+}

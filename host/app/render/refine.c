@@ -1,0 +1,185 @@
+#include "app/render/refine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+
+static const double ERROR_MIN = 1e-9, ERROR_MAX = 1e6, LIMIT_MIN_MS = 1e-3, LIMIT_MAX_MS = 1e9;
+
+/* ---- Options ---- */
+
+bool refine_is_wanted(const struct refine_goal *goal)
+{
+    return goal->error > 0.0 || goal->limit_ms > 0.0;
+}
+
+bool refine_read(const struct setting *setting, const char *value, void *request,
+                 char why[SETTING_WHY_BYTES])
+{
+    struct refine_goal *goal = &((struct render_request *)request)->refine;
+    char *end;
+    double number = strtod(value, &end);
+    bool is_time = end != value && strcmp(end, "ms") == 0;
+    (void)setting;
+    *goal = (struct refine_goal){0};
+    if (end == value || (*end && !is_time))
+        return setting_refuse(
+            why, " `%s`: an error such as 0.01 is needed, or a time such as 500ms", value);
+    double min = is_time ? LIMIT_MIN_MS : ERROR_MIN, max = is_time ? LIMIT_MAX_MS : ERROR_MAX;
+    if (!(number >= min && number <= max))
+        return setting_refuse(why, " `%s`: %s from %g to %g%s is needed", value,
+                              is_time ? "a time" : "an error", min, max, is_time ? " ms" : "");
+    *(is_time ? &goal->limit_ms : &goal->error) = number;
+    return true;
+}
+
+bool refine_check(struct cli_reader *reader, const struct job *job,
+                  const struct render_request *request)
+{
+    const struct settings *settings = &job->settings;
+    if (!refine_is_wanted(&request->refine))
+        return true;
+    if (settings->budget_ms > 0.0 || settings->max_error > 0.0)
+        return cli_misuse(reader, "--refine and %s: one of them",
+                          settings->budget_ms > 0.0 ? "--budget-ms" : "--max-error");
+    if (settings_given(settings, "aa"))
+        return cli_misuse(reader, "--refine chooses --aa by itself");
+    if (request->frames.given || settings->paint != PAINT_COLOR)
+        return cli_misuse(reader, "--refine is for one picture of colours");
+    return true;
+}
+
+/* ---- Steps ---- */
+
+/* Where a picture in the making stands. */
+struct refine_steps {
+    whit_refine *refine;
+    whit_refine_info now;
+    whit_stats stats;      /* of all steps */
+    double ms_of_a_sample; /* of those drawn last */
+};
+
+/* Twice as many samples take as long again as those that are there, by those drawn last. */
+static bool has_time(const struct refine_goal *goal, const struct refine_steps *steps)
+{
+    double next_ms = steps->ms_of_a_sample * steps->now.samples;
+    return goal->limit_ms <= 0.0 || steps->now.samples == 0 ||
+           steps->stats.render_ms + next_ms <= goal->limit_ms;
+}
+
+/* What more samples leave as it is may be too much already. */
+static bool is_done(const struct refine_goal *goal, const whit_refine_info *now)
+{
+    enum { SAMPLES_TO_TELL = 4 };
+    bool told = goal->error > 0.0 && now->error >= 0.0;
+    return now->last || (told && now->error <= goal->error) ||
+           (told && now->samples >= SAMPLES_TO_TELL && now->error_of_cuts > goal->error);
+}
+
+/* How many samples there may be in the end: what is done is told beside them. */
+static uint32_t foresee_samples(const struct refine_goal *goal, const struct refine_steps *steps)
+{
+    const double falls = 0.6; /* by which errors fall with twice as many samples, about */
+    double doublings = 1.0;
+    if (steps->now.samples == 0)
+        return REFINE_SAMPLES_USUAL;
+    if (goal->limit_ms > 0.0)
+        doublings = log2(goal->limit_ms / steps->stats.render_ms);
+    else if (steps->now.error > 0.0)
+        doublings = log(goal->error / steps->now.error) / log(falls);
+    else
+        doublings = log2(REFINE_SAMPLES_USUAL);
+    doublings = fmin(fmax(ceil(doublings), 1.0), log2(WHIT_SAMPLES_MAX / steps->now.samples));
+    return steps->now.samples << (uint32_t)doublings;
+}
+
+static whit_result take_step(const struct refine_goal *goal, struct refine_steps *steps,
+                             struct frames_progress *progress)
+{
+    uint32_t samples = steps->now.samples;
+    double before_ms = samples ? steps->stats.render_ms : 0.0;
+    progress->done = samples;
+    progress->parts = samples ? samples : 1;
+    progress->count = foresee_samples(goal, steps);
+    whit_result result = whit_refine_step(steps->refine);
+    if (result == WHIT_OK)
+        result = job_still_wanted();
+    if (result != WHIT_OK)
+        return result;
+    whit_refine_get_info(steps->refine, &steps->now);
+    whit_refine_get_stats(steps->refine, &steps->stats);
+    uint32_t drawn = steps->now.samples - samples;
+    if (drawn > 0)
+        steps->ms_of_a_sample = (steps->stats.render_ms - before_ms) / drawn;
+    return WHIT_OK;
+}
+
+/* Steps leave identities of no sample, or of a part of the picture. */
+static whit_result draw_first_sample(const struct job *job, whit_renderer *renderer)
+{
+    whit_renderer_params params = job_picture(job);
+    params.sampling = (whit_sampling){.count = 1};
+    whit_result result = whit_renderer_set_view(renderer, &params);
+    return result == WHIT_OK ? whit_renderer_render(renderer) : result;
+}
+
+static whit_result finish(struct job *job, const struct refine_goal *goal,
+                          const struct refine_steps *steps, struct refined *refined,
+                          whit_image **color)
+{
+    const whit_refine_info *now = &steps->now;
+    *refined = (struct refined){
+        .samples = now->samples,
+        .error = now->error,
+        .error_of_cuts = now->error_of_cuts,
+        .cut_radiance = now->cut_radiance,
+        .reached = goal->limit_ms > 0.0 || (now->error >= 0.0 && now->error <= goal->error),
+    };
+    job->settings.picture.sampling = (whit_sampling){.count = now->samples};
+    return whit_refine_image(steps->refine, color);
+}
+
+whit_result refine_render(struct job *job, const struct render_request *request,
+                          whit_renderer *renderer, struct frames_progress *progress,
+                          struct refined *refined, whit_image **color, whit_stats *stats)
+{
+    const whit_renderer_params params = job_picture(job);
+    const struct refine_goal *goal = &request->refine;
+    struct refine_steps steps = {.now.error = -1.0};
+    bool needs_ids = request->ids || job->settings.edges != EDGES_OFF;
+    *color = NULL;
+    whit_result result = whit_refine_create(renderer, &params, &steps.refine);
+    while (result == WHIT_OK && !is_done(goal, &steps.now) && has_time(goal, &steps))
+        result = take_step(goal, &steps, progress);
+    if (result == WHIT_OK)
+        result = finish(job, goal, &steps, refined, color);
+    whit_refine_destroy(steps.refine);
+    *stats = steps.stats;
+    if (result == WHIT_OK && needs_ids)
+        result = draw_first_sample(job, renderer);
+    if (result != WHIT_OK) {
+        whit_image_destroy(*color);
+        *color = NULL;
+    }
+    return result;
+}
+
+void refine_say(const struct refine_goal *goal, const struct refined *refined)
+{
+    const char *plural = refined->samples == 1 ? "" : "s";
+    if (refined->error < 0.0)
+        cli_note("%u sample%s a pixel, which tell nothing of what is wrong", refined->samples,
+                 plural);
+    else if (refined->reached)
+        cli_note("%u sample%s a pixel: an RMSE of %.3g may be left", refined->samples, plural,
+                 refined->error);
+    else if (refined->error_of_cuts > goal->error)
+        cli_error("an RMSE of %.3g may be left, not %.6g: %.3g of it are rays that --depth and "
+                  "--bailout cut, and more samples leave it",
+                  refined->error, goal->error, refined->error_of_cuts);
+    else
+        cli_error("an RMSE of %.3g may be left, not %.6g: there are no more than %u samples",
+                  refined->error, goal->error, refined->samples);
+}

@@ -1,0 +1,46 @@
+/* Pictures that are refined until they are good enough: `whit render --refine ERROR|MSms`. */
+#ifndef APP_RENDER_REFINE_H
+#define APP_RENDER_REFINE_H
+
+#include "app/job.h"
+
+struct render_request;
+struct frames_progress;
+
+/* When it ends: one of the two is above 0 where it is asked for. */
+struct refine_goal {
+    double error;    /* estimated RMSE, linear */
+    double limit_ms; /* of drawing; the step that would pass it is not begun */
+};
+
+/* What came of it. `samples` 0: it was not asked for. */
+struct refined {
+    uint32_t samples;
+    double error, error_of_cuts; /* < 0: not known, of one sample */
+    double cut_radiance;
+    bool reached; /* the goal */
+};
+
+bool refine_is_wanted(const struct refine_goal *goal);
+/* setting.read of --refine, into a render_request. */
+bool refine_read(const struct setting *setting, const char *value, void *request,
+                 char why[SETTING_WHY_BYTES]);
+/* Whether the other options go with --refine. */
+bool refine_check(struct cli_reader *reader, const struct job *job,
+                  const struct render_request *request);
+
+/* Samples that most pictures end with: kernels that take longer to make are right for them. */
+enum { REFINE_SAMPLES_USUAL = 64 };
+
+/* Draws until request->refine is met: *color, with `stats` of all of it; the job's samples are then
+   those of the picture, so that its recipe draws it again, and the renderer's identities are those
+   of the first sample where `request` needs them. After an error *color is NULL. */
+WHIT_CHECK whit_result refine_render(struct job *job, const struct render_request *request,
+                                     whit_renderer *renderer, struct frames_progress *progress,
+                                     struct refined *refined, whit_image **color,
+                                     whit_stats *stats);
+
+/* Says what came of it. */
+void refine_say(const struct refine_goal *goal, const struct refined *refined);
+
+#endif

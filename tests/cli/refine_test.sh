@@ -1,0 +1,90 @@
+#!/bin/sh
+# `whit render --refine`: until the estimate of what is wrong, or a time, is met; the picture is that of
+# as many samples.
+# shellcheck disable=SC2086 # Options are split where they are used.
+. "$(dirname "$0")/common.sh"
+needs jq
+cd "$OUT" || exit 1
+BALLS="$SCENES/balls.json --size 64x48"
+
+# refined ARGUMENT...: --stats json of a refined picture, r.exr.
+refined() {
+    expect 0 "refined $*" render $BALLS -o r.exr --stats json "$@"
+    samples=$(jq '.refine.samples' stdout)
+    estimate=$(jq '.refine.rmse_estimate' stdout)
+}
+
+# same_as_samples: r.exr is the picture of that many samples.
+same_as_samples() {
+    cp stdout refined.json
+    expect 0 "--aa $samples" render $BALLS -o a.exr --aa "$samples" --stats json "$@"
+    check "$samples samples at once are the same picture" \
+        "$WHIT" compare r.exr a.exr --metric differing --tolerance 0 -q
+}
+
+refined --refine 0.05
+coarse=$samples
+check "the estimate is met" holds "$estimate > 0 && $estimate <= 0.05"
+same_as_samples
+check "stats have the samples" jq -es '.[0].picture.aa == .[1].picture.aa' refined.json stdout
+check "and the same rays" jq -es '(.[0].rays | [.primary, .shadow, .reflected, .refracted,
+    .cut_by_depth.rays, .cut_by_bailout.rays]) == (.[1].rays | [.primary, .shadow, .reflected,
+    .refracted, .cut_by_depth.rays, .cut_by_bailout.rays])' refined.json stdout
+check "and the same weights" jq -es '.[0].rays.cut_by_depth.weight_of_a_pixel as $a |
+    .[1].rays.cut_by_depth.weight_of_a_pixel as $b | $a > 0 and ($a - $b | fabs) < 1e-5 * $a' \
+    refined.json stdout
+check "the picture's recipe has them" grep -aq -- "--aa $samples" r.exr
+check "and nothing of how they were found" sh -c '! grep -aq -- --refine r.exr'
+refined --refine 0.02
+check "less error takes more samples ($coarse, $samples)" test "$samples" -gt "$coarse"
+same_as_samples
+
+# A clock decides only how far it goes; what a millisecond allows is the first sample.
+refined --refine 0.001ms
+check "the first sample is drawn in any case" test "$samples" -eq 1
+check "of one sample nothing is known" test "$estimate" = null
+refined --refine 1e5ms --depth 1 --size 16x12
+check "time for all samples" test "$samples" -eq 4096
+check "which tell of rays that were cut" jq -e '.refine.rmse_estimate_of_cuts > 0.01 and
+    .refine.rmse_estimate >= .refine.rmse_estimate_of_cuts and .refine.cut_radiance > 0' stdout
+
+# What more samples do not mend.
+refuse 1 "rays that are cut" "rays that --depth and --bailout cut" render $BALLS -o cut.png -q \
+    --depth 1 --refine 0.01
+check "the picture is there" test -s cut.png
+refuse 1 "too small an error" "no more than 4096 samples" render "$CUBE" -o small.png -q --size 8x6 \
+    --refine 1e-9
+check "so is this one" test -s small.png
+
+# Identities and edges are those of the first sample.
+expect 0 "identities, refined" render $BALLS -o r.png --ids r.ids.exr --edges objects --refine 0.05
+check "it says what is left" grep -q "^whit: note: $coarse samples a pixel: an RMSE of 0.0" stderr
+expect 0 "identities, at once" render $BALLS -o a.png --ids a.ids.exr --edges objects --aa "$coarse"
+check "are the same" "$WHIT" compare r.ids.exr a.ids.exr --metric differing --tolerance 0 -q
+check "as is the picture" "$WHIT" compare r.png a.png --metric differing --tolerance 0 -q
+expect 0 "quiet" render $BALLS -o r.png --refine 0.05 --quiet
+check "says nothing" test ! -s stderr
+expect 0 "--stats text" render $BALLS -o r.png --refine 0.05 --stats text
+check "tells of it" grep -q "$coarse samples a pixel, an RMSE of" stdout
+
+for value in x "" 0 -1 nan inf 1e7 5s ms 1msx 0ms 1e10ms; do
+    refuse 2 "\`$value\`" "--refine" render $BALLS -o no.png --refine "$value"
+done
+for other in "--budget-ms 10" "--max-error 0.1"; do
+    refuse 2 "and $other" "--refine and ${other% *}: one of them" render $BALLS -o no.png \
+        --refine 0.1 $other
+done
+refuse 2 "and --aa" "--refine chooses --aa" render $BALLS -o no.png --refine 0.1 --aa 4
+refuse 2 "and --view" "one picture of colours" render $BALLS -o no.png --refine 0.1 --view visits
+refuse 2 "and --frames" "one picture of colours" render $BALLS -o no.#.png --refine 0.1 --frames 0-1
+check "nothing was written" test ! -e no.png
+
+# Ctrl+C ends it as it ends every picture.
+"$WHIT" render "$SCENES/default.json" -o stopped.png --size 320x240 --refine 1e-9 2>stderr &
+pid=$!
+sleep 2
+kill -INT $pid
+wait $pid
+check "interrupted: exit code 130" test $? -eq 130
+check "no picture is left" test ! -e stopped.png
+finish
