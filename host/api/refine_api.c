@@ -9,7 +9,8 @@
 struct whit_refine {
     whit_renderer *renderer; /* borrowed */
     whit_renderer_params params;
-    uint32_t samples;
+    whit_log log;
+    uint32_t samples, doublings;
     bool cut;            /* rays were, in the first sample or later */
     bool radiance_known; /* cut_radiance was measured, where it is needed */
     double cut_radiance;
@@ -36,9 +37,8 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
         log_error(&renderer->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    refine->renderer = renderer;
-    refine->params = *params;
-    refine->params.sampling = (whit_sampling){.count = 1};
+    refine->log = renderer->log;
+    whit_refine_move(refine, renderer, params);
     result = whit_renderer_set_view(renderer, &refine->params);
     if (result != WHIT_OK) {
         whit_refine_destroy(refine);
@@ -46,6 +46,14 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
     }
     *out = refine;
     return WHIT_OK;
+}
+
+void whit_refine_move(whit_refine *refine, whit_renderer *renderer,
+                      const whit_renderer_params *params)
+{
+    refine->renderer = renderer;
+    refine->params = *params;
+    refine->params.sampling = (whit_sampling){.count = 1};
 }
 
 void whit_refine_destroy(whit_refine *refine)
@@ -110,7 +118,8 @@ static bool is_any_cut(const struct image *cuts)
 
 /* ---- Steps ---- */
 
-static whit_result begin(whit_refine *refine, struct part *part)
+/* Takes over the images of the part. */
+static whit_result begin(whit_refine *refine, uint32_t samples, struct part *part)
 {
     struct image *color = &part->color;
     whit_result result = image_init(&refine->changes, color->width, color->height, 1, false);
@@ -124,8 +133,31 @@ static whit_result begin(whit_refine *refine, struct part *part)
     refine->cuts = part->cuts;
     part->color = part->cuts = (struct image){0};
     refine->stats = part->stats;
-    refine->samples = 1;
+    refine->samples = samples;
+    refine->cut = is_any_cut(&refine->cuts);
     return WHIT_OK;
+}
+
+whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float *color,
+                              const float *cuts)
+{
+    const whit_renderer_params *params = &refine->params;
+    struct part part = {0};
+    if (refine->samples > 0 || samples == 0 || params->width == 0 || params->height == 0) {
+        log_error(&refine->log, "a picture can be refined from its first sample on, and once");
+        return WHIT_ERROR_USAGE;
+    }
+    size_t pixels = (size_t)params->width * params->height;
+    whit_result result = image_init(&part.color, params->width, params->height, 4, false);
+    if (result == WHIT_OK)
+        result = image_init(&part.cuts, params->width, params->height, 2, false);
+    if (result == WHIT_OK) {
+        memcpy(part.color.pixels, color, pixels * 4 * sizeof *color);
+        memcpy(part.cuts.pixels, cuts, pixels * 2 * sizeof *cuts);
+        result = begin(refine, samples, &part);
+    }
+    part_finish(&part);
+    return result;
 }
 
 static void add_part(whit_refine *refine, const struct part *part)
@@ -136,6 +168,7 @@ static void add_part(whit_refine *refine, const struct part *part)
     add_half(&refine->cuts, &part->cuts);
     whit_stats_add(&part->stats, &refine->stats);
     refine->samples *= 2;
+    ++refine->doublings;
 }
 
 static void take_radiance(whit_refine *refine, const struct part *part)
@@ -147,13 +180,24 @@ static void take_radiance(whit_refine *refine, const struct part *part)
         refine->stats.render_device_ms += part->stats.render_device_ms;
 }
 
+static bool is_last(const whit_refine *refine)
+{
+    return refine->samples > WHIT_SAMPLES_MAX / 2;
+}
+
+/* From two parts on something has changed. */
+static bool is_told(const whit_refine *refine)
+{
+    return refine->doublings > 0;
+}
+
 whit_result whit_refine_step(whit_refine *refine)
 {
     struct part part = {0};
     uint32_t samples = refine->samples;
     bool radiance = refine->cut && !refine->radiance_known;
-    if (samples >= WHIT_SAMPLES_MAX) {
-        log_error(&refine->renderer->log, "a pixel has no more than %d samples", WHIT_SAMPLES_MAX);
+    if (is_last(refine)) {
+        log_error(&refine->log, "a pixel has no more than %d samples", WHIT_SAMPLES_MAX);
         return WHIT_ERROR_USAGE;
     }
     whit_result result =
@@ -162,14 +206,14 @@ whit_result whit_refine_step(whit_refine *refine)
     if (result == WHIT_OK && radiance)
         take_radiance(refine, &part);
     else if (result == WHIT_OK && samples == 0)
-        result = begin(refine, &part);
+        result = begin(refine, 1, &part);
     else if (result == WHIT_OK)
         add_part(refine, &part);
     part_finish(&part);
     if (result != WHIT_OK)
         return result;
     refine->cut = is_any_cut(&refine->cuts);
-    if (refine->samples >= 2)
+    if (is_told(refine))
         refine->error = estimate_error(&refine->changes, &refine->cuts, refine->cut_radiance,
                                        &refine->errors, &refine->error_of_cuts);
     return WHIT_OK;
@@ -180,10 +224,10 @@ whit_result whit_refine_step(whit_refine *refine)
 void whit_refine_get_info(const whit_refine *refine, whit_refine_info *info)
 {
     *info = (whit_refine_info){.samples = refine->samples,
-                               .error = refine->samples >= 2 ? refine->error : -1.0,
-                               .error_of_cuts = refine->samples >= 2 ? refine->error_of_cuts : -1.0,
+                               .error = is_told(refine) ? refine->error : -1.0,
+                               .error_of_cuts = is_told(refine) ? refine->error_of_cuts : -1.0,
                                .cut_radiance = refine->cut_radiance,
-                               .last = refine->samples >= WHIT_SAMPLES_MAX};
+                               .last = is_last(refine)};
 }
 
 static whit_result copy(const whit_refine *refine, const struct image *from, whit_image **out)
@@ -191,7 +235,7 @@ static whit_result copy(const whit_refine *refine, const struct image *from, whi
     whit_result result =
         whit_image_create(from->width, from->height, from->channels, from->pixels, out);
     if (result != WHIT_OK)
-        log_error(&refine->renderer->log, "out of memory");
+        log_error(&refine->log, "out of memory");
     return result;
 }
 
@@ -199,7 +243,7 @@ whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
 {
     *out = NULL;
     if (refine->samples == 0) {
-        log_error(&refine->renderer->log, "no picture was rendered yet");
+        log_error(&refine->log, "no picture was rendered yet");
         return WHIT_ERROR_USAGE;
     }
     whit_result result = copy(refine, &refine->color, out);
@@ -211,8 +255,8 @@ whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
 whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out)
 {
     *out = NULL;
-    if (refine->samples < 2) {
-        log_error(&refine->renderer->log, "an error can be told from 2 samples on");
+    if (!is_told(refine)) {
+        log_error(&refine->log, "an error can be told once samples were doubled");
         return WHIT_ERROR_USAGE;
     }
     return copy(refine, &refine->errors, out);

@@ -35,6 +35,14 @@ void engine_ask_other(struct engine *engine, const struct settings *settings);
 
 enum { ENGINE_MESSAGE = 512, ENGINE_BOXES_MAX = 8192 };
 
+/* By how much a picture of so many samples may be off, and how long it took to draw. */
+struct engine_estimate {
+    uint32_t samples;
+    double error; /* RMSE, as whit_refine_info.error */
+    double ms;    /* since its first sample was begun, of drawing alone */
+};
+enum { ENGINE_ESTIMATES_MAX = 16 };
+
 /* A picture that is done, or with an error in its place. */
 struct engine_frame {
     uint64_t number;           /* counts up; 0: none yet */
@@ -44,18 +52,21 @@ struct engine_frame {
     struct shader_ref *shader; /* held; NULL: none */
     whit_image *color;         /* floats: linear RGBA, or of one channel where costs are painted */
     whit_image *ids;           /* hit identities; NULL but for whole pictures */
+    whit_image *cuts;          /* WHIT_AOV_CUTS of whole pictures that can be refined, else NULL */
     uint8_t *rgba;             /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
     bool refined;                    /* of more samples than the settings say; without ids, these
                                         and boxes are those of the picture before */
-    bool whole;                      /* full size and all samples: what `whit render` makes */
-    bool moving;                     /* more was to follow */
-    double asked_ms;                 /* by whit_clock_ms: when engine_ask first asked for it */
-    double draw_ms;                  /* by the clock: all of it, with reading it back */
-    double scale;                    /* of a heat map */
-    whit_box *boxes;                 /* of settings.boxes: at most ENGINE_BOXES_MAX */
-    uint64_t boxes_total;            /* that there are */
+    struct engine_estimate estimates[ENGINE_ESTIMATES_MAX]; /* while it was refined */
+    uint32_t estimate_count;
+    bool whole;           /* full size and all samples: what `whit render` makes */
+    bool moving;          /* more was to follow */
+    double asked_ms;      /* by whit_clock_ms: when engine_ask first asked for it */
+    double draw_ms;       /* by the clock: all of it, with reading it back */
+    double scale;         /* of a heat map */
+    whit_box *boxes;      /* of settings.boxes: at most ENGINE_BOXES_MAX */
+    uint64_t boxes_total; /* that there are */
     whit_stats stats;
     double visits;        /* nodes opened, of a camera ray on average; < 0: not known */
     uint64_t visits_rays; /* that it is of */

@@ -96,11 +96,14 @@ void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
                                  .height = frame->height};
     kept->ids = malloc(pixels * 2 * sizeof *kept->ids);
     kept->color = colors ? malloc(pixels * 4 * sizeof *kept->color) : NULL;
-    if (!kept->ids || (colors && !kept->color)) {
+    kept->cuts = frame->cuts ? malloc(pixels * 2 * sizeof *kept->cuts) : NULL;
+    if (!kept->ids || (colors && !kept->color) || (frame->cuts && !kept->cuts)) {
         engine_kept_finish(kept);
         return;
     }
     memcpy(kept->ids, whit_image_words(frame->ids), pixels * 2 * sizeof *kept->ids);
+    if (frame->cuts)
+        memcpy(kept->cuts, whit_image_floats(frame->cuts), pixels * 2 * sizeof *kept->cuts);
     if (colors)
         memcpy(kept->color, whit_image_floats(frame->color), pixels * 4 * sizeof *kept->color);
 }
@@ -109,6 +112,7 @@ void engine_kept_finish(struct engine_kept *kept)
 {
     free(kept->ids);
     free(kept->color);
+    free(kept->cuts);
     kept->ids = NULL;
-    kept->color = NULL;
+    kept->color = kept->cuts = NULL;
 }

@@ -139,6 +139,8 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
     }
     if (result == WHIT_OK && task->divisor == 1)
         result = whit_renderer_image(renderer, WHIT_AOV_IDS, &frame->ids);
+    if (result == WHIT_OK && frame->whole && engine_refines(&task->settings))
+        result = whit_renderer_image(renderer, WHIT_AOV_CUTS, &frame->cuts);
     return result;
 }
 
@@ -268,6 +270,7 @@ void engine_frame_finish(struct engine_frame *frame)
 {
     whit_image_destroy(frame->color);
     whit_image_destroy(frame->ids);
+    whit_image_destroy(frame->cuts);
     free(frame->rgba);
     whit_memory_destroy(frame->boxes);
     scene_ref_drop(frame->scene);

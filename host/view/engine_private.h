@@ -60,18 +60,19 @@ struct engine_kept {
     whit_accel_info accel;
     uint32_t width, height;
     float *color;  /* RGBA; NULL where costs were painted */
+    float *cuts;   /* as engine_frame.cuts, or NULL */
     uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
 };
 
 /* The window's picture on its way to more samples (engine_refine.c); of the drawing thread. */
 struct engine_refine {
     struct engine_frame base; /* the whole picture of the settings, without what it owns */
-    uint32_t samples;         /* of each part, and so far; 0: there is nothing to refine */
-    uint32_t part;            /* that comes next, 1..3 */
+    uint32_t samples;         /* of what was displayed last; 0: there is nothing to refine */
     bool done;
-    float *sum;     /* RGBA: what was displayed last, the mean of `samples` */
-    float *held[2]; /* RGBA: of the parts after it, the first two */
-    uint8_t *rgba;  /* what was displayed last */
+    whit_refine *refine; /* NULL: not begun */
+    uint8_t *rgba;       /* what was displayed last */
+    struct engine_estimate estimates[ENGINE_ESTIMATES_MAX];
+    uint32_t estimate_count;
 };
 
 struct engine {
@@ -149,7 +150,9 @@ WHIT_CHECK whit_result engine_draw_step(const struct engine_task *task, const wh
                                         struct engine_frame *frame);
 /* engine.c: shows a step of the picture that is being drawn. */
 void engine_show_step(void *user, const whit_step *step);
-/* engine_refine.c. Begins with a whole picture of the window; one that cannot be refined, by costs
+/* engine_refine.c: whether pictures of these settings can be refined. */
+bool engine_refines(const struct settings *settings);
+/* Begins with a whole picture of the window; one that cannot be refined, by costs
    or adaptive samples, ends it. */
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame);
 void engine_refine_stop(struct engine_refine *refine);

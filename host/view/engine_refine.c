@@ -1,7 +1,7 @@
-/* The window's picture at rest gets better by itself: 4, 16, 64 ... samples of each pixel. Samples
-   are one nested sequence, summed pairwise in blocks of four: so a picture of 4n samples is the one
-   of n and three more parts of n, and no ray is traced twice. Where n is a power of 2 it is bit by
-   bit what `--aa 4n` gives. */
+/* The window's picture at rest gets better by itself: 4, 16, 64 ... times the samples of the
+   settings. Whit_refine draws what is missing to twice as many, so that no ray is traced twice, and
+   tells what is still wrong. Where the settings say a power of 2, what is shown is bit by bit what
+   `--aa` gives. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,18 +9,16 @@
 
 /* More samples change nothing that is seen where at most one pixel in so many changes by more than
    this code of 255 in some channel. */
-enum { CODE_SAME = 4, PIXELS_A_CHANGE = 1000, PARTS = 4 };
+enum { CODE_SAME = 4, PIXELS_A_CHANGE = 1000, ROUND = 4 };
 
-static size_t floats_of(const struct engine_refine *refine)
+static size_t bytes_of(const struct engine_refine *refine)
 {
     return (size_t)refine->base.width * refine->base.height * 4;
 }
 
 void engine_refine_stop(struct engine_refine *refine)
 {
-    free(refine->sum);
-    free(refine->held[0]);
-    free(refine->held[1]);
+    whit_refine_destroy(refine->refine);
     free(refine->rgba);
     *refine = (struct engine_refine){0};
 }
@@ -28,82 +26,87 @@ void engine_refine_stop(struct engine_refine *refine)
 static void set_base(struct engine_refine *refine, const struct engine_frame *frame)
 {
     refine->base = *frame;
-    refine->base.color = refine->base.ids = NULL;
+    refine->base.color = refine->base.ids = refine->base.cuts = NULL;
     refine->base.boxes = NULL;
     refine->base.rgba = NULL;
     refine->base.scene = NULL;
 }
 
+bool engine_refines(const struct settings *settings)
+{
+    bool drawn_over = settings->edges != EDGES_OFF || settings->grid; /* is no part of a sum */
+    return settings->paint == PAINT_COLOR && !drawn_over &&
+           settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
+}
+
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame)
 {
     engine_refine_stop(refine);
-    const struct settings *settings = &frame->settings;
-    bool drawn_over = settings->edges != EDGES_OFF || settings->grid; /* is no part of a sum */
-    if (settings->paint != PAINT_COLOR || drawn_over ||
-        settings->picture.sampling.kind != WHIT_SAMPLING_FIXED)
+    if (!engine_refines(&frame->settings))
         return;
     set_base(refine, frame);
     refine->samples = frame->samples;
-    refine->part = 1;
-    refine->done = frame->samples * PARTS > WHIT_SAMPLES_MAX;
+    refine->done = frame->samples * ROUND > WHIT_SAMPLES_MAX;
 }
 
 /* The first part is the whole picture that engine_keep copied. */
-static whit_result begin_sum(struct engine_refine *refine, const struct engine_kept *kept)
+static whit_result begin_parts(struct engine_refine *refine, whit_renderer *renderer,
+                               const whit_renderer_params *params, const struct engine_kept *kept)
 {
-    const whit_renderer_params params = settings_picture(&refine->base.settings);
-    size_t count = floats_of(refine);
     whit_image *image = NULL;
-    if (refine->sum)
+    if (refine->refine)
         return WHIT_OK;
-    if (!kept->color || kept->width != refine->base.width || kept->height != refine->base.height)
+    if (!kept->color || !kept->cuts || kept->width != refine->base.width ||
+        kept->height != refine->base.height)
         return WHIT_ERROR_MEMORY; /* it could not be kept */
-    refine->sum = malloc(count * sizeof *refine->sum);
-    refine->held[0] = malloc(count * sizeof *refine->sum);
-    refine->held[1] = malloc(count * sizeof *refine->sum);
-    refine->rgba = malloc(count);
-    if (!refine->sum || !refine->held[0] || !refine->held[1] || !refine->rgba)
+    refine->rgba = malloc(bytes_of(refine));
+    if (!refine->rgba)
         return WHIT_ERROR_MEMORY;
-    memcpy(refine->sum, kept->color, count * sizeof *refine->sum);
-    whit_result result = whit_image_create(kept->width, kept->height, 4, kept->color, &image);
-    if (result == WHIT_OK) {
-        whit_image_display_as(image, &params);
+    whit_result result = whit_refine_create(renderer, params, &refine->refine);
+    if (result == WHIT_OK)
+        result = whit_refine_begin(refine->refine, refine->samples, kept->color, kept->cuts);
+    if (result == WHIT_OK)
+        result = whit_refine_image(refine->refine, &image);
+    if (result == WHIT_OK)
         whit_image_display_bytes(image, refine->rgba);
-    }
     whit_image_destroy(image);
+    if (result != WHIT_OK) {
+        whit_refine_destroy(refine->refine);
+        refine->refine = NULL;
+    }
     return result;
 }
 
-/* Draws the part that comes next; the renderer is set to the picture of the settings again. */
-static whit_result draw_part(struct session *session, const struct engine_refine *refine,
-                             whit_image **out)
+static void note_estimate(struct engine_refine *refine, const whit_refine_info *info)
+{
+    uint32_t count = refine->estimate_count;
+    whit_stats stats;
+    bool known = count > 0 && refine->estimates[count - 1].samples == info->samples;
+    if (info->error < 0.0 || known || count == ENGINE_ESTIMATES_MAX)
+        return;
+    whit_refine_get_stats(refine->refine, &stats);
+    refine->estimates[refine->estimate_count++] =
+        (struct engine_estimate){.samples = info->samples,
+                                 .error = info->error,
+                                 .ms = refine->base.stats.render_ms + stats.render_ms};
+}
+
+/* Draws what comes next; the renderer is set to the picture of the settings again. */
+static whit_result draw_part(struct session *session, struct engine_refine *refine,
+                             const struct engine_kept *kept, whit_refine_info *info)
 {
     session->settings = refine->base.settings; /* the renderer borrows the camera's name */
     const whit_renderer_params usual = settings_picture(&session->settings);
-    whit_renderer_params params = usual;
-    params.sampling.count = refine->samples;
-    params.sampling.first = refine->part * refine->samples;
-    whit_result result = whit_renderer_set_view(session->renderer, &params);
+    whit_result result = begin_parts(refine, session->renderer, &usual, kept);
+    if (result != WHIT_OK)
+        return result;
+    whit_refine_move(refine->refine, session->renderer, &usual);
+    result = whit_refine_step(refine->refine);
+    whit_refine_get_info(refine->refine, info);
     if (result == WHIT_OK)
-        result = whit_renderer_render(session->renderer);
-    if (result == WHIT_OK)
-        result = whit_renderer_image(session->renderer, WHIT_AOV_COLOR, out);
+        note_estimate(refine, info);
     whit_result back = whit_renderer_set_view(session->renderer, &usual);
     return result == WHIT_OK ? back : result;
-}
-
-/* (0 + 1) + (2 + 3), as resolve.comp adds up. */
-static void add_part(struct engine_refine *refine, const whit_image *image)
-{
-    const float *part = whit_image_floats(image), *first = refine->held[0],
-                *second = refine->held[1];
-    size_t count = floats_of(refine);
-    if (refine->part < PARTS - 1)
-        memcpy(refine->held[refine->part - 1], part, count * sizeof *part);
-    else
-        for (size_t i = 0; i < count; ++i)
-            refine->sum[i] = 0.25f * ((refine->sum[i] + first[i]) + (second[i] + part[i]));
-    ++refine->part;
 }
 
 static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
@@ -115,15 +118,14 @@ static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
     return changed * PIXELS_A_CHANGE <= pixels;
 }
 
-/* The sum as a picture, and as it is displayed. */
+/* What there is as a picture, and as it is displayed. */
 static whit_result show_sum(const struct engine_refine *refine, struct engine_frame *frame)
 {
     const whit_renderer_params params = settings_picture(&refine->base.settings);
+    whit_refine_info info;
     whit_image *color = NULL;
-    uint8_t *rgba = malloc(floats_of(refine));
-    whit_result result =
-        rgba ? whit_image_create(frame->width, frame->height, 4, refine->sum, &color)
-             : WHIT_ERROR_MEMORY;
+    uint8_t *rgba = malloc(bytes_of(refine));
+    whit_result result = rgba ? whit_refine_image(refine->refine, &color) : WHIT_ERROR_MEMORY;
     if (result != WHIT_OK) {
         free(rgba);
         return result;
@@ -132,24 +134,26 @@ static whit_result show_sum(const struct engine_refine *refine, struct engine_fr
     whit_image_display_bytes(color, rgba);
     whit_image_destroy(frame->color);
     free(frame->rgba);
+    whit_refine_get_info(refine->refine, &info);
     frame->color = color;
     frame->rgba = rgba;
-    frame->samples = refine->samples;
+    frame->samples = info.samples;
     frame->refined = true;
+    frame->estimate_count = refine->estimate_count;
+    memcpy(frame->estimates, refine->estimates, sizeof frame->estimates);
     return WHIT_OK;
 }
 
 /* The picture of four times as many samples. */
 static whit_result finish_round(struct engine_refine *refine, struct engine_frame *frame)
 {
-    size_t bytes = floats_of(refine);
+    size_t bytes = bytes_of(refine);
     *frame = refine->base;
-    refine->samples *= PARTS;
-    refine->part = 1;
+    refine->samples *= ROUND;
     whit_result result = show_sum(refine, frame);
     if (result != WHIT_OK)
         return result;
-    refine->done = refine->samples * PARTS > WHIT_SAMPLES_MAX ||
+    refine->done = refine->samples * ROUND > WHIT_SAMPLES_MAX ||
                    looks_same(refine->rgba, frame->rgba, bytes / 4);
     memcpy(refine->rgba, frame->rgba, bytes);
     return WHIT_OK;
@@ -158,7 +162,7 @@ static whit_result finish_round(struct engine_refine *refine, struct engine_fram
 bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame)
 {
     const whit_sampling *sampling = &frame->settings.picture.sampling;
-    bool goes_on = refine->sum && refine->samples > refine->base.samples &&
+    bool goes_on = refine->refine && refine->samples > refine->base.samples &&
                    sampling->kind == WHIT_SAMPLING_FIXED &&
                    frame->samples == refine->base.samples &&
                    settings_same_pixels(&refine->base.settings, &frame->settings);
@@ -168,20 +172,16 @@ bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame
     return show_sum(refine, frame) == WHIT_OK;
 }
 
-/* Draws one part; without the lock. After every third part *frame is a picture of four times the
-   samples, without hit identities; else it is zeroed. `kept`: the picture that it began with. */
+/* Draws one part; without the lock. Behind the last part of a round *frame is a picture of four
+   times the samples, without hit identities; else it is zeroed. `kept`: the picture that it began
+   with. */
 static whit_result draw_next(struct session *session, struct engine_refine *refine,
                              const struct engine_kept *kept, struct engine_frame *frame)
 {
-    whit_image *image = NULL;
+    whit_refine_info info = {0};
     *frame = (struct engine_frame){0};
-    whit_result result = begin_sum(refine, kept);
-    if (result == WHIT_OK)
-        result = draw_part(session, refine, &image);
-    if (result == WHIT_OK)
-        add_part(refine, image);
-    whit_image_destroy(image);
-    if (result == WHIT_OK && refine->part == PARTS) {
+    whit_result result = draw_part(session, refine, kept, &info);
+    if (result == WHIT_OK && info.samples == ROUND * refine->samples) {
         struct scene_ref *scene = scene_ref_take(session->scene);
         struct shader_ref *shader = shader_ref_take(session->shader);
         result = finish_round(refine, frame);

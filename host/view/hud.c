@@ -1,4 +1,5 @@
 /* Figures, the cheat sheet and messages over the picture. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -84,6 +85,40 @@ static void draw_stages(const struct engine_frame *frame)
     }
 }
 
+/* Where a value is between two others that it is in, by its logarithm, 0..1. */
+static float log_place(double value, double first, double last)
+{
+    return first == last ? 0.5f : (float)(log(value / first) / log(last / first));
+}
+
+/* The estimate of what is still wrong while the picture was refined, over the time of drawing. Both
+   axes are logarithms, by which it falls along a line. */
+static void draw_estimates(const struct engine_frame *frame)
+{
+    const struct engine_estimate *all = frame->estimates;
+    float x[ENGINE_ESTIMATES_MAX], y[ENGINE_ESTIMATES_MAX];
+    uint32_t count = frame->estimate_count;
+    if (count == 0)
+        return;
+    const struct engine_estimate *last = &all[count - 1];
+    ui_separator();
+    ui_text("an RMSE of %.2g may be left after %.2f s", last->error, last->ms * 1e-3);
+    double low = last->error, high = last->error;
+    for (uint32_t i = 0; i < count; ++i) {
+        low = fmin(low, all[i].error);
+        high = fmax(high, all[i].error);
+    }
+    if (count < 2 || !(low > 0.0) || !(all[0].ms > 0.0))
+        return;
+    for (uint32_t i = 0; i < count; ++i) {
+        x[i] = log_place(all[i].ms, all[0].ms, last->ms);
+        y[i] = log_place(all[i].error, low, high);
+    }
+    ui_curve(x, y, (int)count);
+    ui_text_dim("%.2g to %.2g from %u to %u samples, %.2f to %.2f s", all[0].error, last->error,
+                all[0].samples, last->samples, all[0].ms * 1e-3, last->ms * 1e-3);
+}
+
 static void draw_more(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
@@ -94,6 +129,8 @@ static void draw_more(const struct view *view)
     ui_separator();
     ui_text("%u x %u of %u x %u, %s %s", frame->width, frame->height, chain.width, chain.height,
             chain.format, chain.direct ? "written directly" : "copied");
+    draw_estimates(frame);
+    ui_separator();
     ui_text("%llu triangles, %llu balls, %u instances, %u lights",
             (unsigned long long)scene->triangle_count, (unsigned long long)scene->sphere_count,
             scene->instance_count, scene->light_count);

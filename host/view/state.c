@@ -69,6 +69,12 @@ static json_t *frame_json(const struct engine_frame *frame)
     put_count(object, "divisor", frame->divisor);
     put_count(object, "samples", frame->samples);
     put_bool(object, "whole", frame->whole);
+    put_count(object, "estimates", frame->estimate_count);
+    if (frame->estimate_count > 0) {
+        const struct engine_estimate *last = &frame->estimates[frame->estimate_count - 1];
+        put_number(object, "error", last->error);
+        put_count(object, "error_samples", last->samples);
+    }
     put_text(object, "drawn_words", words);
     put_text(object, "view", value_word(values_view, (int)frame->settings.paint));
     put_text(object, "builder", frame->accel.builder);

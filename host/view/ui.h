@@ -102,6 +102,8 @@ bool ui_color(const char *label, float rgb[3]); /* sRGB, 0..1 */
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
 /* A bar of colours with labels below, evenly from its left to its right end. */
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);
+/* A line through points of 0..1 from the lower left, as wide as a ramp, in a box. Two and more. */
+void ui_curve(const float *x, const float *y, int count);
 void ui_progress(float part, const char *text); /* part < 0: not known */
 bool ui_table_begin(const char *id, int columns);
 /* Instead of a header: how wide columns are, text that is longer is wrapped by ui_cell. */

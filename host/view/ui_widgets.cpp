@@ -175,6 +175,23 @@ void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int l
     ImGui::Dummy(ImVec2(width, height + 1.25f * em));
 }
 
+void ui_curve(const float *x, const float *y, int count)
+{
+    float em = ImGui::GetFontSize(), width = 20.0f * em, height = 4.0f * em;
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    list->AddRect(at, ImVec2(at.x + width, at.y + height), 0xFF808080u, 0.0f, 0, line_scale);
+    ImVec2 before = at;
+    for (int i = 0; i < count; ++i) {
+        ImVec2 point(at.x + width * x[i], at.y + height * (1.0f - y[i]));
+        if (i > 0)
+            list->AddLine(before, point, 0xFFD0E090u, 1.5f * line_scale);
+        list->AddCircleFilled(point, 2.0f * line_scale, 0xFFD0E090u);
+        before = point;
+    }
+    ImGui::Dummy(ImVec2(width, height + 0.25f * em));
+}
+
 void ui_progress(float part, const char *text)
 {
     ImGui::ProgressBar(part < 0.0f ? 0.0f : part, ImVec2(18.0f * ImGui::GetFontSize(), 0.0f),

@@ -16,7 +16,7 @@ typedef struct whit_refine whit_refine;
 typedef struct whit_refine_info {
     uint32_t samples; /* of each pixel, so far; 0: there is no picture yet */
     /* By how much the picture may be off: the root of the mean square, over all pixels, of
-       whit_refine_error_image. < 0: not known, which takes 2 samples. */
+       whit_refine_error_image. < 0: not known before samples were doubled. */
     double error;
     /* The same of rays that were not traced alone, which more samples leave as it is. */
     double error_of_cuts;
@@ -24,7 +24,7 @@ typedef struct whit_refine_info {
        that what the camera sees calls for, largest channel; of camera rays where there are none. 0
        where no ray was cut. */
     double cut_radiance;
-    bool last; /* there are no more samples than these */
+    bool last; /* there are not twice as many samples */
 } whit_refine_info;
 
 /* `renderer` is borrowed until whit_refine_destroy, and draws nothing else meanwhile. `params` as
@@ -33,6 +33,17 @@ typedef struct whit_refine_info {
 WHIT_CHECK whit_result whit_refine_create(whit_renderer *renderer,
                                           const whit_renderer_params *params, whit_refine **out);
 void whit_refine_destroy(whit_refine *refine);
+
+/* Begins with a picture that there is already, of any number of samples from the first on: `color`
+   as of WHIT_AOV_COLOR and `cuts` as of WHIT_AOV_CUTS, in the size of the params, which are copied.
+   Its steps double this number, and statistics are of the steps alone. WHIT_ERROR_USAGE after the
+   first step. */
+WHIT_CHECK whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float *color,
+                                         const float *cuts);
+/* From here on this renderer draws, whose pictures have the same pixels. `params` as for
+   whit_refine_create. */
+void whit_refine_move(whit_refine *refine, whit_renderer *renderer,
+                      const whit_renderer_params *params);
 
 /* One more step: the first sample; or what the estimate needs to know of rays that were cut, where
    some were, once; or as many samples as there are. WHIT_ERROR_USAGE after the last one; else as of

@@ -6,16 +6,16 @@ mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 SCENES=$(realpath "$SCENES")
 
 play "refined" "$SCENES/cube.json" --size 48x36 --aa 4 <<END
-start: | frame.samples = 4
+start: | frame.samples = 4 | frame.estimates = 0
 refined
 better: | frame.samples > 4 | frame.pixels not as start | frame.ids as start | words as start | frame.whole = true
-    | frame.number > 2
+    | frame.number > 2 | frame.estimates > 1 | frame.error > 0.0001
 press F12
 copied: press Ctrl+C | frame.pixels as better
 sharp: press T | frame.samples as better | frame.pixels as better | frame.ids as start | change.other_colors = 0
 back: press Shift+T | frame.pixels as better
 picked: click 24 18 | picked = true
-other: press Equal | frame.samples = 4
+other: press Equal | frame.samples = 4 | frame.estimates = 0
 less: press Minus | frame.samples = 4 | frame.pixels as start
 refined
 again: | frame.pixels as better | frame.samples as better
@@ -30,6 +30,9 @@ costs: | frame.pixels as depth | frame.samples = 1
 END
 check "A and B have as many samples" test "$(value split compare.b.pixels)" = "$(value start frame.pixels)"
 samples=$(value better frame.samples)
+check "the estimate is of what is shown" test "$(value better frame.error_samples)" -eq "$samples"
+doublings=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 2; k++ } print k }')
+check "one estimate each time that samples were doubled" test "$(value better frame.estimates)" -eq "$doublings"
 expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 --aa "$samples" -o same.png --quiet
 expect 0 "F12 saved it" compare same.png whit-0001.png --metric largest --tolerance 0
 check "with its samples in the recipe" grep -aq -- "whit render .*--aa $samples " whit-0001.png
@@ -40,5 +43,17 @@ END
 rounds=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 4; k++ } print k }')
 check "a picture for each step ($rounds)" \
     test $(($(value better frame.number) - $(value start frame.number))) -eq "$rounds"
+
+# With all figures the estimate is a curve over time, below a line and above another.
+play "a curve" "$SCENES/cube.json" --size 320x480 <<END
+plain: press F2 | hud = full | frame.estimates = 0
+refined
+curve: | frame.estimates > 1
+END
+bottom() {
+    value "$1" panels.figures | cut -d ' ' -f 4
+}
+grown=$(($(bottom curve) - $(bottom plain)))
+check "figures are longer by it ($grown pixels)" test "$grown" -gt 70
 
 finish
