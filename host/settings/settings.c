@@ -34,7 +34,8 @@ struct settings settings_usual(void)
                              .picture = whit_renderer_defaults(),
                              .exposure_auto = true,
                              .fps = 24.0,
-                             .fps_goal = 30.0};
+                             .fps_goal = 30.0,
+                             .refines = true};
 }
 
 bool settings_read(const struct setting *row, const char *text, struct settings *settings,

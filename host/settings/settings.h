@@ -51,6 +51,7 @@ struct settings {
     double fps_goal;             /* pictures a second that the viewer holds */
     uint32_t boxes, boxes_level; /* enum settings_boxes, which the viewer draws over the picture */
 
+    bool refines;                /* the viewer draws more samples of a picture at rest */
     double budget_ms, max_error; /* 0: not asked for; else settings are chosen by `whit cost` */
 
     char device[SETTING_TEXT_BYTES]; /* "": auto */

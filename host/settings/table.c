@@ -22,6 +22,7 @@ static const struct setting_value values_edges[] = {{"off", EDGES_OFF, NULL},
                                                     {"triangles", EDGES_TRIANGLES, NULL},
                                                     {0}};
 static const struct setting_value values_grid[] = {{"off", 0, NULL}, {"on", 1, NULL}, {0}};
+static const struct setting_value values_at_rest[] = {{"refine", 1, NULL}, {"stay", 0, NULL}, {0}};
 static const struct setting_value values_segments[] = {
     {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
 
@@ -413,6 +414,11 @@ const struct setting settings_table[] = {
      "pictures a second to hold while something moves, by\n"
      "smaller ones",
      AT(NUMBER, fps_goal), .min = 0.1, .max = 1000.0, .commands = IN_VIEW, .change = SETTING_COST},
+    {"at-rest", 0, NULL,
+     "refine: where nothing moves, more samples by themselves,\n"
+     "until that changes nothing that is seen",
+     AT(EITHER, refines), .values = values_at_rest, .commands = IN_VIEW, .change = SETTING_COST,
+     .title = "at rest"},
     {"stats", 0, NULL, "print times, rays and figures of the trees", "", AT(CHOICE, stats),
      .values = values_stats, .commands = IN_RENDER},
     {"time-limit", 0, "S", "give up after S seconds, with exit code 5", "",

@@ -193,7 +193,7 @@ static bool replay_event(struct view *view, const struct view_event *event)
         return is_there(view, event);
     case EVENT_REFINED:
         let_stand(view);
-        engine_set_refine(view->engine, true);
+        engine_set_refine(view->engine, view->settings.refines);
         if (!is_there(view, event))
             return false;
         engine_set_refine(view->engine, false);

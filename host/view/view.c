@@ -331,7 +331,7 @@ static void ask(struct view *view)
         engine_ask(view->engine, &view->settings, view_is_moving(view));
     /* Refining takes all cores: measurements beside the window come first. Replays ask for it. */
     if (!view->params->replay)
-        engine_set_refine(view->engine, prices_are_still(view->prices) &&
+        engine_set_refine(view->engine, view->settings.refines && prices_are_still(view->prices) &&
                                             prices_are_still(view->panels.measured) &&
                                             wish_is_still(view));
 }
@@ -415,7 +415,7 @@ static whit_result open_all(struct view *view)
                                          .height = picture->height,
                                          .fullscreen = params->fullscreen};
     const struct engine_params engine = {
-        .refine = !params->replay,
+        .refine = !params->replay && params->settings.refines,
         .budget_ms = 1e3 / params->settings.fps_goal,
         .wake = window_wake,
         .compiler = params->compiler,

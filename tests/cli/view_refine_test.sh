@@ -44,6 +44,15 @@ rounds=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 4; k++ } print k }')
 check "a picture for each step ($rounds)" \
     test $(($(value better frame.number) - $(value start frame.number))) -eq "$rounds"
 
+# What is to stay as the settings say does, until the switch is turned in the panel of settings.
+play "left alone" "$SCENES/cube.json" --size 48x36 --at-rest stay <<END
+start: | frame.samples = 1
+refined
+stays: | frame.samples = 1 | frame.number as start | frame.pixels as start
+END
+check "the words of a state name it" test "$(value stays words | grep -c -- "--at-rest stay")" -eq 1
+check "and no line that renders" test "$(value stays render | grep -c -- at-rest)" -eq 0
+
 # With all figures the estimate is a curve over time, below a line and above another.
 play "a curve" "$SCENES/cube.json" --size 320x480 <<END
 plain: press F2 | hud = full | frame.estimates = 0
