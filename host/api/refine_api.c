@@ -5,6 +5,7 @@
 
 #include "api/handles.h"
 #include "image/estimate.h"
+#include "shader/program.h"
 
 struct whit_refine {
     whit_renderer *renderer; /* borrowed */
@@ -32,6 +33,12 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
+    if (shader_has(renderer->params.shader, SHADER_HOOK_POST)) {
+        log_error(&renderer->log,
+                  "what `post` of the shader makes of the mean of samples is not the "
+                  "mean of what it makes of them: such a picture is not refined");
+        return WHIT_ERROR_USAGE;
+    }
     whit_refine *refine = calloc(1, sizeof *refine);
     if (!refine) {
         log_error(&renderer->log, "out of memory");

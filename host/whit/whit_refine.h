@@ -29,7 +29,7 @@ typedef struct whit_refine_info {
 
 /* `renderer` is borrowed until whit_refine_destroy, and draws nothing else meanwhile. `params` as
    for whit_renderer_set_view, but for their sampling, and borrowed as there. WHIT_ERROR_USAGE as of
-   it, and without a device. */
+   it, without a device, and for a shader with `post`. */
 WHIT_CHECK whit_result whit_refine_create(whit_renderer *renderer,
                                           const whit_renderer_params *params, whit_refine **out);
 void whit_refine_destroy(whit_refine *refine);

@@ -5,8 +5,8 @@
 #include "base.h"
 
 /* A box and what is in it. Nodes live in pairs: the two children of a node are nodes `first` and
-   `first + 1` with `first` even, so that siblings share one 64-byte line. In a tree over instances
-   a leaf holds one instance and `first` is its index. */
+   `first + 1` with `first` even, so that siblings share one 64-byte line. In a tree over instances a
+   leaf holds one instance and `first` is its index. */
 struct gpu_bvh_node {
     gpu_vec3 lo;
     gpu_uint first; /* inner: left child; leaf: first record of the triangle array */
@@ -28,14 +28,14 @@ GPU_ASSERT_AT(gpu_bvh_node, count, 28)
 
 /* In `count` of the first node of a pair: the axis on which the centres of the two boxes are
    farthest apart, and whether the second node is the lower one on it. For ORDER_SIGN. */
-#define BVH_AXIS_SHIFT  4u
-#define BVH_AXIS_MASK   3u
-#define BVH_SECOND_LOW  64u
+#define BVH_AXIS_SHIFT 4u
+#define BVH_AXIS_MASK  3u
+#define BVH_SECOND_LOW 64u
 
 /* Which of two children that are both hit is visited first. */
-#define ORDER_DISTANCE  0u /* the one entered earlier along the ray */
-#define ORDER_SIGN      1u /* the lower one, on the axis of the pair, for rays that go up it */
-#define ORDER_BASIC     2u /* the first of the pair */
+#define ORDER_DISTANCE 0u /* the one entered earlier along the ray */
+#define ORDER_SIGN     1u /* the lower one, on the axis of the pair, for rays that go up it */
+#define ORDER_BASIC    2u /* the first of the pair */
 
 /* One triangle in leaf order. In object space; where instances are flattened in world space. */
 struct gpu_triangle {
@@ -44,8 +44,7 @@ struct gpu_triangle {
     gpu_vec3 v1;
     gpu_uint flags; /* TRIANGLE_* */
     gpu_vec3 v2;
-    gpu_uint
-        shadow; /* optical depth to shadow rays: 3 x 10 bits, red lowest; see TRIANGLE_FILTER */
+    gpu_uint shadow; /* optical depth to shadow rays: 3 x 10 bits, red lowest; see TRIANGLE_FILTER */
 };
 GPU_ASSERT_SIZE(gpu_triangle, 48)
 GPU_ASSERT_AT(gpu_triangle, primitive, 12)
@@ -54,20 +53,20 @@ GPU_ASSERT_AT(gpu_triangle, flags, 28)
 GPU_ASSERT_AT(gpu_triangle, v2, 32)
 GPU_ASSERT_AT(gpu_triangle, shadow, 44)
 
-#define TRIANGLE_CUTOUT         1u /* opacity decides whether it is hit */
-#define TRIANGLE_NO_SHADOW      2u /* casts no shadow: the surface of a light */
+#define TRIANGLE_CUTOUT    1u /* opacity decides whether it is hit */
+#define TRIANGLE_NO_SHADOW 2u /* casts no shadow: the surface of a light */
 /* Lets shadow rays through, weaker by 2^(-shadow / 64) per channel. Depths are added as integers,
    so that the order in which a ray meets its filters cannot change the sum. */
-#define TRIANGLE_FILTER         4u
-#define TRIANGLE_MIRRORED       8u /* flat: its instance turns it inside out, its normal is reversed */
-/* No triangle: centre in v0, radius in v1.x. v1.yz are 0 and v2 is v1: as a triangle it would be
-   met by no ray. */
-#define TRIANGLE_SPHERE         16u
-#define TRIANGLE_ONE_SIDED      32u  /* not hit from behind, but by shadow rays */
-#define TRIANGLE_FILTER_DETAIL  64u  /* a filter whose depth is a matter of the point met */
-#define TRIANGLE_GLASS          128u /* light passes through it */
-#define TRIANGLE_INSTANCE_SHIFT 8u   /* flat: its instance is in the bits from here up */
-#define SHADOW_DEPTH_SCALE      64.0
+#define TRIANGLE_FILTER    4u
+#define TRIANGLE_MIRRORED  8u /* flat: its instance turns it inside out, its normal is reversed */
+/* No triangle: centre in v0, radius in v1.x. v1.yz are 0 and v2 is v1: as a triangle it would be met
+   by no ray. */
+#define TRIANGLE_SPHERE        16u
+#define TRIANGLE_ONE_SIDED     32u  /* not hit from behind, but by shadow rays */
+#define TRIANGLE_FILTER_DETAIL 64u  /* a filter whose depth is a matter of the point met */
+#define TRIANGLE_GLASS         128u /* light passes through it */
+#define TRIANGLE_INSTANCE_SHIFT 8u /* flat: its instance is in the bits from here up */
+#define SHADOW_DEPTH_SCALE 64.0
 
 /* An object placed in the world. t is the same in both spaces: directions are not renormalised.
    The inverse takes (p - origin), never p: no cancellation far from the origin. */
@@ -82,7 +81,7 @@ struct gpu_instance {
     gpu_uint shade_base; /* of primitive 0: index among the triangles of all meshes */
     gpu_uint mesh;
     gpu_uint pad3;
-    gpu_vec3 forward0;  /* object to world, rows */
+    gpu_vec3 forward0; /* object to world, rows */
     gpu_float center_x; /* of the mesh's box, object space */
     gpu_vec3 forward1;
     gpu_float center_y;
@@ -120,12 +119,12 @@ GPU_ASSERT_AT(gpu_hit, instance, 16)
 struct gpu_cost {
     gpu_uint rays;
     gpu_uint inner_nodes; /* inner nodes opened: box tests are twice that */
-    gpu_uint leaves;      /* leaves of mesh trees entered */
-    gpu_uint instances;   /* instances entered */
-    gpu_uint triangles;   /* triangle tests */
-    gpu_uint stack;       /* most refs on the node stack */
-    gpu_uint depth; /* deepest level whose boxes were tested. The root is level 0, and the root
-                       of a mesh tree has the level of its instance's leaf */
+    gpu_uint leaves;    /* leaves of mesh trees entered */
+    gpu_uint instances; /* instances entered */
+    gpu_uint triangles; /* triangle tests */
+    gpu_uint stack;     /* most refs on the node stack */
+    gpu_uint depth;     /* deepest level whose boxes were tested. The root is level 0, and the root
+                           of a mesh tree has the level of its instance's leaf */
     gpu_uint pad;
 };
 GPU_ASSERT_SIZE(gpu_cost, 32)
@@ -143,7 +142,7 @@ struct gpu_batch {
     gpu_uint ray_count;
     gpu_uint root;
     gpu_uint deferred; /* 1: of the rays on the list of deferred rays */
-    gpu_uint root8;    /* of eight children a node, for SPEC_PACKETS */
+    gpu_uint root8;   /* of eight children a node, for SPEC_PACKETS */
 };
 
 /* Head of a work list, followed by the items: pixels (slots within the chunk), or rays of a batch.
@@ -156,21 +155,20 @@ struct gpu_work {
 };
 GPU_ASSERT_SIZE(gpu_work, 16)
 
-#define HIT_NONE                     0xffffffffu
+#define HIT_NONE 0xffffffffu
 
 /* Reasons not to trust a result. Kernels or them into the status word; the host obeys. */
-#define STATUS_UNFINISHED_TRAVERSAL  1u /* a loop ended before its stack was empty */
-#define STATUS_NODE_STACK_OVERFLOW   2u
-#define STATUS_RAY_STACK_OVERFLOW    4u
-#define STATUS_NON_FINITE            8u  /* NaN or infinite radiance */
-#define STATUS_UNFINISHED_LOOP       16u /* lights or another loop cut short */
+#define STATUS_UNFINISHED_TRAVERSAL 1u /* a loop ended before its stack was empty */
+#define STATUS_NODE_STACK_OVERFLOW  2u
+#define STATUS_RAY_STACK_OVERFLOW   4u
+#define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
+#define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MAX media */
-/* A queue between stages was full. That voids no result: the tile is drawn again in smaller ones.
- */
-#define STATUS_QUEUE_FULL            128u
-#define STATUS_FUEL                  256u /* a loop of a hook took more iterations than it may */
-/* The status of a single ray, never in the status word: a deferred ray, whose hit floats do not
-   decide (without SPEC_SETTLES). The rest of its result is ignored. */
-#define STATUS_RAY_DEFERRED          64u
+/* A queue between stages was full. That voids no result: the tile is drawn again in smaller ones. */
+#define STATUS_QUEUE_FULL 128u
+#define STATUS_FUEL 256u /* a loop of a user's function took more iterations than it may */
+/* The status of a single ray, never in the status word: a deferred ray, whose hit floats do not decide
+   (without SPEC_SETTLES). The rest of its result is ignored. */
+#define STATUS_RAY_DEFERRED 64u
 
 #endif

@@ -1,37 +1,36 @@
 /* What shading reads, and the state of a pixel's ray tree. Materials, texture uses, lights and
-   per-triangle records lie in one buffer, the shading rows, each from a row that the frame names.
- */
+   per-triangle records lie in one buffer, the shading rows, each from a row that the frame names. */
 #ifndef ABI_SHADE_H
 #define ABI_SHADE_H
 
 #include "base.h"
 
 /* Rows of 16 bytes. */
-#define MATERIAL_ROWS              10u
-#define TEXTURE_ROWS               3u
-#define LIGHT_ROWS                 6u
+#define MATERIAL_ROWS 10u
+#define TEXTURE_ROWS  3u
+#define LIGHT_ROWS    6u
 /* Three normals of three floats, zeros where the mesh is flat, with the material in each w; where
    all meshes are flat only one row, for its w. */
-#define TRIANGLE_SHADE_ROWS        3u
-#define TRIANGLE_FLAT_ROWS         1u
+#define TRIANGLE_SHADE_ROWS 3u
+#define TRIANGLE_FLAT_ROWS  1u
 /* u and v of three vertices, then two unused words. */
-#define TRIANGLE_UV_ROWS           2u
+#define TRIANGLE_UV_ROWS 2u
 /* Three colours of four 16-bit channels, then two unused words. */
-#define TRIANGLE_COLOR_ROWS        2u
+#define TRIANGLE_COLOR_ROWS 2u
 
-#define TEXTURE_NONE               0xffffffffu
+#define TEXTURE_NONE 0xffffffffu
 
 #define MATERIAL_MODEL_PHONG       0u
 #define MATERIAL_MODEL_METAL_ROUGH 1u
 #define MATERIAL_MODEL_UNLIT       2u
 
-#define MATERIAL_FRESNEL           1u
-#define MATERIAL_THIN              2u
-#define MATERIAL_MASK              4u
-#define MATERIAL_BLEND             8u
-#define MATERIAL_OPACITY_ALPHA     16u /* opacity is the alpha of its texture, not its red */
-#define MATERIAL_CATCHER           32u /* shows nothing but the shadows that fall on it */
-#define MATERIAL_PRIORITY_SHIFT    8u  /* bits 8..15: of the medium inside */
+#define MATERIAL_FRESNEL        1u
+#define MATERIAL_THIN           2u
+#define MATERIAL_MASK           4u
+#define MATERIAL_BLEND          8u
+#define MATERIAL_OPACITY_ALPHA  16u /* opacity is the alpha of its texture, not its red */
+#define MATERIAL_CATCHER        32u /* shows nothing but the shadows that fall on it */
+#define MATERIAL_PRIORITY_SHIFT 8u  /* bits 8..15: of the medium inside */
 
 /* See struct scene_material for meaning and units. */
 struct gpu_material {
@@ -67,9 +66,9 @@ GPU_ASSERT_AT(gpu_material, emission, 48)
 GPU_ASSERT_AT(gpu_material, normal_scale, 112)
 GPU_ASSERT_AT(gpu_material, tex_diffuse, 128)
 
-#define WRAP_REPEAT       0u
-#define WRAP_CLAMP        1u
-#define WRAP_MIRROR       2u
+#define WRAP_REPEAT 0u
+#define WRAP_CLAMP  1u
+#define WRAP_MIRROR 2u
 
 /* Texels are one word each, RGBA of 8 bits as in the file, behind this many words: the linear
    values (float bits) of the 256 sRGB codes. */
@@ -94,11 +93,10 @@ GPU_ASSERT_AT(gpu_texture, offset, 16)
 #define LIGHT_SPOT        2u
 #define LIGHT_AREA_SAMPLE 3u /* Lambertian emitter around `direction` */
 /* Flat emitters of radiance `color`: corner `position`, edges `edge_u` and `edge_v`, unit normal
-   `direction`. They take as many iterations of the loop over lights as the frame has light_samples.
- */
-#define LIGHT_RECTANGLE   4u
-#define LIGHT_TRIANGLE    5u
-#define LIGHT_FLAT_BITS   (1u << LIGHT_RECTANGLE | 1u << LIGHT_TRIANGLE)
+   `direction`. They take as many iterations of the loop over lights as the frame has light_samples. */
+#define LIGHT_RECTANGLE 4u
+#define LIGHT_TRIANGLE  5u
+#define LIGHT_FLAT_BITS (1u << LIGHT_RECTANGLE | 1u << LIGHT_TRIANGLE)
 
 /* World space. */
 struct gpu_light {
@@ -110,7 +108,7 @@ struct gpu_light {
     gpu_uint falloff; /* 1: 1 / distance^2 */
     gpu_float cos_inner;
     gpu_float cos_outer;
-    gpu_uint two_sided;   /* emitters */
+    gpu_uint two_sided; /* emitters */
     gpu_float area_share; /* of a flat emitter: area / (pi * light_samples) */
     gpu_vec3 edge_u;
     gpu_uint pad0;
@@ -142,33 +140,33 @@ struct gpu_frame {
     gpu_vec3 ambient;
     gpu_uint use_row; /* of the shading rows: first texture use; materials are at 0 */
     gpu_uint pad1;
-    gpu_float bailout;     /* rays that can add less than this to a pixel are not traced */
-    gpu_uint light_row;    /* first light */
+    gpu_float bailout;   /* rays that can add less than this to a pixel are not traced */
+    gpu_uint light_row;  /* first light */
     gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS or TRIANGLE_FLAT_ROWS each */
-    gpu_uint uv0_row;      /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
-    gpu_uint uv1_row;      /* of uv set 1; uv0_row where there is none */
-    gpu_uint color_row;    /* first triangle: TRIANGLE_COLOR_ROWS each */
-    gpu_float contact;     /* surfaces of two media within this distance are one */
+    gpu_uint uv0_row;   /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
+    gpu_uint uv1_row;   /* of uv set 1; uv0_row where there is none */
+    gpu_uint color_row; /* first triangle: TRIANGLE_COLOR_ROWS each */
+    gpu_float contact;  /* surfaces of two media within this distance are one */
     gpu_uint eye_media0, eye_media1; /* gpu_media that camera rays start in */
     gpu_uint eye_media2, eye_media3;
-    gpu_float lens_radius;           /* CAMERA_LENS, world units: lens_xy is made from it */
-    gpu_float focus_distance;        /* along `forward` */
-    gpu_uint light_samples;          /* of a flat emitter: 1, 4, 16 or 64; 1 where there is none */
-    gpu_uint nested;                 /* 1: media of the scene may meet or overlap */
+    gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is made from it */
+    gpu_float focus_distance; /* along `forward` */
+    gpu_uint light_samples;   /* of a flat emitter: 1, 4, 16 or 64; 1 where there is none */
+    gpu_uint nested;          /* 1: media of the scene may meet or overlap */
     gpu_float inv_width, inv_height; /* 1 / width, 1 / height: so that no kernel divides by them */
-    gpu_uint root8;                  /* of eight children a node, see accel_bvh8 */
+    gpu_uint root8;     /* of eight children a node, see accel_bvh8 */
     gpu_float pad0;
 };
 GPU_ASSERT_SIZE(gpu_frame, 208)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
-/* Behind the frame stand the values of the sliders of a file of hooks, as floats. */
+/* Behind the frame stand the values of the sliders of a user's file, as floats. */
 #define SLIDERS_MAX 64u
 
 /* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest
    priority first, of equal ones the one entered first: the last entry is what the ray is in. Lies
    one for each ray. */
-#define MEDIA_MAX   8u
+#define MEDIA_MAX 8u
 struct gpu_media {
     gpu_uint words0, words1, words2, words3;
 };
@@ -181,23 +179,22 @@ GPU_ASSERT_SIZE(gpu_media, 16)
 struct gpu_chunk {
     gpu_uint first_block;
     gpu_uint block_count;
-    gpu_uint band_y; /* first row of the band that the pixel buffers hold */
+    gpu_uint band_y;    /* first row of the band that the pixel buffers hold */
     gpu_uint band_rows;
-    gpu_vec2 sample_xy;    /* from the middle of the pixel, in halves of it: -1..1 */
+    gpu_vec2 sample_xy; /* from the middle of the pixel, in halves of it: -1..1 */
     gpu_uint sample_index; /* of the sequence */
     gpu_float sample_weight;
-    gpu_vec2 lens_xy;    /* CAMERA_LENS: a point of the lens, in units of right and up times the
-                            distance of the focus */
-    gpu_uint listed;     /* camera rays of so many slots, which are listed; 0: of all */
-    gpu_uint deferred;   /* 1: of what is on the list of deferred rays */
-    gpu_uint light;      /* that the dispatch is for; of sums: the generation that must be empty */
-    gpu_uint generation; /* of rays */
+    gpu_vec2 lens_xy; /* CAMERA_LENS: a point of the lens, in units of right and up times the
+                         distance of the focus */
+    gpu_uint listed;  /* camera rays of so many slots, which are listed; 0: of all */
+    gpu_uint deferred; /* 1: of what is on the list of deferred rays */
+    gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty */
+    gpu_uint generation;                 /* of rays */
     gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
     gpu_uint list;                       /* LIST_* that the dispatch works on */
-    gpu_uint light_index;     /* of the sequence: the sample's first point of flat emitters */
+    gpu_uint light_index; /* of the sequence: the sample's first point of flat emitters */
     gpu_uint summed, samples; /* of a pixel in this pass: before this one, and all */
-    gpu_uint sums_row,
-        sums_step;     /* of the pixels: slot 0's first partial sum, from one to the next */
+    gpu_uint sums_row, sums_step; /* of the pixels: slot 0's first partial sum, from one to the next */
     gpu_uint blocks_x; /* in a row of what is drawn */
     gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
 };
@@ -205,40 +202,39 @@ GPU_ASSERT_SIZE(gpu_chunk, 96)
 
 /* Every so-many-th pixel of rows, in the low bits, and of columns, as powers of two, and the first
    one; 0: all. */
-#define LATTICE_SHIFT_MASK 15u
-#define LATTICE_ROWS_SHIFT 4u
-#define LATTICE_X_SHIFT    8u
-#define LATTICE_Y_SHIFT    16u
-#define LATTICE_FIRST_MASK 255u
+#define LATTICE_SHIFT_MASK  15u
+#define LATTICE_ROWS_SHIFT  4u
+#define LATTICE_X_SHIFT     8u
+#define LATTICE_Y_SHIFT     16u
+#define LATTICE_FIRST_MASK  255u
 
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 
-#define PROBE_RAYS_MAX     16383u /* records; as a number: none */
+#define PROBE_RAYS_MAX 16383u /* records; as a number: none */
 
 /* In front of the records. */
 struct gpu_probe {
-    gpu_uint rays,
-        others; /* traced; shadow rays and what is not traced. May be more than records */
+    gpu_uint rays, others; /* traced; shadow rays and what is not traced. May be more than records */
     gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_probe, 16)
 
 /* gpu_probe_ray.kind: RAY_*, and why it goes on in the direction of the ray before it. */
 #define PROBE_KIND_MASK 3u
-#define PROBE_STRAIGHT  4u  /* behind what blends, or a shadow catcher */
-#define PROBE_THROUGH   8u  /* behind a surface with the same medium on both sides */
+#define PROBE_STRAIGHT  4u /* behind what blends, or a shadow catcher */
+#define PROBE_THROUGH   8u /* behind a surface with the same medium on both sides */
 #define PROBE_INSIDE    16u /* it meets its surface from inside */
 #define PROBE_CATCHER   32u /* as the device leaves it: `added` is what a shadow catcher shows */
 
 /* gpu_probe_ray.end */
-#define PROBE_DEFERRED  0u /* not known yet */
-#define PROBE_MISSED    1u
-#define PROBE_ABSORBED  2u /* it leaves the scene in a medium of which too little comes back */
-#define PROBE_HIT       3u
-#define PROBE_DEPTH     4u /* not traced: --depth */
-#define PROBE_BAILOUT   5u /* not traced: --bailout */
-#define PROBE_REACHED   6u /* shadow rays: the light, `added` tells how much of it passes */
-#define PROBE_BLOCKED   7u
+#define PROBE_DEFERRED    0u /* not known yet */
+#define PROBE_MISSED   1u
+#define PROBE_ABSORBED 2u /* it leaves the scene in a medium of which too little comes back */
+#define PROBE_HIT      3u
+#define PROBE_DEPTH    4u /* not traced: --depth */
+#define PROBE_BAILOUT  5u /* not traced: --bailout */
+#define PROBE_REACHED  6u /* shadow rays: the light, `added` tells how much of it passes */
+#define PROBE_BLOCKED  7u
 
 /* A ray of the pixel's first sample. Rays that were not traced have no origin. */
 struct gpu_probe_ray {
@@ -250,14 +246,14 @@ struct gpu_probe_ray {
     gpu_uint parent; /* record of the ray it comes from; PROBE_RAYS_MAX: none, a camera ray */
     gpu_vec3 added;  /* radiance, to the sample; shadow rays: the share of the light that passes */
     gpu_float t_max;
-    gpu_vec3 point;  /* where it met `primitive`, world */
-    gpu_float t;     /* NUMERICS_EXACT: the key */
+    gpu_vec3 point; /* where it met `primitive`, world */
+    gpu_float t;    /* NUMERICS_EXACT: the key */
     gpu_vec3 normal; /* unit, interpolated, to the ray's side; without bump maps */
     gpu_uint material;
     gpu_float u, v;
     gpu_uint primitive, instance; /* HIT_NONE: none, or (blocked without trees) not known */
     gpu_uint skip_primitive, skip_instance;
-    gpu_uint medium;       /* material + 1 of what it goes through; 0: air */
+    gpu_uint medium; /* material + 1 of what it goes through; 0: air */
     gpu_uint light_sample; /* shadow rays: light * light_samples + sample */
 };
 GPU_ASSERT_SIZE(gpu_probe_ray, 128)

@@ -46,7 +46,7 @@ void report_hooks()
 // Value of slider `index` of the file.
 float slider(uint index)
 {
-    return stored_sliders[index];
+    return stored_sliders[min(index, SLIDERS_MAX - 1u)];
 }
 
 // ---- The ray ----
@@ -124,10 +124,16 @@ uint light_count()
     return frame.light_count;
 }
 
+// A light of the scene, of which there is one at least; behind the last one that.
+gpu_light light_of(uint index)
+{
+    return fetch_light(min(index, max(frame.light_count, 1u) - 1u));
+}
+
 // Points of the light that are tested: --light-samples of an area light, 1 of all others.
 uint light_points(uint index)
 {
-    return is_flat(fetch_light(index)) ? turns_each() : 1u;
+    return is_flat(light_of(index)) ? turns_each() : 1u;
 }
 
 struct Light {
@@ -140,7 +146,7 @@ struct Light {
 Light light(uint index, uint point, Surface s)
 {
     LightSample at;
-    bool arrives = light_at(fetch_light(index), point, s.p, at);
+    bool arrives = light_at(light_of(index), point, s.p, at);
     return Light(at.to_light, at.distance, arrives ? at.arriving : vec3(0.0));
 }
 
@@ -192,7 +198,7 @@ vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
 {
     Lit lit = lit_surface(s, o, vec3(1.0), hook_media);
     lit.view = to_eye;
-    gpu_light from = fetch_light(index);
+    gpu_light from = light_of(index);
     EmitterSum emitter = EmitterSum(0.0, vec3(0.0), vec3(0.0));
     vec3 sum = vec3(0.0);
     uint points = light_points(index);

@@ -208,6 +208,8 @@ check "the same as trusted" cmp trusted.pfm fuel.pfm
 {
     expect 2 "--max-error" render "$CUBE" $SMALL --shader own.glsl --max-error 0.1 -o no.png
     said "says why" "the reference, which has no --shader"
+    expect 2 "--refine of what has post" render "$CUBE" $SMALL --shader own.glsl --refine 100ms -o no.png
+    said "says why" "is not refined"
     expect 2 "--set alone" render "$CUBE" $SMALL --set x=1 -o no.png
     expect 2 "--trust alone" render "$CUBE" $SMALL --trust -o no.png
     expect 2 "in a probe" probe "$CUBE" --pixel 1,1 --shader own.glsl
