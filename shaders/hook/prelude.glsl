@@ -124,15 +124,17 @@ uint light_count()
     return frame.light_count;
 }
 
-// A light of the scene, of which there is one at least; behind the last one that.
+// A light of the scene, which has one; behind the last one that.
 gpu_light light_of(uint index)
 {
-    return fetch_light(min(index, max(frame.light_count, 1u) - 1u));
+    return fetch_light(min(index, frame.light_count - 1u));
 }
 
 // Points of the light that are tested: --light-samples of an area light, 1 of all others.
 uint light_points(uint index)
 {
+    if (frame.light_count == 0u)
+        return 0u;
     return is_flat(light_of(index)) ? turns_each() : 1u;
 }
 
@@ -145,6 +147,8 @@ struct Light {
 // Point `point` of a light, as a surface has it.
 Light light(uint index, uint point, Surface s)
 {
+    if (frame.light_count == 0u)
+        return Light(s.ns, 0.0, vec3(0.0));
     LightSample at;
     bool arrives = light_at(light_of(index), point, s.p, at);
     return Light(at.to_light, at.distance, arrives ? at.arriving : vec3(0.0));
@@ -196,6 +200,8 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
 // What a light, with its shadows, lets a surface send to `to_eye`.
 vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
 {
+    if (frame.light_count == 0u)
+        return vec3(0.0);
     Lit lit = lit_surface(s, o, vec3(1.0), hook_media);
     lit.view = to_eye;
     gpu_light from = light_of(index);
