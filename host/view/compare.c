@@ -33,7 +33,8 @@ static bool get_pair(const struct view *view, struct compare_pair *pair)
     *pair = (struct compare_pair){.color = {a->color, b->color},
                                   .ids = {a->ids, b->ids},
                                   .numbers = {a->number, b->number},
-                                  .whole = a->whole && b->whole};
+                                  .whole = a->whole && b->whole,
+                                  .uneven = (a->refined || b->refined) && a->samples != b->samples};
     return true;
 }
 
@@ -200,7 +201,7 @@ static bool wants_heat(const struct compare *compare, const struct compare_pair 
 
 static bool wants_figures(const struct compare *compare, const struct compare_pair *pair)
 {
-    return compare->mode != COMPARE_OFF && pair->whole &&
+    return compare->mode != COMPARE_OFF && pair->whole && !pair->uneven &&
            !(compare->figures.known && same_pair(&compare->figures.pair, pair));
 }
 
@@ -310,6 +311,7 @@ static whit_result show(struct view *view)
 /* In place of B's picture; its number stays, as newer ones have a higher one. */
 static void replace_other(struct compare *compare, struct engine_frame *next)
 {
+    engine_frame_inherit(&compare->other, next);
     compare_leave(compare, &compare->other);
     engine_frame_finish(&compare->other);
     compare->other = *next;

@@ -22,6 +22,7 @@ struct compare_pair {
     const whit_image *color[2], *ids[2];
     uint64_t numbers[2]; /* of the frames */
     bool whole;
+    bool uneven; /* refined, and one is not as far as the other yet */
 };
 
 /* |A - B| of a pair. */

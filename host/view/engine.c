@@ -220,13 +220,16 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     whit_result result = settings_choose_camera(&task->settings, session->scene->scene);
     if (result == WHIT_OK)
         result = engine_draw(task, &frame);
-    bool kept = result == WHIT_OK && frame.whole && lane == &engine->lanes[0];
-    bool same = kept && note_change(engine, &frame);
+    bool whole = result == WHIT_OK && frame.whole, window = lane == &engine->lanes[0];
+    bool same = whole && window && note_change(engine, &frame);
+    if (whole && !window)
+        engine_keep(&engine->other, &frame);
     pthread_mutex_lock(&engine->lock);
     if (result == WHIT_OK)
         note_speed(lane, &frame);
-    if (kept && !(same && !engine->lanes[1].wanted && engine_refine_keep(&engine->refine, &frame)))
-        engine_refine_begin(&engine->refine, &frame);
+    struct engine_refine *refine = &engine->refine[lane - engine->lanes];
+    if (whole && !(same && !engine->lanes[1].wanted && engine_refine_keep(refine, &frame)))
+        engine_refine_begin(refine, &frame);
     engine->busy = false;
     engine->drawing = NULL;
     if (result == WHIT_OK) {
@@ -324,8 +327,9 @@ static void run_engine(void *context)
             probe_one(engine);
             drew = true;
         }
-        if (!drew && !engine->quit && engine_can_refine(engine)) {
-            engine_refine_one(engine);
+        struct engine_lane *lane = drew || engine->quit ? NULL : engine_refine_lane(engine);
+        if (lane) {
+            engine_refine_one(engine, lane);
             drew = true;
         }
         if (!drew && !engine->quit && engine->littered)
@@ -392,7 +396,9 @@ uint32_t engine_destroy(struct engine *engine)
     for (int i = 0; i < ENGINE_LANES; ++i)
         engine_frame_finish(&engine->lanes[i].frame);
     engine_kept_finish(&engine->last);
-    engine_refine_stop(&engine->refine);
+    engine_kept_finish(&engine->other);
+    for (int i = 0; i < ENGINE_LANES; ++i)
+        engine_refine_stop(&engine->refine[i]);
     engine_probe_finish(&engine->probe);
     pthread_cond_destroy(&engine->work);
     pthread_cond_destroy(&engine->news);
@@ -426,7 +432,10 @@ void engine_ask(struct engine *engine, const struct settings *settings, bool mov
 {
     pthread_mutex_lock(&engine->lock);
     struct engine_lane *other = &engine->lanes[1];
+    bool anew = !settings_same(&engine->lanes[0].settings, settings);
     ask(engine, &engine->lanes[0], settings, moving);
+    if (other->wanted && anew)
+        engine_refine_restart(engine, other);
     if (other->wanted) {
         struct settings there = other->settings;
         settings_set_camera(&there, settings);
@@ -439,12 +448,10 @@ void engine_ask_other(struct engine *engine, const struct settings *settings)
 {
     pthread_mutex_lock(&engine->lock);
     struct engine_lane *other = &engine->lanes[1];
-    const struct engine_refine *refine = &engine->refine;
     if (settings) {
         /* What stands beside each other has as many samples. */
-        if (!other->wanted && refine->samples > refine->base.samples &&
-            engine_is_done(&engine->lanes[0]))
-            engine->lanes[0].quality = ENGINE_FULL;
+        if (!other->wanted)
+            engine_refine_restart(engine, &engine->lanes[0]);
         ask(engine, other, settings, engine->lanes[0].moving);
     } else {
         other->wanted = false;

@@ -76,6 +76,8 @@ struct engine_frame {
     uint64_t effects; /* a bit for each that is compiled, in the order of whit_effect_name */
 };
 void engine_frame_finish(struct engine_frame *frame);
+/* Moves hits and boxes of the picture before to one that is refined and has none of its own. */
+void engine_frame_inherit(struct engine_frame *before, struct engine_frame *refined);
 /* The time of drawing in ms, without presenting: on the device where that is measured. */
 double engine_drawn_ms(const whit_stats *stats);
 

@@ -266,6 +266,16 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     return result;
 }
 
+void engine_frame_inherit(struct engine_frame *before, struct engine_frame *refined)
+{
+    if (!refined->refined || refined->ids)
+        return;
+    refined->ids = before->ids;
+    refined->boxes = before->boxes;
+    before->ids = NULL;
+    before->boxes = NULL;
+}
+
 void engine_frame_finish(struct engine_frame *frame)
 {
     whit_image_destroy(frame->color);

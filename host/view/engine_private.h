@@ -64,20 +64,21 @@ struct engine_kept {
     uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
 };
 
-/* The window's picture on its way to more samples (engine_refine.c); of the drawing thread. */
+/* A picture on its way to more samples (engine_refine.c); of the drawing thread. */
 struct engine_refine {
     struct engine_frame base; /* the whole picture of the settings, without what it owns */
     uint32_t samples;         /* of what was displayed last; 0: there is nothing to refine */
-    bool done;
-    whit_refine *refine; /* NULL: not begun */
-    uint8_t *rgba;       /* what was displayed last */
+    bool settled;             /* more samples change nothing that is seen */
+    bool ended;               /* there are no more, or they could not be drawn */
+    whit_refine *refine;      /* NULL: not begun */
+    uint8_t *rgba;            /* what was displayed last */
     struct engine_estimate estimates[ENGINE_ESTIMATES_MAX];
     uint32_t estimate_count;
 };
 
 struct engine {
     struct engine_params params;
-    struct engine_refine refine;
+    struct engine_refine refine[ENGINE_LANES];
     bool refining; /* something of it is being drawn */
     pthread_mutex_t lock;
     pthread_cond_t work, news;
@@ -107,6 +108,7 @@ struct engine {
     uint64_t probes;
     struct engine_probe probe; /* the newest; number 0: taken */
     struct engine_kept last;   /* of the drawing thread: the window's last whole picture */
+    struct engine_kept other;  /* likewise: that of the other side of a split */
 };
 
 /* What engine_draw is to draw. */
@@ -159,10 +161,14 @@ void engine_refine_stop(struct engine_refine *refine);
 /* Goes on from where it was, as a whole picture of the window came to the same pixels as the one
    that it began with: *frame then shows as many samples as the picture before. False: it cannot. */
 WHIT_CHECK bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame);
-/* With the lock: whether the window has the whole picture, and nothing else is to be done. */
-bool engine_can_refine(const struct engine *engine);
+/* With the lock: the lane whose picture is to be refined next; NULL: none, or something else is to
+   be done. Of A beside B the one of fewer samples, until both look the same as before. */
+struct engine_lane *engine_refine_lane(struct engine *engine);
 /* Draws some of it. With the lock, which it gives back meanwhile. */
-void engine_refine_one(struct engine *engine);
+void engine_refine_one(struct engine *engine, struct engine_lane *lane);
+/* With the lock: a side whose picture has more samples than its settings say is drawn again, as the
+   other one begins anew. */
+void engine_refine_restart(struct engine *engine, struct engine_lane *lane);
 /* With the lock. What is asked for comes first; what was being drawn is drawn again later. */
 void engine_refine_pause(struct engine *engine);
 

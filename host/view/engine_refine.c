@@ -46,7 +46,7 @@ void engine_refine_begin(struct engine_refine *refine, const struct engine_frame
         return;
     set_base(refine, frame);
     refine->samples = frame->samples;
-    refine->done = frame->samples * ROUND > WHIT_SAMPLES_MAX;
+    refine->ended = frame->samples * ROUND > WHIT_SAMPLES_MAX;
 }
 
 /* The first part is the whole picture that engine_keep copied. */
@@ -153,8 +153,8 @@ static whit_result finish_round(struct engine_refine *refine, struct engine_fram
     whit_result result = show_sum(refine, frame);
     if (result != WHIT_OK)
         return result;
-    refine->done = refine->samples * ROUND > WHIT_SAMPLES_MAX ||
-                   looks_same(refine->rgba, frame->rgba, bytes / 4);
+    refine->ended = refine->samples * ROUND > WHIT_SAMPLES_MAX;
+    refine->settled = looks_same(refine->rgba, frame->rgba, bytes / 4);
     memcpy(refine->rgba, frame->rgba, bytes);
     return WHIT_OK;
 }
@@ -202,19 +202,47 @@ static bool has_post(const struct session *session)
     return has;
 }
 
-bool engine_can_refine(const struct engine *engine)
+/* Its picture is there, was taken, and has something to be refined. */
+static bool is_ready(const struct engine *engine, int index)
 {
-    const struct engine_lane *lane = &engine->lanes[0];
-    const struct engine_refine *refine = &engine->refine;
-    return engine->params.refine && refine->samples > 0 && !refine->done && lane->session &&
-           !has_post(lane->session) && engine_is_done(lane) && !lane->failed && !lane->moving &&
-           lane->frame.number == 0 && !engine->lanes[1].wanted && !engine->job &&
-           !engine->probe_wanted;
+    const struct engine_lane *lane = &engine->lanes[index];
+    return engine->refine[index].samples > 0 && lane->session && !has_post(lane->session) &&
+           engine_is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0;
 }
 
-void engine_refine_one(struct engine *engine)
+/* Of the same samples by their settings, and as far as the slower of the two. */
+static struct engine_lane *lane_of_two(struct engine *engine)
 {
-    struct engine_lane *lane = &engine->lanes[0];
+    const struct engine_refine *a = &engine->refine[0], *b = &engine->refine[1];
+    if (!is_ready(engine, 1) || a->base.samples != b->base.samples)
+        return NULL;
+    if (a->samples == b->samples && ((a->settled && b->settled) || a->ended || b->ended))
+        return NULL;
+    int index = b->samples < a->samples;
+    return engine->refine[index].ended ? NULL : &engine->lanes[index];
+}
+
+struct engine_lane *engine_refine_lane(struct engine *engine)
+{
+    const struct engine_refine *refine = &engine->refine[0];
+    if (!engine->params.refine || !is_ready(engine, 0) || engine->job || engine->probe_wanted)
+        return NULL;
+    if (engine->lanes[1].wanted)
+        return lane_of_two(engine);
+    return refine->settled || refine->ended ? NULL : &engine->lanes[0];
+}
+
+void engine_refine_restart(struct engine *engine, struct engine_lane *lane)
+{
+    const struct engine_refine *refine = &engine->refine[lane - engine->lanes];
+    if (refine->samples > refine->base.samples && engine_is_done(lane))
+        lane->quality = ENGINE_FULL;
+}
+
+void engine_refine_one(struct engine *engine, struct engine_lane *lane)
+{
+    struct engine_refine *refine = &engine->refine[lane - engine->lanes];
+    const struct engine_kept *kept = lane == engine->lanes ? &engine->last : &engine->other;
     struct session *session = lane->session;
     struct engine_frame frame;
     uint64_t asked = lane->asked;
@@ -224,15 +252,15 @@ void engine_refine_one(struct engine *engine)
     engine->refining = true;
     engine->brief = false;
     pthread_mutex_unlock(&engine->lock);
-    whit_result result = draw_next(session, &engine->refine, &engine->last, &frame);
+    whit_result result = draw_next(session, refine, kept, &frame);
     pthread_mutex_lock(&engine->lock);
     engine->drawing = NULL;
     engine->refining = false;
     if (result == WHIT_ERROR_DEVICE)
         engine_lose_device(engine, session);
     if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
-        engine->refine.done = true; /* the picture that there is stays */
-    if (frame.color && lane->asked == asked) {
+        refine->ended = true; /* the picture that there is stays */
+    if (frame.color && lane->asked == asked && lane->wanted) {
         frame.number = ++lane->frames;
         frame.first = lane->first;
         lane->frame = frame;
@@ -262,8 +290,9 @@ void engine_set_refine(struct engine *engine, bool on)
 bool engine_is_refined(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    bool refined =
-        !engine->refining && engine->lanes[0].frame.number == 0 && !engine_can_refine(engine);
+    const struct engine_lane *lanes = engine->lanes;
+    bool taken = lanes[0].frame.number == 0 && (!lanes[1].wanted || lanes[1].frame.number == 0);
+    bool refined = !engine->refining && taken && !engine_refine_lane(engine);
     pthread_mutex_unlock(&engine->lock);
     return refined;
 }

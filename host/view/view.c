@@ -107,13 +107,8 @@ static void take_frame(struct view *view)
     struct engine_frame *frame = &view->frame, next = {.number = view->frame.number};
     if (!engine_take(view->engine, false, &next))
         return;
+    engine_frame_inherit(frame, &next);
     compare_leave(&view->compare, frame);
-    if (next.refined && !next.ids) { /* hits and trees are those of the picture before */
-        next.ids = frame->ids;
-        next.boxes = frame->boxes;
-        frame->ids = NULL;
-        frame->boxes = NULL;
-    }
     engine_frame_finish(frame);
     *frame = next;
     bool other_scene = view->scene != frame->scene;

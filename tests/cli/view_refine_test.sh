@@ -21,6 +21,9 @@ refined
 again: | frame.pixels as better | frame.samples as better
 split: press I | frame.samples = 4 | frame.pixels as start | compare.known = true
     | compare.other_colors = 0
+refined
+both: | compare.known = true | compare.other_colors = 0 | compare.other_ids = 0 | frame.pixels as better
+    | frame.samples as better
 alone: press I | compare.mode = off
 refined
 third: | frame.pixels as better
@@ -30,6 +33,7 @@ costs: | frame.pixels as depth | frame.samples = 1
 END
 check "A and B have as many samples" test "$(value split compare.b.pixels)" = "$(value start frame.pixels)"
 samples=$(value better frame.samples)
+check "B is refined with A" test "$(value both compare.b.pixels)" = "$(value better frame.pixels)"
 check "the estimate is of what is shown" test "$(value better frame.error_samples)" -eq "$samples"
 doublings=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 2; k++ } print k }')
 check "one estimate each time that samples were doubled" test "$(value better frame.estimates)" -eq "$doublings"
@@ -43,6 +47,15 @@ END
 rounds=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 4; k++ } print k }')
 check "a picture for each step ($rounds)" \
     test $(($(value better frame.number) - $(value start frame.number))) -eq "$rounds"
+
+play "A and B that differ" "$SCENES/balls.json" --size 24x18 --aa 4 <<END
+start: press I | compare.known = true | compare.other_colors = 0
+refined
+changed: press Minus x8 | frame.samples = 4 | compare.b.samples = 4 | compare.other_colors > 10
+refined
+apart: | frame.samples > 4 | compare.known = true | compare.other_colors > 10 | compare.other_ids = 0
+END
+check "B goes as far as A" test "$(value apart compare.b.samples)" -eq "$(value apart frame.samples)"
 
 # What is to stay as the settings say does, until the switch is turned in the panel of settings.
 play "left alone" "$SCENES/cube.json" --size 48x36 --at-rest stay <<END
