@@ -366,6 +366,12 @@ change(host/reference/media.c transmitted [[exp\(-]] [[exp(-0.5 * ]])
 mutation(reference_without_room reference_formula RED light_falls_with_cosine_and_square)
 change(host/reference/surface.c surface_at [[ROOM]] [[0.0 * ROOM]])
 
+mutation(odd_sides_cut picture_mipmap RED texels_are_means_of_what_they_cover)
+change(host/picture/mipmap.c cover_of [[from % 2 == 0]] [[from > 1]])
+
+mutation(logarithm_of_wrong_slopes picture_mipmap RED level_is_half_the_logarithm)
+change(host/picture/mipmap.c mipmap_pieces [[\(i \+ 1\.0\) / ]] [[(i + 0.9) / ]])
+
 mutation(samples_summed_one_by_one render_samples RED samples_are_summed_in_pairs)
 change(shaders/kernel/resolve.comp [[waiting = chunk.summed; last ? waiting != 0u : (waiting & 1u) != 0u; waiting >>= 1]]
   [[waiting = min(chunk.summed, 1u); waiting != 0u; waiting = 0u, row -= chunk.sums_step]])

@@ -1,0 +1,208 @@
+#include "picture/mipmap.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/color.h"
+
+/* ---- Sizes ---- */
+
+uint32_t mipmap_levels(uint32_t width, uint32_t height)
+{
+    uint32_t levels = 0;
+    for (uint32_t side = width > height ? width : height; side > 1; side /= 2)
+        ++levels;
+    return levels;
+}
+
+uint64_t mipmap_first(uint32_t width, uint32_t height, uint32_t level)
+{
+    uint64_t texels = 0;
+    for (uint32_t i = 0; i < level; ++i)
+        texels += (uint64_t)mipmap_side(width, i) * mipmap_side(height, i);
+    return texels;
+}
+
+enum mipmap_kind mipmap_kind_of(const struct scene_material *m, enum scene_slot slot)
+{
+    bool light = slot == SCENE_SLOT_DIFFUSE || slot == SCENE_SLOT_EMISSION ||
+                 (slot == SCENE_SLOT_SPECULAR && m->model == SCENE_MODEL_METAL_ROUGH);
+    if (slot == SCENE_SLOT_OPACITY && m->alpha == SCENE_ALPHA_MASK)
+        return MIPMAP_NONE;
+    /* Without an opacity map it is this one's alpha that covers. */
+    if (slot == SCENE_SLOT_DIFFUSE && m->alpha != SCENE_ALPHA_OPAQUE &&
+        m->textures[SCENE_SLOT_OPACITY].texture == SCENE_NONE)
+        return MIPMAP_COVER;
+    return light ? MIPMAP_SRGB : MIPMAP_LINEAR;
+}
+
+/* ---- Averages ---- */
+
+/* The codes of light between 0 and 1, and back. */
+struct curve {
+    float linear[256];
+    float upper[256]; /* what is above it has a larger code */
+    uint8_t guess[4097];
+};
+
+static void curve_init(struct curve *curve, bool srgb)
+{
+    for (int i = 0; i < 256; ++i) {
+        curve->linear[i] = (float)(srgb ? linear_from_srgb(i / 255.0) : i / 255.0);
+        double middle = fmin((i + 0.5) / 255.0, 1.0);
+        curve->upper[i] = (float)(srgb ? linear_from_srgb(middle) : middle);
+    }
+    uint32_t code = 0;
+    for (uint32_t i = 0; i <= 4096; ++i) {
+        while (code < 255 && curve->upper[code] < (float)i / 4096.0f)
+            ++code;
+        curve->guess[i] = (uint8_t)code;
+    }
+}
+
+/* The nearest code, as codes are seen: halfway between two of them. */
+static uint8_t encode(const struct curve *curve, float linear)
+{
+    uint32_t code = curve->guess[(uint32_t)(linear * 4096.0f)];
+    while (code < 255 && curve->upper[code] < linear)
+        ++code;
+    return (uint8_t)code;
+}
+
+/* Which texels of a side of `from` texel `at` of half that side covers, and how much of itself each
+   is: of 2n + 1 texels each of n covers one, and parts of its two neighbours. */
+struct cover {
+    uint32_t first, count;
+    float weights[3];
+};
+
+static struct cover cover_of(uint32_t from, uint32_t at)
+{
+    uint32_t half = mipmap_side(from, 1);
+    struct cover cover = {.first = 2 * at, .count = 2, .weights = {0.5f, 0.5f}};
+    if (from == 1)
+        return (struct cover){.count = 1, .weights = {1.0f}};
+    if (from % 2 == 0)
+        return cover;
+    cover.count = 3;
+    cover.weights[0] = (float)(half - at) / (float)from;
+    cover.weights[1] = (float)half / (float)from;
+    cover.weights[2] = (float)(at + 1) / (float)from;
+    return cover;
+}
+
+/* A level as it is read: bytes of level 0, later ones unrounded. */
+struct level {
+    const uint8_t *bytes;
+    const float *values; /* or NULL: `bytes` */
+    uint32_t width, height;
+    const struct curve *light, *plain; /* of red, green and blue, and of alpha */
+};
+
+static void read_texel(const struct level *level, size_t at, float rgba[4])
+{
+    for (size_t c = 0; c < 4; ++c) {
+        const struct curve *curve = c < 3 ? level->light : level->plain;
+        rgba[c] =
+            level->values ? level->values[4 * at + c] : curve->linear[level->bytes[4 * at + c]];
+    }
+}
+
+/* The mean of a texel of the next level; `covering`: of colours by their alpha, where there is any.
+ */
+static void average(const struct level *level, uint32_t x, uint32_t y, bool covering, float out[4])
+{
+    const struct cover across = cover_of(level->width, x), down = cover_of(level->height, y);
+    float plain[4] = {0}, covered[3] = {0};
+    for (uint32_t j = 0; j < down.count; ++j) {
+        for (uint32_t i = 0; i < across.count; ++i) {
+            float rgba[4], weight = across.weights[i] * down.weights[j];
+            read_texel(level, (size_t)(down.first + j) * level->width + across.first + i, rgba);
+            for (int c = 0; c < 4; ++c)
+                plain[c] += weight * rgba[c];
+            for (int c = 0; c < 3; ++c)
+                covered[c] += weight * rgba[3] * rgba[c];
+        }
+    }
+    for (int c = 0; covering && plain[3] > 0.0f && c < 3; ++c)
+        plain[c] = covered[c] / plain[3];
+    for (int c = 0; c < 4; ++c)
+        out[c] = fminf(plain[c], 1.0f); /* weights add up to 1 within rounding */
+}
+
+static void make_level(const struct level *from, bool covering, float *values, uint8_t *bytes)
+{
+    uint32_t width = mipmap_side(from->width, 1), height = mipmap_side(from->height, 1);
+    for (uint32_t y = 0; y < height; ++y) {
+        for (uint32_t x = 0; x < width; ++x, values += 4, bytes += 4) {
+            average(from, x, y, covering, values);
+            for (int c = 0; c < 3; ++c)
+                bytes[c] = encode(from->light, values[c]);
+            bytes[3] = encode(from->plain, values[3]);
+        }
+    }
+}
+
+uint8_t *mipmap_make(const uint8_t *rgba, uint32_t width, uint32_t height, enum mipmap_kind kind)
+{
+    uint32_t levels = mipmap_levels(width, height);
+    uint64_t texels = mipmap_first(width, height, levels + 1) - (uint64_t)width * height;
+    struct curve *curves = malloc(2 * sizeof *curves);
+    uint8_t *bytes = levels ? array_alloc(texels, 4) : NULL;
+    float *values = array_alloc(texels, 4 * sizeof *values);
+    struct level level = {.bytes = rgba, .width = width, .height = height};
+    if (curves && bytes && values) {
+        curve_init(&curves[0], kind != MIPMAP_LINEAR);
+        curve_init(&curves[1], false);
+        level.light = &curves[0];
+        level.plain = &curves[1];
+    } else {
+        free(bytes);
+        bytes = NULL;
+    }
+    size_t at = 0;
+    for (uint32_t i = 1; bytes && i <= levels; ++i) {
+        make_level(&level, kind == MIPMAP_COVER, values + 4 * at, bytes + 4 * at);
+        level.values = values + 4 * at;
+        level.width = mipmap_side(width, i);
+        level.height = mipmap_side(height, i);
+        at += (size_t)level.width * level.height;
+    }
+    free(curves);
+    free(values);
+    return bytes;
+}
+
+/* ---- Which level ---- */
+
+void mipmap_pieces(float pieces[2 * MIPMAP_PIECES])
+{
+    for (int i = 0; i < MIPMAP_PIECES; ++i) {
+        double here = 0.5 * log2(1.0 + (double)i / MIPMAP_PIECES);
+        double next = 0.5 * log2(1.0 + (i + 1.0) / MIPMAP_PIECES);
+        pieces[2 * i] = (float)here;
+        pieces[2 * i + 1] = (float)(next - here);
+    }
+}
+
+double mipmap_level(const float pieces[2 * MIPMAP_PIECES], double texels)
+{
+    int exponent;
+    if (!(texels > 1.0))
+        return 0.0;
+    if (isinf(texels))
+        return MIPMAP_LEVELS_MAX;
+    double along = (2.0 * frexp(texels, &exponent) - 1.0) * MIPMAP_PIECES, piece = floor(along);
+    const float *line = &pieces[2 * (int)piece];
+    return 0.5 * (exponent - 1) + (double)line[0] + (double)line[1] * (along - piece);
+}
+
+double mipmap_sample_share(uint32_t index)
+{
+    double share = 1.0;
+    for (; index > 0; index /= 4)
+        share *= 0.25;
+    return share;
+}
