@@ -173,6 +173,13 @@ whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
     return WHIT_OK;
 }
 
+double camera_pixel_area(const struct gpu_frame *frame, uint32_t kind)
+{
+    double sides =
+        kind == CAMERA_PANORAMA ? 2.0 * PI * PI : 4.0 * length3(frame->right) * length3(frame->up);
+    return sides / ((double)frame->width * (double)frame->height);
+}
+
 /* A square onto the disk, keeping areas and neighbours (Shirley and Chiu 1997, A Low Distortion Map
    Between Disk and Square). Both -1..1. */
 static void square_to_disk(const double square[2], double disk[2])

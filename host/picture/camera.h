@@ -15,6 +15,10 @@ WHIT_CHECK whit_result camera_frame(const whit_log *log, const struct scene_pose
                                     const whit_camera *wanted, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
 
+/* The area of the pixel in the middle of the picture, across its ray at distance 1 from the eye;
+   orthographic: in the world. What texel_area of bind/camera.glsl begins with. */
+double camera_pixel_area(const struct gpu_frame *frame, uint32_t kind);
+
 /* bind/camera.glsl's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a
    camera of `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
 void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,

@@ -25,6 +25,7 @@ static bool is_known(const whit_renderer_params *params)
     return (uint32_t)params->traversal <= WHIT_TRAVERSAL_BASIC &&
            (uint32_t)params->numerics <= WHIT_NUMERICS_EXACT &&
            (uint32_t)params->shadows <= WHIT_SHADOWS_NONE &&
+           (uint32_t)params->minification <= WHIT_MINIFICATION_NONE &&
            (uint32_t)params->load_path <= WHIT_LOAD_TEXEL &&
            (uint32_t)params->packets <= WHIT_PACKETS_OFF &&
            (uint32_t)params->classes <= WHIT_CLASSES_MANY &&

@@ -54,3 +54,20 @@ struct ray camera_first_ray(const struct reference *reference, uint32_t x, uint3
     take_line(reference, at_x, at_y, lens, &ray);
     return ray;
 }
+
+double camera_texel_area(const struct reference *reference, uint32_t x, uint32_t y, uint32_t sample,
+                         double way)
+{
+    const struct gpu_frame *frame = &reference->frame;
+    double area = camera_pixel_area(frame, reference->camera) * mipmap_sample_share(sample) /
+                  MIPMAP_PIXEL_TEXELS;
+    double at_x = (2.0 * x + 1.0) / frame->width - 1.0;
+    double at_y = (2.0 * y + 1.0) / frame->height - 1.0;
+    if (reference->camera == CAMERA_ORTHOGRAPHIC)
+        return area;
+    if (reference->camera == CAMERA_PANORAMA)
+        return area * way * way * cos(0.5 * PI * at_y);
+    double aside_x = at_x * d3_length(d3_load(frame->right));
+    double aside_y = at_y * d3_length(d3_load(frame->up));
+    return area * way * way / pow(1.0 + aside_x * aside_x + aside_y * aside_y, 1.5);
+}

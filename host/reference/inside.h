@@ -24,7 +24,11 @@ struct reference {
     struct placing *placings;
     bool *alphas;       /* of each texture: whether its alpha is anything but 255 */
     double linear[256]; /* of 8-bit sRGB */
-    float *sky;         /* octahedral map, RGBA; NULL: gradient */
+    /* Smaller levels of each texture, kind by kind, as mipmap_make makes them; NULL: there are
+     * none. */
+    uint8_t *(*levels)[MIPMAP_COVER + 1];
+    float level_pieces[2 * MIPMAP_PIECES];
+    float *sky; /* octahedral map, RGBA; NULL: gradient */
     uint32_t sky_size;
     uint32_t light_samples;
     double bailout;
@@ -43,6 +47,7 @@ struct ray {
     uint32_t kind;  /* enum reference_kind */
     uint32_t skip_instance, skip_primitive; /* it starts on this; HIT_NONE: nothing */
     uint32_t node; /* of the ray tree: its parent's while it waits, then its own */
+    double way;    /* from the eye to its origin along the rays before it */
 };
 
 /* Every ray tree ends: as many surfaces passed unseen as the steps of one bounce count as one. */
@@ -64,6 +69,7 @@ struct hit {
 struct tracer {
     const struct reference *reference;
     uint32_t sample; /* moves the points of area lights */
+    uint32_t x, y;   /* the pixel */
     struct reference_stats stats;
     bool too_many_media, lacks_memory;
     struct ray *stack; /* rays that wait */
@@ -127,6 +133,9 @@ struct surface {
     double alpha;
     double u, v; /* of spheres: texture coordinates */
     double room; /* by how much a ray starts off the surface */
+    /* By how much the texture's place moves for unit steps to both sides of the ray, in e1 and e2,
+       times the side of what the ray stands for; 0: a point. */
+    double footprint[2][2];
     const struct scene_mesh *mesh;
     const struct scene_material *material;
     uint32_t material_index, instance, primitive;
@@ -244,6 +253,10 @@ struct dvec3 lighting_caught(struct dvec3 light, struct dvec3 open);
 
 struct ray camera_first_ray(const struct reference *reference, uint32_t x, uint32_t y,
                             uint32_t sample);
+/* The area of a texel that a sample of the pixel asks for, across its camera ray `way` from the
+   eye. */
+double camera_texel_area(const struct reference *reference, uint32_t x, uint32_t y, uint32_t sample,
+                         double way);
 
 /* ---- tree.c ---- */
 

@@ -35,6 +35,29 @@ static bool has_alpha(const struct scene_texture *t)
     return false;
 }
 
+/* The levels of all textures that materials use. False: memory ran out. */
+static bool make_levels(struct reference *r)
+{
+    const struct scene *scene = r->scene;
+    r->levels = array_alloc_zeroed(scene->texture_count, sizeof *r->levels);
+    mipmap_pieces(r->level_pieces);
+    if (!r->levels || r->params.picture.minification != WHIT_MINIFICATION_MIPMAP)
+        return r->levels != NULL;
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
+            uint32_t texture = scene->materials[i].textures[slot].texture;
+            enum mipmap_kind kind = mipmap_kind_of(&scene->materials[i], (enum scene_slot)slot);
+            if (texture == SCENE_NONE || kind == MIPMAP_NONE || r->levels[texture][kind])
+                continue;
+            const struct scene_texture *t = &scene->textures[texture];
+            r->levels[texture][kind] = mipmap_make(t->rgba, t->width, t->height, kind);
+            if (!r->levels[texture][kind] && mipmap_levels(t->width, t->height) > 0)
+                return false;
+        }
+    }
+    return true;
+}
+
 static bool fill_tables(struct reference *r)
 {
     const struct scene *scene = r->scene;
@@ -51,7 +74,7 @@ static bool fill_tables(struct reference *r)
         r->alphas[i] = has_alpha(&scene->textures[i]);
     for (int i = 0; i < 256; ++i)
         r->linear[i] = linear_from_srgb(i / 255.0);
-    return environment_resample(&scene->environment, &r->sky_size, &r->sky);
+    return make_levels(r) && environment_resample(&scene->environment, &r->sky_size, &r->sky);
 }
 
 static whit_result create_parts(struct reference *r)
@@ -99,6 +122,11 @@ void reference_destroy(struct reference *r)
     if (!r)
         return;
     scene_pose_finish(&r->pose);
+    for (uint32_t i = 0; r->levels && i < r->scene->texture_count; ++i) {
+        for (int kind = 0; kind <= MIPMAP_COVER; ++kind)
+            free(r->levels[i][kind]);
+    }
+    free(r->levels);
     free(r->placings);
     free(r->alphas);
     free(r->sky);

@@ -29,6 +29,7 @@
 #include "picture/camera.h"
 #include "picture/environment.h"
 #include "picture/media.h"
+#include "picture/mipmap.h"
 #include "picture/params.h"
 #include "picture/sequence.h"
 #include "whit/whit_probe.h"

@@ -22,8 +22,14 @@ static double reduce(double x, enum scene_wrap how)
     return isfinite(reduced) ? reduced : 0.0;
 }
 
-static struct texel fetch(const struct reference *reference, const struct scene_texture *t,
-                          int64_t x, int64_t y, bool srgb)
+/* A level of a texture. */
+struct level {
+    const uint8_t *rgba;
+    uint32_t width, height;
+};
+
+static struct texel fetch(const struct reference *reference, const struct level *t, int64_t x,
+                          int64_t y, bool srgb)
 {
     const uint8_t *rgba = &t->rgba[4 * (size_t)(y * (int64_t)t->width + x)];
     const double *linear = reference->linear;
@@ -38,10 +44,9 @@ static struct texel mix_texels(struct texel a, struct texel b, double part)
     return (struct texel){d3_mix(a.rgb, b.rgb, part), a.alpha * (1.0 - part) + b.alpha * part};
 }
 
-static struct texel sample_at(const struct reference *reference,
-                              const struct scene_texture_use *use, const double uv[2], bool srgb)
+static struct texel sample_level(const struct reference *reference, const struct level *t,
+                                 const struct scene_texture_use *use, const double uv[2], bool srgb)
 {
-    const struct scene_texture *t = &reference->scene->textures[use->texture];
     double x = reduce(uv[0], use->wrap_u) * t->width, y = reduce(uv[1], use->wrap_v) * t->height;
     double shift = use->nearest ? 0.0 : 0.5;
     double left = floor(x - shift), top = floor(y - shift);
@@ -93,6 +98,51 @@ static bool is_srgb(const struct scene_material *m, enum scene_slot slot)
            (slot == SCENE_SLOT_SPECULAR && m->model == SCENE_MODEL_METAL_ROUGH);
 }
 
+/* What the ray stands for, in texels of level 0: the mean of the squares of its two sides. */
+static double footprint_texels(const struct surface *s, const struct scene_texture_use *use,
+                               const struct scene_texture *t)
+{
+    double uv[3][2], sum = 0.0;
+    const float *m = use->transform;
+    const double size[2] = {t->width, t->height};
+    corner_uvs(s, use, uv);
+    for (int side = 0; side < 2; ++side) {
+        double moved[2];
+        for (int i = 0; i < 2; ++i)
+            moved[i] = s->footprint[side][0] * (uv[1][i] - uv[0][i]) +
+                       s->footprint[side][1] * (uv[2][i] - uv[0][i]);
+        for (int i = 0; i < 2; ++i) {
+            double texels =
+                ((double)m[3 * i] * moved[0] + (double)m[3 * i + 1] * moved[1]) * size[i];
+            sum += 0.5 * texels * texels;
+        }
+    }
+    return sum;
+}
+
+/* The texture of a slot at uv of its set. */
+static struct texel sample_at(const struct reference *reference, const struct surface *s,
+                              enum scene_slot slot, const double uv[2])
+{
+    const struct scene_texture_use *use = &s->material->textures[slot];
+    const struct scene_texture *t = &reference->scene->textures[use->texture];
+    enum mipmap_kind kind = mipmap_kind_of(s->material, slot);
+    const uint8_t *behind = reference->levels[use->texture][kind];
+    bool srgb = is_srgb(s->material, slot);
+    double level = behind ? fmin(mipmap_level(reference->level_pieces, footprint_texels(s, use, t)),
+                                 mipmap_levels(t->width, t->height))
+                          : 0.0;
+    struct texel texels[2];
+    uint32_t first = (uint32_t)level, last = (uint32_t)ceil(level);
+    for (uint32_t k = first; k <= last; ++k) {
+        uint64_t skipped = mipmap_first(t->width, t->height, k) - (uint64_t)t->width * t->height;
+        const struct level from = {k ? behind + 4 * skipped : t->rgba, mipmap_side(t->width, k),
+                                   mipmap_side(t->height, k)};
+        texels[k - first] = sample_level(reference, &from, use, uv, srgb);
+    }
+    return first == last ? texels[0] : mix_texels(texels[0], texels[1], level - first);
+}
+
 struct texel texture_sample(const struct reference *reference, const struct surface *s,
                             enum scene_slot slot)
 {
@@ -101,7 +151,7 @@ struct texel texture_sample(const struct reference *reference, const struct surf
     if (!texture_used(s->material, slot))
         return (struct texel){d3_all(1.0), 1.0};
     place_uv(s, use, uv);
-    return sample_at(reference, use, uv, is_srgb(s->material, slot));
+    return sample_at(reference, s, slot, uv);
 }
 
 /* A picture of its own, its alpha where it has one; or else the alpha of the diffuse picture. */
@@ -144,15 +194,16 @@ static void tangents(const struct surface *s, const struct scene_texture_use *us
 /* Slope of a height map, from one texel on to the right and below; heights are in 1/32 of the
    picture's side. */
 static void bump_slope(const struct reference *reference, const struct surface *s,
-                       const struct scene_texture_use *use, const double uv[2], double slope[2])
+                       const double uv[2], double slope[2])
 {
-    const struct scene_texture *t = &reference->scene->textures[use->texture];
+    uint32_t texture = s->material->textures[SCENE_SLOT_BUMP].texture;
+    const struct scene_texture *t = &reference->scene->textures[texture];
     const double size[2] = {t->width, t->height};
-    double here = sample_at(reference, use, uv, false).rgb.x;
+    double here = sample_at(reference, s, SCENE_SLOT_BUMP, uv).rgb.x;
     for (int i = 0; i < 2; ++i) {
         double on[2] = {uv[0], uv[1]};
         on[i] += 1.0 / size[i];
-        double rise = sample_at(reference, use, on, false).rgb.x - here;
+        double rise = sample_at(reference, s, SCENE_SLOT_BUMP, on).rgb.x - here;
         slope[i] = rise * size[i] * (double)s->material->normal_scale / 32.0;
     }
 }
@@ -169,13 +220,13 @@ void texture_bend_normal(const struct reference *reference, struct surface *s)
     tangents(s, use, &right, &down);
     place_uv(s, use, uv);
     if (is_map) {
-        struct dvec3 rgb = sample_at(reference, use, uv, false).rgb;
+        struct dvec3 rgb = sample_at(reference, s, SCENE_SLOT_NORMAL, uv).rgb;
         double scale = (double)s->material->normal_scale;
         bent = d3_scale(s->ns, 2.0 * rgb.z - 1.0);
         bent = d3_along(bent, right, scale * (2.0 * rgb.x - 1.0));
         bent = d3_along(bent, down, -scale * (2.0 * rgb.y - 1.0));
     } else {
-        bump_slope(reference, s, use, uv, slope);
+        bump_slope(reference, s, uv, slope);
         bent = d3_along(d3_along(s->ns, right, -slope[0]), down, -slope[1]);
     }
     s->ns = d3_unit_or(bent, s->ns);

@@ -1,6 +1,7 @@
 /* The ray tree of a sample (Whitted 1980): each ray's light goes to the sample, the rays that its
    surface calls for wait on a stack. */
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -102,7 +103,8 @@ static struct ray beyond(const struct ray *ray, const struct crossing *c, struct
                         .kind = kind,
                         .skip_instance = c->instance,
                         .skip_primitive = c->primitive,
-                        .node = ray->node};
+                        .node = ray->node,
+                        .way = ray->way};
 }
 
 static bool push_refracted(struct tracer *tracer, const struct ray *ray, const struct surface *s,
@@ -137,7 +139,8 @@ static bool push_reflected(struct tracer *tracer, const struct ray *ray, const s
                               .kind = REFERENCE_REFLECTED,
                               .skip_instance = hit->instance,
                               .skip_primitive = hit->primitive,
-                              .node = ray->node};
+                              .node = ray->node,
+                              .way = ray->way};
     return push_ray(tracer, &child, deep);
 }
 
@@ -166,12 +169,31 @@ static void push_through(struct tracer *tracer, const struct ray *ray, const str
 
 /* ---- A ray's own light ---- */
 
+/* Where two rays beside this one meet the surface's plane. */
+static void take_footprint(const struct tracer *tracer, const struct ray *ray, struct surface *s)
+{
+    double side =
+        sqrt(camera_texel_area(tracer->reference, tracer->x, tracer->y, tracer->sample, ray->way));
+    struct dvec3 other = fabs(ray->dir.x) < 0.5 ? d3(1, 0, 0) : d3(0, 1, 0);
+    struct dvec3 asides[2];
+    asides[0] = d3_unit_or(dvec3_cross(ray->dir, other), other);
+    asides[1] = dvec3_cross(ray->dir, asides[0]);
+    double volume = dvec3_dot(dvec3_cross(s->e1, s->e2), ray->dir);
+    for (int i = 0; i < 2; ++i) { /* side * aside = u e1 + v e2 + w dir, by Cramer's rule */
+        struct dvec3 moved = d3_scale(asides[i], side);
+        s->footprint[i][0] = dvec3_dot(dvec3_cross(moved, s->e2), ray->dir) / volume;
+        s->footprint[i][1] = dvec3_dot(dvec3_cross(s->e1, moved), ray->dir) / volume;
+    }
+}
+
 static struct dvec3 shade_hit(struct tracer *tracer, struct ray *ray, const struct hit *hit)
 {
     const struct reference *reference = tracer->reference;
     struct surface s = surface_at(reference, hit);
     bool inside = surface_face(&s, ray->dir);
     struct crossing c = media_cross(tracer, ray, hit, &s, inside);
+    ray->way += hit->t;
+    take_footprint(tracer, ray, &s);
     if (!c.seen) {
         record_candidate(tracer, ray, hit, &s);
         record_end(tracer, ray, WHIT_PROBE_DIVIDED, d3_all(0.0));
@@ -217,6 +239,8 @@ struct dvec3 tree_trace(struct tracer *tracer, uint32_t x, uint32_t y, struct hi
 {
     struct ray ray = camera_first_ray(tracer->reference, x, y, tracer->sample);
     struct dvec3 sum;
+    tracer->x = x;
+    tracer->y = y;
     tracer->stack_count = 0;
     ++tracer->stats.rays[RAY_PRIMARY];
     *first = hit_closest(tracer->reference, &ray);

@@ -2,6 +2,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "picture/mipmap.h"
 #include "render/renderer.h"
 
 whit_result frame_fill(struct renderer *renderer)
@@ -15,6 +16,7 @@ whit_result frame_fill(struct renderer *renderer)
                      renderer->params.width, renderer->params.height, frame, &kind);
     if (result != WHIT_OK)
         return result;
+    frame->texel_area = (float)(camera_pixel_area(frame, kind) / MIPMAP_PIXEL_TEXELS);
     /* Only the kind of the camera in use is called for, whatever others the scene has. */
     renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = kind == CAMERA_ORTHOGRAPHIC;
     renderer->effects.called[SCENE_EFFECT_LENS] = kind == CAMERA_LENS;

@@ -93,8 +93,9 @@ whit_result queues_create(struct target *target)
         {&queues->deferred,
          variant_has_deferred(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
-        {&queues->kinds, renderer->params.count || target->probed ? sent * 4 : 0, BUFFER_STORAGE,
-         "kinds of rays"},
+        {&queues->kinds,
+         renderer->params.count || target->probed || textures_minify(renderer) ? sent * 4 : 0,
+         BUFFER_STORAGE, "kinds of rays"},
     };
     whit_result result = WHIT_OK;
     for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {

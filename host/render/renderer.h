@@ -34,7 +34,7 @@ struct queue_buffers {
     struct buffer *lit_list;
     struct buffer
         *deferred;        /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
-    struct buffer *kinds; /* RAY_*, with params.count */
+    struct buffer *kinds; /* RAY_*, with params.count; how far rays have come, for textures */
     uint32_t generation_count, ray_capacity, lit_capacity;
     uint64_t bytes;
 };
@@ -261,6 +261,8 @@ struct material_records {
 /* A material of the scene as kernels of the renderer's effects draw it; it borrows all that it
    points to. */
 struct scene_material material_drawn(const struct renderer *renderer, uint32_t index);
+/* Whether textures have smaller levels, for what is far away. */
+bool textures_minify(const struct renderer *renderer);
 WHIT_CHECK whit_result material_records_init(struct renderer *renderer,
                                              struct material_records *records);
 void material_records_finish(struct material_records *records);

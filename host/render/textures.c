@@ -5,13 +5,17 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "picture/mipmap.h"
 #include "render/renderer.h"
 
-/* A picture that some material uses, in the size it gets on the device. */
+/* A picture that some material uses, in the size it gets on the device. Where it is averaged in two
+   ways it is there twice. */
 struct texel_image {
     uint32_t texture; /* of the scene */
+    enum mipmap_kind kind;
     uint32_t width, height, first;
     uint32_t halvings;
+    uint32_t levels; /* behind level 0 */
 };
 
 struct material_upload {
@@ -24,15 +28,20 @@ struct material_upload {
     struct gpu_material *materials;
 };
 
-static uint32_t find_image(struct material_upload *up, uint32_t texture)
+static uint32_t find_image(struct material_upload *up, uint32_t texture, enum mipmap_kind kind)
 {
     for (uint32_t i = 0; i < up->image_count; ++i) {
-        if (up->images[i].texture == texture)
+        struct texel_image *image = &up->images[i];
+        if (image->texture != texture)
+            continue;
+        if (image->kind == MIPMAP_NONE)
+            image->kind = kind;
+        if (kind == MIPMAP_NONE || image->kind == kind)
             return i;
     }
     const struct scene_texture *source = &up->renderer->scene->textures[texture];
     struct texel_image image = {
-        .texture = texture, .width = source->width, .height = source->height};
+        .texture = texture, .kind = kind, .width = source->width, .height = source->height};
     if (!ARRAY_PUSH(up->images, up->image_count, up->image_capacity, image))
         return SCENE_NONE;
     return up->image_count - 1;
@@ -45,18 +54,20 @@ static uint32_t wrap_code(enum scene_wrap wrap)
                                        : WRAP_REPEAT;
 }
 
-/* Index of a new use record, TEXTURE_NONE when there is no texture. */
-static whit_result add_use(struct material_upload *up, const struct scene_texture_use *use,
-                           bool srgb, uint32_t *out)
+/* Index of a new use record of the material's slot, TEXTURE_NONE when there is no texture. */
+static whit_result add_use(struct material_upload *up, const struct scene_material *m,
+                           enum scene_slot slot, bool srgb, uint32_t *out)
 {
+    const struct scene_texture_use *use = &m->textures[slot];
     *out = TEXTURE_NONE;
     if (use->texture == SCENE_NONE)
         return WHIT_OK;
-    uint32_t image = find_image(up, use->texture);
-    const float *m = use->transform;
+    bool minified = up->renderer->params.minification == WHIT_MINIFICATION_MIPMAP;
+    uint32_t image = find_image(up, use->texture, minified ? mipmap_kind_of(m, slot) : MIPMAP_NONE);
+    const float *t = use->transform;
     struct gpu_texture record = {
-        .matrix = {m[0], m[1], m[3], m[4]},
-        .offset = {m[2], m[5]},
+        .matrix = {t[0], t[1], t[3], t[4]},
+        .offset = {t[2], t[5]},
         .wrap = wrap_code(use->wrap_u) | wrap_code(use->wrap_v) << 2,
         .nearest = use->nearest,
         .uv_set = use->uv_set != 0,
@@ -111,13 +122,13 @@ static whit_result add_opacity(struct material_upload *up, const struct scene_ma
     if (own->texture != SCENE_NONE) {
         if (has_alpha(scene, own->texture))
             out->flags |= MATERIAL_OPACITY_ALPHA;
-        return add_use(up, own, false, &out->tex_opacity);
+        return add_use(up, m, SCENE_SLOT_OPACITY, false, &out->tex_opacity);
     }
     const struct scene_texture_use *diffuse = &m->textures[SCENE_SLOT_DIFFUSE];
     if (!has_alpha(scene, diffuse->texture))
         return WHIT_OK;
     out->flags |= MATERIAL_OPACITY_ALPHA;
-    return add_use(up, diffuse, true, &out->tex_opacity);
+    return add_use(up, m, SCENE_SLOT_DIFFUSE, true, &out->tex_opacity);
 }
 
 /* Whether the kernel reads the pictures of a slot. */
@@ -147,6 +158,23 @@ struct scene_material material_drawn(const struct renderer *renderer, uint32_t i
     if (glass && m.model != SCENE_MODEL_UNLIT && !renderer->effects.called[SCENE_EFFECT_REFRACTION])
         make_solid(&m);
     return m;
+}
+
+bool textures_minify(const struct renderer *renderer)
+{
+    const struct scene *scene = renderer->scene;
+    if (renderer->params.minification != WHIT_MINIFICATION_MIPMAP)
+        return false;
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        const struct scene_material *m = &scene->materials[i];
+        for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
+            enum scene_slot s = (enum scene_slot)slot;
+            if (m->textures[s].texture != SCENE_NONE && reads_slot(renderer, s) &&
+                mipmap_kind_of(m, s) != MIPMAP_NONE)
+                return true;
+        }
+    }
+    return false;
 }
 
 static whit_result add_material(struct material_upload *up, uint32_t index)
@@ -188,7 +216,7 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
         *slots[i].use = TEXTURE_NONE;
         if (!reads_slot(up->renderer, slots[i].slot))
             continue;
-        whit_result result = add_use(up, &m->textures[slots[i].slot], slots[i].srgb, slots[i].use);
+        whit_result result = add_use(up, m, slots[i].slot, slots[i].srgb, slots[i].use);
         if (result != WHIT_OK)
             return result;
     }
@@ -201,6 +229,37 @@ static uint64_t texel_total(const struct material_upload *up)
     for (uint32_t i = 0; i < up->image_count; ++i)
         total += (uint64_t)up->images[i].width * up->images[i].height;
     return total;
+}
+
+/* The words that an image takes: level 0, a word for each level behind it, their texels. */
+static uint64_t image_words(const struct texel_image *image)
+{
+    uint64_t words = mipmap_first(image->width, image->height, image->levels + 1);
+    return words + image->levels;
+}
+
+/* Adds smaller levels where there is room for them; a picture without them is as it would be
+   without minification. */
+static void add_levels(struct material_upload *up, uint64_t limit)
+{
+    uint64_t room = limit - texel_total(up);
+    uint32_t left_out = 0;
+    for (uint32_t i = 0; i < up->image_count; ++i) {
+        struct texel_image *image = &up->images[i];
+        if (image->kind == MIPMAP_NONE)
+            continue;
+        image->levels = mipmap_levels(image->width, image->height);
+        uint64_t more = image_words(image) - (uint64_t)image->width * image->height;
+        if (more > room) {
+            image->levels = 0;
+            ++left_out;
+            continue;
+        }
+        room -= more;
+    }
+    if (left_out)
+        log_warning(&up->renderer->log,
+                    "textures: %u without smaller levels, to fit the device's buffers", left_out);
 }
 
 /* Halves the largest pictures until all fit into one buffer, and says so. */
@@ -245,31 +304,63 @@ static void halve_texels(const uint8_t *from, uint32_t *width, uint32_t *height,
     *height = h;
 }
 
+/* Behind level 0 of an image, which is `rgba`. */
+static whit_result write_levels(struct material_upload *up, const struct texel_image *image,
+                                const uint8_t *rgba)
+{
+    struct buffer *buffer = up->renderer->scene_buffers.texels;
+    uint64_t texels = (uint64_t)image->width * image->height;
+    uint64_t more = mipmap_first(image->width, image->height, image->levels + 1) - texels;
+    uint32_t firsts[MIPMAP_LEVELS_MAX];
+    if (image->levels == 0)
+        return WHIT_OK;
+    for (uint32_t i = 0; i < image->levels; ++i)
+        firsts[i] = image->first + image->levels +
+                    (uint32_t)mipmap_first(image->width, image->height, i + 1);
+    uint8_t *levels = mipmap_make(rgba, image->width, image->height, image->kind);
+    if (!levels)
+        return render_no_memory(up->renderer, "the levels of a texture");
+    uint64_t at = (image->first + texels) * 4;
+    whit_result result = buffer_write(buffer, at, firsts, (uint64_t)image->levels * 4);
+    if (result == WHIT_OK)
+        result = buffer_write(buffer, at + (uint64_t)image->levels * 4, levels, more * 4);
+    free(levels);
+    return result;
+}
+
 static whit_result write_image(struct material_upload *up, const struct texel_image *image)
 {
     const struct scene_texture *source = &up->renderer->scene->textures[image->texture];
-    struct buffer *texels = up->renderer->scene_buffers.texels;
-    uint64_t at = (uint64_t)image->first * 4;
     uint32_t width = source->width, height = source->height;
-    if (image->halvings == 0)
-        return buffer_write(texels, at, source->rgba, (uint64_t)width * height * 4);
-    uint8_t *half = array_alloc(((size_t)width + 1) / 2 * (((size_t)height + 1) / 2), 4);
-    if (!half)
-        return render_no_memory(up->renderer, "a texture");
-    halve_texels(source->rgba, &width, &height, half);
+    const uint8_t *rgba = source->rgba;
+    uint8_t *half = NULL;
+    if (image->halvings) {
+        rgba = half = array_alloc(((size_t)width + 1) / 2 * (((size_t)height + 1) / 2), 4);
+        if (!half)
+            return render_no_memory(up->renderer, "a texture");
+        halve_texels(source->rgba, &width, &height, half);
+    }
     for (uint32_t i = 1; i < image->halvings; ++i)
         halve_texels(half, &width, &height, half); /* reads ahead of what it writes */
-    whit_result result = buffer_write(texels, at, half, (uint64_t)width * height * 4);
+    whit_result result =
+        buffer_write(up->renderer->scene_buffers.texels, (uint64_t)image->first * 4, rgba,
+                     (uint64_t)width * height * 4);
+    if (result == WHIT_OK)
+        result = write_levels(up, image, rgba);
     free(half);
     return result;
 }
 
 static whit_result write_table(struct material_upload *up)
 {
-    float linear[TEXEL_TABLE_WORDS];
-    for (uint32_t i = 0; i < TEXEL_TABLE_WORDS; ++i)
-        linear[i] = image_linear_from_srgb((float)i / 255.0f);
-    return buffer_write(up->renderer->scene_buffers.texels, 0, linear, sizeof linear);
+    _Static_assert(MIPMAP_PIECES == LEVEL_PIECES &&
+                       TEXEL_TABLE_WORDS == TEXEL_CODES + 2 * LEVEL_PIECES,
+                   "as kernels read it");
+    float table[TEXEL_TABLE_WORDS];
+    for (uint32_t i = 0; i < TEXEL_CODES; ++i)
+        table[i] = image_linear_from_srgb((float)i / 255.0f);
+    mipmap_pieces(&table[TEXEL_CODES]);
+    return buffer_write(up->renderer->scene_buffers.texels, 0, table, sizeof table);
 }
 
 static whit_result upload_texels(struct material_upload *up)
@@ -284,7 +375,10 @@ static whit_result upload_texels(struct material_upload *up)
     if (limit > UINT32_MAX) /* words are counted in 32 bits */
         limit = UINT32_MAX;
     fit_images(up, limit - TEXEL_TABLE_WORDS);
-    uint64_t words = TEXEL_TABLE_WORDS + texel_total(up);
+    add_levels(up, limit - TEXEL_TABLE_WORDS);
+    uint64_t words = TEXEL_TABLE_WORDS;
+    for (uint32_t i = 0; i < up->image_count; ++i)
+        words += image_words(&up->images[i]);
     uint32_t uses = buffers->texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     whit_result result =
         buffer_create(renderer->device, words * 4, uses, "texels", &buffers->texels);
@@ -294,7 +388,7 @@ static whit_result upload_texels(struct material_upload *up)
     for (uint32_t i = 0; result == WHIT_OK && i < up->image_count; ++i) {
         struct texel_image *image = &up->images[i];
         image->first = first;
-        first += image->width * image->height;
+        first += (uint32_t)image_words(image);
         result = write_image(up, image);
     }
     if (result == WHIT_OK)
@@ -308,6 +402,7 @@ static void place_uses(struct material_upload *up)
         const struct texel_image *image = &up->images[up->use_images[i]];
         up->uses[i].first = image->first;
         up->uses[i].size = image->width | image->height << 16;
+        up->uses[i].wrap |= image->levels << TEXTURE_LEVELS_SHIFT;
     }
 }
 

@@ -86,6 +86,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
     spec.SPEC_LISTED = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
+    spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
     return spec;

@@ -33,7 +33,8 @@ uint64_t scene_sphere_cost(uint64_t count)
 
 uint64_t scene_texel_cost(uint64_t width, uint64_t height)
 {
-    return width * height * DEVICE_COPIES * 4;
+    uint64_t texels = width * height;
+    return texels * DEVICE_COPIES * 4 + texels * 4 / 3; /* with its smaller levels on the device */
 }
 
 uint64_t scene_room(const struct scene *scene)

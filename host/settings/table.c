@@ -267,6 +267,13 @@ const struct setting settings_table[] = {
     {"fresnel", 0, NULL, "or Schlick's approximation in its place", AT(EITHER, picture.schlick),
      .values = values_fresnel, .commands = IN_PICTURES, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .title = "Fresnel"},
+    {"minification", 0, NULL,
+     "what textures show of a pixel that covers many of their\n"
+     "texels: the mean of about as many, or those where its\n"
+     "samples are",
+     AT(CHOICE, picture.minification), .values = values_minification,
+     .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .need = SETTING_NEEDS_KERNEL,
+     .title = "minification"},
     {"exposure", 0, "auto|EV",
      "what is displayed, in the window, PNG and FLIP, times 2^EV;\n"
      "auto: as suits what the first camera sees of a model, with\n"

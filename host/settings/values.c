@@ -50,6 +50,8 @@ const struct setting_value values_shadows[] = {{"tinted", WHIT_SHADOWS_TINTED, N
                                                {"none", WHIT_SHADOWS_NONE, NULL},
                                                {0}};
 const struct setting_value values_fresnel[] = {{"exact", 0, NULL}, {"schlick", 1, NULL}, {0}};
+const struct setting_value values_minification[] = {
+    {"mipmap", WHIT_MINIFICATION_MIPMAP, NULL}, {"none", WHIT_MINIFICATION_NONE, NULL}, {0}};
 const struct setting_value values_effects[] = {{"auto", 0, NULL}, {"all", 1, NULL}, {0}};
 const struct setting_value values_samples[] = {
     {"1", 1, NULL},     {"4", 4, NULL},       {"16", 16, NULL},     {"64", 64, NULL},

@@ -25,6 +25,7 @@ extern const struct setting_value values_up[];              /* whit_up */
 extern const struct setting_value values_lights[];          /* whit_lights */
 extern const struct setting_value values_shadows[];         /* whit_shadows */
 extern const struct setting_value values_fresnel[];         /* whit_renderer_params.schlick */
+extern const struct setting_value values_minification[];    /* whit_minification */
 extern const struct setting_value values_effects[];         /* what the text begins with */
 extern const struct setting_value values_samples[];         /* of a pixel: those spread evenly */
 extern const struct setting_value values_light_samples[];   /* of an area light */

@@ -46,6 +46,12 @@ typedef struct whit_sampling {
     double contrast; /* ADAPTIVE: above 0, up to 1 */
 } whit_sampling;
 
+/* What textures show of a pixel that covers many of their texels. */
+typedef enum whit_minification {
+    WHIT_MINIFICATION_MIPMAP = 0, /* the mean of about as many, from smaller levels */
+    WHIT_MINIFICATION_NONE,       /* the texels where its samples are */
+} whit_minification;
+
 /* How kernels read trees. */
 typedef enum whit_load_path {
     WHIT_LOAD_AUTO = 0, /* by the device */
@@ -73,8 +79,9 @@ typedef struct whit_renderer_params {
     whit_shadows shadows;
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
-    double exposure_ev;     /* what is displayed (.png, FLIP, bytes) is times 2^this */
-    bool soft_highlights;   /* and runs softly towards 1 from 0.6 on, in place of a cut at 1 */
+    whit_minification minification;
+    double exposure_ev;   /* what is displayed (.png, FLIP, bytes) is times 2^this */
+    bool soft_highlights; /* and runs softly towards 1 from 0.6 on, in place of a cut at 1 */
     /* Kernels have what the scene calls for. With all_effects they have everything, which changes
        no picture; without effects_removed it does. Bits 1 << the index of whit_effect_name. */
     bool all_effects;

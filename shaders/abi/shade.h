@@ -71,8 +71,14 @@ GPU_ASSERT_AT(gpu_material, tex_diffuse, 128)
 #define WRAP_MIRROR 2u
 
 /* Texels are one word each, RGBA of 8 bits as in the file, behind this many words: the linear
-   values (float bits) of the 256 sRGB codes. */
-#define TEXEL_TABLE_WORDS 256u
+   values (float bits) of the 256 sRGB codes, and the pieces of mip_level, two floats each. Of a
+   texture with smaller levels (host/picture/mipmap.h) level 0 comes first, then a word for each of
+   the others that says where its first texel is, then these. */
+#define TEXEL_TABLE_WORDS 288u
+#define TEXEL_CODES       256u
+#define LEVEL_PIECES      16u
+
+#define TEXTURE_LEVELS_SHIFT 4u
 
 /* A use of a texture. */
 struct gpu_texture {
@@ -80,7 +86,7 @@ struct gpu_texture {
     gpu_vec2 offset;
     gpu_uint first; /* word of its first texel */
     gpu_uint size;  /* width | height << 16 */
-    gpu_uint wrap;  /* u | v << 2 */
+    gpu_uint wrap;  /* u | v << 2 | levels behind level 0 << TEXTURE_LEVELS_SHIFT */
     gpu_uint nearest;
     gpu_uint uv_set;
     gpu_uint srgb; /* red, green and blue go through the table */
@@ -139,7 +145,8 @@ struct gpu_frame {
     gpu_uint depth; /* most bounces */
     gpu_vec3 ambient;
     gpu_uint use_row; /* of the shading rows: first texture use; materials are at 0 */
-    gpu_uint pad1;
+    gpu_float texel_area; /* that the middle pixel asks for, across its ray at distance 1 from the
+                             eye: camera_pixel_area by MIPMAP_PIXEL_TEXELS */
     gpu_float bailout;   /* rays that can add less than this to a pixel are not traced */
     gpu_uint light_row;  /* first light */
     gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS or TRIANGLE_FLAT_ROWS each */

@@ -129,7 +129,8 @@
     X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */                                       \
     X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */                                             \
     X(51, SPEC_WIDE_ROWS, 0)          /* rows are written in words of 64 bits: for lavapipe */       \
-    X(52, SPEC_PRIORITIES, 1)         /* some media go before others where they overlap */
+    X(52, SPEC_PRIORITIES, 1)         /* some media go before others where they overlap */         \
+    X(53, SPEC_MINIFICATION, 1)       /* textures have smaller levels, for what is far away */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -75,7 +75,34 @@ Ray camera_ray(uvec2 pixel)
     ray.skip_primitive = HIT_NONE;
     ray.skip_instance = ray.skip_record = HIT_NONE;
     ray.kind = RAY_PRIMARY;
+    ray.way = 0.0;
     return ray;
+}
+
+// The share of a pixel that the sample stands for: mipmap_sample_share of host/picture/mipmap.c.
+float sample_share()
+{
+    uint halvings = chunk.sample_index == 0u ? 0u : uint(findMSB(chunk.sample_index)) / 2u + 1u;
+    return uintBitsToFloat((127u - 2u * halvings) << 23);
+}
+
+// The area of a texel that a sample of the pixel asks for, across its camera ray `way` from the eye. A
+// pinhole's pixels are as large in the picture plane, the more aslant the farther from the middle; those of a
+// panorama get narrow towards its poles.
+float texel_area(uvec2 pixel, float way)
+{
+    float area = frame.texel_area * sample_share();
+    if (SPEC_CAMERA == CAMERA_ORTHOGRAPHIC)
+        return area;
+    vec2 middle = vec2(pixel) * 2.0 + 1.0 - vec2(frame.width, frame.height);
+    vec2 at = middle * vec2(frame.inv_width, frame.inv_height);
+    area *= way * way;
+    if (SPEC_CAMERA == CAMERA_PANORAMA)
+        return area * sine_cosine_pi(at.y * 0.5).y;
+    float x2 = at.x * at.x * dot(frame.right, frame.right);
+    float y2 = at.y * at.y * dot(frame.up, frame.up);
+    float cosine = inverse_square_root(1.0 + (x2 + y2));
+    return area * (cosine * cosine * cosine);
 }
 
 #endif

@@ -61,7 +61,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
         transmission *= sample_use(s, m.tex_transmission).r;
     if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u) {
         if (is_textured(TEXTURES_OPACITY, m.tex_opacity))
-            opacity = sample_opacity(m, s.shade_index, s.u, s.v) * s.color_alpha;
+            opacity = sample_cover(s, m) * s.color_alpha;
         o.straight = clamp(1.0 - opacity, 0.0, 1.0);
     }
     if (SPEC_NORMAL_MAPS != 0u)

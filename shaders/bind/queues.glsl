@@ -38,8 +38,12 @@ layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
 };
 layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
 {
-    uint ray_kinds[]; // with SPEC_COUNT or SPEC_PROBE
+    uint ray_kinds[]; // RAY_* in the low bits, with SPEC_COUNT or SPEC_PROBE, under ray.way
 };
+
+// Whether rays have a word in ray_kinds.
+const bool HAS_KINDS = SPEC_COUNT != 0u || SPEC_PROBE != 0u || SPEC_MINIFICATION != 0u;
+const uint KIND_BITS = 3u;
 
 // Whether surfaces call for rays, be they traced or not.
 const bool CALLS_RAYS = SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u || SPEC_CUTOUTS != 0u ||
@@ -159,7 +163,9 @@ Ray queued_ray(uint id, out uint slot)
     ray.media = SPEC_MEDIA != 0u ? fetch_ray_row(row + 3u) : uvec4(0u);
     ray.steps = r0.w & ((1u << STATE_SLOT_SHIFT) - 1u);
     slot = r0.w >> STATE_SLOT_SHIFT;
-    ray.kind = SPEC_COUNT != 0u || SPEC_PROBE != 0u ? ray_kinds[id] : 0u;
+    uint kind = HAS_KINDS ? ray_kinds[id] : 0u;
+    ray.kind = kind & KIND_BITS;
+    ray.way = uintBitsToFloat(kind & ~KIND_BITS);
     ray.skip_record = r1.w;
     uvec2 skip = fetch_record_ids(r1.w, r2.w);
     ray.skip_instance = skip.x;
@@ -203,8 +209,8 @@ void store_ray(uint id, Ray ray, uint slot)
         if (SPEC_MEDIA != 0u)
             ray_rows[place * RAY_ROWS + 3u] = ray.media;
     }
-    if (SPEC_COUNT != 0u || SPEC_PROBE != 0u)
-        ray_kinds[id] = ray.kind;
+    if (HAS_KINDS)
+        ray_kinds[id] = ray.kind | (SPEC_MINIFICATION != 0u ? floatBitsToUint(ray.way) & ~KIND_BITS : 0u);
 }
 
 void store_hit_row(uint row, uvec4 value)

@@ -11,6 +11,7 @@ struct Ray {
     uint skip_primitive, skip_instance;
     uint skip_record; // of that primitive, where it is to be queued
     uint kind; // RAY_*; with SPEC_COUNT or SPEC_PROBE
+    float way; // from the eye to its origin along the rays before it; with SPEC_MINIFICATION
 };
 
 // Where a ray passes more surfaces unseen than the steps of one bounce, it counts as one: so every

@@ -149,28 +149,83 @@ float reduce_coordinate(float x, uint wrap)
     return abs(reduced) <= 2.0 ? reduced : 0.0;
 }
 
-vec4 sample_texture(gpu_texture t, vec2 uv)
+// Where `uv` of the use's set is in the picture, whose sides are 1: whole periods are taken off.
+vec2 place_in_picture(gpu_texture t, vec2 uv)
 {
-    ivec2 size = ivec2(int(t.size & 0xffffu), int(t.size >> 16));
-    uvec2 wrap = uvec2(t.wrap & 3u, (t.wrap >> 2) & 3u);
     vec2 at = vec2(t.matrix.x * uv.x + t.matrix.y * uv.y, t.matrix.z * uv.x + t.matrix.w * uv.y) +
               t.offset;
-    at = vec2(reduce_coordinate(at.x, wrap.x), reduce_coordinate(at.y, wrap.y)) * vec2(size);
+    return vec2(reduce_coordinate(at.x, t.wrap & 3u), reduce_coordinate(at.y, (t.wrap >> 2) & 3u));
+}
+
+// Texture `t`, of so many texels from word `first` on, at a place in the picture.
+vec4 sample_texels(gpu_texture t, uint first, ivec2 size, vec2 at)
+{
+    uvec2 wrap = uvec2(t.wrap & 3u, (t.wrap >> 2) & 3u);
+    at *= vec2(size);
     bool filtered = (SPEC_SAMPLING & SAMPLING_FILTERED) != 0u && t.nearest == 0u;
     vec2 corner = filtered ? floor(at - 0.5) : floor(at);
     vec2 part = filtered ? at - 0.5 - corner : vec2(0.0);
     ivec2 texel = ivec2(corner);
     uint x0 = uint(wrap_texel(texel.x, size.x, wrap.x));
-    uint y0 = t.first + uint(wrap_texel(texel.y, size.y, wrap.y) * size.x);
+    uint y0 = first + uint(wrap_texel(texel.y, size.y, wrap.y) * size.x);
     bool srgb = t.srgb != 0u;
     vec4 color = fetch_texel(y0 + x0, srgb);
     if ((SPEC_SAMPLING & SAMPLING_FILTERED) == 0u)
         return color;
     uint x1 = uint(wrap_texel(texel.x + 1, size.x, wrap.x));
-    uint y1 = t.first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
+    uint y1 = first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
     vec4 top = mix(color, fetch_texel(y0 + x1, srgb), part.x);
     vec4 bottom = mix(fetch_texel(y1 + x0, srgb), fetch_texel(y1 + x1, srgb), part.x);
     return mix(top, bottom, part.y);
+}
+
+ivec2 texture_size(gpu_texture t)
+{
+    return ivec2(int(t.size & 0xffffu), int(t.size >> 16));
+}
+
+// At level 0.
+vec4 sample_texture(gpu_texture t, vec2 uv)
+{
+    return sample_texels(t, t.first, texture_size(t), place_in_picture(t, uv));
+}
+
+// The level whose texels are as large as `texels` of level 0: half their binary logarithm, by a table of
+// straight pieces, since drivers' own logarithms differ. mipmap_level of host/picture/mipmap.c.
+float mip_level(float texels)
+{
+    uint bits = floatBitsToUint(texels);
+    uint word = TEXEL_CODES + 2u * ((bits >> 19) & (LEVEL_PIECES - 1u));
+    float start = uintBitsToFloat(fetch_texel_word(word));
+    float slope = uintBitsToFloat(fetch_texel_word(word + 1u));
+    float along = float(bits & 0x7ffffu) * (1.0 / 524288.0);
+    float exponent = float(int(bits >> 23) - 127);
+    return texels > 1.0 ? 0.5 * exponent + (start + slope * along) : 0.0;
+}
+
+// Between the two levels that have about one texel where level 0 has so many.
+vec4 sample_minified(gpu_texture t, vec2 uv, float texels)
+{
+    ivec2 size = texture_size(t);
+    float level = min(mip_level(texels), float(t.wrap >> TEXTURE_LEVELS_SHIFT));
+    uint k = uint(level);
+    float part = level - float(k);
+    vec2 at = place_in_picture(t, uv);
+    uint table = t.first + uint(size.x * size.y) - 1u;
+    vec4 color = vec4(0.0);
+    bool more = true, second = false;
+    // A loop, so that lavapipe reads a second level only where some lane of a subgroup wants one. It goes on
+    // for the others too, whose values must not change then.
+    do {
+        uint first = k == 0u ? t.first : fetch_texel_word(table + k);
+        vec4 texel = sample_texels(t, first, max(size >> int(k), ivec2(1)), at);
+        vec4 mixed = second ? mix(color, texel, part) : texel;
+        color = more ? mixed : color;
+        more = more && !second && part > 0.0;
+        second = true;
+        k += uint(more);
+    } while (more);
+    return color;
 }
 
 // `slot`: TEXTURES_*.
@@ -186,18 +241,22 @@ vec2 interpolate_uv(uint shade_index, uint uv_set, float u, float v)
     return uv0 * (1.0 - u - v) + uv1 * u + uv2 * v;
 }
 
-// Texture `use` at a point of a triangle.
+// Texture `use` at a point of a triangle, at level 0.
 vec4 sample_use(uint use, uint shade_index, float u, float v)
 {
     gpu_texture t = fetch_texture_use(use);
     return sample_texture(t, interpolate_uv(shade_index, t.uv_set, u, v));
 }
 
-float sample_opacity(gpu_material material, uint shade_index, float u, float v)
+float opacity_of(gpu_material material, vec4 texel)
 {
-    vec4 texel = sample_use(material.tex_opacity, shade_index, u, v);
     return material.opacity *
            ((material.flags & MATERIAL_OPACITY_ALPHA) != 0u ? texel.a : texel.r);
+}
+
+float sample_opacity(gpu_material material, uint shade_index, float u, float v)
+{
+    return opacity_of(material, sample_use(material.tex_opacity, shade_index, u, v));
 }
 
 #endif

@@ -10,7 +10,8 @@ struct Surface {
     vec3 p, error; // world; bound of the error of p
     vec3 ng;       // unit geometric normal, to the outside of closed meshes
     vec3 ns;       // unit shading normal, on the side of ng
-    vec3 e1, e2; // edges from the first vertex, world; of NORMAL_MAPS, MEDIA, TERMINATOR
+    vec3 e1, e2; // edges from the first vertex, world; of NORMAL_MAPS, MEDIA, TERMINATOR, MINIFICATION
+    vec3 footprint; // of what the ray stands for, see take_footprint; zero: a point
     vec3 color;              // of the vertices
     float color_alpha;
     uint shade_index; // index among the triangles of all meshes
@@ -171,7 +172,8 @@ Surface fetch_surface(Hit hit)
         place_point(inverse, f0, f1, f2, s.p, s.error);
         ng = place_normal(inverse, ng);
         ns = place_normal(inverse, ns);
-        if (SPEC_NORMAL_MAPS != 0u || SPEC_MEDIA != 0u || SPEC_TERMINATOR != 0u) {
+        if (SPEC_NORMAL_MAPS != 0u || SPEC_MEDIA != 0u || SPEC_TERMINATOR != 0u ||
+            SPEC_MINIFICATION != 0u) {
             s.e1 = rotate_rows(f0, f1, f2, s.e1);
             s.e2 = rotate_rows(f0, f1, f2, s.e2);
         }
@@ -187,12 +189,37 @@ Surface fetch_surface(Hit hit)
     vec4 color = vertex_color(s.shade_index, s.u, s.v);
     s.color = color.rgb;
     s.color_alpha = color.a;
+    s.footprint = vec3(0.0);
     return s;
+}
+
+// Texture `t` at `uv` of its set, as large as the footprint is there: the mean of the squares of its two axes,
+// in texels.
+vec4 sample_footprint(Surface s, gpu_texture t, vec2 uv)
+{
+    if (SPEC_MINIFICATION == 0u)
+        return sample_texture(t, uv);
+    vec2 uv0, uv1, uv2, size = vec2(texture_size(t));
+    fetch_uvs(s.shade_index, t.uv_set, uv0, uv1, uv2);
+    uv1 -= uv0;
+    uv2 -= uv0;
+    vec2 d1 = vec2(dot(t.matrix.xy, uv1), dot(t.matrix.zw, uv1)) * size;
+    vec2 d2 = vec2(dot(t.matrix.xy, uv2), dot(t.matrix.zw, uv2)) * size;
+    vec3 squares = vec3(dot(d1, d1), dot(d1, d2), dot(d2, d2));
+    return sample_minified(t, uv, dot(s.footprint, squares));
 }
 
 vec4 sample_use(Surface s, uint use)
 {
-    return sample_use(use, s.shade_index, s.u, s.v);
+    gpu_texture t = fetch_texture_use(use);
+    return sample_footprint(s, t, interpolate_uv(s.shade_index, t.uv_set, s.u, s.v));
+}
+
+// Of materials that blend.
+float sample_cover(Surface s, gpu_material material)
+{
+    vec4 texel = sample_use(s, material.tex_opacity);
+    return opacity_of(material, texel);
 }
 
 // Directions in which u and v of a texture's picture grow, in world space, not unit; zero where the
@@ -211,6 +238,18 @@ void texture_frame(Surface s, gpu_texture t, out vec3 tangent, out vec3 bitangen
     bitangent = (s.e2 * d1.x - s.e1 * d2.x) * inv;
 }
 
+// Sets s.footprint for a ray along `dir` that is `area` across where it meets the surface. A ray beside it,
+// moved by `a`, meets the plane of e1 and e2 at dot(along1, a) e1 + dot(along2, a) e2 from there; a texture that
+// moves by d1 and d2 along these edges is moved by J a then, and half the trace of J transposed J is the mean
+// of the squares of the ellipse's axes: the sum of the three parts times d1 d1, d1 d2 and d2 d2.
+void take_footprint(inout Surface s, vec3 dir, float area)
+{
+    vec3 along1 = cross(s.e2, dir), along2 = cross(dir, s.e1);
+    float seen = dot(cross(s.e1, s.e2), dir);
+    vec3 parts = vec3(dot(along1, along1), 2.0 * dot(along1, along2), dot(along2, along2));
+    s.footprint = parts * (0.5 * area / (seen * seen));
+}
+
 // Bends s.ns by a tangent-space map or by the slope of a height map.
 void bend_normal(inout Surface s, gpu_material material)
 {
@@ -224,7 +263,7 @@ void bend_normal(inout Surface s, gpu_material material)
     vec3 t = normalize_or(tangent - s.ns * dot(s.ns, tangent), vec3(0.0));
     vec3 b = normalize_or(bitangent - s.ns * dot(s.ns, bitangent), vec3(0.0));
     vec2 uv = interpolate_uv(s.shade_index, picture.uv_set, s.u, s.v);
-    vec3 texel = sample_texture(picture, uv).rgb;
+    vec3 texel = sample_footprint(s, picture, uv).rgb;
     vec3 bent;
     if (is_map) {
         vec3 map = texel * 2.0 - 1.0;
@@ -236,7 +275,7 @@ void bend_normal(inout Surface s, gpu_material material)
         gpu_texture right = picture, below = picture;
         right.offset.x += 1.0 / size.x;
         below.offset.y += 1.0 / size.y;
-        vec2 rise = vec2(sample_texture(right, uv).r, sample_texture(below, uv).r) - texel.r;
+        vec2 rise = vec2(sample_footprint(s, right, uv).r, sample_footprint(s, below, uv).r) - texel.r;
         // Heights are in units of 1/32 of the texture's side: MTL gives none.
         vec2 slope = rise * size * (material.normal_scale / 32.0);
         bent = s.ns - t * slope.x - b * slope.y;

@@ -278,6 +278,10 @@ void main()
     if (alive && must_wait(status))
         list_deferred(id);
     alive = alive && !must_wait(status);
+    if (SPEC_MINIFICATION != 0u) {
+        ray.way += hit.t;
+        take_footprint(s, ray.dir, texel_area(slot_pixel(slot), ray.way));
+    }
     hook_ray = ray;
 #ifdef HOOKS
     hook_pixel = slot_pixel(slot);

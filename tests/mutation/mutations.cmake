@@ -366,6 +366,22 @@ change(host/reference/media.c transmitted [[exp\(-]] [[exp(-0.5 * ]])
 mutation(reference_without_room reference_formula RED light_falls_with_cosine_and_square)
 change(host/reference/surface.c surface_at [[ROOM]] [[0.0 * ROOM]])
 
+mutation(levels_too_coarse reference_minification RED cameras_agree_with_the_reference)
+change(shaders/bind/shading.glsl [[0.5 * exponent + (start]] [[0.5 * exponent + 0.01 + (start]])
+
+mutation(way_before_mirrors_forgotten reference_minification RED cameras_agree_with_the_reference)
+change(shaders/kernel/shade.comp [[ray.way += hit.t;]] [[ray.way = hit.t;]])
+
+mutation(samples_blur_as_one reference_minification RED one_sample_is_nearer_to_the_truth)
+change(shaders/bind/camera.glsl [[(127u - 2u * halvings) << 23]] [[127u << 23]])
+change(host/picture/mipmap.c mipmap_sample_share [[0\.25]] [[1.0]])
+
+mutation(magnified_textures_blurred reference_minification RED magnified_textures_keep_their_bytes)
+change(shaders/bind/shading.glsl [[(start + slope * along) : 0.0;]] [[(start + slope * along) : 0.01;]])
+
+mutation(minified_without_textures reference_minification RED scenes_without_textures_have_the_same_kernels)
+change(host/render/variants.c [[spec.SPEC_MINIFICATION = textures_minify(renderer);]] [[spec.SPEC_MINIFICATION = 1;]])
+
 mutation(odd_sides_cut picture_mipmap RED texels_are_means_of_what_they_cover)
 change(host/picture/mipmap.c cover_of [[from % 2 == 0]] [[from > 1]])
 

@@ -112,7 +112,10 @@ static struct scene *ball_scene(enum look look, bool fine, bool stretched)
     return scene;
 }
 
-static const whit_renderer_params small = {.width = 64, .height = 48, .depth = 5};
+/* How flat a surface is met decides the level of a texture, and at the rim triangles tell that in
+ * steps. */
+static const whit_renderer_params small = {
+    .width = 64, .height = 48, .depth = 5, .minification = WHIT_MINIFICATION_NONE};
 
 /* The triangles lie at most 1 - cos(pi / 256) = 8e-5 within the sphere, a hundredth of a pixel, so
    pixels whose middle is that near to an edge may differ: edges of the ball, its shadow and squares
