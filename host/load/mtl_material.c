@@ -103,7 +103,7 @@ static whit_result derive_texture(struct scene *scene, const struct mtl_texture 
     }
     if (!made.name)
         return WHIT_ERROR_MEMORY;
-    if (!scene_afford(scene, scene_texel_cost(from->width, from->height), "texture `%s`",
+    if (!scene_afford(scene, scene_texture_cost(from->width, from->height), "texture `%s`",
                       text_token(path_name(made.name)).text)) {
         free(made.name);
         return WHIT_ERROR_INPUT;

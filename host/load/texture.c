@@ -115,14 +115,14 @@ static whit_result decode_source(struct scene *scene, const char *name,
                                  const struct foreign_params *foreign, struct source *source,
                                  struct picture *picture, char reason[FOREIGN_REASON_BYTES])
 {
-    uint64_t pixels_max = scene_room(scene) / scene_texel_cost(1, 1);
+    uint64_t pixels_max = scene_room(scene) / scene_texture_cost(1, 1);
     whit_result result = picture_read(&scene->log, foreign, pixels_max, source->data,
                                       source->size_bytes, picture, reason);
     uint64_t pixels = (uint64_t)picture->width * picture->height;
     if (result != WHIT_OK && (result != WHIT_ERROR_INPUT || pixels <= pixels_max))
         return result;
     source->too_large = !scene_afford(
-        scene, scene_texel_cost(picture->width, picture->height), "texture `%s` of %ux%u pixels",
+        scene, scene_texture_cost(picture->width, picture->height), "texture `%s` of %ux%u pixels",
         text_token(path_name(name)).text, picture->width, picture->height);
     return source->too_large ? WHIT_ERROR_INPUT : result;
 }
@@ -170,8 +170,8 @@ static bool shrink(struct scene *scene, const char *name, const whit_load_params
     uint32_t width = picture->width, height = picture->height;
     if (!picture_shrink(picture, limit_of(params)))
         return false;
-    scene_give_back(scene, scene_texel_cost(width, height) -
-                               scene_texel_cost(picture->width, picture->height));
+    scene_give_back(scene, scene_texture_cost(width, height) -
+                               scene_texture_cost(picture->width, picture->height));
     if (picture->width != width || picture->height != height)
         scene_note(scene, SCENE_NOTE_INFO, "texture `%s`: shrunk from %ux%u to %ux%u",
                    text_token(path_name(name)).text, width, height, picture->width,

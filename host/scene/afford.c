@@ -33,8 +33,12 @@ uint64_t scene_sphere_cost(uint64_t count)
 
 uint64_t scene_texel_cost(uint64_t width, uint64_t height)
 {
-    uint64_t texels = width * height;
-    return texels * DEVICE_COPIES * 4 + texels * 4 / 3; /* with its smaller levels on the device */
+    return width * height * DEVICE_COPIES * 4;
+}
+
+uint64_t scene_texture_cost(uint64_t width, uint64_t height)
+{
+    return scene_texel_cost(width, height) + width * height * 4 / 3;
 }
 
 uint64_t scene_room(const struct scene *scene)

@@ -19,6 +19,8 @@ uint64_t scene_instance_cost(uint64_t count);
 uint64_t scene_triangle_cost(uint64_t triangles, uint64_t vertices, uint64_t vertex_bytes);
 uint64_t scene_sphere_cost(uint64_t count);
 uint64_t scene_texel_cost(uint64_t width, uint64_t height);
+/* The same with what its smaller levels take on the device: a third. */
+uint64_t scene_texture_cost(uint64_t width, uint64_t height);
 
 /* Counts `bytes` for `what` ("a texture of 4 x 4 pixels"). False, after one error that names it,
    and nothing counted, when the scene would take more than its memory_limit. */
