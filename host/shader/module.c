@@ -5,7 +5,8 @@
 
 #include "base/array.h"
 
-enum { BOUND_MAX = 1 << 24, WHIT_OWN = UINT32_MAX };
+enum { BOUND_MAX = 1 << 24 };
+static const uint32_t WHIT_OWN = UINT32_MAX;
 
 static bool is_type(uint32_t op)
 {

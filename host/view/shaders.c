@@ -74,7 +74,7 @@ void shaders_step(struct view *view)
     if (shaders->change == change->number)
         return;
     shaders->change = change->number;
-    if (!shaders->read_ms || change->settings.shader_reload != view->settings.shader_reload)
+    if (shaders->read_ms <= 0.0 || change->settings.shader_reload != view->settings.shader_reload)
         return;
     char line[256];
     snprintf(line, sizeof line,
