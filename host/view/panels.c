@@ -186,7 +186,8 @@ void panels_switch_effects(struct view *view)
     panels->effects = !panels->effects;
     prices_leave(view, panels->measured);
     panels->measured = NULL;
-    if (panels->effects && view->scene && view->frame.number > 0)
+    bool can = !view->settings.shader[0]; /* prices are of whit's own functions */
+    if (can && panels->effects && view->scene && view->frame.number > 0)
         panels->measured = prices_start(&(struct prices_params){.settings = &view->frame.settings,
                                                                 .scene = view->scene,
                                                                 .effects = true,

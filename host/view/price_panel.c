@@ -41,6 +41,9 @@ void price_switch(struct view *view)
         view->prices = NULL;
     } else if (!view->scene) {
         view->prices_open = false;
+    } else if (view->settings.shader[0]) {
+        view->prices_open = false;
+        view_say(view, "prices are measured against the reference, which has no --shader");
     } else {
         view->prices_drawn = 0;
         view->prices =

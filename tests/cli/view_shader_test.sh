@@ -41,7 +41,9 @@ until error = $NONE
 mended: | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
 until shader.hash = $violet
 twice: | frame.pixels not as mended | error =
-panel: press Tab
+prices: press P | toast has the reference, which has no --shader | frame.pixels as twice
+effects: press X | toast as prices | frame.pixels as twice
+panel: press X, press Tab
 off: choose stepped | render has --set stepped=off | frame.pixels not as twice | shader.hash = $violet
 on: choose stepped | render has --set stepped=on | frame.pixels as twice
 END
