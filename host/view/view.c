@@ -18,7 +18,8 @@ static const double REST_MS = 1000.0; /* without a picture: the next begins anot
 static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
 /* Between pictures of how far it is: on a CPU device each takes from the cores that draw. */
 static const double PROGRESS_SHOWN_MS = 400.0;
-static const double WATCH_S = 0.25; /* between looks at the scene's files */
+static const double WATCH_S = 0.25;        /* between looks at the scene's files */
+static const double SHADER_WATCH_S = 0.02; /* and at those of a shader, which are written often */
 static const double IDLE_S = 5.0;
 
 double view_now_ms(const struct view *view)
@@ -297,8 +298,10 @@ static double wait_seconds(struct view *view, bool goes_on)
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
     if (view->status.stage != SESSION_DONE || view->status.drawing)
         wait = fmin(wait, PROGRESS_S);
-    if (view->watch || view->watch_asked || view->shaders.watch)
+    if (view->watch || view->watch_asked)
         wait = fmin(wait, WATCH_S);
+    if (view->shaders.watch)
+        wait = fmin(wait, SHADER_WATCH_S);
     wait = fmin(wait, replay_wait_s(view));
     return wait > 0.0 ? wait + 1e-3 : 0.0;
 }
