@@ -80,7 +80,7 @@ refuse 2 "and --frames" "one picture of colours" render $BALLS -o no.#.png --ref
 check "nothing was written" test ! -e no.png
 
 # Ctrl+C ends it as it ends every picture.
-"$WHIT" render "$SCENES/default.json" -o stopped.png --size 320x240 --refine 1e-9 2>stderr &
+"$WHIT" render "$SCENES/default.json" -o stopped.png --size 320x240 --refine 1e6ms 2>stderr &
 pid=$!
 sleep 2
 kill -INT $pid
