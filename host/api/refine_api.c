@@ -278,7 +278,8 @@ static double largest(const struct image *cuts, size_t channel)
     return (double)max;
 }
 
-/* Those of parts were added as if they were pictures. */
+/* The largest cut weight of a pixel is that of the mean of all samples. What was added up over the
+   steps is larger, as each step may have had it in another pixel. */
 void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats)
 {
     *stats = refine->stats;

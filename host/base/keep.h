@@ -6,8 +6,8 @@
 
 struct keep;
 
-/* What the process does before the first request, NULL: nothing; and what its children do with the
-   bytes of one: as fn of child_run. */
+/* `prepare` runs once in the process before its first request; NULL: nothing does. `answer` runs in
+   a child of it for each request, with the bytes of the request, as fn of child_run does. */
 struct keep_work {
     void (*prepare)(void);
     int (*answer)(const void *request, size_t bytes, void *to, child_write write);

@@ -6,11 +6,11 @@
 
 #include <math.h>
 
-/* What a change counts for after another doubling: by so much changes become smaller, in the
-   scenes of scenes/, in the median. */
+/* A doubling of samples changes a pixel by this share of what the doubling before it changed: the
+   median over the scenes of scenes/. */
 #define CHANGE_FALLS    0.6f
-/* Of the changes that are seen, to cover those that are to come: 1 + 0.6 + 0.36 ... would be 2.5
-   if all went one way. */
+/* The changes of all later doublings together are taken to be this many times the last one. They
+   would be 2.5 times as large (1 + 0.6 + 0.36 ...) if all of them had the same sign. */
 #define CHANGES_TO_COME 1.5
 
 static float largest_difference(const float *a, const float *b)
@@ -29,7 +29,7 @@ void estimate_note_change(const struct image *const halves[2], struct image *cha
     }
 }
 
-/* Of the pixels around (x, y) that there are, and itself. */
+/* The mean over the 3x3 pixels around (x, y), fewer at the border. */
 static double mean_around(const struct image *image, uint32_t x, uint32_t y)
 {
     uint32_t x0 = x > 0 ? x - 1 : 0, y0 = y > 0 ? y - 1 : 0, count = 0;

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 needs jq
 EXAMPLES=$(cd "$SCENES/../shaders/examples" && pwd)
-mkdir "$OUT/work" && cd "$OUT/work" || exit 1
+mkdir "$OUT/here" && cd "$OUT/here" || exit 1
 SMALL="--size 48x32 --quiet"
 draw_usual() { expect 0 "as usual" render "$SCENES/default.json" --size 48x32 --quiet --light-samples 1 --depth 3 -o usual.png; }
 # shellcheck disable=SC2086 # options are split where they are used

@@ -2,7 +2,7 @@
 # The viewer and a file of functions that is written while it is shown.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
-mkdir -p "$OUT/work/live/part" && cd "$OUT/work" || exit 1
+mkdir -p "$OUT/here/live/part" && cd "$OUT/here" || exit 1
 
 cat >live/a.glsl <<'END'
 #include "part/tint.glsl"

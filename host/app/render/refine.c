@@ -53,7 +53,7 @@ bool refine_check(struct cli_reader *reader, const struct job *job,
 
 /* ---- Steps ---- */
 
-/* Where a picture in the making stands. */
+/* A picture that is being refined: its samples, figures and time so far. */
 struct refine_steps {
     whit_refine *refine;
     whit_refine_info now;
@@ -69,7 +69,8 @@ static bool has_time(const struct refine_goal *goal, const struct refine_steps *
            steps->stats.render_ms + next_ms <= goal->limit_ms;
 }
 
-/* What more samples leave as it is may be too much already. */
+/* Also true where rays that were cut, which more samples do not bring back, leave too large an
+   error already. */
 static bool is_done(const struct refine_goal *goal, const whit_refine_info *now)
 {
     enum { SAMPLES_TO_TELL = 4 };

@@ -13,7 +13,8 @@ struct refine_goal {
     double limit_ms; /* of drawing; the step that would pass it is not begun */
 };
 
-/* What came of it. `samples` 0: it was not asked for. */
+/* The samples and the estimated error that refining ended with. `samples` 0: --refine was not
+   given. */
 struct refined {
     uint32_t samples;
     double error, error_of_cuts; /* < 0: not known, of one sample */
@@ -40,7 +41,7 @@ WHIT_CHECK whit_result refine_render(struct job *job, const struct render_reques
                                      struct refined *refined, whit_image **color,
                                      whit_stats *stats);
 
-/* Says what came of it. */
+/* Prints samples and error, as a note, or as an error where the goal was not reached. */
 void refine_say(const struct refine_goal *goal, const struct refined *refined);
 
 #endif

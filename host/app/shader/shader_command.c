@@ -6,7 +6,7 @@
 
 #include "app/commands.h"
 
-struct shader_request {
+struct shader_options {
     struct job job;
     const char *dump;
     bool json;
@@ -14,8 +14,8 @@ struct shader_request {
 
 static const struct setting options[] = {
     {"dump", 0, "FOLDER", "write the kernels with the file in them there: SPIR-V",
-     SETTING_AT_NAME(struct shader_request, dump)},
-    {"json", 0, NULL, "print JSON", SETTING_AT_FLAG(struct shader_request, json)},
+     SETTING_AT_NAME(struct shader_options, dump)},
+    {"json", 0, NULL, "print JSON", SETTING_AT_FLAG(struct shader_options, json)},
     {0},
 };
 
@@ -188,7 +188,7 @@ static whit_result dump(const whit_shader *shader, const char *folder)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct shader_request request = {0};
+    struct shader_options request = {0};
     struct job *job = &request.job;
     job_init(job, command);
     cli_reader_init(&reader, command, argc, argv);
