@@ -128,19 +128,43 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
                               : pose_on_cpu(renderer->accel, time_s);
 }
 
+/* What rays on the CPU go by stays. */
+static void take_params(whit_renderer *renderer, const whit_renderer_params *params)
+{
+    const whit_renderer_params made = renderer->params;
+    renderer->params = *params;
+    renderer->params.cancel = made.cancel;
+    renderer->params.traversal = made.traversal;
+    renderer->params.numerics = made.numerics;
+}
+
 whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *params)
 {
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
         result = renderer_set_view(renderer->renderer, params);
-    if (result == WHIT_OK) { /* what rays on the CPU go by stays */
-        const whit_renderer_params made = renderer->params;
-        renderer->params = *params;
-        renderer->params.cancel = made.cancel;
-        renderer->params.traversal = made.traversal;
-        renderer->params.numerics = made.numerics;
-    }
+    if (result == WHIT_OK)
+        take_params(renderer, params);
     return result;
+}
+
+whit_result whit_renderer_set_shader(whit_renderer *renderer, const whit_renderer_params *params)
+{
+    whit_result result = api_need_device(renderer);
+    if (result == WHIT_OK && !renderer_takes_shader(renderer->renderer, params->shader)) {
+        log_error(&renderer->log, "a shader of other functions needs a renderer of its own");
+        result = WHIT_ERROR_USAGE;
+    }
+    if (result == WHIT_OK)
+        result = renderer_set_shader(renderer->renderer, params);
+    if (result == WHIT_OK)
+        take_params(renderer, params);
+    return result;
+}
+
+bool whit_renderer_takes_shader(const whit_renderer *renderer, const whit_shader *shader)
+{
+    return renderer->renderer && renderer_takes_shader(renderer->renderer, shader);
 }
 
 whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_info *info)

@@ -32,6 +32,21 @@ whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
     return WHIT_ERROR_USAGE;
 }
 
+bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *shader)
+{
+    const whit_shader *own = renderer->params.shader;
+    return own && shader && own->hooks == shader->hooks;
+}
+
+whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_params *params)
+{
+    const whit_shader *before = renderer->params.shader;
+    renderer->params.shader = params->shader;
+    stage_set_finish(&renderer->probe.stages.set);
+    whit_result result = stages_replace(&renderer->picture, before);
+    return result == WHIT_OK ? renderer_set_view(renderer, params) : result;
+}
+
 whit_result hooks_clear_fuel(const struct target *target)
 {
     const uint32_t none = 0;

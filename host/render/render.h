@@ -90,6 +90,12 @@ WHIT_CHECK whit_result renderer_set_time(struct renderer *renderer, double time_
    byte. After an error there is nothing to render before a call that succeeds. */
 WHIT_CHECK whit_result renderer_set_view(struct renderer *renderer,
                                          const whit_renderer_params *params);
+/* Whether another version of the renderer's shader needs no more than other kernels. */
+bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *shader);
+/* Such a version, params->shader, in the place of the renderer's, which may go afterwards; else as
+   renderer_set_view. */
+WHIT_CHECK whit_result renderer_set_shader(struct renderer *renderer,
+                                           const whit_renderer_params *params);
 
 /* A batch of rays in chunks that fit the device. `costs`: one a ray, or NULL. */
 WHIT_CHECK whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays,

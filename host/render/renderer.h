@@ -351,6 +351,9 @@ WHIT_CHECK whit_result stages_job_run(struct device *device, const struct stages
                                       struct stage_set *out);
 /* Takes over a set, which is empty afterwards, in place of the one that there was. */
 WHIT_CHECK whit_result stages_take(struct target *target, struct stage_set *set);
+/* Where there is a set: makes those of its kernels anew that are others since
+   renderer->params.shader is in the place of `before`. After an error there is none. */
+WHIT_CHECK whit_result stages_replace(struct target *target, const whit_shader *before);
 /* Makes the scene's own set where there is none. */
 WHIT_CHECK whit_result stages_compile(struct target *target);
 /* Binds the set to the buffers that there are, where it is not bound. */

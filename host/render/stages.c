@@ -127,11 +127,8 @@ whit_result stages_bind(struct target *target)
     return result;
 }
 
-whit_result stages_take(struct target *target, struct stage_set *set)
+static void count_instructions(struct target *target)
 {
-    stage_set_finish(&target->stages.set);
-    target->stages.set = *set;
-    *set = (struct stage_set){0};
     target->stats.kernel_instructions = 0;
     for (int i = 0; i < STAGE_COUNT; ++i) {
         const struct pass *pass = &target->stages.set.passes[i];
@@ -140,7 +137,62 @@ whit_result stages_take(struct target *target, struct stage_set *set)
             pipeline_get_info(pass->pipeline, &info);
         target->stats.kernel_instructions += info.instructions;
     }
+}
+
+whit_result stages_take(struct target *target, struct stage_set *set)
+{
+    stage_set_finish(&target->stages.set);
+    target->stages.set = *set;
+    *set = (struct stage_set){0};
+    count_instructions(target);
     return stages_bind(target);
+}
+
+/* Whether a stage is another kernel. */
+static bool is_other(const struct variant_job *a, const struct variant_job *b)
+{
+    return memcmp(&a->spec, &b->spec, sizeof a->spec) != 0 ||
+           a->params.spirv_bytes != b->params.spirv_bytes ||
+           memcmp(a->params.spirv, b->params.spirv, a->params.spirv_bytes) != 0;
+}
+
+whit_result stages_replace(struct target *target, const whit_shader *before)
+{
+    struct renderer *renderer = target->renderer;
+    struct stage_set *set = &target->stages.set, made;
+    const whit_shader *shader = renderer->params.shader;
+    struct stages_job was, job;
+    struct gpu_spec spec;
+    bool few = variant_few_kernels(target);
+    if (!stages_are_made(target))
+        return WHIT_OK;
+    renderer->params.shader = before;
+    spec = variant_spec(target);
+    stages_job_init(target, &spec, true, few, &was);
+    renderer->params.shader = shader;
+    spec = variant_spec(target);
+    stages_job_init(target, &spec, true, few, &job);
+    bool same = was.classes == job.classes && memcmp(was.of, job.of, sizeof job.of) == 0;
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        job.wanted[i] =
+            job.wanted[i] && (!same || !was.wanted[i] || is_other(&was.stages[i], &job.stages[i]));
+    whit_result result = stages_job_run(renderer->device, &job, &made);
+    if (result != WHIT_OK || !same)
+        stage_set_finish(set);
+    if (result != WHIT_OK)
+        return result;
+    stages_unbind(&target->stages);
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        if (job.wanted[i] || !same) {
+            pass_finish(&set->passes[i]);
+            set->passes[i] = made.passes[i];
+        }
+    }
+    set->classes = made.classes;
+    memcpy(set->of, made.of, sizeof set->of);
+    memcpy(set->calls, made.calls, sizeof set->calls);
+    count_instructions(target);
+    return WHIT_OK;
 }
 
 whit_result stages_compile(struct target *target)

@@ -15,6 +15,7 @@ struct engine_job {
     struct settings settings;
     struct scene_ref *scene;
     struct shader_ref *shader;
+    bool reloads; /* the session has drawn before, with another version of the shader */
     struct session_progress progress;
     struct thread *thread;
     struct engine *engine;

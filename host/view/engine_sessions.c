@@ -49,10 +49,12 @@ static void run_job(void *context)
     struct engine_job *job = context;
     struct engine *engine = job->engine;
     const struct session_parts parts = {job->scene, job->shader, engine->params.compiler};
+    const whit_log log = {session_message, job->session, WHIT_LOG_WARNING};
+    const whit_log scene_log = {scene_message, engine, WHIT_LOG_WARNING};
     whit_result result =
-        session_open(job->session, &job->settings, &parts,
-                     &(whit_log){session_message, job->session, WHIT_LOG_WARNING},
-                     &(whit_log){scene_message, engine, WHIT_LOG_WARNING}, &job->progress);
+        job->reloads
+            ? session_reload(job->session, &job->settings, &parts, &job->progress)
+            : session_open(job->session, &job->settings, &parts, &log, &scene_log, &job->progress);
     pthread_mutex_lock(&engine->lock);
     job->result = result;
     job->done = true;
@@ -106,20 +108,63 @@ static struct shader_ref *find_shader(const struct engine *engine, const struct 
     return NULL;
 }
 
+static bool is_shown(const struct engine *engine, const struct session *session)
+{
+    const struct engine_lane *other = &engine->lanes[1];
+    return engine->lanes[0].session == session || (other->wanted && other->session == session);
+}
+
+/* A session that differs from what is asked for by the version of its shader alone, and that nobody
+   looks at: its device, trees and buffers serve the next version. NULL: none. */
+static struct session *find_version(const struct engine *engine, const struct settings *settings)
+{
+    uint32_t oldest = ENGINE_SESSIONS_MAX;
+    for (uint32_t i = 0; settings->shader[0] && i < ENGINE_SESSIONS_MAX; ++i) {
+        const struct session *session = engine->sessions[i];
+        struct settings same = *settings;
+        if (!session || is_shown(engine, session))
+            continue;
+        same.shader_reload = session->settings.shader_reload;
+        if (settings_same_kernel(&session->settings, &same) &&
+            (oldest == ENGINE_SESSIONS_MAX ||
+             session->last_use < engine->sessions[oldest]->last_use))
+            oldest = i;
+    }
+    return oldest < ENGINE_SESSIONS_MAX ? engine->sessions[oldest] : NULL;
+}
+
+/* It is the job's until that is done. */
+static void take_out(struct engine *engine, struct session *session)
+{
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        if (engine->sessions[i] == session)
+            engine->sessions[i] = NULL;
+    }
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        if (engine->lanes[i].session == session)
+            engine->lanes[i].session = NULL;
+    }
+}
+
 bool engine_start_job(struct engine *engine, const struct settings *settings)
 {
+    struct session *version = find_version(engine, settings);
     struct engine_job *job = calloc(1, sizeof *job);
-    struct session *session = calloc(1, sizeof *session);
+    struct session *session = version ? version : calloc(1, sizeof *session);
     if (job && session) {
+        session->ready = session->cancel = false;
+        session->error[0] = '\0';
+        session->owner = engine;
         job->session = session;
+        job->reloads = version != NULL;
         job->settings = *settings;
         job->engine = engine;
-        session->owner = engine;
         job->start_ms = whit_clock_ms();
         job->scene = find_scene(engine, settings);
         job->shader = find_shader(engine, settings);
         job->thread = thread_start(run_job, job);
         if (job->thread) {
+            take_out(engine, session);
             engine->job = job;
             return true;
         }
@@ -127,7 +172,10 @@ bool engine_start_job(struct engine *engine, const struct settings *settings)
         shader_ref_drop(job->shader);
     }
     free(job);
-    free(session);
+    if (version)
+        version->ready = true;
+    else
+        free(session);
     snprintf(engine->error, sizeof engine->error, "out of memory");
     engine->result = WHIT_ERROR_MEMORY;
     return false;
@@ -154,12 +202,6 @@ static void forget_if(struct engine *engine, const struct session *session)
         if (engine->sessions[i] == session && session)
             forget_session(engine, i);
     }
-}
-
-static bool is_shown(const struct engine *engine, const struct session *session)
-{
-    const struct engine_lane *other = &engine->lanes[1];
-    return engine->lanes[0].session == session || (other->wanted && other->session == session);
 }
 
 static uint32_t sessions_max(const struct engine *engine, const struct session *newest)
@@ -228,8 +270,6 @@ void engine_reap_job(struct engine *engine)
     if (!job->scene)
         memcpy(engine->refused, job->session->refused, sizeof engine->refused);
     if (job->result == WHIT_OK) {
-        job->session->ready = true;
-        keep_session(engine, job->session);
         engine_forget_error(engine);
     } else if (job->result != WHIT_ERROR_CANCELLED) {
         memcpy(engine->error, job->session->error, sizeof engine->error);
@@ -242,9 +282,13 @@ void engine_reap_job(struct engine *engine)
                 lane->failed = true;
         }
     }
+    /* A shader that could not be compiled leaves the session of the version before. */
+    if (job->result == WHIT_OK || (job->reloads && job->session->renderer)) {
+        job->session->ready = true;
+        keep_session(engine, job->session);
+        job->session = NULL;
+    }
     engine_wake(engine);
-    if (job->result == WHIT_OK)
-        job->session = NULL; /* kept */
     engine->littered = true; /* compilers leave more than they take */
     pthread_mutex_unlock(&engine->lock);
     engine_job_destroy(job);

@@ -202,6 +202,69 @@ whit_result session_open(struct session *session, const struct settings *setting
     return result;
 }
 
+/* Who asks for the whole picture draws it anew: this one ends with its first step. */
+static void end_at_step(void *user, const whit_step *step)
+{
+    struct session *session = user;
+    (void)step;
+    session->cancel = true;
+}
+
+/* What the driver has to compile, it compiles for the first step. */
+static whit_result draw_step(struct session *session, const whit_renderer_params *params)
+{
+    bool takes = whit_renderer_takes_shader(session->renderer, params->shader);
+    if (!takes) {
+        whit_renderer_destroy(session->renderer);
+        session->renderer = NULL;
+        return warm_up(session);
+    }
+    whit_result result = whit_renderer_set_shader(session->renderer, params);
+    if (result != WHIT_OK) {
+        whit_renderer_destroy(session->renderer);
+        session->renderer = NULL;
+        return result;
+    }
+    session->step = end_at_step;
+    session->step_user = session;
+    result = whit_renderer_render(session->renderer);
+    session->step = NULL;
+    return result == WHIT_ERROR_CANCELLED ? WHIT_OK : result;
+}
+
+whit_result session_reload(struct session *session, const struct settings *settings,
+                           const struct session_parts *parts, struct session_progress *progress)
+{
+    enum { FIRST_STEP = 8 };
+    const struct settings settings_before = session->settings;
+    struct shader_ref *before = session->shader;
+    whit_result result = WHIT_OK;
+    session->settings = *settings;
+    session->shader = shader_ref_take(parts->shader);
+    tell(progress, SESSION_SHADER);
+    if (!session->shader)
+        result = load_shader(session, parts->compiler);
+    if (result != WHIT_OK) {
+        session->settings = settings_before;
+        session->shader = before;
+        return result;
+    }
+    tell(progress, SESSION_COMPILING);
+    double start_ms = whit_clock_ms();
+    result = settings_choose_camera(&session->settings, session->scene->scene);
+    if (result == WHIT_OK) {
+        whit_renderer_params params = settings_picture(&session->settings);
+        params.shader = session->shader->shader;
+        params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
+        params.step_spacing = FIRST_STEP;
+        result = draw_step(session, &params);
+    }
+    session->compile_ms = whit_clock_ms() - start_ms;
+    shader_ref_drop(before);
+    tell(progress, SESSION_DONE);
+    return result;
+}
+
 uint32_t session_close(struct session *session)
 {
     whit_renderer_destroy(session->renderer);

@@ -81,6 +81,13 @@ struct session_parts {
 WHIT_CHECK whit_result session_open(struct session *session, const struct settings *settings,
                                     const struct session_parts *parts, const whit_log *log,
                                     const whit_log *scene_log, struct session_progress *progress);
+/* A session that has drawn with another version of the shader: compiles the one of `settings`,
+   which differ from the session's in what its renderer can change, and draws the first step of
+   their picture, with which the driver compiles. Where the shader is wrong the session stays as it
+   was. After other errors it has no renderer, and is to be closed. */
+WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
+                                      const struct session_parts *parts,
+                                      struct session_progress *progress);
 /* How many messages the validation layers had of its device. */
 uint32_t session_close(struct session *session);
 

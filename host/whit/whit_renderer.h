@@ -155,12 +155,19 @@ WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double ti
 
 /* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
    sampling, light_samples, bailout, depth, exposure_ev, soft_highlights and sliders, and nothing
-   else. Its
-   camera is borrowed until the next call. The picture is that of a renderer made with these, byte
-   for byte. After an error there is nothing to render before a call that succeeds: WHIT_ERROR_USAGE
-   and others as of whit_renderer_create. */
+   else. Its camera is borrowed until the next call. The picture is that of a renderer made with
+   these, byte for byte. After an error there is nothing to render before a call that succeeds:
+   WHIT_ERROR_USAGE and others as of whit_renderer_create. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
+
+/* Whether `shader` is another version of the renderer's own: a file with the same functions. */
+bool whit_renderer_takes_shader(const whit_renderer *renderer, const whit_shader *shader);
+/* The same with another version of the renderer's shader, params->shader, whose kernels alone are
+   made anew; the one before may go afterwards. The rest of `params` as of whit_renderer_set_view.
+   WHIT_ERROR_USAGE, logged, for a shader that is no other version. */
+WHIT_CHECK whit_result whit_renderer_set_shader(whit_renderer *renderer,
+                                                const whit_renderer_params *params);
 
 /* Effects by index, in the order of whit_scene_get_effect; NULL past the last. */
 const char *whit_effect_name(uint32_t index);
