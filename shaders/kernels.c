@@ -1,10 +1,14 @@
 #include "kernels.h"
 
 #include "kernel_closest.h"
+#include "kernel_closest_hooks.h"
 #include "kernel_present.h"
 #include "kernel_resolve.h"
+#include "kernel_resolve_hooks.h"
 #include "kernel_shade.h"
+#include "kernel_shade_hooks.h"
 #include "kernel_shadow.h"
+#include "kernel_shadow_hooks.h"
 #include "kernel_trace.h"
 
 const struct kernel_code kernels[KERNEL_COUNT] = {
@@ -14,4 +18,11 @@ const struct kernel_code kernels[KERNEL_COUNT] = {
     [KERNEL_SHADE] = {"shade", kernel_shade, sizeof kernel_shade},
     [KERNEL_SHADOW] = {"shadow", kernel_shadow, sizeof kernel_shadow},
     [KERNEL_RESOLVE] = {"resolve", kernel_resolve, sizeof kernel_resolve},
+};
+
+const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
+    [HOOK_KERNEL_CLOSEST] = {"closest", kernel_closest_hooks, sizeof kernel_closest_hooks},
+    [HOOK_KERNEL_SHADE] = {"shade", kernel_shade_hooks, sizeof kernel_shade_hooks},
+    [HOOK_KERNEL_SHADOW] = {"shadow", kernel_shadow_hooks, sizeof kernel_shadow_hooks},
+    [HOOK_KERNEL_RESOLVE] = {"resolve", kernel_resolve_hooks, sizeof kernel_resolve_hooks},
 };

@@ -23,4 +23,16 @@ struct kernel_code {
 
 extern const struct kernel_code kernels[KERNEL_COUNT];
 
+/* Kernels with room for functions of users, in the order of HOOK_KERNEL of hook/prelude.glsl: with
+   the names of all functions, and those that nothing calls, for host/shader/link.c. */
+enum hook_kernel {
+    HOOK_KERNEL_CLOSEST,
+    HOOK_KERNEL_SHADE,
+    HOOK_KERNEL_SHADOW,
+    HOOK_KERNEL_RESOLVE,
+    HOOK_KERNEL_COUNT
+};
+
+extern const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT];
+
 #endif

@@ -5,6 +5,9 @@
 #include "render/renderer.h"
 
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
+_Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SHADER_HOOK_SHADE &&
+                   HOOK_POST == 1u << SHADER_HOOK_POST,
+               "the same bits");
 
 void hooks_take(struct renderer *renderer)
 {

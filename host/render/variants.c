@@ -89,6 +89,10 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
+    if (renderer->params.shader) {
+        spec.SPEC_HOOKS = renderer->params.shader->hooks;
+        spec.SPEC_FUEL = renderer->params.shader->fuel;
+    }
     return spec;
 }
 

@@ -320,7 +320,8 @@ static void make_own_tag(char own[GLSLANG_OWN_BYTES])
 /* The question with its text; NULL: why not was told. */
 static uint8_t *make_question(const struct place *place, size_t *bytes)
 {
-    struct glslang_question question = {.trust = place->request->trust};
+    struct glslang_question question = {.trust = place->request->trust,
+                                        .links = place->request->links};
     make_own_tag(question.own);
     struct expanded expanded;
     if (!expand_kernel(place->log, place->text, place->request, question.own, &expanded,

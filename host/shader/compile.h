@@ -27,6 +27,9 @@ struct shader_request {
     const char *const *defines; /* "NAME" or "NAME VALUE": #define lines behind the extensions */
     uint32_t define_count;
     bool trust; /* the user's loops and indices are left as they are */
+    /* 1 + enum hook_kernel of kernels.h: the kernel that functions of kernel/hook.comp go into; 0:
+       `kernel` is whole. */
+    uint32_t links;
 };
 
 /* Where a loop of the user's text begins. */

@@ -56,7 +56,7 @@ enum shader_exact shader_exact(const uint32_t *words, size_t count, uint32_t **o
                                size_t *out_count)
 {
     *out = NULL;
-    if (count < SPV_HEADER_WORDS || words[0] != SPV_MAGIC || words[SPV_BOUND_AT] > count)
+    if (count < SPV_HEADER_WORDS || words[0] != SPV_MAGIC || words[SPV_BOUND_AT] > SPV_BOUND_MAX)
         return EXACT_DAMAGED;
     struct scan scan = {.marked = calloc(words[SPV_BOUND_AT] + (size_t)1, sizeof(bool))};
     if (!scan.marked)

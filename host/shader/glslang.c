@@ -10,6 +10,7 @@
 #include "shader/exact.h"
 #include "shader/expand.h"
 #include "shader/fuel.h"
+#include "shader/link.h"
 #include "shader/messages.h"
 #include "shader/module.h"
 #include "shader/refuse.h"
@@ -52,7 +53,10 @@ static glslang_program_t *link_program(struct compilation *c, glslang_shader_t *
 {
     glslang_program_t *program = glslang_program_create();
     glslang_program_add_shader(program, shader);
-    if (glslang_program_link(program, GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT)) {
+    /* What goes into a kernel is called from there. */
+    int messages = GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT |
+                   (c->question->links ? GLSLANG_MSG_KEEP_UNCALLED_BIT : 0);
+    if (glslang_program_link(program, messages)) {
         glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
         glslang_program_SPIRV_generate_with_options(program, GLSLANG_STAGE_COMPUTE, &options);
         return program;
@@ -92,6 +96,11 @@ void glslang_warm(void)
 
 /* --- SPIR-V --------------------------------------------------------------------------------- */
 
+static bool is_counted(uint32_t op)
+{
+    return op != SPV_LINE && op != SPV_NO_LINE && op != SPV_LABEL;
+}
+
 /* Copies what stands in functions, and what users wrote with fuel and bounds. */
 static void take_instruction(struct compilation *c, struct spv_module *m, const uint32_t *words)
 {
@@ -105,7 +114,7 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         why = called;
     if (why)
         report(c, m->place, why);
-    c->answer.instructions += op != SPV_LINE && op != SPV_NO_LINE && op != SPV_LABEL;
+    c->answer.instructions += is_counted(op);
     if (user && !c->question->trust) {
         taken = m->fuel && m->user_function && fuel_take(&c->fuel, m, words);
         if (!taken)
@@ -181,7 +190,7 @@ static struct spv_words make_module(struct compilation *c, const uint32_t *words
     else
         report(c, (struct spv_place){UINT32_MAX, 0}, "glslang wrote a module that cannot be read");
     if (whole && !c->answer.error_count)
-        out = spv_write(&m, false);
+        out = spv_write(&m, c->question->links != 0);
     if (m.failed)
         out.count = 0;
     spv_finish(&m);
@@ -200,6 +209,25 @@ static int write_answer(struct compilation *c, const uint32_t *words, size_t cou
     return written ? 0 : 1;
 }
 
+/* In a kernel; no words: there are errors, or there is no memory. */
+static struct spv_words link_module(struct compilation *c, const struct spv_words *user)
+{
+    const char *why = NULL;
+    struct spv_words out = {0};
+    if (c->question->links <= HOOK_KERNEL_COUNT)
+        out = link_kernel(&hook_kernels[c->question->links - 1], user->words, user->count,
+                          c->question->own, &why);
+    if (why)
+        report(c, (struct spv_place){UINT32_MAX, 0}, why);
+    c->answer.instructions = 0;
+    bool functions = false;
+    for (uint32_t at = SPV_HEADER_WORDS; at < out.count; at += spv_length(out.words + at)) {
+        functions = functions || spv_op(out.words + at) == SPV_FUNCTION;
+        c->answer.instructions += functions && is_counted(spv_op(out.words + at));
+    }
+    return out;
+}
+
 static int finish_module(struct compilation *c, glslang_program_t *program, void *to,
                          child_write write)
 {
@@ -207,6 +235,8 @@ static int finish_module(struct compilation *c, glslang_program_t *program, void
     uint32_t *exact = NULL;
     struct spv_words made = make_module(c, glslang_program_SPIRV_get_ptr(program),
                                         glslang_program_SPIRV_get_size(program));
+    if (made.count && c->question->links)
+        made = link_module(c, &made);
     enum shader_exact end = EXACT_NO_MEMORY;
     if (made.count)
         end = shader_exact(made.words, made.count, &exact, &count);

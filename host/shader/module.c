@@ -5,7 +5,6 @@
 
 #include "base/array.h"
 
-enum { BOUND_MAX = 1 << 24 };
 static const uint32_t WHIT_OWN = UINT32_MAX;
 
 static bool is_type(uint32_t op)
@@ -15,7 +14,7 @@ static bool is_type(uint32_t op)
 
 /* The result of an instruction; 0: it has none. What has a type has it in front of its result, and
    nothing else begins with a type. */
-static uint32_t result_of(const struct spv_module *m, const uint32_t *words)
+uint32_t spv_result(const struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words), length = spv_length(words);
     if ((is_type(op) || op == SPV_STRING || op == SPV_EXT_INST_IMPORT || op == SPV_LABEL) &&
@@ -130,7 +129,7 @@ static bool is_private(const struct spv_module *m, uint32_t id)
 bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const char *own)
 {
     *m = (struct spv_module){.words = words, .count = count, .own = own};
-    if (count < SPV_HEADER_WORDS || words[0] != SPV_MAGIC || words[SPV_BOUND_AT] > BOUND_MAX ||
+    if (count < SPV_HEADER_WORDS || words[0] != SPV_MAGIC || words[SPV_BOUND_AT] > SPV_BOUND_MAX ||
         count > UINT32_MAX)
         return false;
     m->bound = m->next_id = words[SPV_BOUND_AT];
@@ -141,7 +140,7 @@ bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const c
         uint32_t length = spv_length(words + at), op = spv_op(words + at);
         if (length == 0 || length > count - at)
             return false;
-        uint32_t id = result_of(m, words + at);
+        uint32_t id = spv_result(m, words + at);
         if (id >= m->bound)
             return false;
         if (id)
@@ -337,7 +336,7 @@ uint32_t spv_pointer(struct spv_module *m, uint32_t type)
     return keep_constant(m, (struct spv_constant){POINTER_TO, type, id});
 }
 
-static bool is_remark(uint32_t op)
+bool spv_is_remark(uint32_t op)
 {
     return (op >= SPV_SOURCE_CONTINUED && op <= SPV_LINE) || op == SPV_NO_LINE ||
            op == SPV_MODULE_PROCESSED;
@@ -348,12 +347,12 @@ struct spv_words spv_write(struct spv_module *m, bool keeps_remarks)
     struct spv_words out = {0};
     spv_put(m, &out, m->words, SPV_HEADER_WORDS);
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (keeps_remarks || !is_remark(spv_op(m->words + at)))
+        if (keeps_remarks || !spv_is_remark(spv_op(m->words + at)))
             spv_put(m, &out, m->words + at, spv_length(m->words + at));
     }
     spv_put(m, &out, m->globals.words, m->globals.count);
     for (uint32_t at = 0; at < m->body.count; at += spv_length(m->body.words + at)) {
-        if (keeps_remarks || !is_remark(spv_op(m->body.words + at)))
+        if (keeps_remarks || !spv_is_remark(spv_op(m->body.words + at)))
             spv_put(m, &out, m->body.words + at, spv_length(m->body.words + at));
     }
     if (!m->failed)

@@ -56,6 +56,10 @@ void spv_finish(struct spv_module *m);
 bool spv_follow(struct spv_module *m, const uint32_t *instruction);
 /* The instruction that an id is the result of; NULL: there is none. */
 const uint32_t *spv_def(const struct spv_module *m, uint32_t id);
+/* The result of an instruction; 0: it has none. */
+uint32_t spv_result(const struct spv_module *m, const uint32_t *words);
+/* What stands in a module for people alone. */
+bool spv_is_remark(uint32_t op);
 uint32_t spv_type_of(const struct spv_module *m, uint32_t id); /* 0: it has none */
 /* The value of an OpConstant of 32 bits. */
 bool spv_constant_value(const struct spv_module *m, uint32_t id, uint32_t *value);

@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "kernels.h"
 #include "sources.h"
 
-enum { DEFINES_MAX = SHADER_HOOK_COUNT + 3, DEFINE_BYTES = 48 };
+enum { DEFINE_BYTES = 48 };
 
 #define USER_INCLUDE "#include \"../hook/user.glsl\"\n"
 
@@ -17,17 +18,16 @@ static const char *const hook_names[SHADER_HOOK_COUNT] = {
 
 #define BIT(hook) (1u << SHADER_HOOK_##hook)
 
-/* Every stage makes the camera's rays anew. */
-static const struct {
-    const char *name, *path;
-    uint32_t hooks;
-} kernel_table[SHADER_KERNEL_COUNT] = {
-    [SHADER_KERNEL_CLOSEST] = {"closest", "kernel/closest.comp", BIT(CAMERA) | BIT(MISS)},
-    [SHADER_KERNEL_SHADE] = {"shade", "kernel/shade.comp",
-                             BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER)},
-    [SHADER_KERNEL_SHADOW] = {"shadow", "kernel/shadow.comp", BIT(CAMERA)},
-    [SHADER_KERNEL_RESOLVE] = {"resolve", "kernel/resolve.comp", BIT(POST)},
+/* In the order of enum hook_kernel. Every stage makes the camera's rays anew. */
+static const uint32_t kernel_hooks[SHADER_KERNEL_COUNT] = {
+    [SHADER_KERNEL_CLOSEST] = BIT(CAMERA) | BIT(MISS),
+    [SHADER_KERNEL_SHADE] = BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER),
+    [SHADER_KERNEL_SHADOW] = BIT(CAMERA),
+    [SHADER_KERNEL_RESOLVE] = BIT(POST),
 };
+_Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
+                   (int)SHADER_KERNEL_RESOLVE == (int)HOOK_KERNEL_RESOLVE,
+               "the same kernels");
 
 const char *shader_hook_name(enum shader_hook hook)
 {
@@ -36,13 +36,13 @@ const char *shader_hook_name(enum shader_hook hook)
 
 const char *shader_kernel_name(enum shader_kernel kernel)
 {
-    return kernel_table[kernel].name;
+    return hook_kernels[kernel].name;
 }
 
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel)
 {
     for (uint32_t i = 0; shader && i < SHADER_KERNEL_COUNT; ++i) {
-        if (strcmp(kernel_table[i].name, kernel) == 0 && shader->codes[i].words)
+        if (strcmp(hook_kernels[i].name, kernel) == 0 && shader->codes[i].words)
             return &shader->codes[i];
     }
     return NULL;
@@ -69,10 +69,12 @@ static const struct shader_source *find_source(const char *path)
     return NULL;
 }
 
-/* The kernel's own text, with the sliders declared in front of the user's. NULL: no memory. */
-static char *kernel_text(const char *path, const char *sliders)
+#define HOOK_TEXT "kernel/hook.comp"
+
+/* Its text, with the sliders declared in front of the user's. NULL: no memory. */
+static char *hook_text(const char *sliders)
 {
-    const struct shader_source *source = find_source(path);
+    const struct shader_source *source = find_source(HOOK_TEXT);
     const char *at = source ? strstr(source->text, USER_INCLUDE) : NULL;
     if (!at)
         return NULL;
@@ -90,32 +92,29 @@ static whit_result compile(const whit_log *log, struct shader_compiler *compiler
                            whit_shader *shader, enum shader_kernel kernel, const char *sliders,
                            struct shader_errors *errors)
 {
-    char texts[DEFINES_MAX][DEFINE_BYTES];
-    const char *defines[DEFINES_MAX];
+    char texts[SHADER_HOOK_COUNT][DEFINE_BYTES];
+    const char *defines[SHADER_HOOK_COUNT];
     uint32_t count = 0;
-    snprintf(texts[count++], DEFINE_BYTES, "HOOKS");
-    snprintf(texts[count++], DEFINE_BYTES, "HOOK_FUEL %uu", shader->fuel);
-    snprintf(texts[count++], DEFINE_BYTES, "HOOK_KERNEL %uu", (unsigned)kernel);
     for (uint32_t i = 0; i < SHADER_HOOK_COUNT; ++i) {
         if (!shader_has(shader, (enum shader_hook)i))
             continue;
-        snprintf(texts[count], DEFINE_BYTES, "HOOK_%s", hook_names[i]);
+        snprintf(texts[count], DEFINE_BYTES, "HAS_%s", hook_names[i]);
         for (char *c = texts[count]; *c; ++c)
             *c = (char)(*c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
+        defines[count] = texts[count];
         count++;
     }
-    for (uint32_t i = 0; i < count; ++i)
-        defines[i] = texts[i];
-    char *text = kernel_text(kernel_table[kernel].path, sliders);
+    char *text = hook_text(sliders);
     if (!text) {
         log_error(log, "out of memory for the text of a kernel");
         return WHIT_ERROR_MEMORY;
     }
-    const struct shader_request request = {.kernel = kernel_table[kernel].path,
+    const struct shader_request request = {.kernel = HOOK_TEXT,
                                            .kernel_text = text,
                                            .defines = defines,
                                            .define_count = count,
-                                           .trust = shader->trust};
+                                           .trust = shader->trust,
+                                           .links = 1 + (uint32_t)kernel};
     whit_result result =
         shader_compile(compiler, &shader->text, &request, &shader->codes[kernel], errors);
     free(text);
@@ -144,7 +143,7 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     char *sliders = shader_sliders_declare(shader);
     whit_result result = sliders ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
-        if (kernel_table[i].hooks & shader->hooks)
+        if (kernel_hooks[i] & shader->hooks)
             result = compile(log, compiler, shader, (enum shader_kernel)i, sliders, errors);
     }
     free(sliders);

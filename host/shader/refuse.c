@@ -91,8 +91,7 @@ static bool begins_with_any(const char *text, const char *const *starts, size_t 
     return false;
 }
 
-/* The file that a function stands in; NULL: it is one of the user's. */
-static const char *file_of_function(const struct spv_module *m, const uint32_t *function)
+const char *refuse_file(const struct spv_module *m, const uint32_t *function)
 {
     const uint32_t *line = function - 4; /* where glslang puts it */
     if (line < m->words + m->functions_at - 4 || line[0] != spv_head(SPV_LINE, 4))
@@ -108,13 +107,13 @@ static const char *file_of_function(const struct spv_module *m, const uint32_t *
 bool refuse_call(const struct spv_module *m, const uint32_t *words, char *why)
 {
     const uint32_t *function = spv_def(m, words[3]);
-    const char *file = function ? file_of_function(m, function) : "";
+    const char *file = function ? refuse_file(m, function) : "";
     const char *name = file ? spv_name(m, words[3]) : NULL;
     if (!file || begins_with_any(file, open_files, sizeof open_files / sizeof *open_files) ||
         begins_with_any(name, open_functions, sizeof open_functions / sizeof *open_functions))
         return false;
     snprintf(why, SHADER_REASON_BYTES,
-             "%.*s is whit's own: what can be called stands in shaders/hook/prelude.glsl",
+             "%.*s is whit's own: what can be called stands in shaders/hook/interface.glsl",
              (int)strcspn(name, "("), name);
     return true;
 }

@@ -29,4 +29,7 @@ void refuse_finish(struct refuse_variables *all);
    it is for, "" where that is not known. */
 uint32_t refuse_capability(const struct spv_module *m, const char **name);
 
+/* The file of whit's that a function of the module stands in; NULL: it is one of the user's. */
+const char *refuse_file(const struct spv_module *m, const uint32_t *function);
+
 #endif

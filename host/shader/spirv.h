@@ -9,6 +9,7 @@ enum {
     SPV_MAGIC = 0x07230203,
     SPV_HEADER_WORDS = 5,
     SPV_BOUND_AT = 3, /* the word of the header that all ids are below */
+    SPV_BOUND_MAX = 1 << 24,
 };
 
 /* Numbers of section 3.32. */
@@ -40,7 +41,9 @@ enum {
     SPV_CONSTANT_TRUE = 41,
     SPV_CONSTANT = 43,
     SPV_CONSTANT_NULL = 46,
+    SPV_SPEC_CONSTANT_TRUE = 48,
     SPV_SPEC_CONSTANT = 50,
+    SPV_SPEC_CONSTANT_OP = 52,
     SPV_FUNCTION = 54,
     SPV_FUNCTION_PARAMETER = 55,
     SPV_FUNCTION_END = 56,
@@ -54,8 +57,12 @@ enum {
     SPV_IN_BOUNDS_ACCESS_CHAIN = 66,
     SPV_ARRAY_LENGTH = 68,
     SPV_DECORATE = 71,
+    SPV_MEMBER_DECORATE = 72,
     SPV_VECTOR_EXTRACT_DYNAMIC = 77,
     SPV_VECTOR_INSERT_DYNAMIC = 78,
+    SPV_VECTOR_SHUFFLE = 79,
+    SPV_COMPOSITE_EXTRACT = 81,
+    SPV_COMPOSITE_INSERT = 82,
     SPV_IMAGE_FIRST = 86, /* OpSampledImage to OpImageQuerySamples */
     SPV_IMAGE_LAST = 107,
     SPV_BITCAST = 124,

@@ -70,6 +70,14 @@
 #define FILTERS_ABSORB    1u
 #define FILTERS_PATTERNED 2u /* by textures or vertex colours, too */
 
+/* Functions of users in the place of whit's, in kernels that are made for them. */
+#define HOOK_CAMERA  1u
+#define HOOK_SURFACE 2u
+#define HOOK_SHADE   4u
+#define HOOK_SCATTER 8u
+#define HOOK_MISS    16u
+#define HOOK_POST    32u
+
 /* What decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u
 #define NUMERICS_FAST       1u /* Moeller and Trumbore, plain slabs: leaks */
@@ -130,7 +138,9 @@
     X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */                                             \
     X(51, SPEC_WIDE_ROWS, 0)          /* rows are written in words of 64 bits: for lavapipe */       \
     X(52, SPEC_PRIORITIES, 1)         /* some media go before others where they overlap */         \
-    X(53, SPEC_MINIFICATION, 1)       /* textures have smaller levels, for what is far away */
+    X(53, SPEC_MINIFICATION, 1)       /* textures have smaller levels, for what is far away */     \
+    X(54, SPEC_HOOKS, 0)              /* HOOK_*: functions that are a user's */                    \
+    X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -41,7 +41,7 @@ vec2 mirror_sample(vec2 xy, uvec2 pixel)
     return uintBitsToFloat(floatBitsToUint(xy) ^ (uvec2(pixel.x ^ pixel.y, pixel.x) << 31));
 }
 
-#ifdef HOOK_CAMERA
+#ifdef HOOKS
 // Lets the user's function have its say.
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir);
 #endif
@@ -55,8 +55,9 @@ Ray camera_ray(uvec2 pixel)
     precise vec2 at = (middle + place) * vec2(frame.inv_width, frame.inv_height);
     vec3 origin, dir;
     camera_line(at, lens, origin, dir);
-#ifdef HOOK_CAMERA
-    aim_camera(pixel, at, origin, dir);
+#ifdef HOOKS
+    if ((SPEC_HOOKS & HOOK_CAMERA) != 0u)
+        aim_camera(pixel, at, origin, dir);
 #endif
     precise float squared = (dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z;
     precise vec3 unit = dir * inverse_square_root(squared);
@@ -64,8 +65,8 @@ Ray camera_ray(uvec2 pixel)
     ray.origin = origin;
     ray.dir = unit;
     ray.weight = vec3(1.0);
-#ifdef HOOK_CAMERA
-    if (!is_usable(origin, unit))
+#ifdef HOOKS
+    if ((SPEC_HOOKS & HOOK_CAMERA) != 0u && !is_usable(origin, unit))
         ray.weight = vec3(uintBitsToFloat(0x7fc00000u)); // which makes an error of the picture
 #endif
     ray.steps = 0u;

@@ -4,12 +4,6 @@
 
 #include "ray.glsl"
 
-// The rays that go on from a surface.
-struct Rays {
-    vec3 reflected, refracted, straight; // share of what they bring that is seen, linear RGB; 0: there is none
-    vec3 reflected_dir, refracted_dir;   // the way they go, world space, unit but for rounding
-};
-
 // The ray that a hook is called for.
 Ray hook_ray;
 

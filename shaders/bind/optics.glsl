@@ -5,15 +5,6 @@
 #include "../lib/optics.glsl"
 #include "surface.glsl"
 
-struct Optics {
-    vec3 diffuse, ambient, highlight, emission;
-    vec3 reflected, refracted; // weights of the two rays
-    float straight;            // share that passes undisturbed (opacity)
-    float shininess, alpha;    // of Blinn's highlight; of GGX
-    float eta;
-    bool thin, unlit, metal_rough;
-};
-
 // Share of light that a smooth face between two media reflects; see fresnel_dielectric().
 float reflected_share(float cos_in, float eta)
 {

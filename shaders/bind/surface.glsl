@@ -2,24 +2,10 @@
 #ifndef BIND_SURFACE_GLSL
 #define BIND_SURFACE_GLSL
 
+#include "../lib/records.glsl"
 #include "../lib/spawn.glsl"
 #include "shading.glsl"
 #include "traverse.glsl"
-
-struct Surface {
-    vec3 p, error; // world; bound of the error of p
-    vec3 ng;       // unit geometric normal, to the outside of closed meshes
-    vec3 ns;       // unit shading normal, on the side of ng
-    vec3 e1, e2; // edges from the first vertex, world; of NORMAL_MAPS, MEDIA, TERMINATOR, MINIFICATION
-    vec3 footprint; // of what the ray stands for, see take_footprint; zero: a point
-    vec3 color;              // of the vertices
-    float color_alpha;
-    uint shade_index; // index among the triangles of all meshes
-    uint instance;
-    bool on_sphere;
-    uint material;
-    float u, v; // of the triangle's second and third vertex; of a sphere: texture coordinates
-};
 
 uint shade_index_of(uint instance, uint primitive)
 {

@@ -1,4 +1,5 @@
-// The functions that a user's file may have. What it has not is whit's own, by either name.
+// The functions that a user's file may have, as whit has them. What a file has takes their place in the
+// compiled kernel (host/shader/link.c), where SPEC_HOOKS then says so.
 #ifndef HOOK_DECLARE_GLSL
 #define HOOK_DECLARE_GLSL
 
@@ -23,8 +24,40 @@
 #include "post.glsl"
 #undef post
 
-#ifdef HOOK_CAMERA
-void camera(vec2 at, inout vec3 origin, inout vec3 dir);
+void camera(vec2 at, inout vec3 origin, inout vec3 dir)
+{
+    whit_camera(at, origin, dir);
+}
+
+void surface(inout Surface s)
+{
+    whit_surface(s);
+}
+
+vec3 shade(Surface s, Optics o, vec3 to_eye)
+{
+    return whit_shade(s, o, to_eye);
+}
+
+void scatter(Surface s, Optics o, inout Rays rays)
+{
+    whit_scatter(s, o, rays);
+}
+
+vec3 miss(vec3 dir)
+{
+    return whit_miss(dir);
+}
+
+vec3 post(ivec2 at, vec3 color)
+{
+    return whit_post(at, color);
+}
+
+// Sets the user's global variables to what they begin with.
+void begin_user()
+{
+}
 
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir)
 {
@@ -35,33 +68,5 @@ void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir)
     camera(at, origin, dir);
     end_hook(true);
 }
-#else
-#define camera whit_camera
-#endif
-#ifdef HOOK_SURFACE
-void surface(inout Surface s);
-#else
-#define surface whit_surface
-#endif
-#ifdef HOOK_SHADE
-vec3 shade(Surface s, Optics o, vec3 to_eye);
-#else
-#define shade whit_shade
-#endif
-#ifdef HOOK_SCATTER
-void scatter(Surface s, Optics o, inout Rays rays);
-#else
-#define scatter whit_scatter
-#endif
-#ifdef HOOK_MISS
-vec3 miss(vec3 dir);
-#else
-#define miss whit_miss
-#endif
-#ifdef HOOK_POST
-vec3 post(ivec2 at, vec3 color);
-#else
-#define post whit_post
-#endif
 
 #endif

@@ -1,12 +1,7 @@
 // What the functions of a user's file may use besides each other. Lengths are in world units, angles in radians,
 // directions unit vectors of world space, light is radiance in linear RGB.
 //
-// struct Surface (bind/surface.glsl): p, ng, ns, color, color_alpha, u, v, instance, material
-// struct Optics (bind/optics.glsl):   diffuse, ambient, highlight, emission, reflected, refracted, straight,
-//                                     shininess, alpha, eta, thin, unlit, metal_rough
-// struct Rays (bind/hook.glsl):       reflected, refracted, straight, reflected_dir, refracted_dir
-// ray_dir():                          the way goes the ray that has met the surface
-// environment(dir):                   what the scene's sky sends from there
+// Records stand in lib/records.glsl. What is declared for users, and with which words, in hook/interface.glsl.
 #ifndef HOOK_PRELUDE_GLSL
 #define HOOK_PRELUDE_GLSL
 
@@ -26,7 +21,7 @@ uint hook_loop = 0u;      // the same, of any call
 
 void begin_hook()
 {
-    whit_fuel = HOOK_FUEL;
+    whit_fuel = SPEC_FUEL;
     whit_fuel_loop = 0u;
 }
 
@@ -137,12 +132,6 @@ uint light_points(uint index)
         return 0u;
     return is_flat(light_of(index)) ? turns_each() : 1u;
 }
-
-struct Light {
-    vec3 dir;       // from the surface to the point of the light
-    float distance; // along it; the largest float: a light without a place
-    vec3 arriving;  // irradiance over pi on what faces the point, without shadows; of an area light, its share
-};
 
 // Point `point` of a light, as a surface has it.
 Light light(uint index, uint point, Surface s)

@@ -119,6 +119,9 @@ bool leave_ray(uint r, bool alive)
 void main()
 {
     load_frame();
+#ifdef HOOKS
+    begin_user();
+#endif
     if (SPEC_SECONDARY != 0u && own_slot() == 0u)
         generations[chunk.generation + 1u].firsts = firsts_behind();
     bool alive[SPEC_PACKET_RAYS];
@@ -140,7 +143,3 @@ void main()
     report_hooks();
 #endif
 }
-
-#ifdef HOOKS
-#include "../hook/user.glsl"
-#endif

@@ -99,8 +99,8 @@ void resolve_pixel(uint id)
             total.rgb += pixels[row].rgb;
         row += chunk.sums_step;
     }
-#ifdef HOOK_POST
-    if (last) {
+#ifdef HOOKS
+    if ((SPEC_HOOKS & HOOK_POST) != 0u && last) {
         hook_pixel = at;
         begin_hook();
         total.rgb = post(ivec2(at), total.rgb);
@@ -115,6 +115,9 @@ void resolve_pixel(uint id)
 void main()
 {
     load_frame();
+#ifdef HOOKS
+    begin_user();
+#endif
     uvec2 left = fetch_counts(chunk.light, LIST_RAYS); // of the generation behind the last one
     bool done = left.x + left.y == 0u;
     uint item = is_primary() ? camera_item(0u) : own_item(0u, chunk.ray_capacity);
@@ -126,7 +129,3 @@ void main()
     report_hooks();
 #endif
 }
-
-#ifdef HOOKS
-#include "../hook/user.glsl"
-#endif

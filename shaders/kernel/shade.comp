@@ -61,15 +61,17 @@ void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout
 // hook/scatter.glsl, or the user's function. `lost`: it gave no number.
 void scatter_hook(Surface s, Optics o, inout Rays rays, inout bool lost)
 {
-#ifdef HOOK_SCATTER
-    begin_hook();
-    scatter(s, o, rays);
-    end_hook(true);
-    vec3 sum = rays.reflected_dir + rays.refracted_dir + rays.reflected + rays.refracted + rays.straight;
-    lost = lost || any(isnan(sum)) || any(isinf(sum));
-#else
-    scatter(s, o, rays);
+#ifdef HOOKS
+    if ((SPEC_HOOKS & HOOK_SCATTER) != 0u) {
+        begin_hook();
+        scatter(s, o, rays);
+        end_hook(true);
+        vec3 sum = rays.reflected_dir + rays.refracted_dir + rays.reflected + rays.refracted + rays.straight;
+        lost = lost || any(isnan(sum)) || any(isinf(sum));
+        return;
+    }
 #endif
+    whit_scatter(s, o, rays);
 }
 
 Calls no_calls(uint steps)
@@ -227,20 +229,21 @@ void ask_lights(bool alive, uint id, uint record, Ray ray, Surface s, Optics o, 
     list_lit(alive && some, lit, status);
 }
 
-// What the surface sends to the eye before lights are asked, or with HOOK_SHADE all of it.
+// What the surface sends to the eye before lights are asked, or by a function of a user all of it.
 vec3 own_light(Surface s, Optics o, vec3 dir)
 {
-#ifdef HOOK_SHADE
-    begin_hook();
-    vec3 own = shade(s, o, -dir);
-    end_hook(true);
-    return own;
-#else
-    return o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
+#ifdef HOOKS
+    if ((SPEC_HOOKS & HOOK_SHADE) != 0u) {
+        begin_hook();
+        vec3 own = shade(s, o, -dir);
+        end_hook(true);
+        return own;
+    }
 #endif
+    return o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
 }
 
-#ifdef HOOK_SURFACE
+#ifdef HOOKS
 void change_surface(inout Surface s)
 {
     Surface changed = s;
@@ -260,6 +263,9 @@ void change_surface(inout Surface s)
 void main()
 {
     load_frame();
+#ifdef HOOKS
+    begin_user();
+#endif
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
     uint item = waited ? deferred_item(0u) : own_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
@@ -288,8 +294,9 @@ void main()
     hook_hit = hit;
     hook_media = c.before;
 #endif
-#ifdef HOOK_SURFACE
-    change_surface(s);
+#ifdef HOOKS
+    if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
+        change_surface(s);
 #endif
     Optics o = surface_optics(s, m, ray.dir, c.eta);
     if (dot(s.ns, ray.dir) > 0.0)
@@ -330,18 +337,10 @@ void main()
         count_cut(slot, calls);
     if (alive && catcher)
         store_hit_row(id * HIT_ROWS, uvec4(0u));
-#ifdef HOOK_SHADE
-    const bool asks = SPEC_CATCHERS != 0u && SPEC_LIGHTS != 0u; // all others have asked
-    seen = catcher;
-#else
-    const bool asks = SPEC_LIGHTS != 0u;
-#endif
-    if (asks)
+    bool has_asked = (SPEC_HOOKS & HOOK_SHADE) != 0u; // but for catchers
+    seen = has_asked ? catcher : seen;
+    if (SPEC_LIGHTS != 0u && (SPEC_CATCHERS != 0u || (SPEC_HOOKS & HOOK_SHADE) == 0u))
         ask_lights(alive && seen && !o.unlit && (!catcher || some), id, hit.triangle, ray, s, o, c, catcher,
                    status);
     report_status(alive ? status : 0u);
 }
-
-#ifdef HOOKS
-#include "../hook/user.glsl"
-#endif

@@ -100,6 +100,9 @@ uint leave_lit(uint r, bool alive, uint item, gpu_light light)
 void main()
 {
     load_frame();
+#ifdef HOOKS
+    begin_user();
+#endif
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
     bool alive[SPEC_PACKET_RAYS];
     uint item[SPEC_PACKET_RAYS];
@@ -139,7 +142,3 @@ void main()
     if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
         atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);
 }
-
-#ifdef HOOKS
-#include "../hook/user.glsl"
-#endif

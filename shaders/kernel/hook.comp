@@ -1,0 +1,26 @@
+// The functions of a user's file, which the stages' kernels get from here (host/shader/link.c). It is never run.
+#version 460
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_GOOGLE_include_directive : require
+#include "../hook/interface.glsl"
+
+layout(local_size_x = 1) in;
+
+#include "../hook/user.glsl"
+
+// Holds the file's functions against their declarations.
+void call_all()
+{
+    Surface s;
+    Optics o;
+    Rays rays;
+    vec3 sum = vec3(0.0);
+    camera(vec2(0.0), sum, sum);
+    surface(s);
+    scatter(s, o, rays);
+    sum += shade(s, o, sum) + miss(sum) + post(ivec2(0), sum);
+}
+
+void main()
+{
+}
