@@ -93,6 +93,19 @@ whit_result whit_image_encode_png(const whit_image *image, const whit_text *text
     return result;
 }
 
+whit_result whit_image_load_texts(const char *path, const whit_load_params *params,
+                                  const whit_log *log, whit_text **texts, uint32_t *text_count)
+{
+    _Static_assert(sizeof(whit_text) == sizeof(struct image_text) &&
+                       offsetof(whit_text, value) == offsetof(struct image_text, value),
+                   "the same record");
+    const struct foreign_params foreign = load_foreign(params);
+    struct image_text *loaded;
+    whit_result result = image_load_texts_by(log, path, &foreign, &loaded, text_count);
+    *texts = (whit_text *)loaded;
+    return result;
+}
+
 whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_image **out)
 {

@@ -2,12 +2,14 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "shader/pack.h"
 #include "shader/program.h"
 
 struct whit_shader_compiler {
     struct shader_compiler *compiler;
     struct shader_errors errors; /* of the last file */
     whit_shader_error shown[SHADER_ERROR_MAX];
+    struct shader_limits limits;
     whit_log log;
 };
 
@@ -24,6 +26,7 @@ whit_result whit_shader_compiler_create(const whit_shader_limits *limits, const 
                                         .cancel = limits->cancel};
     if (compiler) {
         compiler->log = log_or_silence(log);
+        compiler->limits = inner;
         compiler->compiler = shader_compiler_create(&compiler->log, &inner);
     }
     if (!compiler || !compiler->compiler) {
@@ -51,13 +54,109 @@ uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
     return compiler->errors.count;
 }
 
+/* ---- In pictures ---- */
+
+static bool is_picture(const char *path)
+{
+    char extension[8];
+    path_extension(path, extension, sizeof extension);
+    return strcmp(extension, "png") == 0 || strcmp(extension, "exr") == 0;
+}
+
+/* The text of the functions that a picture carries. */
+static whit_result read_picture(whit_shader_compiler *compiler, const char *path,
+                                struct shader_text *text)
+{
+    const struct shader_limits *limits = &compiler->limits;
+    const struct foreign_params foreign = {.require_sandbox = limits->require_sandbox,
+                                           .cancel = limits->cancel};
+    struct image_text *texts;
+    struct shader_pack pack;
+    uint32_t count;
+    const char *packed = NULL;
+    whit_result result = image_load_texts_by(&compiler->log, path, &foreign, &texts, &count);
+    if (result != WHIT_OK)
+        return result;
+    for (uint32_t i = 0; i < count; ++i)
+        packed = strcmp(texts[i].key, WHIT_SHADER_KEY) == 0 ? texts[i].value : packed;
+    if (packed) {
+        result = shader_pack_read(&compiler->log, path, packed, &pack);
+    } else {
+        log_error(&compiler->log, "%s: a picture without functions in it", path);
+        result = WHIT_ERROR_INPUT;
+    }
+    free(texts);
+    if (result != WHIT_OK)
+        return result;
+    result = shader_text_from(&compiler->log, pack.sources, pack.count, text, &compiler->errors);
+    shader_pack_free(&pack);
+    return result;
+}
+
+char *whit_shader_pack(const whit_shader *shader, const char **why)
+{
+    return shader_pack_write(&shader->text, why);
+}
+
+/* One block: the list, then all bytes. */
+static whit_shader_file *list_files(const struct shader_pack *pack)
+{
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < pack->count; ++i)
+        bytes += strlen(pack->sources[i].relative) + pack->sources[i].bytes + 2;
+    whit_shader_file *files = malloc(pack->count * sizeof *files + bytes);
+    char *at = files ? (char *)(files + pack->count) : NULL;
+    for (uint32_t i = 0; files && i < pack->count; ++i) {
+        const struct shader_text_source *from = &pack->sources[i];
+        size_t name_bytes = strlen(from->relative) + 1;
+        files[i] = (whit_shader_file){at, at + name_bytes, from->bytes};
+        memcpy(at, from->relative, name_bytes);
+        memcpy(at + name_bytes, from->text, from->bytes + 1);
+        at += name_bytes + from->bytes + 1;
+    }
+    return files;
+}
+
+whit_result whit_shader_unpack(const char *packed, const char *where, const whit_log *log,
+                               whit_shader_file **files, uint32_t *count)
+{
+    struct shader_pack pack;
+    *files = NULL;
+    *count = 0;
+    whit_result result = shader_pack_read(log, where, packed, &pack);
+    if (result != WHIT_OK)
+        return result;
+    *files = list_files(&pack);
+    *count = *files ? pack.count : 0;
+    shader_pack_free(&pack);
+    if (*files)
+        return WHIT_OK;
+    log_error(log, "%s: out of memory", where);
+    return WHIT_ERROR_MEMORY;
+}
+
+/* ---- Loading ---- */
+
+static whit_result load_picture(whit_shader_compiler *compiler, const char *path, bool trust,
+                                whit_shader **out)
+{
+    struct shader_text text;
+    *out = NULL;
+    whit_result result = read_picture(compiler, path, &text);
+    return result == WHIT_OK ? shader_program_create_of(&compiler->log, compiler->compiler, &text,
+                                                        trust, out, &compiler->errors)
+                             : result;
+}
+
 whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path, bool trust,
                              whit_shader **out)
 {
     struct shader_errors *errors = &compiler->errors;
     *errors = (struct shader_errors){0};
     whit_result result =
-        shader_program_create(&compiler->log, compiler->compiler, path, trust, out, errors);
+        is_picture(path)
+            ? load_picture(compiler, path, trust, out)
+            : shader_program_create(&compiler->log, compiler->compiler, path, trust, out, errors);
     for (uint32_t i = 0; i < errors->count; ++i)
         compiler->shown[i] = (whit_shader_error){errors->items[i].file, errors->items[i].line,
                                                  errors->items[i].reason};

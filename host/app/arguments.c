@@ -238,12 +238,25 @@ static void shorten(const char *value, char why[SETTING_WHY_BYTES])
     memcpy(why, text, sizeof text);
 }
 
+/* Recipes say what decides pixels, and name files, which who reads them looks after. */
+static bool is_left(const struct setting *option, bool is_setting)
+{
+    return !is_setting || option->change == SETTING_RUN || option->of_machine ||
+           (option->trusted && option->kind != SETTING_TEXT);
+}
+
 static void take(struct cli_reader *reader, const struct setting *option, void *own,
                  struct settings *settings)
 {
     char why[SETTING_WHY_BYTES];
     bool is_setting = !is_own(reader->command, option);
-    if (reader->where && (!is_setting || option->trusted)) {
+    if (reader->left && is_left(option, is_setting)) {
+        size_t used = strlen(reader->left);
+        if (is_setting) /* else it is where the picture went */
+            snprintf(reader->left + used, reader->left_bytes - used, " --%s", option->name);
+        return;
+    }
+    if (reader->where && !reader->left && (!is_setting || option->trusted)) {
         /* No file of settings may widen what files may be read. */
         cli_misuse(reader, "--%s is nothing to be saved", option->name);
         return;
@@ -271,6 +284,46 @@ bool cli_read(struct cli_reader *reader, void *own, struct settings *settings)
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint)
 {
     return !path || strcmp(path, "-") != 0 || cli_misuse(reader, "%s -: %s", option, hint);
+}
+
+/* ---- Words of a file ---- */
+
+/* The bytes of $'\x1b\x5b' at *from, behind its first quote, up to its last; gives their end. */
+static char *read_bytes(char **from, char *to)
+{
+    unsigned byte;
+    for (int length = 0; sscanf(*from, "\\x%2x%n", &byte, &length) == 1 && byte; *from += length)
+        *to++ = (char)byte;
+    return to;
+}
+
+char *cli_next_word(char **at, bool *whole)
+{
+    char *from = *at + strspn(*at, " \t\r\n"), *to = from, *word = from;
+    bool quoted = false;
+    if (!*from)
+        return NULL;
+    for (; *from && (quoted || !strchr(" \t\r\n", *from)); ++from) {
+        if (*from == '$' && from[1] == '\'' && !quoted) {
+            from += 2;
+            to = read_bytes(&from, to);
+            *whole = *from == '\'';
+            if (!*whole)
+                return word;
+            continue;
+        }
+        if (*from == '\'') {
+            quoted = !quoted;
+            continue;
+        }
+        if (*from == '\\' && !quoted && from[1])
+            ++from;
+        *to++ = *from;
+    }
+    *whole = !quoted;
+    *at = *from ? from + 1 : from;
+    *to = '\0';
+    return word;
 }
 
 /* ---- Help ---- */

@@ -6,6 +6,7 @@
 #include "app/job.h"
 #include "app/render/frames.h"
 #include "app/render/refine.h"
+#include "app/render/repeat.h"
 #include "app/render/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
@@ -18,6 +19,7 @@ struct render_request {
     bool counters;            /* costs in --stats */
     bool fresh;               /* for a choice what is kept with the scene is measured anew */
     struct refine_goal refine;
+    struct repeat repeat;
     struct frames frames; /* with them `output` and `ids` are patterns */
     uint32_t thumbnail;   /* pixels on a side, of a PNG whatever its name; 0: none */
 };
@@ -52,18 +54,20 @@ whit_result render_save(const struct job *job, const struct render_request *requ
 
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */
-enum { RECIPE_TEXTS = 9 };
+enum { RECIPE_TEXTS = 10 };
 struct recipe {
     whit_text texts[RECIPE_TEXTS];
     uint32_t count;
-    char *command, *options, *counters, *view, *scene, *name, *driver; /* owned */
+    char *command, *options, *counters, *view, *scene, *name, *driver, *functions; /* owned */
     char hash[17];
     whit_device_info device;
 };
 
-/* False when memory ran out, which was said. `output`: whose ending says what is saved. */
+/* False when memory ran out, which was said. `shader`: NULL without one. `output`: whose ending
+   says what is saved. */
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
-                 const whit_device_info *device, const whit_stats *stats, const char *output);
+                 const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
+                 const char *output);
 /* Adds what a picture of costs shows; false as above. */
 bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);

@@ -90,6 +90,10 @@ whit_result job_load(struct job *job)
     if (result == WHIT_OK) {
         whit_scene_info info;
         whit_scene_get_info(job->scene, &info);
+        if (job->recipe_hash && job->recipe_hash != info.hash)
+            cli_warning(
+                "%s is not as it was when the picture was made, and so may be what is drawn",
+                job->settings.scene);
         settings_expose(&job->settings, &info);
         result = settings_choose_camera(&job->settings, job->scene);
     }

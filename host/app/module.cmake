@@ -20,10 +20,11 @@ add_executable(whit_program
   app/hard/hard_command.c app/hard/hard_output.c
   app/probe/probe_command.c app/probe/probe_output.c
   app/render/costs.c app/render/frames.c app/render/recipe.c app/render/refine.c app/render/render_command.c
+  app/render/repeat.c
   app/render/stats.c app/render/view_image.c
   app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/receipt.c
   app/scene/receipt_output.c app/scene/scene_command.c app/scene/triangles.c
-  app/shader/shader_command.c
+  app/shader/extract.c app/shader/shader_command.c
   app/trace/ray_file.c app/trace/trace_command.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})

@@ -53,6 +53,10 @@ WHIT_CHECK whit_result image_load_by(const whit_log *log, const struct roots *ro
 /* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
 WHIT_CHECK whit_result image_load_texts(const whit_log *log, const char *path,
                                         struct image_text **texts, uint32_t *text_count);
+/* The same in a child with other limits; `params` may be NULL. */
+WHIT_CHECK whit_result image_load_texts_by(const whit_log *log, const char *path,
+                                           const struct foreign_params *params,
+                                           struct image_text **texts, uint32_t *text_count);
 
 /* Pixel `index` of floats as RGBA: grey fills three channels, alpha is 1 where there is none. */
 void image_read_pixel(const struct image *image, size_t index, float rgba[4]);

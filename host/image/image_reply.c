@@ -157,11 +157,18 @@ static struct image_text *pack_texts(const struct reading *reading, bool *damage
 whit_result image_load_texts(const whit_log *log, const char *path, struct image_text **texts,
                              uint32_t *text_count)
 {
+    return image_load_texts_by(log, path, NULL, texts, text_count);
+}
+
+whit_result image_load_texts_by(const whit_log *log, const char *path,
+                                const struct foreign_params *params, struct image_text **texts,
+                                uint32_t *text_count)
+{
     struct reading reading = {.log = log, .path = path};
     bool damaged;
     *texts = NULL;
     *text_count = 0;
-    whit_result result = ask(&reading, NULL, answer_texts);
+    whit_result result = ask(&reading, params, answer_texts);
     if (result != WHIT_OK)
         return result;
     struct image_text *packed = pack_texts(&reading, &damaged);

@@ -303,12 +303,11 @@ const struct setting settings_table[] = {
      "GLSL functions in the place of whit's own: see\n"
      "docs/shaders.md and `whit shader`",
      "", AT(TEXT, shader), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT,
-     .need = SETTING_NEEDS_KERNEL, .trusted = true},
+     .need = SETTING_NEEDS_KERNEL},
     {"set", 0, "NAME=VALUE",
      "sliders of the shader; several by commas, or by several\n"
      "--set",
-     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT,
-     .trusted = true},
+     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT},
     {"trust", 0, NULL, "the shader's loops and indices are not bounded", AT(FLAG, trust),
      .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .trusted = true},

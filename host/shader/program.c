@@ -150,21 +150,22 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     return result;
 }
 
-whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
-                                  const char *path, bool trust, whit_shader **out,
-                                  struct shader_errors *errors)
+whit_result shader_program_create_of(const whit_log *log, struct shader_compiler *compiler,
+                                     struct shader_text *text, bool trust, whit_shader **out,
+                                     struct shader_errors *errors)
 {
     *out = NULL;
     whit_shader *shader = calloc(1, sizeof *shader);
     if (!shader) {
         log_error(log, "out of memory");
+        shader_text_free(text);
         return WHIT_ERROR_MEMORY;
     }
     shader->fuel = SHADER_FUEL_USUAL;
     shader->trust = trust;
-    whit_result result = shader_text_read(log, path, &shader->text, errors);
-    if (result == WHIT_OK)
-        result = shader_annotations_read(log, shader, errors);
+    shader->text = *text;
+    *text = (struct shader_text){0};
+    whit_result result = shader_annotations_read(log, shader, errors);
     if (result == WHIT_OK)
         result = find_hooks(log, shader, errors);
     if (result == WHIT_OK)
@@ -177,6 +178,17 @@ whit_result shader_program_create(const whit_log *log, struct shader_compiler *c
         shader->files[i] = shader->text.files[i].name;
     *out = shader;
     return WHIT_OK;
+}
+
+whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
+                                  const char *path, bool trust, whit_shader **out,
+                                  struct shader_errors *errors)
+{
+    struct shader_text text;
+    *out = NULL;
+    whit_result result = shader_text_read(log, path, &text, errors);
+    return result == WHIT_OK ? shader_program_create_of(log, compiler, &text, trust, out, errors)
+                             : result;
 }
 
 void shader_program_destroy(whit_shader *shader)

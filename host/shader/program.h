@@ -71,6 +71,12 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
 WHIT_CHECK whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
                                              const char *path, bool trust, whit_shader **out,
                                              struct shader_errors *errors);
+/* The same of a text that was read already, which is the program's from then on, also where this
+   fails. */
+WHIT_CHECK whit_result shader_program_create_of(const whit_log *log,
+                                                struct shader_compiler *compiler,
+                                                struct shader_text *text, bool trust,
+                                                whit_shader **out, struct shader_errors *errors);
 void shader_program_destroy(whit_shader *shader);
 /* whit_shader_template */
 char *shader_template(const char *hook);

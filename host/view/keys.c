@@ -367,6 +367,7 @@ static void save_picture(struct view *view)
     const struct view_shot shot = {.settings = &drawn,
                                    .color = frame->color,
                                    .scene = frame->scene->scene,
+                                   .shader = frame->shader ? frame->shader->shader : NULL,
                                    .device = &frame->device,
                                    .stats = &frame->stats};
     if (view->params->save && view->params->save(view->params->save_user, &shot, path) == WHIT_OK)

@@ -9,6 +9,7 @@ struct view_shot {
     const struct settings *settings;
     const whit_image *color; /* linear, as `whit render` makes it */
     const whit_scene *scene;
+    const whit_shader *shader; /* NULL: none */
     const whit_device_info *device;
     const whit_stats *stats;
 };

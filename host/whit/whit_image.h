@@ -34,6 +34,13 @@ WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path
    whit_scene_load. */
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_image **out);
+/* The recipe in a .png or .exr; none in other pictures. *texts with its strings is one block, to be
+   released by whit_memory_destroy. `params` as above. WHIT_ERROR_INPUT for a file that is missing,
+   damaged or no picture, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE without a
+   sandbox that is required. */
+WHIT_CHECK whit_result whit_image_load_texts(const char *path, const whit_load_params *params,
+                                             const whit_log *log, whit_text **texts,
+                                             uint32_t *text_count);
 /* `pixels`: width * height * channels linear floats, row 0 at the top, copied; channels: 1, 3, 4.
    WHIT_ERROR_USAGE for other channels or sizes. */
 WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,

@@ -39,7 +39,8 @@ typedef struct whit_shader_error {
 uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
                                      const whit_shader_error **errors);
 
-/* Reads the file with all that it includes and compiles the kernels that its functions are part of.
+/* Reads the file with all that it includes, or the functions that a .png or .exr carries under
+   WHIT_SHADER_KEY, and compiles the kernels that its functions are part of.
    `trust`: its loops and indices are not bounded. WHIT_ERROR_INPUT with what is wrong in the log,
    each as "FILE:line: reason"; WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE without a sandbox that is
    required. */
@@ -85,6 +86,28 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info);
 /* The kernels that the shader has part in, by index; NULL past the last. `words`: SPIR-V. */
 const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
                                size_t *bytes);
+
+/* ---- In pictures ---- */
+
+/* What a picture's recipe calls the text of its functions. */
+#define WHIT_SHADER_KEY "whit:shader"
+
+/* All files of a shader in one text of at most 1 MiB, printable ASCII with ends of lines, as a
+   picture carries it; to be released by whit_memory_destroy. NULL, with *why, which lives on: they
+   are larger than that, a file's name would be refused when it is read, or there is no memory. */
+char *whit_shader_pack(const whit_shader *shader, const char **why);
+
+typedef struct whit_shader_file {
+    const char *name; /* from a folder of its own, which it does not leave */
+    const char *text; /* ends with a 0 that `bytes` does not count */
+    size_t bytes;
+} whit_shader_file;
+/* The files of such a text, the one that was named first: one block, to be released by
+   whit_memory_destroy. Nothing is compiled. WHIT_ERROR_INPUT where it is damaged, with the one
+   reason in the log behind `where`; WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_shader_unpack(const char *packed, const char *where,
+                                          const whit_log *log, whit_shader_file **files,
+                                          uint32_t *count);
 
 /* The file that `whit shader new` writes: whit's own function of that name, with what it may use in
    comments; NULL: there is no such hook. To be released by whit_memory_destroy. */

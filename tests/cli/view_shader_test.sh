@@ -68,6 +68,56 @@ mv "$OUT/read" "$OUT/states"
 read_states
 as_wanted
 
+# ---- A picture of it, a file of settings, and both again ----
+
+cp "$CUBE" cube.json
+play "a slider that is moved" cube.json --size 200x150 --shader live/a.glsl <<END
+still
+press X
+press Tab
+choose stepped
+still
+press F12
+press Ctrl+S
+press Ctrl+C
+state first
+END
+check "saved" test -e whit-0001.png -a -e whit-0001.view
+cp "$OUT/values" first
+value first render >line
+# again STATE: it is as the first one was.
+again() {
+    for field in frame.ids frame.pixels shader.hash; do
+        is "$1" $field "$(awk -F '\t' -v field=$field '$2 == field { print $3 }' first)"
+    done
+}
+for words in '--shader live/a.glsl' '--set stepped=off'; do
+    check "the file of settings says $words" grep -qxF -e "$words" whit-0001.view
+    check "and so does Ctrl+C" grep -qF -e "$words " line
+done
+play "by the file" cube.json --state whit-0001.view <<END
+still
+state state
+END
+again state
+mv live away
+play "by the picture" whit-0001.png --yes <<END
+still
+state picture
+press F12
+END
+mv away live
+again picture
+expect 0 "what is saved of it" compare whit-0001.png whit-0002.png --metric differing --tolerance 0
+expect 2 "by a picture, without an answer" view whit-0001.png
+check "says what to do" grep -q 'no terminal to ask at; --yes' "$OUT/stderr"
+printf -- '--shader live/a.glsl\n--trust\n' >bad.view
+refuse 2 "a file that trusts" "bad.view:2: --trust is nothing to be saved" view cube.json --state bad.view
+for option in --allow-path=/ --memory-limit=900G --import-limit=99 --require-sandbox; do
+    echo $option >bad.view
+    refuse 2 "a file with $option" "bad.view:1: ${option%=*} is nothing to be saved" view cube.json --state bad.view
+done
+
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
 expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet

@@ -47,8 +47,20 @@ static void add(struct recipe *recipe, const char *key, const char *value)
     recipe->texts[recipe->count++] = (whit_text){.key = key, .value = value};
 }
 
+/* What cannot be kept is left out: the picture is good without it. */
+static void add_functions(struct recipe *recipe, const whit_shader *shader, const char *output)
+{
+    const char *why;
+    recipe->functions = shader ? whit_shader_pack(shader, &why) : NULL;
+    if (recipe->functions)
+        add(recipe, WHIT_SHADER_KEY, recipe->functions);
+    else if (shader)
+        cli_warning("%s: the functions are not kept in it: %s", output, why);
+}
+
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
-                 const whit_device_info *device, const whit_stats *stats, const char *output)
+                 const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
+                 const char *output)
 {
     whit_scene_info info;
     *recipe = (struct recipe){.device = *device};
@@ -75,6 +87,7 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     add(recipe, "whit:scene_hash", recipe->hash);
     add(recipe, "whit:options", recipe->options);
     add(recipe, "whit:counters", recipe->counters);
+    add_functions(recipe, shader, output);
     return true;
 }
 
@@ -103,5 +116,6 @@ void recipe_finish(struct recipe *recipe)
     free(recipe->command);
     free(recipe->options);
     free(recipe->counters);
+    whit_memory_destroy(recipe->functions);
     *recipe = (struct recipe){0};
 }

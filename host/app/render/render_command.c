@@ -31,6 +31,7 @@ static const struct setting options[] = {
      "for --budget-ms and --max-error: measure anew what is kept\n"
      "with the scene",
      SETTING_AT_FLAG(struct render_request, fresh)},
+    REPEAT_OPTIONS(struct render_request, repeat),
     {0},
 };
 
@@ -215,7 +216,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     struct recipe recipe;
     whit_device_info device;
     whit_device_get_info(job->device, &device);
-    if (!recipe_init(&recipe, settings, job->scene, &device, stats, request->output))
+    if (!recipe_init(&recipe, settings, job->scene, job->shader, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     if (request->ids)
@@ -373,6 +374,19 @@ static bool check_choice(struct cli_reader *reader, const struct settings *setti
     return true;
 }
 
+/* Options first without the scene, which a picture may stand for. */
+static bool read_all(struct job *job, struct cli_reader *reader, struct render_request *request,
+                     int argc, char **argv)
+{
+    if (!cli_read(reader, request, &job->settings))
+        return false;
+    if (repeat_picture(reader, &request->repeat))
+        return repeat_read(job, reader, request, &request->repeat, argc, argv);
+    job_init(job, reader->command);
+    cli_reader_init(reader, reader->command, argc, argv);
+    return job_read(job, reader, request, false);
+}
+
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
@@ -380,7 +394,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct render_request request = {0};
     job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
-    if (!job_read(&job, &reader, &request, false) || !frames_check(&reader, &job, &request) ||
+    if (!read_all(&job, &reader, &request, argc, argv) || !frames_check(&reader, &job, &request) ||
         !check_choice(&reader, &job.settings, &request) || !refine_check(&reader, &job, &request) ||
         !check_outputs(&reader, &request))
         return reader.status;

@@ -5,16 +5,21 @@
 #include <sys/stat.h>
 
 #include "app/commands.h"
+#include "app/shader/extract.h"
 
 struct shader_options {
     struct job job;
-    const char *dump;
+    const char *dump, *into;
     bool json;
 };
 
 static const struct setting options[] = {
     {"dump", 0, "FOLDER", "write the kernels with the file in them there: SPIR-V",
      SETTING_AT_NAME(struct shader_options, dump)},
+    {"into", 0, "FOLDER",
+     "where extract writes to, a folder that is not there yet\n"
+     "(called as the picture is)",
+     SETTING_AT_NAME(struct shader_options, into)},
     {"json", 0, NULL, "print JSON", SETTING_AT_FLAG(struct shader_options, json)},
     {0},
 };
@@ -185,6 +190,16 @@ static whit_result dump(const whit_shader *shader, const char *folder)
     return result;
 }
 
+static int extract(struct cli_reader *reader, const struct shader_options *request)
+{
+    const char *folders[SETTING_FOLDERS_MAX];
+    const whit_load_params params = settings_load(&request->job.settings, folders);
+    if (reader->second)
+        return extract_run(reader->second, request->into, &params);
+    cli_misuse(reader, "extract: out of which picture? `whit shader extract toon.png`");
+    return reader->status;
+}
+
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
@@ -196,8 +211,15 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return reader.status;
     if (reader.positional && strcmp(reader.positional, "new") == 0)
         return print_template(&reader);
+    if (reader.positional && strcmp(reader.positional, "extract") == 0)
+        return extract(&reader, &request);
+    if (request.into) {
+        cli_misuse(&reader, "--into is for `whit shader extract PICTURE`");
+        return reader.status;
+    }
     if (!reader.positional || reader.second) {
-        cli_misuse(&reader, "one FILE is needed, or `new` and the name of a function");
+        cli_misuse(&reader, "one FILE is needed, or `new` and the name of a function, or `extract` "
+                            "and a picture");
         return reader.status;
     }
     snprintf(job->settings.shader, sizeof job->settings.shader, "%s", reader.positional);
@@ -215,8 +237,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
 
 const struct cli_command command_shader = {
     .name = "shader",
-    .arguments = "FILE | new FUNCTION",
-    .summary = "Compiles a file of shader functions and lists what it has, or begins one.",
+    .arguments = "FILE | new FUNCTION | extract PICTURE",
+    .summary = "Compiles a file of shader functions, begins one, or takes it out of a picture.",
     .details = "Functions: camera, surface, shade, scatter, miss, post. See docs/shaders.md.\n"
                "Exit codes: 0 it compiles, 2 it does not: FILE:LINE says where.\n",
     .options = options,

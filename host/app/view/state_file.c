@@ -31,53 +31,12 @@ bool state_file_open(struct state_file *file, const char *path, char *said, size
     return false;
 }
 
-/* The bytes of $'\x1b\x5b' at *from, behind its first quote, up to its last; gives their end. */
-static char *read_bytes(char **from, char *to)
-{
-    unsigned byte;
-    for (int length = 0; sscanf(*from, "\\x%2x%n", &byte, &length) == 1 && byte; *from += length)
-        *to++ = (char)byte;
-    return to;
-}
-
-/* The next word of a line, in its place; what stands in single quotes is taken as it is, and a
-   backslash keeps the next letter, as a shell does it; in $'' only what quote_word writes. NULL at
-   the end; *whole: false where a quote has no end. */
-static char *next_word(char **at, bool *whole)
-{
-    char *from = *at + strspn(*at, " \t\r"), *to = from, *word = from;
-    bool quoted = false;
-    if (!*from)
-        return NULL;
-    for (; *from && (quoted || !strchr(" \t\r", *from)); ++from) {
-        if (*from == '$' && from[1] == '\'' && !quoted) {
-            from += 2;
-            to = read_bytes(&from, to);
-            *whole = *from == '\'';
-            if (!*whole)
-                return word;
-            continue;
-        }
-        if (*from == '\'') {
-            quoted = !quoted;
-            continue;
-        }
-        if (*from == '\\' && !quoted && from[1])
-            ++from;
-        *to++ = *from;
-    }
-    *whole = !quoted;
-    *at = *from ? from + 1 : from;
-    *to = '\0';
-    return word;
-}
-
 /* Whether the line has as many words as it may; argv[0] is the command. */
 static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MAX + 1])
 {
     bool whole = true;
     char *word;
-    while (whole && (word = next_word(&line, &whole)) != NULL) {
+    while (whole && (word = cli_next_word(&line, &whole)) != NULL) {
         if (reader->argc == WORDS_MAX)
             return cli_misuse(reader, "one option a line");
         argv[reader->argc++] = word;

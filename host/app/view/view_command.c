@@ -21,6 +21,7 @@ struct view_request {
     struct job job;
     struct view_params view;
     const char *state;
+    struct repeat repeat;
     double ui_scale;
     uint32_t remember; /* REMEMBER_UNSAID: as it suits */
 };
@@ -46,6 +47,7 @@ static const struct setting options[] = {
      "options that Ctrl+S saved, one a line; those beside it\n"
      "here come after them",
      SETTING_AT_NAME(struct view_request, state)},
+    REPEAT_OPTIONS(struct view_request, repeat),
     {"ui-scale", 0, "X", "of text and panels (the monitor's)",
      SETTING_AT_NUMBER(struct view_request, ui_scale), .min = 0.25, .max = 8.0},
     {"spend", 0, "S",
@@ -74,9 +76,15 @@ static whit_result load_state(void *user, const char *path, struct settings *set
                               char *message, size_t message_bytes)
 {
     struct settings loaded = settings_usual();
-    (void)user;
+    const struct job *job = user;
     if (!read_state(&loaded, path, message, message_bytes))
         return WHIT_ERROR_INPUT;
+    if (loaded.shader[0] && !job->compiler) {
+        snprintf(message, message_bytes, "%.300s has --shader: `whit view --state` takes it", path);
+        return WHIT_ERROR_INPUT;
+    }
+    loaded.picture.skip_sliders = settings->picture.skip_sliders;
+    loaded.shader_reload = settings->shader_reload;
     for (const struct setting *row = settings_table; row->name; ++row) {
         if (row->trusted)
             setting_copy(row, settings, &loaded);
@@ -93,7 +101,8 @@ static whit_result save_shot(void *user, const struct view_shot *shot, const cha
 {
     struct recipe recipe;
     (void)user;
-    if (!recipe_init(&recipe, shot->settings, shot->scene, shot->device, shot->stats, path))
+    if (!recipe_init(&recipe, shot->settings, shot->scene, shot->shader, shot->device, shot->stats,
+                     path))
         return WHIT_ERROR_MEMORY;
     whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
     recipe_finish(&recipe);
@@ -201,6 +210,7 @@ static int work(struct job *job, struct view_params *view)
     view->cancel = &cli_cancel;
     view->save = save_shot;
     view->load_state = load_state;
+    view->load_user = job;
     cli_keep_what_is_done(GRACE_MS);
     cli_set_saving();
     if (job->settings.shader[0]) {
@@ -227,13 +237,16 @@ static bool read_all(struct view_request *request, struct cli_reader *reader, in
     *request = (struct view_request){.remember = REMEMBER_UNSAID};
     job_init(&request->job, &command_view);
     cli_reader_init(reader, &command_view, argc, argv);
-    if (!job_read(&request->job, reader, request, true))
+    if (!cli_read(reader, request, &request->job.settings))
         return false;
     const char *state = request->state;
-    if (!state)
-        return true;
+    bool repeats = repeat_picture(reader, &request->repeat) != NULL;
+    if (repeats && state)
+        return cli_misuse(reader, "--state and the recipe of a picture: one of them");
+    if (repeats)
+        return repeat_read(&request->job, reader, request, &request->repeat, argc, argv);
     job_init(&request->job, &command_view);
-    if (!read_state(&request->job.settings, state, said, sizeof said)) {
+    if (state && !read_state(&request->job.settings, state, said, sizeof said)) {
         cli_error("%s", said);
         reader->status = EXIT_USAGE;
         return false;

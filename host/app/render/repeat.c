@@ -1,0 +1,285 @@
+#include "app/render/repeat.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/commands.h"
+#include "base/input.h"
+#include "base/path.h"
+#include "base/roots.h"
+
+enum { WORDS_MAX = 256, COMMAND_BYTES = 16384, LEFT_BYTES = 256, SAID_BYTES = 1024 };
+
+/* A picture, and what it says. */
+struct recipe_read {
+    const char *picture;
+    whit_text *texts;
+    uint32_t text_count;
+    char *command;         /* cut into words */
+    char left[LEFT_BYTES]; /* " --NAME --NAME": what it says and may not */
+};
+
+const char *repeat_picture(const struct cli_reader *reader, const struct repeat *repeat)
+{
+    char extension[8];
+    if (repeat->picture || !reader->positional || is_input(reader->positional))
+        return repeat->picture;
+    path_extension(reader->positional, extension, sizeof extension);
+    bool is_picture = strcmp(extension, "png") == 0 || strcmp(extension, "exr") == 0;
+    return is_picture ? reader->positional : NULL;
+}
+
+/* ---- Texts ---- */
+
+static const char *find_text(const whit_text *texts, uint32_t count, const char *key)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (strcmp(texts[i].key, key) == 0)
+            return texts[i].value;
+    }
+    return NULL;
+}
+
+const char *repeat_text(const char *picture, const whit_load_params *params, const char *key,
+                        whit_text **texts)
+{
+    uint32_t count;
+    if (whit_image_load_texts(picture, params, &cli_log, texts, &count) != WHIT_OK)
+        return NULL;
+    const char *text = find_text(*texts, count, key);
+    if (text)
+        return text;
+    cli_error("%s: a picture without `%s` in it", picture, key);
+    whit_memory_destroy(*texts);
+    *texts = NULL;
+    return NULL;
+}
+
+/* ---- The command in it ---- */
+
+static bool split(struct recipe_read *recipe, const char *command, char *argv[], int *argc)
+{
+    bool whole = true;
+    *argc = 0;
+    recipe->command = strlen(command) < COMMAND_BYTES ? strdup(command) : NULL;
+    char *at = recipe->command, *word;
+    while (at && whole && *argc < WORDS_MAX && (word = cli_next_word(&at, &whole)) != NULL)
+        argv[(*argc)++] = word;
+    argv[*argc] = NULL;
+    bool good = at && whole && *argc < WORDS_MAX && *argc >= 3 && strcmp(argv[0], "whit") == 0 &&
+                strcmp(argv[1], "render") == 0;
+    if (!good)
+        cli_error("%s: its recipe is none of whit's, or is damaged", recipe->picture);
+    return good;
+}
+
+static bool read_command(struct recipe_read *recipe, const char *command, struct settings *settings)
+{
+    char *argv[WORDS_MAX + 1], said[SAID_BYTES], why[SETTING_WHY_BYTES];
+    struct cli_reader reader;
+    int argc;
+    if (!split(recipe, command, argv, &argc))
+        return false;
+    cli_reader_init(&reader, &command_render, argc - 1, argv + 1);
+    reader.where = recipe->picture;
+    reader.said = said;
+    reader.said_bytes = sizeof said;
+    reader.left = recipe->left;
+    reader.left_bytes = sizeof recipe->left;
+    *settings = settings_usual();
+    if (!cli_read(&reader, NULL, settings)) {
+        cli_error("%s", said);
+        return false;
+    }
+    if (!settings_check(settings, why)) {
+        cli_error("%s: %s", recipe->picture, why);
+        return false;
+    }
+    const char *scene = reader.positional ? reader.positional : "";
+    if (!scene[0] || strlen(scene) >= sizeof settings->scene) {
+        cli_error("%s: its recipe has no scene", recipe->picture);
+        return false;
+    }
+    memcpy(settings->scene, scene, strlen(scene) + 1);
+    return true;
+}
+
+/* ---- What it names ---- */
+
+/* NULL, or why a file that the picture names is not opened. `path`: the name, which becomes one
+   from where whit was started. */
+static const char *find_file(const char *picture, char *path, size_t path_bytes)
+{
+    struct roots roots;
+    const char *why = "out of memory";
+    if (is_input(path))
+        return "it came by standard input";
+    char *beside = path_beside(picture, path);
+    if (beside && roots_init(&roots, picture) == WHIT_OK) {
+        errno = 0;
+        enum reach reach = is_input(beside) ? REACH_NOT_A_FILE : roots_reach(&roots, beside);
+        why =
+            reach == REACH_OUTSIDE ? "it lies outside of the picture's folder" : reach_words(reach);
+        roots_finish(&roots);
+    }
+    if (beside && !why && strlen(beside) >= path_bytes)
+        why = "its path is too long";
+    if (!why)
+        strcpy(path, beside);
+    free(beside);
+    return why;
+}
+
+static bool find_scene(const struct recipe_read *recipe, struct settings *settings,
+                       const char *command)
+{
+    const char *why = find_file(recipe->picture, settings->scene, sizeof settings->scene);
+    if (why)
+        cli_error("%s: its scene `%s`: %s; name it: `whit %s SCENE --recipe %s`", recipe->picture,
+                  settings->scene, why, command, recipe->picture);
+    return !why;
+}
+
+static bool find_others(const struct recipe_read *recipe, struct settings *settings)
+{
+    const char *why = settings->environment[0] ? find_file(recipe->picture, settings->environment,
+                                                           sizeof settings->environment)
+                                               : NULL;
+    if (why) {
+        cli_error("%s: --environment `%s`: %s", recipe->picture, settings->environment, why);
+        return false;
+    }
+    if (!settings->shader[0])
+        return true;
+    if (!find_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY)) {
+        cli_error("%s: the functions that it was made with are not in it", recipe->picture);
+        return false;
+    }
+    if (strlen(recipe->picture) >= sizeof settings->shader) {
+        cli_error("%s: the path is too long", recipe->picture);
+        return false;
+    }
+    strcpy(settings->shader, recipe->picture);
+    return true;
+}
+
+/* ---- Asking ---- */
+
+static uint32_t count_lines(const whit_shader_file *file)
+{
+    uint32_t lines = 1;
+    for (size_t i = 0; i + 1 < file->bytes; ++i)
+        lines += file->text[i] == '\n';
+    return lines;
+}
+
+/* What is told once the functions in it are known to be whole. */
+static void tell(const struct recipe_read *recipe, const struct settings *settings,
+                 const whit_shader_file *files, uint32_t count)
+{
+    const char *picture = cli_shown(recipe->picture);
+    fprintf(stderr, "whit: %s is to load\n  scene      %s\n", picture, cli_shown(settings->scene));
+    if (settings->environment[0])
+        fprintf(stderr, "  sky        %s\n", cli_shown(settings->environment));
+    for (uint32_t i = 0; i < count; ++i)
+        fprintf(stderr, "  %s  %s, %u line%s\n", i ? "         " : "functions",
+                cli_shown(files[i].name), count_lines(&files[i]),
+                count_lines(&files[i]) == 1 ? "" : "s");
+    if (count)
+        fprintf(stderr, "             `whit shader extract %s` writes them out\n", picture);
+    if (settings->sliders[0])
+        fprintf(stderr, "  sliders    %s\n", cli_shown(settings->sliders));
+    if (recipe->left[0])
+        fprintf(stderr, "  not taken %s: what may be done is said by you\n",
+                cli_shown(recipe->left));
+}
+
+static bool ask(const struct recipe_read *recipe)
+{
+    char answer[16];
+    if (!isatty(STDIN_FILENO) || !isatty(STDERR_FILENO)) {
+        cli_error("%s: whit asks before it loads what a picture says, and there is no terminal to "
+                  "ask at; --yes says yes",
+                  recipe->picture);
+        return false;
+    }
+    fprintf(stderr, "Load and compile it? [y/N] ");
+    bool yes =
+        fgets(answer, sizeof answer, stdin) &&
+        (strcmp(answer, "y\n") == 0 || strcmp(answer, "yes\n") == 0 || strcmp(answer, "Y\n") == 0);
+    if (!yes)
+        cli_error("%s: nothing of it was loaded", recipe->picture);
+    return yes;
+}
+
+static bool confirm(const struct recipe_read *recipe, const struct settings *settings, bool yes)
+{
+    whit_shader_file *files = NULL;
+    uint32_t count = 0;
+    if (strcmp(settings->shader, recipe->picture) == 0 &&
+        whit_shader_unpack(find_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY),
+                           recipe->picture, &cli_log, &files, &count) != WHIT_OK)
+        return false;
+    if (!yes || !settings->quiet)
+        tell(recipe, settings, files, count);
+    whit_memory_destroy(files);
+    return yes || ask(recipe);
+}
+
+/* ---- All of it ---- */
+
+static bool load(struct recipe_read *recipe, const struct job *job, struct settings *settings)
+{
+    const char *folders[SETTING_FOLDERS_MAX];
+    const whit_load_params params = settings_load(&job->settings, folders);
+    if (whit_image_load_texts(recipe->picture, &params, &cli_log, &recipe->texts,
+                              &recipe->text_count) != WHIT_OK)
+        return false;
+    const char *command = find_text(recipe->texts, recipe->text_count, "whit:command");
+    if (!command)
+        cli_error("%s: a picture without a recipe of whit's in it", recipe->picture);
+    return command && read_command(recipe, command, settings);
+}
+
+/* `settings` become the job's, and the command line is read over them. */
+static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_reader *reader,
+                      void *own, int argc, char **argv)
+{
+    const struct cli_command *command = reader->command;
+    struct settings settings;
+    const char *named = reader->positional;
+    bool own_scene = named && strcmp(named, recipe->picture) != 0;
+    char scene[SETTING_PATH_BYTES];
+    if (!load(recipe, job, &settings) ||
+        !(own_scene || find_scene(recipe, &settings, command->name)) ||
+        !find_others(recipe, &settings))
+        return false;
+    memcpy(scene, settings.scene, sizeof scene);
+    job_init(job, command);
+    job->settings = settings;
+    job->settings.given = 0; /* what it says and the command line says too is no quarrel */
+    const char *hash = find_text(recipe->texts, recipe->text_count, "whit:scene_hash");
+    job->recipe_hash = hash ? strtoull(hash, NULL, 16) : 0;
+    cli_reader_init(reader, command, argc, argv);
+    if (!job_read(job, reader, own, true))
+        return false;
+    if (!own_scene)
+        memcpy(job->settings.scene, scene, sizeof scene);
+    return true;
+}
+
+bool repeat_read(struct job *job, struct cli_reader *reader, void *own, const struct repeat *repeat,
+                 int argc, char **argv)
+{
+    struct recipe_read recipe = {.picture = repeat_picture(reader, repeat)};
+    bool yes = repeat->yes;
+    bool done =
+        read_over(&recipe, job, reader, own, argc, argv) && confirm(&recipe, &job->settings, yes);
+    whit_memory_destroy(recipe.texts);
+    free(recipe.command);
+    if (!done && reader->status < 0)
+        reader->status = EXIT_USAGE;
+    return done;
+}

@@ -1,0 +1,139 @@
+#include "app/shader/extract.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "app/commands.h"
+#include "base/path.h"
+
+enum { PATH_BYTES = 4096 };
+
+/* The folder without slashes at its end; false: it has no name. */
+static bool name_folder(const char *picture, const char *into, char folder[PATH_BYTES])
+{
+    const char *name = path_name(picture), *dot = strrchr(name, '.');
+    int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+    int written = into ? snprintf(folder, PATH_BYTES, "%s", into)
+                       : snprintf(folder, PATH_BYTES, "%.*s", length, name);
+    size_t bytes = written > 0 && written < PATH_BYTES / 2 ? (size_t)written : 0;
+    while (bytes > 1 && folder[bytes - 1] == '/')
+        folder[--bytes] = 0;
+    if (!bytes)
+        cli_error("%s: no folder can be called so", into ? into : picture);
+    return bytes;
+}
+
+/* A hidden folder beside it, open to whom a new folder is. */
+static bool make_beside(const char *folder, char beside[PATH_BYTES])
+{
+    const char *name = path_name(folder);
+    snprintf(beside, PATH_BYTES, "%.*s.%.200s.XXXXXX", (int)(name - folder), folder, name);
+    mode_t mask = umask(0);
+    umask(mask);
+    if (mkdtemp(beside) && chmod(beside, 0777 & ~mask) == 0)
+        return true;
+    cli_error("%s: cannot be made: %s", folder, strerror(errno));
+    return false;
+}
+
+/* The start of `name` behind `root`; both are of limited length, and it fits. */
+static void join(char path[PATH_BYTES], const char *root, const char *name, size_t bytes)
+{
+    size_t used = strlen(root);
+    memcpy(path, root, used);
+    path[used] = '/';
+    memcpy(path + used + 1, name, bytes);
+    path[used + 1 + bytes] = 0;
+}
+
+/* Folders on the way to a file below `root`, whose name stays below it. */
+static bool make_folders(const char *root, const char *name, char path[PATH_BYTES])
+{
+    for (const char *slash = strchr(name, '/'); slash; slash = strchr(slash + 1, '/')) {
+        join(path, root, name, (size_t)(slash - name));
+        if (mkdir(path, 0777) != 0 && errno != EEXIST) {
+            cli_error("%s: cannot be made: %s", path, strerror(errno));
+            return false;
+        }
+    }
+    join(path, root, name, strlen(name));
+    return true;
+}
+
+static bool write_files(const char *root, const whit_shader_file *files, uint32_t count)
+{
+    char path[PATH_BYTES];
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!make_folders(root, files[i].name, path) ||
+            whit_file_write(path, files[i].text, files[i].bytes, &cli_log) != WHIT_OK)
+            return false;
+    }
+    return true;
+}
+
+/* What write_files may have made, files before their folders. */
+static void remove_files(const char *root, const whit_shader_file *files, uint32_t count)
+{
+    char path[PATH_BYTES];
+    for (uint32_t i = 0; i < count; ++i) {
+        join(path, root, files[i].name, strlen(files[i].name));
+        unlink(path);
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        join(path, root, files[i].name, strlen(files[i].name));
+        while (strlen(path) > strlen(root)) {
+            *strrchr(path, '/') = 0;
+            if (rmdir(path) != 0)
+                break;
+        }
+    }
+    rmdir(root);
+}
+
+static bool put_in_place(const char *beside, const char *folder)
+{
+    if (rename(beside, folder) == 0)
+        return true;
+    bool there = errno == ENOTEMPTY || errno == EEXIST || errno == ENOTDIR || errno == EBUSY;
+    cli_error("%s: %s%s", folder, there ? "is there already" : "cannot be made: ",
+              there ? ", and nothing is written over: `--into FOLDER` names another"
+                    : strerror(errno));
+    return false;
+}
+
+static int write_folder(const char *folder, const whit_shader_file *files, uint32_t count)
+{
+    char beside[PATH_BYTES];
+    if (!make_beside(folder, beside))
+        return EXIT_USAGE;
+    if (!write_files(beside, files, count) || !put_in_place(beside, folder)) {
+        remove_files(beside, files, count);
+        return EXIT_USAGE;
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        printf("%s/%s\n", cli_shown(folder), cli_shown(files[i].name));
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+int extract_run(const char *picture, const char *into, const whit_load_params *params)
+{
+    char folder[PATH_BYTES];
+    whit_text *texts;
+    whit_shader_file *files;
+    uint32_t count;
+    if (!name_folder(picture, into, folder))
+        return EXIT_USAGE;
+    const char *packed = repeat_text(picture, params, WHIT_SHADER_KEY, &texts);
+    if (!packed)
+        return EXIT_USAGE;
+    whit_result result = whit_shader_unpack(packed, picture, &cli_log, &files, &count);
+    whit_memory_destroy(texts);
+    int status = result == WHIT_OK ? write_folder(folder, files, count) : cli_exit_of(result);
+    if (result == WHIT_OK)
+        whit_memory_destroy(files);
+    return status;
+}
