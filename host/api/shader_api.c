@@ -137,26 +137,47 @@ whit_result whit_shader_unpack(const char *packed, const char *where, const whit
 
 /* ---- Loading ---- */
 
-static whit_result load_picture(whit_shader_compiler *compiler, const char *path, bool trust,
-                                whit_shader **out)
+/* `path` NULL: no text. */
+static whit_result read_functions(whit_shader_compiler *compiler, const char *path,
+                                  struct shader_text *text)
 {
+    *text = (struct shader_text){0};
+    if (!path)
+        return WHIT_OK;
+    return is_picture(path) ? read_picture(compiler, path, text)
+                            : shader_text_read(&compiler->log, path, text, &compiler->errors);
+}
+
+static whit_result load(whit_shader_compiler *compiler, const char *path, const char *stages_folder,
+                        bool trust, whit_shader **out)
+{
+    struct shader_errors *errors = &compiler->errors;
     struct shader_text text;
+    struct shader_stages *stages;
     *out = NULL;
-    whit_result result = read_picture(compiler, path, &text);
-    return result == WHIT_OK ? shader_program_create_of(&compiler->log, compiler->compiler, &text,
-                                                        trust, out, &compiler->errors)
-                             : result;
+    whit_result result = read_functions(compiler, path, &text);
+    if (result != WHIT_OK)
+        return result;
+    result = shader_program_stages(&compiler->log, stages_folder, &stages, errors);
+    if (result == WHIT_OK)
+        return shader_program_create(&compiler->log, compiler->compiler, &text, stages, trust, out,
+                                     errors);
+    shader_text_free(&text);
+    return result;
 }
 
 whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path, bool trust,
                              whit_shader **out)
 {
+    return whit_shader_load_stages(compiler, path, NULL, trust, out);
+}
+
+whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *path,
+                                    const char *stages, bool trust, whit_shader **out)
+{
     struct shader_errors *errors = &compiler->errors;
     *errors = (struct shader_errors){0};
-    whit_result result =
-        is_picture(path)
-            ? load_picture(compiler, path, trust, out)
-            : shader_program_create(&compiler->log, compiler->compiler, path, trust, out, errors);
+    whit_result result = load(compiler, path, stages, trust, out);
     for (uint32_t i = 0; i < errors->count; ++i)
         compiler->shown[i] = (whit_shader_error){errors->items[i].file, errors->items[i].line,
                                                  errors->items[i].reason};
@@ -171,12 +192,13 @@ void whit_shader_destroy(whit_shader *shader)
 void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
 {
     *info = (whit_shader_info){.files = shader->files,
-                               .file_count = shader->text.file_count,
+                               .file_count = shader->file_count,
                                .hooks = shader->names,
                                .sliders = shader->sliders,
                                .slider_count = shader->slider_count,
                                .fuel = shader->trust ? 0 : shader->fuel,
-                               .hash = shader_text_hash(&shader->text)};
+                               .hash = shader_text_hash(&shader->text) ^
+                                       (shader->stages ? shader->stages->hash : 0)};
     while (info->hook_count < SHADER_HOOK_COUNT && shader->names[info->hook_count])
         info->hook_count++;
     for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i) {

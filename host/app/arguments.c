@@ -238,11 +238,11 @@ static void shorten(const char *value, char why[SETTING_WHY_BYTES])
     memcpy(why, text, sizeof text);
 }
 
-/* Recipes say what decides pixels, and name files, which who reads them looks after. */
+/* Recipes say what decides pixels, and name a sky, which who reads them looks after. */
 static bool is_left(const struct setting *option, bool is_setting)
 {
     return !is_setting || option->change == SETTING_RUN || option->of_machine ||
-           (option->trusted && option->kind != SETTING_TEXT);
+           (option->trusted && strcmp(option->name, "environment") != 0);
 }
 
 static void take(struct cli_reader *reader, const struct setting *option, void *own,

@@ -62,14 +62,21 @@ whit_result job_begin_compiler(struct job *job, const whit_log *log)
     return whit_shader_compiler_create(&limits, log, &job->compiler);
 }
 
+static const char *text_or_null(const char *text)
+{
+    return text[0] ? text : NULL;
+}
+
 whit_result job_load_shader(struct job *job)
 {
     const struct settings *settings = &job->settings;
-    if (!settings->shader[0])
+    if (!settings_compiles(settings))
         return WHIT_OK;
     whit_result result = job_begin_compiler(job, &cli_log);
     if (result == WHIT_OK)
-        result = whit_shader_load(job->compiler, settings->shader, settings->trust, &job->shader);
+        result =
+            whit_shader_load_stages(job->compiler, text_or_null(settings->shader),
+                                    text_or_null(settings->stages), settings->trust, &job->shader);
     return result == WHIT_OK ? job_still_wanted() : result;
 }
 

@@ -338,7 +338,7 @@ uint32_t variant_classes(const struct target *target)
     const struct renderer *renderer = target->renderer;
     struct scene_effects none = {.called = {false}};
     /* What a hook traces may meet materials of either class. */
-    bool hooked = shader_code_of(renderer->params.shader, kernels[KERNEL_SHADE].name) != NULL;
+    bool hooked = shader_is_hooked(renderer->params.shader, kernels[KERNEL_SHADE].name);
     bool both = !hooked && !renderer->params.all_effects && !variant_few_kernels(target) &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) > 0;

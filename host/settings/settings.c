@@ -75,9 +75,9 @@ static bool check_choice(const struct settings *settings, char *why)
 {
     bool budget = settings->budget_ms > 0.0, error = settings->max_error > 0.0;
     const char *name = budget ? "--budget-ms" : "--max-error";
-    if ((budget || error) && settings->shader[0])
-        return setting_refuse(why, "%s is measured against the reference, which has no --shader",
-                              name);
+    if ((budget || error) && settings_compiles(settings))
+        return setting_refuse(why, "%s is measured against the reference, which has no --%s", name,
+                              settings->shader[0] ? "shader" : "stages");
     if (budget && error)
         return setting_refuse(why, "--budget-ms and --max-error: one of them");
     if ((budget || error) && light_is_given(settings))
@@ -207,8 +207,13 @@ bool settings_same_scene(const struct settings *a, const struct settings *b)
 
 bool settings_same_shader(const struct settings *a, const struct settings *b)
 {
-    return strcmp(a->shader, b->shader) == 0 && a->trust == b->trust &&
-           a->shader_reload == b->shader_reload;
+    return strcmp(a->shader, b->shader) == 0 && strcmp(a->stages, b->stages) == 0 &&
+           a->trust == b->trust && a->shader_reload == b->shader_reload;
+}
+
+bool settings_compiles(const struct settings *settings)
+{
+    return settings->shader[0] || settings->stages[0];
 }
 
 /* Kernels know whether rays are counted, whether there are bounces, and whether pixels are picked

@@ -39,6 +39,7 @@ struct settings {
     double fps;
 
     char shader[SETTING_TEXT_BYTES];  /* a file of functions; "": none */
+    char stages[SETTING_TEXT_BYTES];  /* a checkout's shaders/, in place of whit's; "": those */
     char sliders[SETTING_TEXT_BYTES]; /* of it: "NAME=VALUE,NAME=VALUE" */
     uint32_t shader_reload;           /* another number: the file is read again */
     bool trust;                       /* its loops and indices are not bounded */
@@ -119,6 +120,8 @@ void settings_set_light(struct settings *settings, const struct settings *from);
 /* Whether ids and pixels of both pictures are the same bytes; what is left may change their time.
  */
 bool settings_same_pixels(const struct settings *a, const struct settings *b);
+/* Whether kernels are compiled for it: of functions of the user's, of other stages, or both. */
+bool settings_compiles(const struct settings *settings);
 /* Whether the shader of both is one, compiled once. */
 bool settings_same_shader(const struct settings *a, const struct settings *b);
 /* All that a picture shows. */

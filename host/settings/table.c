@@ -304,6 +304,11 @@ const struct setting settings_table[] = {
      "docs/shaders.md and `whit shader`",
      "", AT(TEXT, shader), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL},
+    {"stages", 0, "FOLDER",
+     "whit's own stages out of FOLDER, the shaders/ of a checkout,\n"
+     "in place of those that are built in",
+     "", AT(TEXT, stages), .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_KERNEL, .trusted = true},
     {"set", 0, "NAME=VALUE",
      "sliders of the shader; several by commas, or by several\n"
      "--set",

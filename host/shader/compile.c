@@ -28,7 +28,13 @@ struct shader_compiler {
 
 /* --- the process ---------------------------------------------------------------------------- */
 
-/* A request is a glslang_question, whose text follows. */
+/* Where the kernel stands that functions go into, behind a text and its 0. */
+static size_t base_at(size_t text_bytes)
+{
+    return (text_bytes + sizeof(uint32_t)) / sizeof(uint32_t) * sizeof(uint32_t);
+}
+
+/* A request is a glslang_question, whose text follows, and the kernel. */
 static int answer(const void *request, size_t bytes, void *to, child_write write)
 {
     struct glslang_question question;
@@ -36,6 +42,8 @@ static int answer(const void *request, size_t bytes, void *to, child_write write
         return 1;
     memcpy(&question, request, sizeof question);
     question.text = (const char *)request + sizeof question;
+    if (question.base_words)
+        question.base = (const uint32_t *)(const void *)(question.text + base_at(question.bytes));
     return glslang_answer_question(&question, to, write);
 }
 
@@ -200,12 +208,20 @@ static void add_own_error(const struct place *place, const struct glslang_error 
                          "a brace without its other one: %s", reason);
         return;
     }
-    snprintf(name, sizeof name, "whit:%s",
-             error->file < shader_source_count ? shader_sources[error->file].path
-                                               : place->request->kernel);
+    const struct shader_stages *stages = place->request->stages;
+    uint32_t index = stages && error->file >= stages->count
+                         ? shader_stages_find(stages, place->request->kernel)
+                         : error->file;
+    if (stages && index < stages->count && stages->names[index])
+        snprintf(name, sizeof name, "%s", stages->names[index]);
+    else
+        snprintf(name, sizeof name, "whit:%s",
+                 error->file < shader_source_count ? shader_sources[error->file].path
+                                                   : place->request->kernel);
     shader_error_add(place->log, place->errors, name, error->line,
-                     place->text ? "%s (in whit's own text: what it uses of yours has another form)"
-                                 : "%s",
+                     place->text && !stages
+                         ? "%s (in whit's own text: what it uses of yours has another form)"
+                         : "%s",
                      reason);
 }
 
@@ -243,7 +259,8 @@ static void add_errors(const struct place *place, const struct glslang_answer *a
             add_user_error(place, error, reason);
         } else if (error->own == 1 && !user) {
             add_own_error(place, error, reason);
-            break; /* the others follow from it */
+            if (!place->request->stages)
+                break; /* the others follow from it */
         } else if (error->own > 1) {
             shader_error_add(place->log, place->errors, whole_name(place), 0, "%s", reason);
         }
@@ -321,7 +338,9 @@ static void make_own_tag(char own[GLSLANG_OWN_BYTES])
 static uint8_t *make_question(const struct place *place, size_t *bytes)
 {
     struct glslang_question question = {.trust = place->request->trust,
-                                        .links = place->request->links};
+                                        .names = place->request->names,
+                                        .base_words =
+                                            place->request->base_bytes / sizeof(uint32_t)};
     make_own_tag(question.own);
     struct expanded expanded;
     if (!expand_kernel(place->log, place->text, place->request, question.own, &expanded,
@@ -330,11 +349,14 @@ static uint8_t *make_question(const struct place *place, size_t *bytes)
     question.bytes = expanded.bytes;
     question.user_at = expanded.user_at;
     question.user_end = expanded.user_end;
-    *bytes = sizeof question + expanded.bytes + 1;
+    size_t behind = base_at(expanded.bytes), base_bytes = place->request->base_bytes;
+    *bytes = sizeof question + behind + base_bytes;
     uint8_t *request = malloc(*bytes);
     if (request) {
         memcpy(request, &question, sizeof question);
         memcpy(request + sizeof question, expanded.text, expanded.bytes + 1);
+        if (base_bytes)
+            memcpy(request + sizeof question + behind, place->request->base, base_bytes);
     } else {
         log_error(place->log, "no memory for the text of a kernel");
     }

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "base/child.h"
+#include "shader/stages.h"
 #include "shader/text.h"
 
 /* Of one request. A zeroed one means the defaults. */
@@ -26,10 +27,13 @@ struct shader_request {
     const char *kernel_text;
     const char *const *defines; /* "NAME" or "NAME VALUE": #define lines behind the extensions */
     uint32_t define_count;
-    bool trust; /* the user's loops and indices are left as they are */
-    /* 1 + enum hook_kernel of kernels.h: the kernel that functions of kernel/hook.comp go into; 0:
+    const struct shader_stages *stages; /* in place of what is embedded; NULL: that */
+    bool trust;                         /* the user's loops and indices are left as they are */
+    bool names; /* keeps names, and functions that nothing calls: what is made is to be a `base` */
+    /* The kernel that functions of kernel/hook.comp go into, made with `names` (link.h); NULL:
        `kernel` is whole. */
-    uint32_t links;
+    const uint32_t *base;
+    size_t base_bytes;
 };
 
 /* Where a loop of the user's text begins. */

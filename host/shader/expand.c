@@ -8,7 +8,7 @@
 #include "shader/scan.h"
 #include "sources.h"
 
-enum { DEPTH_MAX = 32, NAME_BYTES = 256 };
+enum { DEPTH_MAX = 32, NAME_BYTES = EXPAND_NAME_BYTES };
 #define EXPANDED_BYTES ((size_t)16 << 20)
 
 struct expansion {
@@ -18,7 +18,9 @@ struct expansion {
     char *out;
     size_t used, room;
     size_t user_at, user_end;
-    bool *pasted; /* of shader_sources: nothing left out */
+    const struct shader_source *sources; /* whit's own, or the request's stages */
+    uint32_t source_count;
+    bool *pasted; /* of them: nothing left out */
     uint32_t depth;
     bool failed; /* no memory */
     bool large;
@@ -139,16 +141,7 @@ static void put_user(struct expansion *e)
 
 /* --- whit's own ----------------------------------------------------------------------------- */
 
-static uint32_t find_source(const char *path)
-{
-    uint32_t i = 0;
-    while (i < shader_source_count && strcmp(shader_sources[i].path, path) != 0)
-        i++;
-    return i;
-}
-
-/* "../bind/x.glsl" or "x.glsl", as "kernel/y.comp" names it. */
-static void join(const char *from, const char *name, size_t length, char out[NAME_BYTES])
+void expand_join(const char *from, const char *name, size_t length, char out[NAME_BYTES])
 {
     const char *slash = strrchr(from, '/');
     if (length > 3 && memcmp(name, "../", 3) == 0)
@@ -169,8 +162,7 @@ static const char *is_directive(const char *line, const char *name)
     return strncmp(line, name, length) == 0 ? line + length : NULL;
 }
 
-/* What an #include names; its length, 0 where the line is none. */
-static size_t included(const char *line, const char **name)
+size_t expand_included(const char *line, const char **name)
 {
     const char *at = is_directive(line, "include");
     if (!at)
@@ -191,9 +183,9 @@ static void put_included(struct expansion *e, const struct own_file *file, const
                          size_t length, bool whole)
 {
     char path[NAME_BYTES];
-    join(file->path, name, length, path);
-    uint32_t index = find_source(path);
-    if (index == shader_source_count || e->depth == DEPTH_MAX) {
+    expand_join(file->path, name, length, path);
+    uint32_t index = shader_stages_find(e->request->stages, path);
+    if (index == e->source_count || e->depth == DEPTH_MAX) {
         snprintf(e->name, sizeof e->name, "%s", path);
         e->missing = e->name;
         return;
@@ -205,7 +197,7 @@ static void put_included(struct expansion *e, const struct own_file *file, const
         put_user(e);
         return;
     }
-    const struct own_file other = {path, shader_sources[index].text, index, whole};
+    const struct own_file other = {path, e->sources[index].text, index, whole};
     e->depth++;
     put_own(e, &other);
     e->depth--;
@@ -262,7 +254,7 @@ static void put_own(struct expansion *e, const struct own_file *file)
         put_line(e, 1, e->own, file->index);
     for (const char *at = file->text, *next; *at && goes_on(e); at = next, ++line) {
         const char *name, *end = at + strcspn(at, "\n");
-        size_t length = included(at, &name);
+        size_t length = expand_included(at, &name);
         next = *end ? end + 1 : end;
         follow_conditions(&open, at);
         if (length) {
@@ -296,14 +288,17 @@ bool expand_kernel(const whit_log *log, const struct shader_text *text,
                    struct shader_errors *errors)
 {
     struct expansion e = {.text = text, .request = request, .own = own};
-    e.pasted = array_alloc_zeroed(shader_source_count, sizeof *e.pasted);
+    const struct shader_stages *stages = request->stages;
+    e.sources = shader_stages_list(stages, &e.source_count);
+    e.pasted = array_alloc_zeroed(e.source_count, sizeof *e.pasted);
     e.failed = !e.pasted;
-    uint32_t index = request->kernel_text ? shader_source_count : find_source(request->kernel);
+    uint32_t index =
+        request->kernel_text ? e.source_count : shader_stages_find(stages, request->kernel);
     struct own_file kernel = {request->kernel, request->kernel_text, index, true};
-    if (!kernel.text && index == shader_source_count)
+    if (!kernel.text && index == e.source_count)
         e.missing = request->kernel;
     else if (!kernel.text)
-        kernel.text = shader_sources[index].text;
+        kernel.text = e.sources[index].text;
     if (goes_on(&e))
         put_own(&e, &kernel);
     free(e.pasted);

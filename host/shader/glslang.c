@@ -55,7 +55,7 @@ static glslang_program_t *link_program(struct compilation *c, glslang_shader_t *
     glslang_program_add_shader(program, shader);
     /* What goes into a kernel is called from there. */
     int messages = GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT |
-                   (c->question->links ? GLSLANG_MSG_KEEP_UNCALLED_BIT : 0);
+                   (c->question->base || c->question->names ? GLSLANG_MSG_KEEP_UNCALLED_BIT : 0);
     if (glslang_program_link(program, messages)) {
         glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
         glslang_program_SPIRV_generate_with_options(program, GLSLANG_STAGE_COMPUTE, &options);
@@ -190,7 +190,7 @@ static struct spv_words make_module(struct compilation *c, const uint32_t *words
     else
         report(c, (struct spv_place){UINT32_MAX, 0}, "glslang wrote a module that cannot be read");
     if (whole && !c->answer.error_count)
-        out = spv_write(&m, c->question->links != 0);
+        out = spv_write(&m, c->question->base || c->question->names);
     if (m.failed)
         out.count = 0;
     spv_finish(&m);
@@ -213,10 +213,8 @@ static int write_answer(struct compilation *c, const uint32_t *words, size_t cou
 static struct spv_words link_module(struct compilation *c, const struct spv_words *user)
 {
     const char *why = NULL;
-    struct spv_words out = {0};
-    if (c->question->links <= HOOK_KERNEL_COUNT)
-        out = link_kernel(&hook_kernels[c->question->links - 1], user->words, user->count,
-                          c->question->own, &why);
+    struct spv_words out = link_kernel(c->question->base, c->question->base_words, user->words,
+                                       user->count, c->question->own, &why);
     if (why)
         report(c, (struct spv_place){UINT32_MAX, 0}, why);
     c->answer.instructions = 0;
@@ -235,7 +233,7 @@ static int finish_module(struct compilation *c, glslang_program_t *program, void
     uint32_t *exact = NULL;
     struct spv_words made = make_module(c, glslang_program_SPIRV_get_ptr(program),
                                         glslang_program_SPIRV_get_size(program));
-    if (made.count && c->question->links)
+    if (made.count && c->question->base)
         made = link_module(c, &made);
     enum shader_exact end = EXACT_NO_MEMORY;
     if (made.count)

@@ -13,7 +13,9 @@ struct glslang_question {
     size_t user_at, user_end;    /* where the user's part of it is; the same: there is none */
     char own[GLSLANG_OWN_BYTES]; /* see expand.h */
     bool trust;
-    uint32_t links; /* 0, or 1 + enum hook_kernel: the kernel that the functions go into */
+    bool names;           /* shader_request.names */
+    const uint32_t *base; /* NULL: there is none */
+    size_t base_words;
 };
 
 /* An error as a child tells it; not to be believed but for its size. */

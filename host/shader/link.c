@@ -428,11 +428,10 @@ static struct spv_words write_kernel(struct link *l)
     return out;
 }
 
-static bool begin(struct link *l, const struct kernel_code *kernel, const uint32_t *user,
+static bool begin(struct link *l, const uint32_t *kernel, size_t kernel_words, const uint32_t *user,
                   size_t count, const char *own)
 {
-    if (!spv_read(&l->base, kernel->words, kernel->bytes / sizeof(uint32_t), own) ||
-        !spv_read(&l->user, user, count, own))
+    if (!spv_read(&l->base, kernel, kernel_words, own) || !spv_read(&l->user, user, count, own))
         return false;
     l->ids = array_alloc_zeroed(l->user.bound + (size_t)1, sizeof *l->ids);
     l->dropped = array_alloc_zeroed(l->base.bound + (size_t)1, sizeof *l->dropped);
@@ -454,12 +453,12 @@ static void finish(struct link *l)
     spv_finish(&l->user);
 }
 
-struct spv_words link_kernel(const struct kernel_code *kernel, const uint32_t *user, size_t count,
-                             const char *own, const char **why)
+struct spv_words link_kernel(const uint32_t *kernel, size_t kernel_words, const uint32_t *user,
+                             size_t count, const char *own, const char **why)
 {
     struct link l = {0};
     struct spv_words out = {0};
-    if (begin(&l, kernel, user, count, own)) {
+    if (begin(&l, kernel, kernel_words, user, count, own)) {
         take_globals(&l);
         name_functions(&l);
         map_functions(&l);

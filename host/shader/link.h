@@ -3,14 +3,13 @@
 #ifndef SHADER_LINK_H
 #define SHADER_LINK_H
 
-#include "kernels.h"
 #include "shader/module.h"
 
 /* `user`: of kernel/hook.comp, with its remarks. Functions of hook/interface.glsl become those of
    the same name in the kernel, and functions of the kernel that the user has as well become the
    user's. What nothing calls is left out. Free ->words. No words: *why says why, or is NULL where
    there is no memory. */
-struct spv_words link_kernel(const struct kernel_code *kernel, const uint32_t *user, size_t count,
-                             const char *own, const char **why);
+struct spv_words link_kernel(const uint32_t *kernel, size_t kernel_words, const uint32_t *user,
+                             size_t count, const char *own, const char **why);
 
 #endif

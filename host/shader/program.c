@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "kernels.h"
-#include "sources.h"
 
 enum { DEFINE_BYTES = 48 };
 
@@ -19,11 +18,15 @@ static const char *const hook_names[SHADER_HOOK_COUNT] = {
 #define BIT(hook) (1u << SHADER_HOOK_##hook)
 
 /* In the order of enum hook_kernel. Every stage makes the camera's rays anew. */
-static const uint32_t kernel_hooks[SHADER_KERNEL_COUNT] = {
-    [SHADER_KERNEL_CLOSEST] = BIT(CAMERA) | BIT(MISS),
-    [SHADER_KERNEL_SHADE] = BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER),
-    [SHADER_KERNEL_SHADOW] = BIT(CAMERA),
-    [SHADER_KERNEL_RESOLVE] = BIT(POST),
+static const struct {
+    const char *path;
+    uint32_t hooks;
+} kernel_table[SHADER_KERNEL_COUNT] = {
+    [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA) | BIT(MISS)},
+    [SHADER_KERNEL_SHADE] = {"kernel/shade.comp",
+                             BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER)},
+    [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
+    [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", BIT(POST)},
 };
 _Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
                    (int)SHADER_KERNEL_RESOLVE == (int)HOOK_KERNEL_RESOLVE,
@@ -48,6 +51,15 @@ const struct shader_code *shader_code_of(const whit_shader *shader, const char *
     return NULL;
 }
 
+bool shader_is_hooked(const whit_shader *shader, const char *kernel)
+{
+    for (uint32_t i = 0; shader && i < SHADER_KERNEL_COUNT; ++i) {
+        if (strcmp(hook_kernels[i].name, kernel) == 0)
+            return kernel_table[i].hooks & shader->hooks;
+    }
+    return false;
+}
+
 /* As report_hooks() of hook/prelude.glsl puts it together. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file, uint32_t *line)
 {
@@ -60,21 +72,15 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
     return true;
 }
 
-static const struct shader_source *find_source(const char *path)
-{
-    for (size_t i = 0; i < shader_source_count; ++i) {
-        if (strcmp(shader_sources[i].path, path) == 0)
-            return &shader_sources[i];
-    }
-    return NULL;
-}
-
 #define HOOK_TEXT "kernel/hook.comp"
 
-/* Its text, with the sliders declared in front of the user's. NULL: no memory. */
-static char *hook_text(const char *sliders)
+/* Its text, with the sliders declared in front of the user's. NULL: no memory, or it has no place
+   for them. */
+static char *hook_text(const struct shader_stages *stages, const char *sliders)
 {
-    const struct shader_source *source = find_source(HOOK_TEXT);
+    uint32_t count, index = shader_stages_find(stages, HOOK_TEXT);
+    const struct shader_source *sources = shader_stages_list(stages, &count);
+    const struct shader_source *source = index < count ? &sources[index] : NULL;
     const char *at = source ? strstr(source->text, USER_INCLUDE) : NULL;
     if (!at)
         return NULL;
@@ -89,7 +95,8 @@ static char *hook_text(const char *sliders)
 }
 
 static whit_result compile(const whit_log *log, struct shader_compiler *compiler,
-                           whit_shader *shader, enum shader_kernel kernel, const char *sliders,
+                           whit_shader *shader, enum shader_kernel kernel,
+                           const struct kernel_code *base, const char *sliders,
                            struct shader_errors *errors)
 {
     char texts[SHADER_HOOK_COUNT][DEFINE_BYTES];
@@ -104,20 +111,55 @@ static whit_result compile(const whit_log *log, struct shader_compiler *compiler
         defines[count] = texts[count];
         count++;
     }
-    char *text = hook_text(sliders);
+    char *text = hook_text(shader->stages, sliders);
     if (!text) {
-        log_error(log, "out of memory for the text of a kernel");
+        log_error(log, "%s: no memory, or it does not include hook/user.glsl", HOOK_TEXT);
         return WHIT_ERROR_MEMORY;
     }
     const struct shader_request request = {.kernel = HOOK_TEXT,
                                            .kernel_text = text,
                                            .defines = defines,
                                            .define_count = count,
+                                           .stages = shader->stages,
                                            .trust = shader->trust,
-                                           .links = 1 + (uint32_t)kernel};
+                                           .base = base->words,
+                                           .base_bytes = base->bytes};
     whit_result result =
         shader_compile(compiler, &shader->text, &request, &shader->codes[kernel], errors);
     free(text);
+    return result;
+}
+
+/* A kernel of other stages than the embedded ones: as it is, or with room for the user's functions.
+ */
+static whit_result compile_stage(struct shader_compiler *compiler, const whit_shader *shader,
+                                 enum shader_kernel kernel, bool hooks, struct shader_code *code,
+                                 struct shader_errors *errors)
+{
+    char number[DEFINE_BYTES];
+    snprintf(number, sizeof number, "HOOK_KERNEL %uu", (unsigned)kernel);
+    const char *const defines[] = {"HOOKS", number};
+    const struct shader_request request = {.kernel = kernel_table[kernel].path,
+                                           .defines = defines,
+                                           .define_count = hooks ? 2 : 0,
+                                           .stages = shader->stages,
+                                           .names = hooks};
+    return shader_compile(compiler, NULL, &request, code, errors);
+}
+
+static whit_result compile_hooked(const whit_log *log, struct shader_compiler *compiler,
+                                  whit_shader *shader, enum shader_kernel kernel,
+                                  const char *sliders, struct shader_errors *errors)
+{
+    struct shader_code code = {0};
+    whit_result result = WHIT_OK;
+    if (shader->stages)
+        result = compile_stage(compiler, shader, kernel, true, &code, errors);
+    const struct kernel_code base = {hook_kernels[kernel].name, code.words, code.bytes};
+    if (result == WHIT_OK)
+        result = compile(log, compiler, shader, kernel,
+                         shader->stages ? &base : &hook_kernels[kernel], sliders, errors);
+    shader_code_free(&code);
     return result;
 }
 
@@ -143,30 +185,56 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     char *sliders = shader_sliders_declare(shader);
     whit_result result = sliders ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
-        if (kernel_hooks[i] & shader->hooks)
-            result = compile(log, compiler, shader, (enum shader_kernel)i, sliders, errors);
+        if (kernel_table[i].hooks & shader->hooks)
+            result = compile_hooked(log, compiler, shader, (enum shader_kernel)i, sliders, errors);
+        else if (shader->stages)
+            result = compile_stage(compiler, shader, (enum shader_kernel)i, false,
+                                   &shader->codes[i], errors);
     }
     free(sliders);
     return result;
 }
 
-whit_result shader_program_create_of(const whit_log *log, struct shader_compiler *compiler,
-                                     struct shader_text *text, bool trust, whit_shader **out,
-                                     struct shader_errors *errors)
+static void list_files(whit_shader *shader)
+{
+    for (uint32_t i = 0; i < shader->text.file_count; ++i)
+        shader->files[shader->file_count++] = shader->text.files[i].name;
+    for (uint32_t i = 0; shader->stages && i < shader->stages->count; ++i) {
+        if (shader->stages->names[i])
+            shader->files[shader->file_count++] = shader->stages->names[i];
+    }
+}
+
+whit_result shader_program_stages(const whit_log *log, const char *folder,
+                                  struct shader_stages **stages, struct shader_errors *errors)
+{
+    const char *kernels[SHADER_KERNEL_COUNT + 2] = {[SHADER_KERNEL_COUNT] = HOOK_TEXT};
+    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i)
+        kernels[i] = kernel_table[i].path;
+    *stages = NULL;
+    return folder ? shader_stages_read(log, folder, kernels, stages, errors) : WHIT_OK;
+}
+
+whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
+                                  struct shader_text *text, struct shader_stages *stages,
+                                  bool trust, whit_shader **out, struct shader_errors *errors)
 {
     *out = NULL;
     whit_shader *shader = calloc(1, sizeof *shader);
     if (!shader) {
         log_error(log, "out of memory");
         shader_text_free(text);
+        shader_stages_destroy(stages);
         return WHIT_ERROR_MEMORY;
     }
     shader->fuel = SHADER_FUEL_USUAL;
     shader->trust = trust;
     shader->text = *text;
+    shader->stages = stages;
     *text = (struct shader_text){0};
-    whit_result result = shader_annotations_read(log, shader, errors);
-    if (result == WHIT_OK)
+    bool has_text = shader->text.file_count > 0;
+    whit_result result = has_text ? shader_annotations_read(log, shader, errors) : WHIT_OK;
+    if (result == WHIT_OK && has_text)
         result = find_hooks(log, shader, errors);
     if (result == WHIT_OK)
         result = compile_all(log, compiler, shader, errors);
@@ -174,21 +242,9 @@ whit_result shader_program_create_of(const whit_log *log, struct shader_compiler
         shader_program_destroy(shader);
         return result;
     }
-    for (uint32_t i = 0; i < shader->text.file_count; ++i)
-        shader->files[i] = shader->text.files[i].name;
+    list_files(shader);
     *out = shader;
     return WHIT_OK;
-}
-
-whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
-                                  const char *path, bool trust, whit_shader **out,
-                                  struct shader_errors *errors)
-{
-    struct shader_text text;
-    *out = NULL;
-    whit_result result = shader_text_read(log, path, &text, errors);
-    return result == WHIT_OK ? shader_program_create_of(log, compiler, &text, trust, out, errors)
-                             : result;
 }
 
 void shader_program_destroy(whit_shader *shader)
@@ -198,6 +254,7 @@ void shader_program_destroy(whit_shader *shader)
     for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i)
         shader_code_free(&shader->codes[i]);
     shader_text_free(&shader->text);
+    shader_stages_destroy(shader->stages);
     free(shader);
 }
 
@@ -208,8 +265,9 @@ char *shader_template(const char *hook)
     for (uint32_t i = 0; i < SHADER_HOOK_COUNT; ++i)
         known = known || strcmp(hook, hook_names[i]) == 0;
     snprintf(path, sizeof path, "hook/%.40s.glsl", hook);
-    const struct shader_source *source = known ? find_source(path) : NULL;
-    if (!source)
+    uint32_t index = shader_stages_find(NULL, path);
+    const struct shader_source *source = &shader_sources[index];
+    if (!known || index == shader_source_count)
         return NULL;
     const char *first = "//@ whit 1\n";
     char *text = calloc(source->bytes + strlen(first) + 1, 1);

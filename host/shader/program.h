@@ -43,15 +43,17 @@ struct shader_slider_text {
 };
 
 struct whit_shader {
-    struct shader_text text;
-    uint32_t hooks; /* bits 1 << enum shader_hook */
+    struct shader_text text;      /* without files: the stages alone */
+    struct shader_stages *stages; /* NULL: those that are embedded */
+    uint32_t hooks;               /* bits 1 << enum shader_hook */
     uint32_t fuel;
     bool trust;
     whit_slider sliders[SHADER_SLIDERS_MAX];
     struct shader_slider_text slider_texts[SHADER_SLIDERS_MAX];
     uint32_t slider_count, value_count;
     struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
-    const char *files[SHADER_TEXT_FILES_MAX];
+    const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
+    uint32_t file_count;
     const char *names[SHADER_HOOK_COUNT + 1]; /* of its hooks; NULL behind the last */
 };
 
@@ -64,19 +66,23 @@ static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
 }
 /* Its code of kernel "closest", "shade", "shadow" or "resolve"; NULL: whit's own serves. */
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
+/* Whether functions of the user's are part of it. */
+bool shader_is_hooked(const whit_shader *shader, const char *kernel);
 /* Where a loop begins, by the number that a kernel reports; false: no such loop. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file,
                       uint32_t *line);
-/* WHIT_ERROR_INPUT and others as of whit_shader_load. */
+/* Of a text that was read already, and of stages, which both are the program's from then on, also
+   where this fails. WHIT_ERROR_INPUT and others as of whit_shader_load. A text without files needs
+   stages: all kernels are made of them then.
+ */
 WHIT_CHECK whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
-                                             const char *path, bool trust, whit_shader **out,
+                                             struct shader_text *text, struct shader_stages *stages,
+                                             bool trust, whit_shader **out,
                                              struct shader_errors *errors);
-/* The same of a text that was read already, which is the program's from then on, also where this
-   fails. */
-WHIT_CHECK whit_result shader_program_create_of(const whit_log *log,
-                                                struct shader_compiler *compiler,
-                                                struct shader_text *text, bool trust,
-                                                whit_shader **out, struct shader_errors *errors);
+/* The stages of a folder, for it; NULL `folder`: *stages is NULL. As shader_stages_read. */
+WHIT_CHECK whit_result shader_program_stages(const whit_log *log, const char *folder,
+                                             struct shader_stages **stages,
+                                             struct shader_errors *errors);
 void shader_program_destroy(whit_shader *shader);
 /* whit_shader_template */
 char *shader_template(const char *hook);

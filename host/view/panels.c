@@ -186,7 +186,7 @@ void panels_switch_effects(struct view *view)
     panels->effects = !panels->effects;
     prices_leave(view, panels->measured);
     panels->measured = NULL;
-    bool can = !view->settings.shader[0]; /* prices are of whit's own functions */
+    bool can = !settings_compiles(&view->settings); /* prices are of whit's own functions */
     if (can && panels->effects && view->scene && view->frame.number > 0)
         panels->measured = prices_start(&(struct prices_params){.settings = &view->frame.settings,
                                                                 .scene = view->scene,

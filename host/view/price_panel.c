@@ -41,7 +41,7 @@ void price_switch(struct view *view)
         view->prices = NULL;
     } else if (!view->scene) {
         view->prices_open = false;
-    } else if (view->settings.shader[0]) {
+    } else if (settings_compiles(&view->settings)) {
         view->prices_open = false;
         view_say(view, "prices are measured against the reference, which has no --shader");
     } else {

@@ -64,7 +64,9 @@ static void log_shader_errors(const struct session *session, const whit_shader_c
             log_error(&session->log, "%s: %s", errors[i].file, errors[i].reason);
     }
     if (count == 0)
-        log_error(&session->log, "%s: could not be compiled", session->settings.shader);
+        log_error(&session->log, "%s: could not be compiled",
+                  session->settings.shader[0] ? session->settings.shader
+                                              : session->settings.stages);
 }
 
 static whit_result load_shader(struct session *session, whit_shader_compiler *compiler)
@@ -76,8 +78,9 @@ static whit_result load_shader(struct session *session, whit_shader_compiler *co
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
     double start_ms = whit_clock_ms();
-    whit_result result =
-        whit_shader_load(compiler, settings->shader, settings->trust, &ref->shader);
+    whit_result result = whit_shader_load_stages(
+        compiler, settings->shader[0] ? settings->shader : NULL,
+        settings->stages[0] ? settings->stages : NULL, settings->trust, &ref->shader);
     ref->compile_ms = whit_clock_ms() - start_ms;
     if (result != WHIT_OK) {
         log_shader_errors(session, compiler);
@@ -176,7 +179,7 @@ whit_result session_open(struct session *session, const struct settings *setting
     whit_device_opening *opening = whit_device_open_begin(&device, &session->log);
     whit_result result = WHIT_OK;
     tell(progress, SESSION_SHADER);
-    if (!session->shader && parts->compiler && settings->shader[0])
+    if (!session->shader && parts->compiler && settings_compiles(settings))
         result = load_shader(session, parts->compiler);
     tell(progress, SESSION_LOADING);
     if (result == WHIT_OK && !session->scene)

@@ -16,14 +16,15 @@ static void watch_files(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
     watch_clear(view->shaders.watch);
-    watch_add(view->shaders.watch, view->settings.shader);
-    for (uint32_t i = 1; shown && i < shown->info.file_count; ++i)
+    if (view->settings.shader[0])
+        watch_add(view->shaders.watch, view->settings.shader);
+    for (uint32_t i = 0; shown && i < shown->info.file_count; ++i)
         watch_add(view->shaders.watch, shown->info.files[i]);
 }
 
 void shaders_begin(struct view *view)
 {
-    if (!view->settings.shader[0])
+    if (!settings_compiles(&view->settings))
         return;
     view->shaders.watch = watch_create();
     watch_files(view);
@@ -76,6 +77,7 @@ void shaders_step(struct view *view)
     shaders->change = change->number;
     if (shaders->read_ms <= 0.0 || change->settings.shader_reload != view->settings.shader_reload)
         return;
+    const char *name = view->settings.shader[0] ? path_name(view->settings.shader) : "stages";
     char line[256];
     snprintf(line, sizeof line,
              "%+.2f ms, %llu of %llu pixels other, ids %s, %.2f s after the file",
@@ -83,8 +85,8 @@ void shaders_step(struct view *view)
              (unsigned long long)change->pixels, change->other_ids ? "other" : "equal",
              (whit_clock_ms() - shaders->read_ms) * 1e-3);
     shaders->read_ms = 0.0;
-    log_info(&view->log, "%s: %s", path_name(view->settings.shader), line);
-    view_say(view, "%s: %s", path_name(view->settings.shader), line);
+    log_info(&view->log, "%s: %s", name, line);
+    view_say(view, "%s: %s", name, line);
 }
 
 /* ---- Sliders ---- */

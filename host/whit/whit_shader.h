@@ -46,6 +46,13 @@ uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
    required. */
 WHIT_CHECK whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path,
                                         bool trust, whit_shader **out);
+/* The same with the stages of a checkout in place of those that are built in: `stages` is its
+   folder shaders/, whose kernel/ is compiled with all that it includes below the folder. `path`
+   NULL: they alone. What is in them is taken as whit's own: nothing in it is bounded. Errors stand
+   in them with file and line, as above; a file of abi/ that is not the one whit was built with is
+   one. */
+WHIT_CHECK whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *path,
+                                               const char *stages, bool trust, whit_shader **out);
 void whit_shader_destroy(whit_shader *shader);
 
 typedef enum whit_slider_kind {

@@ -118,6 +118,35 @@ for option in --allow-path=/ --memory-limit=900G --import-limit=99 --require-san
     refuse 2 "a file with $option" "bad.view:1: ${option%=*} is nothing to be saved" view cube.json --state bad.view
 done
 
+# ---- Stages of a checkout, written while they are shown ----
+
+cp -r "$SCENES/../shaders" st
+sed 's/environment(dir)/environment(dir) * bright/' st/hook/miss.glsl >broken.new
+sed 's/environment(dir)/environment(dir) * 0.5/' st/hook/miss.glsl >dim.new
+line=$(grep -n bright broken.new | cut -d : -f 1)
+steps >"$OUT/replay" <<END
+start: | shader.files > 10 | error =
+until error
+broken: | error has st/hook/miss.glsl:$line: | frame.pixels as start
+until error = $NONE
+mended: | frame.pixels not as start | frame.ids as start
+END
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view cube.json --size 96x64 --stages st --replay "$OUT/replay" \
+    --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
+viewer=$!
+while read -r state; do
+    echo "$state" >>"$OUT/read"
+    case $state in
+    *'"at":"start"'*) cp broken.new st/hook/miss.glsl ;;
+    *'"at":"broken"'*) cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl ;;
+    esac
+done <"$OUT/pipe"
+wait $viewer
+check "exit code 0" test $? -eq 0
+mv "$OUT/read" "$OUT/states"
+read_states
+as_wanted
+
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
 expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet

@@ -29,6 +29,7 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
     case SETTING_TEXT:
         strcpy(text, strcmp(row->name, "environment") == 0 ? "sky.pfm"
                      : strcmp(row->name, "shader") == 0    ? "bright.glsl"
+                     : strcmp(row->name, "stages") == 0    ? "stages"
                                                            : "0");
         return;
     case SETTING_PAIRS:

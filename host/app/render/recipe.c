@@ -87,7 +87,8 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     add(recipe, "whit:scene_hash", recipe->hash);
     add(recipe, "whit:options", recipe->options);
     add(recipe, "whit:counters", recipe->counters);
-    add_functions(recipe, shader, output);
+    if (settings->shader[0])
+        add_functions(recipe, shader, output);
     return true;
 }
 

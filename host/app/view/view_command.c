@@ -213,7 +213,7 @@ static int work(struct job *job, struct view_params *view)
     view->load_user = job;
     cli_keep_what_is_done(GRACE_MS);
     cli_set_saving();
-    if (job->settings.shader[0]) {
+    if (settings_compiles(&job->settings)) {
         view->settings.picture.skip_sliders = true; /* a file that is written again may have less */
         if (job_begin_compiler(job, NULL) != WHIT_OK)
             return EXIT_USAGE;
