@@ -71,7 +71,7 @@ as_wanted
 # ---- A picture of it, a file of settings, and both again ----
 
 cp "$CUBE" cube.json
-play "a slider that is moved" cube.json --size 200x150 --shader live/a.glsl <<END
+play "a slider that is moved" cube.json --size 400x300 --shader live/a.glsl <<END
 still
 press X
 press Tab
@@ -95,9 +95,11 @@ for words in '--shader live/a.glsl' '--set stepped=off'; do
     check "the file of settings says $words" grep -qxF -e "$words" whit-0001.view
     check "and so does Ctrl+C" grep -qF -e "$words " line
 done
-play "by the file" cube.json --state whit-0001.view <<END
-still
-state state
+play "by the file, and A beside B" cube.json --state whit-0001.view <<END
+state: | error =
+panel: press X, press Tab
+same: press I | compare.mode = split | compare.other_colors = 0 | compare.other_ids = 0
+other: choose stepped | compare.other_colors > 0 | compare.other_ids = 0 | render has --set stepped=on
 END
 again state
 mv live away

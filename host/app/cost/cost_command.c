@@ -58,6 +58,10 @@ static const struct setting options[] = {
     {"quick", 0, NULL, "20 s, 16 samples, 2000 rays", SETTING_AT_FLAG(struct cost, quick)},
     {"spend", 0, "S", "seconds that it may take, more or less (150)",
      SETTING_AT_NUMBER(struct cost, request.seconds), .min = 0.1, .max = 1e6},
+    {"shader", 0, NULL,
+     "is of render and view: errors are measured against the reference, which has no functions of "
+     "yours",
+     .kind = SETTING_GONE},
     {"samples", 0, NULL, "is `--reference-samples` now", .kind = SETTING_GONE},
     {"reference-samples", 0, NULL,
      "of the reference, and the most of --aa (64,\nor 16 where that keeps it large)",

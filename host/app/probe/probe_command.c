@@ -35,6 +35,10 @@ static const struct setting options[] = {
     {"json", 0, "FILE", "also write all of it as JSON", SETTING_AT_NAME(struct probe, json_path)},
     {"rays", 0, "N", "most rays that are recorded, 1 to 16383 (16383)",
      SETTING_AT_COUNT(struct probe, max_rays), .min = 1, .max = RAYS_MAX},
+    {"shader", 0, NULL,
+     "is of render and view: two of probe's columns are of the CPU, which has no functions of "
+     "yours",
+     .kind = SETTING_GONE},
     {0},
 };
 
