@@ -11,11 +11,14 @@ enum { PAIR_BYTES = 256 };
 
 /* ---- The file ---- */
 
-/* What an error does not tell of, stays watched. */
+/* What an error does not tell of, stays watched. The functions of a picture are those that the user
+   was asked about: another picture of that name is not followed. */
 static void watch_files(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
     watch_clear(view->shaders.watch);
+    if (whit_image_format_known(view->settings.shader, false))
+        return;
     if (view->settings.shader[0])
         watch_add(view->shaders.watch, view->settings.shader);
     for (uint32_t i = 0; shown && i < shown->info.file_count; ++i)

@@ -68,6 +68,24 @@ mv "$OUT/read" "$OUT/states"
 read_states
 as_wanted
 
+# follow WHAT OPTION...: `whit view` with $OUT/replay; on_state is called with each state as it comes.
+follow() {
+    what=$1
+    shift
+    : >"$OUT/states"
+    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$@" --replay "$OUT/replay" --quiet \
+        >"$OUT/pipe" 2>"$OUT/stderr" &
+    viewer=$!
+    while read -r state; do
+        echo "$state" >>"$OUT/states"
+        on_state "$state"
+    done <"$OUT/pipe"
+    wait $viewer
+    check "$what: exit code 0" test $? -eq 0
+    read_states
+    as_wanted
+}
+
 # ---- A picture of it, a file of settings, and both again ----
 
 cp "$CUBE" cube.json
@@ -102,15 +120,24 @@ same: press I | compare.mode = split | compare.other_colors = 0 | compare.other_
 other: choose stepped | compare.other_colors > 0 | compare.other_ids = 0 | render has --set stepped=on
 END
 again state
+# What was asked about is shown, whatever becomes of the picture.
+echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr; }' >other.glsl
+expect 0 "another picture" render cube.json --size 8x8 --quiet --shader other.glsl -o other.png
+cp whit-0001.png asked.png
 mv live away
-play "by the picture" whit-0001.png --yes <<END
-still
-state picture
-press F12
+steps >"$OUT/replay" <<END
+picture:
+later: wait 600, press F12 | shader.hash as picture | frame.pixels as picture
 END
+on_state() { case $1 in *'"at":"picture"'*) cp other.png asked.png ;; esac }
+follow "by the picture" asked.png --yes
 mv away live
 again picture
 expect 0 "what is saved of it" compare whit-0001.png whit-0002.png --metric differing --tolerance 0
+play "without functions at the start" cube.json --size 400x300 <<END
+start: | error =
+dropped: drop whit-0001.view | toast has whit-0001.view has --shader | frame.pixels as start
+END
 expect 2 "by a picture, without an answer" view whit-0001.png
 check "says what to do" grep -q 'no terminal to ask at; --yes' "$OUT/stderr"
 printf -- '--shader live/a.glsl\n--trust\n' >bad.view
@@ -133,21 +160,13 @@ broken: | error has st/hook/miss.glsl:$line: | frame.pixels as start
 until error = $NONE
 mended: | frame.pixels not as start | frame.ids as start
 END
-timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view cube.json --size 96x64 --stages st --replay "$OUT/replay" \
-    --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
-viewer=$!
-while read -r state; do
-    echo "$state" >>"$OUT/read"
-    case $state in
+on_state() {
+    case $1 in
     *'"at":"start"'*) cp broken.new st/hook/miss.glsl ;;
     *'"at":"broken"'*) cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl ;;
     esac
-done <"$OUT/pipe"
-wait $viewer
-check "exit code 0" test $? -eq 0
-mv "$OUT/read" "$OUT/states"
-read_states
-as_wanted
+}
+follow "stages" cube.json --size 96x64 --stages st
 
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
