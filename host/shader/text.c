@@ -254,7 +254,7 @@ static const char *refused_word(const char *word)
         "uniform is whit's own: functions of users have no bindings",
         "buffer is whit's own: functions of users have no bindings",
         "shared is whit's own: functions of users share no memory",
-        "main is whit's own: see docs/hooks.md for the functions that can be written",
+        "main is whit's own: see docs/shaders.md for the functions that can be written",
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
         if (strcmp(word, words[i]) == 0)

@@ -35,6 +35,11 @@ expect 0 "no functions" render scenes/cube.json --size 40x30 --quiet -o plain.pn
 expect 0 "repeated without functions" render plain.png --yes --quiet -o plain2.png
 check "the same bytes" cmp plain.png plain2.png
 
+sed 's/"intensity": 24/"intensity": 12/' scenes/cube.json >other.json && mv other.json scenes/cube.json
+expect 0 "of another scene" render plain.png --yes -o other.png
+said "which is said" "scenes/cube.json is not as it was when the picture was made"
+cp "$CUBE" scenes/
+
 # ---- Asking ----
 
 rm -f no.png

@@ -179,8 +179,8 @@ static uint32_t count_lines(const whit_shader_file *file)
 static void tell(const struct recipe_read *recipe, const struct settings *settings,
                  const whit_shader_file *files, uint32_t count)
 {
-    const char *picture = cli_shown(recipe->picture);
-    fprintf(stderr, "whit: %s is to load\n  scene      %s\n", picture, cli_shown(settings->scene));
+    fprintf(stderr, "whit: %s is to load\n  scene      %s\n", cli_shown(recipe->picture),
+            cli_shown(settings->scene));
     if (settings->environment[0])
         fprintf(stderr, "  sky        %s\n", cli_shown(settings->environment));
     for (uint32_t i = 0; i < count; ++i)
@@ -188,7 +188,8 @@ static void tell(const struct recipe_read *recipe, const struct settings *settin
                 cli_shown(files[i].name), count_lines(&files[i]),
                 count_lines(&files[i]) == 1 ? "" : "s");
     if (count)
-        fprintf(stderr, "             `whit shader extract %s` writes them out\n", picture);
+        fprintf(stderr, "             `whit shader extract %s` writes them out\n",
+                cli_shown(recipe->picture));
     if (settings->sliders[0])
         fprintf(stderr, "  sliders    %s\n", cli_shown(settings->sliders));
     if (recipe->left[0])
