@@ -311,7 +311,7 @@ static void map_functions(struct link *l)
             const uint32_t *words = user->words + at;
             if (spv_op(words) == SPV_SWITCH && is_long_switch(user, words))
                 l->why = "a switch is over integers of 32 bits";
-            else if (taken && spv_op(words) != SPV_LINE && spv_op(words) != SPV_NO_LINE)
+            else if (taken && !spv_is_remark(spv_op(words)))
                 put_mapped(l, &l->mapped, words);
         }
         at = end;
@@ -413,6 +413,14 @@ static void put_globals(struct link *l, struct spv_words *out)
     spv_put(&l->base, out, base->globals.words, base->globals.count);
 }
 
+static void put_function(struct link *l, const struct function *function, struct spv_words *out)
+{
+    for (uint32_t at = 0; at < function->count; at += spv_length(function->words + at)) {
+        if (!spv_is_remark(spv_op(function->words + at)))
+            spv_put(&l->base, out, function->words + at, spv_length(function->words + at));
+    }
+}
+
 static struct spv_words write_kernel(struct link *l)
 {
     struct spv_words out = {0};
@@ -421,7 +429,7 @@ static struct spv_words write_kernel(struct link *l)
     put_globals(l, &out);
     for (uint32_t i = 0; i < l->function_count; ++i) {
         if (l->functions[i].reached)
-            spv_put(&l->base, &out, l->functions[i].words, l->functions[i].count);
+            put_function(l, &l->functions[i], &out);
     }
     if (!l->base.failed)
         out.words[SPV_BOUND_AT] = l->base.next_id;

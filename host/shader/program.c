@@ -208,11 +208,11 @@ static void list_files(whit_shader *shader)
 whit_result shader_program_stages(const whit_log *log, const char *folder,
                                   struct shader_stages **stages, struct shader_errors *errors)
 {
-    const char *kernels[SHADER_KERNEL_COUNT + 2] = {[SHADER_KERNEL_COUNT] = HOOK_TEXT};
+    const char *paths[SHADER_KERNEL_COUNT + 2] = {[SHADER_KERNEL_COUNT] = HOOK_TEXT};
     for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i)
-        kernels[i] = kernel_table[i].path;
+        paths[i] = kernel_table[i].path;
     *stages = NULL;
-    return folder ? shader_stages_read(log, folder, kernels, stages, errors) : WHIT_OK;
+    return folder ? shader_stages_read(log, folder, paths, stages, errors) : WHIT_OK;
 }
 
 whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
