@@ -3,35 +3,59 @@
 
 #include "api/handles.h"
 #include "base/vec.h"
+#include "scene/small.h"
 #include "scene/viewpoint.h"
 
 static const double DEGREES = 180.0 / PI;
+
+static whit_result begin(const whit_log *log, whit_scene **out)
+{
+    *out = calloc(1, sizeof **out);
+    if (!*out) {
+        log_error(log, "out of memory for a scene");
+        return WHIT_ERROR_MEMORY;
+    }
+    (*out)->log = log_or_silence(log);
+    return WHIT_OK;
+}
+
+/* What is derived of a scene that is there; or, after a failure, nothing is left of it. */
+static whit_result complete(whit_scene *scene, whit_result result, whit_scene **out)
+{
+    if (result == WHIT_OK)
+        result = scene_pose_init(scene->scene, 0.0, &scene->pose);
+    if (result == WHIT_OK)
+        result = accel_flat_suits(scene->scene, &scene->pose, &scene->one_tree);
+    if (result != WHIT_OK) {
+        whit_scene_destroy(scene);
+        return result;
+    }
+    scene_effects_scan(scene->scene, &scene->effects);
+    *out = scene;
+    return WHIT_OK;
+}
 
 whit_result whit_scene_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_scene **out)
 {
     *out = NULL;
-    whit_scene *scene = calloc(1, sizeof *scene);
-    if (!scene) {
-        log_error(log, "%s: out of memory", path);
-        return WHIT_ERROR_MEMORY;
-    }
-    scene->log = log_or_silence(log);
-    whit_result result = load_scene(&scene->log, path, params, &scene->scene);
+    whit_scene *scene;
+    whit_result result = begin(log, &scene);
     if (result != WHIT_OK)
-        goto fail;
-    result = scene_pose_init(scene->scene, 0.0, &scene->pose);
+        return result;
+    result = load_scene(&scene->log, path, params, &scene->scene);
+    return complete(scene, result, out);
+}
+
+whit_result whit_scene_small(const whit_log *log, whit_scene **out)
+{
+    *out = NULL;
+    whit_scene *scene;
+    whit_result result = begin(log, &scene);
     if (result != WHIT_OK)
-        goto fail;
-    result = accel_flat_suits(scene->scene, &scene->pose, &scene->one_tree);
-    if (result != WHIT_OK)
-        goto fail;
-    scene_effects_scan(scene->scene, &scene->effects);
-    *out = scene;
-    return WHIT_OK;
-fail:
-    whit_scene_destroy(scene);
-    return result;
+        return result;
+    scene->scene = scene_small(&scene->log);
+    return complete(scene, scene->scene ? WHIT_OK : WHIT_ERROR_MEMORY, out);
 }
 
 void whit_scene_drop_pictures(whit_scene *scene)

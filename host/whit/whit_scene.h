@@ -58,6 +58,9 @@ typedef struct whit_load_params {
    where `require_sandbox` cannot be kept; WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_scene **out);
+/* A small scene of whit's own, with no file behind it, that has a ray of every kind.
+   WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_scene_small(const whit_log *log, whit_scene **out);
 void whit_scene_destroy(whit_scene *scene);
 /* Frees the texels that the scene holds on the host, for programs that make no further renderer
    from it: making one is WHIT_ERROR_USAGE afterwards. Renderers made before are not touched. */
