@@ -9,6 +9,7 @@
 #include "kernel_shade_hooks.h"
 #include "kernel_shadow.h"
 #include "kernel_shadow_hooks.h"
+#include "kernel_test_hooks.h"
 #include "kernel_trace.h"
 
 const struct kernel_code kernels[KERNEL_COUNT] = {
@@ -25,4 +26,5 @@ const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
     [HOOK_KERNEL_SHADE] = {"shade", kernel_shade_hooks, sizeof kernel_shade_hooks},
     [HOOK_KERNEL_SHADOW] = {"shadow", kernel_shadow_hooks, sizeof kernel_shadow_hooks},
     [HOOK_KERNEL_RESOLVE] = {"resolve", kernel_resolve_hooks, sizeof kernel_resolve_hooks},
+    [HOOK_KERNEL_TEST] = {"test", kernel_test_hooks, sizeof kernel_test_hooks},
 };

@@ -30,6 +30,7 @@ enum hook_kernel {
     HOOK_KERNEL_SHADE,
     HOOK_KERNEL_SHADOW,
     HOOK_KERNEL_RESOLVE,
+    HOOK_KERNEL_TEST, /* runs tests of the user's file */
     HOOK_KERNEL_COUNT
 };
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "shader/disassemble.h"
 #include "shader/pack.h"
 #include "shader/program.h"
 
@@ -52,6 +53,15 @@ uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
 {
     *errors = compiler->shown;
     return compiler->errors.count;
+}
+
+/* As errors, up to the next call. */
+static void show_errors(whit_shader_compiler *compiler)
+{
+    const struct shader_errors *errors = &compiler->errors;
+    for (uint32_t i = 0; i < errors->count; ++i)
+        compiler->shown[i] = (whit_shader_error){errors->items[i].file, errors->items[i].line,
+                                                 errors->items[i].reason};
 }
 
 /* ---- In pictures ---- */
@@ -178,10 +188,36 @@ whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *
     struct shader_errors *errors = &compiler->errors;
     *errors = (struct shader_errors){0};
     whit_result result = load(compiler, path, stages, trust, out);
-    for (uint32_t i = 0; i < errors->count; ++i)
-        compiler->shown[i] = (whit_shader_error){errors->items[i].file, errors->items[i].line,
-                                                 errors->items[i].reason};
+    show_errors(compiler);
     return result;
+}
+
+whit_result whit_shader_compile_tests(whit_shader_compiler *compiler, whit_shader *shader)
+{
+    compiler->errors = (struct shader_errors){0};
+    if (!shader->tests.test_count) {
+        log_error(&compiler->log, "%s: it has no tests", shader->files[0]);
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result =
+        shader_program_compile_tests(&compiler->log, compiler->compiler, shader, &compiler->errors);
+    show_errors(compiler);
+    return result;
+}
+
+whit_result whit_renderer_run_tests(whit_renderer *renderer, whit_check_result *results,
+                                    double *compile_ms, double *run_ms)
+{
+    whit_result result = api_need_device(renderer);
+    return result == WHIT_OK ? renderer_run_tests(renderer->renderer, results, compile_ms, run_ms)
+                             : result;
+}
+
+whit_result whit_renderer_check_expectations(whit_renderer *renderer, bool *held)
+{
+    whit_result result = api_need_device(renderer);
+    *held = false;
+    return result == WHIT_OK ? renderer_check_expectations(renderer->renderer, held) : result;
 }
 
 void whit_shader_destroy(whit_shader *shader)
@@ -196,6 +232,12 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
                                .hooks = shader->names,
                                .sliders = shader->sliders,
                                .slider_count = shader->slider_count,
+                               .tests = shader->test_infos,
+                               .checks = shader->check_infos,
+                               .test_count = shader->tests.test_count,
+                               .check_count = shader->tests.check_count,
+                               .expectations = shader->expectations,
+                               .expectation_count = shader->expectation_count,
                                .fuel = shader->trust ? 0 : shader->fuel,
                                .hash = shader_text_hash(&shader->text) ^
                                        (shader->stages ? shader->stages->hash : 0)};
@@ -207,18 +249,36 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
     }
 }
 
+/* SHADER_KERNEL_COUNT: there is none. */
+static enum shader_kernel find_kernel(const whit_shader *shader, uint32_t index)
+{
+    uint32_t kernel = 0;
+    while (kernel < SHADER_KERNEL_COUNT && (!shader->codes[kernel].words || index-- > 0))
+        kernel++;
+    return (enum shader_kernel)kernel;
+}
+
 const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
                                size_t *bytes)
 {
-    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i) {
-        const struct shader_code *code = &shader->codes[i];
-        if (!code->words || index-- > 0)
-            continue;
-        *words = code->words;
-        *bytes = code->bytes;
-        return shader_kernel_name((enum shader_kernel)i);
-    }
-    return NULL;
+    enum shader_kernel kernel = find_kernel(shader, index);
+    if (kernel == SHADER_KERNEL_COUNT)
+        return NULL;
+    *words = shader->codes[kernel].words;
+    *bytes = shader->codes[kernel].bytes;
+    return shader_kernel_name(kernel);
+}
+
+char *whit_shader_kernel_text(const whit_shader *shader, uint32_t index)
+{
+    const whit_log silent = log_or_silence(NULL);
+    enum shader_kernel kernel = find_kernel(shader, index);
+    return kernel == SHADER_KERNEL_COUNT ? NULL : shader_program_expand(&silent, shader, kernel);
+}
+
+char *whit_spirv_text(const uint32_t *words, size_t bytes)
+{
+    return shader_disassemble(words, bytes);
 }
 
 char *whit_shader_template(const char *hook)

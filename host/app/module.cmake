@@ -24,7 +24,7 @@ add_executable(whit_program
   app/render/stats.c app/render/view_image.c
   app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/receipt.c
   app/scene/receipt_output.c app/scene/scene_command.c app/scene/triangles.c
-  app/shader/extract.c app/shader/shader_command.c
+  app/shader/attempt.c app/shader/extract.c app/shader/shader_command.c
   app/trace/ray_file.c app/trace/trace_command.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})

@@ -4,6 +4,16 @@
 
 _Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MAX, "room for all kernels");
 
+/* Without a pipeline of it. */
+static void count_kernel(const struct pipeline_params *params, bool deferred, whit_kernel *kernel)
+{
+    struct pipeline_info info = {0};
+    bool counted = pipeline_count(params, &info);
+    *kernel = (whit_kernel){.name = params->name,
+                            .deferred = deferred,
+                            .instructions = counted ? info.instructions : 0};
+}
+
 static whit_result list_kernel(struct device *device, const struct pipeline_params *params,
                                bool deferred, whit_kernel *kernel)
 {
@@ -22,7 +32,18 @@ static whit_result list_kernel(struct device *device, const struct pipeline_para
     return result;
 }
 
-static whit_result list_stages(struct renderer *renderer, whit_kernel *kernels, uint32_t *count)
+static whit_result list_or_count(struct renderer *renderer, bool make,
+                                 const struct pipeline_params *params, bool deferred,
+                                 whit_kernel *kernel)
+{
+    if (make)
+        return list_kernel(renderer->device, params, deferred, kernel);
+    count_kernel(params, deferred, kernel);
+    return WHIT_OK;
+}
+
+static whit_result list_stages(struct renderer *renderer, bool make, whit_kernel *kernels,
+                               uint32_t *count)
 {
     struct stages_job job;
     struct gpu_spec spec = variant_spec(&renderer->picture), deferred;
@@ -34,16 +55,16 @@ static whit_result list_stages(struct renderer *renderer, whit_kernel *kernels, 
             continue;
         params.asks_statistics = true;
         bool defers = variant_defers(&params, &deferred);
-        result = list_kernel(renderer->device, &params, false, &kernels[(*count)++]);
+        result = list_or_count(renderer, make, &params, false, &kernels[(*count)++]);
         params.spec = (const uint32_t *)&deferred;
         if (result == WHIT_OK && defers)
-            result = list_kernel(renderer->device, &params, true, &kernels[(*count)++]);
+            result = list_or_count(renderer, make, &params, true, &kernels[(*count)++]);
     }
     return result;
 }
 
 whit_result render_list_kernels(const whit_log *log, struct device *device, struct accel *accel,
-                                const whit_renderer_params *params, whit_kernel *kernels,
+                                const whit_renderer_params *params, bool make, whit_kernel *kernels,
                                 uint32_t *count)
 {
     struct renderer renderer = {0};
@@ -56,7 +77,7 @@ whit_result render_list_kernels(const whit_log *log, struct device *device, stru
     if (result == WHIT_OK)
         result = frame_fill(&renderer);
     if (result == WHIT_OK)
-        result = list_stages(&renderer, kernels, count);
+        result = list_stages(&renderer, make, kernels, count);
     renderer_finish(&renderer);
     return result;
 }

@@ -69,10 +69,18 @@ bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect
 WHIT_CHECK whit_result renderer_get_kernel(const struct renderer *renderer, whit_kernel_info *info);
 
 /* Makes the kernels of a picture one after the other, and nothing else: no memory of the device is
-   taken. `kernels`: WHIT_KERNELS_MAX. */
+   taken. `kernels`: WHIT_KERNELS_MAX. Without `make` their instructions are counted alone; 0: the
+   kernel cannot be specialized. */
 WHIT_CHECK whit_result render_list_kernels(const whit_log *log, struct device *device,
                                            struct accel *accel, const whit_renderer_params *params,
-                                           whit_kernel *kernels, uint32_t *count);
+                                           bool make, whit_kernel *kernels, uint32_t *count);
+
+/* hook_tests.c: whit_renderer_run_tests */
+WHIT_CHECK whit_result renderer_run_tests(struct renderer *renderer, whit_check_result *results,
+                                          double *compile_ms, double *run_ms);
+
+/* hook_expect.c: whit_renderer_check_expectations */
+WHIT_CHECK whit_result renderer_check_expectations(struct renderer *renderer, bool *held);
 
 /* With params.count: the costs of rays of `kind` (RAY_*) of each pixel's first sample, as 8 integer
    channels in the order of struct gpu_cost. */

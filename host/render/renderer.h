@@ -326,6 +326,9 @@ WHIT_CHECK whit_result variant_bind_stage(const struct target *target, struct pa
    variant_has_beams. */
 WHIT_CHECK whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams,
                                             struct pass *pass);
+/* The kernel that runs the tests of params.shader, into `found`. */
+WHIT_CHECK whit_result variant_create_tests(const struct target *target, struct buffer *found,
+                                            struct pass *pass);
 bool variant_has_beams(const struct renderer *renderer);
 /* CAMERA_* that kernels are made for. */
 uint32_t variant_camera(const struct renderer *renderer);

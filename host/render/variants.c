@@ -481,6 +481,31 @@ whit_result variant_bind_stage(const struct target *target, struct pass *pass)
     return create_sets(pass, &bindings, BIND_STAGES_COUNT);
 }
 
+whit_result variant_create_tests(const struct target *target, struct buffer *found,
+                                 struct pass *pass)
+{
+    const struct renderer *renderer = target->renderer;
+    const struct shader_code *code = &renderer->params.shader->codes[SHADER_KERNEL_TEST];
+    struct bindings bindings = bind_stages(target);
+    struct gpu_spec spec = variant_spec(target);
+    spec.SPEC_SETTLES = 1;
+    spec.SPEC_CHECK_WORDS = shader_tests_words(&renderer->params.shader->tests);
+    spec.SPEC_LIT_PARTS = lit_parts(renderer, &spec);
+    bind(&bindings, BIND_PROBE, BINDING_STORAGE, found);
+    const struct pipeline_params params = {
+        .spirv = code->words,
+        .spirv_bytes = code->bytes,
+        .spec = (const uint32_t *)&spec,
+        .spec_count = GPU_SPEC_COUNT,
+        .bindings = bindings.kinds,
+        .binding_count = BIND_STAGES_COUNT,
+        .push_bytes = sizeof(struct gpu_chunk),
+        .name = "tests",
+    };
+    whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
+    return result == WHIT_OK ? create_sets(pass, &bindings, BIND_STAGES_COUNT) : result;
+}
+
 bool variant_has_beams(const struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;

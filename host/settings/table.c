@@ -312,7 +312,7 @@ const struct setting settings_table[] = {
     {"set", 0, "NAME=VALUE",
      "sliders of the shader; several by commas, or by several\n"
      "--set",
-     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT},
+     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT},
     {"trust", 0, NULL, "the shader's loops and indices are not bounded", AT(FLAG, trust),
      .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .trusted = true},
@@ -417,10 +417,10 @@ const struct setting settings_table[] = {
      AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE, .trusted = true},
 
     {"device", 0, "auto|N|NAME", "Vulkan device; see `whit devices`", "auto", AT(TEXT, device),
-     .commands = IN_SCENES | IN_BENCH, .change = SETTING_COST, .need = SETTING_NEEDS_KERNEL,
-     .of_machine = true},
+     .commands = IN_SCENES | IN_BENCH | IN_SHADER, .change = SETTING_COST,
+     .need = SETTING_NEEDS_KERNEL, .of_machine = true},
     {"no-cache", 0, NULL, "keep nothing for the next run, and use nothing that was kept",
-     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH},
+     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH | IN_SHADER},
     {"fps-goal", 0, "F",
      "pictures a second to hold while something moves, by\n"
      "smaller ones",
@@ -435,7 +435,7 @@ const struct setting settings_table[] = {
     {"time-limit", 0, "S", "give up after S seconds, with exit code 5", "",
      AT(NUMBER, time_limit_s), .min = 1e-3, .max = 1e6, .commands = IN_LIMITED},
     {"validation", 0, NULL, "run with the Vulkan validation layers", AT(FLAG, validation),
-     .commands = IN_SCENES & ~IN_SCENE},
+     .commands = (IN_SCENES & ~IN_SCENE) | IN_SHADER},
     {"quiet", 'q', NULL, "no notes, no progress, only errors", AT(FLAG, quiet),
      .commands = IN_SCENES | IN_COMPARE | IN_BENCH},
 

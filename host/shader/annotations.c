@@ -250,6 +250,57 @@ static void read_version(struct line *line)
                  word, own);
 }
 
+/* What stands behind it is read by tests.c. */
+static void read_test_mark(struct line *line)
+{
+    char rest[4];
+    if (!next_word(line, rest, sizeof rest) || rest[0])
+        complain(line, "behind `//@ test` stands nothing more: the function follows in the next "
+                       "line");
+}
+
+static const char *const expected_words[] = {
+    [WHIT_EXPECT_IDS] = "ids",
+    [WHIT_EXPECT_PIXELS] = "pixels",
+    [WHIT_EXPECT_RAYS] = "rays",
+    [WHIT_EXPECT_CAMERA] = "rays.camera",
+    [WHIT_EXPECT_SHADOW] = "rays.shadow",
+    [WHIT_EXPECT_REFLECTED] = "rays.reflected",
+    [WHIT_EXPECT_REFRACTED] = "rays.refracted",
+};
+enum { EXPECTED_COUNT = sizeof expected_words / sizeof *expected_words };
+
+static bool read_expected(struct line *line, uint32_t *what)
+{
+    char word[SHADER_NAME_BYTES], equals[4], base[8], rest[4];
+    bool fits = next_word(line, word, sizeof word);
+    for (*what = 0; fits && *what < EXPECTED_COUNT; ++*what) {
+        if (strcmp(word, expected_words[*what]) == 0)
+            return next_word(line, equals, sizeof equals) && strcmp(equals, "==") == 0 &&
+                   next_word(line, base, sizeof base) && strcmp(base, "base") == 0 &&
+                   next_word(line, rest, sizeof rest) && !rest[0];
+    }
+    return false;
+}
+
+static void read_expectation(struct line *line)
+{
+    whit_shader *shader = line->shader;
+    uint32_t what;
+    if (!read_expected(line, &what)) {
+        complain(line, "an expectation is `//@ expect WHAT == base`, with ids, pixels, rays, "
+                       "rays.camera, rays.shadow, rays.reflected or rays.refracted for WHAT");
+        return;
+    }
+    if (shader->expectation_count == SHADER_EXPECTATIONS_MAX) {
+        complain(line, "a file expects at most %d things", SHADER_EXPECTATIONS_MAX);
+        return;
+    }
+    shader->expectations[shader->expectation_count++] =
+        (whit_shader_expectation){(whit_expected)what, expected_words[what],
+                                  shader->text.files[line->file].name, line->number};
+}
+
 static void read_line(struct line *line)
 {
     char word[SHADER_NAME_BYTES];
@@ -264,8 +315,15 @@ static void read_line(struct line *line)
         read_fuel(line);
     else if (fits && strcmp(word, "whit") == 0)
         read_version(line);
+    else if (fits && strcmp(word, "test") == 0)
+        read_test_mark(line);
+    else if (fits && strcmp(word, "expect") == 0)
+        read_expectation(line);
     else
-        complain(line, "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel", word);
+        complain(line,
+                 "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel, test, "
+                 "expect",
+                 word);
 }
 
 whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,

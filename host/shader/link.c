@@ -254,8 +254,8 @@ static uint32_t find_named(const struct link *l, const char *name)
 
 static bool is_hook(const char *name)
 {
-    static const char *const hooks[] = {"camera(",  "surface(", "shade(",
-                                        "scatter(", "miss(",    "post("};
+    static const char *const hooks[] = {"camera(", "surface(", "shade(",   "scatter(",
+                                        "miss(",   "post(",    "run_test("};
     for (size_t i = 0; i < sizeof hooks / sizeof *hooks; ++i) {
         if (strncmp(name, hooks[i], strlen(hooks[i])) == 0)
             return true;
@@ -290,7 +290,8 @@ static void name_functions(struct link *l)
 static bool is_taken(const struct link *l, const uint32_t *words)
 {
     bool own = refuse_file(&l->user, words) != NULL;
-    return !own || l->ids[words[2]] == 0 || is_main(l->user_names[words[2]]);
+    const char *name = l->user_names[words[2]];
+    return !own || l->ids[words[2]] == 0 || is_main(name) || (name && is_hook(name));
 }
 
 static bool is_long_switch(const struct spv_module *m, const uint32_t *words)

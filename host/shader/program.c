@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "kernels.h"
 
-enum { DEFINE_BYTES = 48 };
+enum { DEFINES_MAX = SHADER_HOOK_COUNT + 1, DEFINE_BYTES = 48 };
 
 #define USER_INCLUDE "#include \"../hook/user.glsl\"\n"
 
@@ -27,6 +28,7 @@ static const struct {
                              BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER)},
     [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
     [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", BIT(POST)},
+    [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
 };
 _Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
                    (int)SHADER_KERNEL_RESOLVE == (int)HOOK_KERNEL_RESOLVE,
@@ -74,9 +76,9 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
 
 #define HOOK_TEXT "kernel/hook.comp"
 
-/* Its text, with the sliders declared in front of the user's. NULL: no memory, or it has no place
-   for them. */
-static char *hook_text(const struct shader_stages *stages, const char *sliders)
+/* Its text, with what is declared in front of the user's. NULL: no memory, or it has no place for
+   that. */
+static char *hook_text(const struct shader_stages *stages, const char *declared)
 {
     uint32_t count, index = shader_stages_find(stages, HOOK_TEXT);
     const struct shader_source *sources = shader_stages_list(stages, &count);
@@ -84,50 +86,109 @@ static char *hook_text(const struct shader_stages *stages, const char *sliders)
     const char *at = source ? strstr(source->text, USER_INCLUDE) : NULL;
     if (!at)
         return NULL;
-    size_t front = (size_t)(at - source->text), bytes = strlen(sliders);
+    size_t front = (size_t)(at - source->text), bytes = strlen(declared);
     char *text = calloc(source->bytes + bytes + 1, 1);
     if (text) {
         memcpy(text, source->text, front);
-        memcpy(text + front, sliders, bytes);
+        memcpy(text + front, declared, bytes);
         memcpy(text + front + bytes, at, source->bytes - front);
     }
     return text;
 }
 
-static whit_result compile(const whit_log *log, struct shader_compiler *compiler,
-                           whit_shader *shader, enum shader_kernel kernel,
-                           const struct kernel_code *base, const char *sliders,
-                           struct shader_errors *errors)
+/* What a kernel is compiled of; it borrows all but its own text, and is not to be moved. */
+struct kernel_request {
+    char texts[DEFINES_MAX][DEFINE_BYTES];
+    const char *defines[DEFINES_MAX];
+    char *text; /* free() it */
+    struct shader_request request;
+};
+
+/* `declared` stands in front of the user's text. False: no memory. */
+static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
+                                enum shader_kernel kernel, const char *declared,
+                                struct kernel_request *of)
 {
-    char texts[SHADER_HOOK_COUNT][DEFINE_BYTES];
-    const char *defines[SHADER_HOOK_COUNT];
     uint32_t count = 0;
+    if (kernel == SHADER_KERNEL_TEST)
+        snprintf(of->texts[count++], DEFINE_BYTES, "HAS_TESTS");
     for (uint32_t i = 0; i < SHADER_HOOK_COUNT; ++i) {
         if (!shader_has(shader, (enum shader_hook)i))
             continue;
-        snprintf(texts[count], DEFINE_BYTES, "HAS_%s", hook_names[i]);
-        for (char *c = texts[count]; *c; ++c)
+        snprintf(of->texts[count], DEFINE_BYTES, "HAS_%s", hook_names[i]);
+        for (char *c = of->texts[count]; *c; ++c)
             *c = (char)(*c >= 'a' && *c <= 'z' ? *c - 'a' + 'A' : *c);
-        defines[count] = texts[count];
         count++;
     }
-    char *text = hook_text(shader->stages, sliders);
-    if (!text) {
+    for (uint32_t i = 0; i < count; ++i)
+        of->defines[i] = of->texts[i];
+    of->text = hook_text(shader->stages, declared);
+    of->request = (struct shader_request){.kernel = HOOK_TEXT,
+                                          .kernel_text = of->text,
+                                          .defines = of->defines,
+                                          .define_count = count,
+                                          .stages = shader->stages,
+                                          .trust = shader->trust};
+    if (!of->text)
         log_error(log, "%s: no memory, or it does not include hook/user.glsl", HOOK_TEXT);
+    return of->text != NULL;
+}
+
+/* `user`: the text as the kernel is to have it. */
+static whit_result compile(const whit_log *log, struct shader_compiler *compiler,
+                           whit_shader *shader, const struct shader_text *user,
+                           enum shader_kernel kernel, const struct kernel_code *base,
+                           const char *declared, struct shader_errors *errors)
+{
+    struct kernel_request of;
+    if (!kernel_request_init(log, shader, kernel, declared, &of))
         return WHIT_ERROR_MEMORY;
-    }
-    const struct shader_request request = {.kernel = HOOK_TEXT,
-                                           .kernel_text = text,
-                                           .defines = defines,
-                                           .define_count = count,
-                                           .stages = shader->stages,
-                                           .trust = shader->trust,
-                                           .base = base->words,
-                                           .base_bytes = base->bytes};
+    of.request.base = base->words;
+    of.request.base_bytes = base->bytes;
     whit_result result =
-        shader_compile(compiler, &shader->text, &request, &shader->codes[kernel], errors);
-    free(text);
+        shader_compile(compiler, user, &of.request, &shader->codes[kernel], errors);
+    free(of.text);
     return result;
+}
+
+static whit_result find_hooks(const whit_log *log, whit_shader *shader,
+                              struct shader_errors *errors)
+{
+    for (uint32_t i = 0, count = 0; i < SHADER_HOOK_COUNT; ++i) {
+        if (!shader_text_defines(&shader->text, hook_names[i], NULL, NULL))
+            continue;
+        shader->hooks |= 1u << i;
+        shader->names[count++] = hook_names[i];
+    }
+    if (shader->hooks || shader->tests.test_count)
+        return WHIT_OK;
+    shader_error_add(log, errors, shader->text.files[0].name, 0,
+                     "has none of the functions camera, surface, shade, scatter, miss, post");
+    return WHIT_ERROR_INPUT;
+}
+
+/* The user's text as a kernel has it, and what is declared in front of it. */
+struct kernel_parts {
+    struct shader_text user;
+    char *declared;
+};
+
+static bool parts_init(const whit_shader *shader, bool tests, struct kernel_parts *parts)
+{
+    *parts = (struct kernel_parts){0};
+    char *sliders = shader_sliders_declare(shader);
+    char *calls = tests ? shader_tests_call(&shader->tests) : string_copy("");
+    if (sliders && calls)
+        parts->declared = string_format("%s%s", sliders, calls);
+    free(calls);
+    free(sliders);
+    return parts->declared && shader_tests_text(&shader->tests, &shader->text, tests, &parts->user);
+}
+
+static void parts_finish(struct kernel_parts *parts)
+{
+    shader_tests_end_text(&parts->user);
+    free(parts->declared);
 }
 
 /* A kernel of other stages than the embedded ones: as it is, or with room for the user's functions.
@@ -148,8 +209,8 @@ static whit_result compile_stage(struct shader_compiler *compiler, const whit_sh
 }
 
 static whit_result compile_hooked(const whit_log *log, struct shader_compiler *compiler,
-                                  whit_shader *shader, enum shader_kernel kernel,
-                                  const char *sliders, struct shader_errors *errors)
+                                  whit_shader *shader, const struct kernel_parts *parts,
+                                  enum shader_kernel kernel, struct shader_errors *errors)
 {
     struct shader_code code = {0};
     whit_result result = WHIT_OK;
@@ -157,41 +218,25 @@ static whit_result compile_hooked(const whit_log *log, struct shader_compiler *c
         result = compile_stage(compiler, shader, kernel, true, &code, errors);
     const struct kernel_code base = {hook_kernels[kernel].name, code.words, code.bytes};
     if (result == WHIT_OK)
-        result = compile(log, compiler, shader, kernel,
-                         shader->stages ? &base : &hook_kernels[kernel], sliders, errors);
+        result = compile(log, compiler, shader, &parts->user, kernel,
+                         shader->stages ? &base : &hook_kernels[kernel], parts->declared, errors);
     shader_code_free(&code);
     return result;
-}
-
-static whit_result find_hooks(const whit_log *log, whit_shader *shader,
-                              struct shader_errors *errors)
-{
-    for (uint32_t i = 0, count = 0; i < SHADER_HOOK_COUNT; ++i) {
-        if (!shader_text_defines(&shader->text, hook_names[i], NULL, NULL))
-            continue;
-        shader->hooks |= 1u << i;
-        shader->names[count++] = hook_names[i];
-    }
-    if (shader->hooks)
-        return WHIT_OK;
-    shader_error_add(log, errors, shader->text.files[0].name, 0,
-                     "has none of the functions camera, surface, shade, scatter, miss, post");
-    return WHIT_ERROR_INPUT;
 }
 
 static whit_result compile_all(const whit_log *log, struct shader_compiler *compiler,
                                whit_shader *shader, struct shader_errors *errors)
 {
-    char *sliders = shader_sliders_declare(shader);
-    whit_result result = sliders ? WHIT_OK : WHIT_ERROR_MEMORY;
+    struct kernel_parts parts;
+    whit_result result = parts_init(shader, false, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
         if (kernel_table[i].hooks & shader->hooks)
-            result = compile_hooked(log, compiler, shader, (enum shader_kernel)i, sliders, errors);
-        else if (shader->stages)
+            result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
+        else if (shader->stages && i != SHADER_KERNEL_TEST)
             result = compile_stage(compiler, shader, (enum shader_kernel)i, false,
                                    &shader->codes[i], errors);
     }
-    free(sliders);
+    parts_finish(&parts);
     return result;
 }
 
@@ -215,6 +260,57 @@ whit_result shader_program_stages(const whit_log *log, const char *folder,
     return folder ? shader_stages_read(log, folder, paths, stages, errors) : WHIT_OK;
 }
 
+whit_result shader_program_compile_tests(const whit_log *log, struct shader_compiler *compiler,
+                                         whit_shader *shader, struct shader_errors *errors)
+{
+    struct kernel_parts parts;
+    whit_result result = WHIT_ERROR_MEMORY;
+    shader_code_free(&shader->codes[SHADER_KERNEL_TEST]);
+    if (parts_init(shader, true, &parts))
+        result = compile_hooked(log, compiler, shader, &parts, SHADER_KERNEL_TEST, errors);
+    parts_finish(&parts);
+    return result;
+}
+
+char *shader_program_expand(const whit_log *log, const whit_shader *shader,
+                            enum shader_kernel kernel)
+{
+    struct kernel_parts parts;
+    struct kernel_request of;
+    char *text = NULL;
+    size_t bytes;
+    if (parts_init(shader, kernel == SHADER_KERNEL_TEST, &parts) &&
+        kernel_request_init(log, shader, kernel, parts.declared, &of)) {
+        text = shader_expand(log, &parts.user, &of.request, &bytes, NULL);
+        free(of.text);
+    }
+    parts_finish(&parts);
+    return text;
+}
+
+/* What whit_shader_info points to. */
+static bool fill_infos(whit_shader *shader)
+{
+    const struct shader_tests *tests = &shader->tests;
+    list_files(shader);
+    shader->test_infos = array_alloc_zeroed(tests->test_count, sizeof *shader->test_infos);
+    shader->check_infos = array_alloc_zeroed(tests->check_count, sizeof *shader->check_infos);
+    if (!shader->test_infos || !shader->check_infos)
+        return false;
+    for (uint32_t i = 0; i < tests->test_count; ++i) {
+        const struct shader_test *test = &tests->tests[i];
+        shader->test_infos[i] =
+            (whit_shader_test){test->name, shader->files[test->file], test->line, test->first_check,
+                               test->check_count};
+    }
+    for (uint32_t i = 0; i < tests->check_count; ++i) {
+        const struct shader_check *check = &tests->checks[i];
+        shader->check_infos[i] =
+            (whit_shader_check){check->text, shader->files[check->file], check->line};
+    }
+    return true;
+}
+
 whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
                                   struct shader_text *text, struct shader_stages *stages,
                                   bool trust, whit_shader **out, struct shader_errors *errors)
@@ -235,14 +331,17 @@ whit_result shader_program_create(const whit_log *log, struct shader_compiler *c
     bool has_text = shader->text.file_count > 0;
     whit_result result = has_text ? shader_annotations_read(log, shader, errors) : WHIT_OK;
     if (result == WHIT_OK && has_text)
+        result = shader_tests_read(log, &shader->text, &shader->tests, errors);
+    if (result == WHIT_OK && has_text)
         result = find_hooks(log, shader, errors);
     if (result == WHIT_OK)
         result = compile_all(log, compiler, shader, errors);
+    if (result == WHIT_OK && !fill_infos(shader))
+        result = WHIT_ERROR_MEMORY;
     if (result != WHIT_OK) {
         shader_program_destroy(shader);
         return result;
     }
-    list_files(shader);
     *out = shader;
     return WHIT_OK;
 }
@@ -255,6 +354,9 @@ void shader_program_destroy(whit_shader *shader)
         shader_code_free(&shader->codes[i]);
     shader_text_free(&shader->text);
     shader_stages_destroy(shader->stages);
+    shader_tests_free(&shader->tests);
+    free(shader->test_infos);
+    free(shader->check_infos);
     free(shader);
 }
 

@@ -3,6 +3,7 @@
 #define SHADER_PROGRAM_H
 
 #include "shader/compile.h"
+#include "shader/tests.h"
 #include "whit/whit_shader.h"
 
 /* The functions of shaders/hook/ that a file may stand in for. */
@@ -22,6 +23,7 @@ enum shader_kernel {
     SHADER_KERNEL_SHADE,
     SHADER_KERNEL_SHADOW,
     SHADER_KERNEL_RESOLVE,
+    SHADER_KERNEL_TEST, /* of no picture: see tests.h */
     SHADER_KERNEL_COUNT
 };
 
@@ -30,6 +32,7 @@ enum {
     SHADER_NAME_BYTES = 64,
     SHADER_HELP_BYTES = 128,
     SHADER_WORDS_MAX = 16,
+    SHADER_EXPECTATIONS_MAX = 16,
     SHADER_FUEL_USUAL = 10000,
     SHADER_FUEL_MAX = 30000, /* what lavapipe leaves of the 65,535 iterations of a group */
 };
@@ -45,12 +48,17 @@ struct shader_slider_text {
 struct whit_shader {
     struct shader_text text;      /* without files: the stages alone */
     struct shader_stages *stages; /* NULL: those that are embedded */
-    uint32_t hooks;               /* bits 1 << enum shader_hook */
+    struct shader_tests tests;
+    whit_shader_test *test_infos;
+    whit_shader_check *check_infos;
+    uint32_t hooks; /* bits 1 << enum shader_hook */
     uint32_t fuel;
     bool trust;
     whit_slider sliders[SHADER_SLIDERS_MAX];
     struct shader_slider_text slider_texts[SHADER_SLIDERS_MAX];
     uint32_t slider_count, value_count;
+    whit_shader_expectation expectations[SHADER_EXPECTATIONS_MAX];
+    uint32_t expectation_count;
     struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;
@@ -84,6 +92,14 @@ WHIT_CHECK whit_result shader_program_stages(const whit_log *log, const char *fo
                                              struct shader_stages **stages,
                                              struct shader_errors *errors);
 void shader_program_destroy(whit_shader *shader);
+/* The kernel that runs its tests, which it must have; errors as above. */
+WHIT_CHECK whit_result shader_program_compile_tests(const whit_log *log,
+                                                    struct shader_compiler *compiler,
+                                                    whit_shader *shader,
+                                                    struct shader_errors *errors);
+/* whit_shader_kernel_text; NULL: no memory, which was logged. */
+char *shader_program_expand(const whit_log *log, const whit_shader *shader,
+                            enum shader_kernel kernel);
 /* whit_shader_template */
 char *shader_template(const char *hook);
 

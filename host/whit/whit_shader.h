@@ -75,6 +75,35 @@ typedef struct whit_slider {
     uint32_t first; /* of its values among those of all sliders; a COLOR has three */
 } whit_slider;
 
+/* A test of the file and the checks in it; they are in the order of files and lines. All texts live
+   as long as the shader. */
+typedef struct whit_shader_test {
+    const char *name, *file;
+    uint32_t line;                     /* of its function */
+    uint32_t first_check, check_count; /* in whit_shader_info.checks */
+} whit_shader_test;
+typedef struct whit_shader_check {
+    const char *text, *file; /* what stands in its brackets, cut where it is long */
+    uint32_t line;
+} whit_shader_check;
+
+/* `//@ expect WHAT == base`: what its functions may not change of a picture. */
+typedef enum whit_expected {
+    WHIT_EXPECT_IDS = 0, /* what each pixel's first sample hits */
+    WHIT_EXPECT_PIXELS,  /* every bit of every colour */
+    WHIT_EXPECT_RAYS,    /* numbers of rays of all kinds, or of one: */
+    WHIT_EXPECT_CAMERA,
+    WHIT_EXPECT_SHADOW,
+    WHIT_EXPECT_REFLECTED,
+    WHIT_EXPECT_REFRACTED,
+} whit_expected;
+typedef struct whit_shader_expectation {
+    whit_expected what;
+    const char *word; /* as the file writes it: "rays.shadow" */
+    const char *file;
+    uint32_t line;
+} whit_shader_expectation;
+
 /* What a file is made of. All texts live as long as the shader. */
 typedef struct whit_shader_info {
     const char *const *files; /* the file and what it includes, as whit opened them */
@@ -83,6 +112,11 @@ typedef struct whit_shader_info {
     uint32_t hook_count;
     const whit_slider *sliders;
     uint32_t slider_count;
+    const whit_shader_test *tests;
+    const whit_shader_check *checks;
+    uint32_t test_count, check_count;
+    const whit_shader_expectation *expectations;
+    uint32_t expectation_count;
     uint32_t fuel; /* iterations of loops that a call may take; 0: trusted */
     uint32_t kernel_count;
     uint32_t instructions; /* SPIR-V, of all kernels, with all that they may need */
@@ -90,9 +124,40 @@ typedef struct whit_shader_info {
 } whit_shader_info;
 void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info);
 
+/* Compiles the kernel that runs the file's tests; pictures do without. Errors as of
+   whit_shader_load, and WHIT_ERROR_USAGE for a file without tests. */
+WHIT_CHECK whit_result whit_shader_compile_tests(whit_shader_compiler *compiler,
+                                                 whit_shader *shader);
+
+/* What a check of a test found for the seeds 0 to WHIT_TEST_SEEDS - 1. */
+#define WHIT_TEST_SEEDS 4096
+typedef struct whit_check_result {
+    bool reached;        /* for one seed at least: what is never reached says nothing */
+    uint32_t failed;     /* seeds that it failed for */
+    uint32_t first_seed; /* the smallest of them; 0 where there is none */
+} whit_check_result;
+/* Runs all tests of the renderer's shader, of which whit_shader_compile_tests was called, beside
+   its scene. `results`: one for each of whit_shader_info.checks. *compile_ms: of the kernel by the
+   driver; *run_ms: with reading back. WHIT_ERROR_STATUS where a loop had no fuel left, logged with
+   FILE:line; WHIT_ERROR_USAGE without a device or tests; WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_renderer_run_tests(whit_renderer *renderer, whit_check_result *results,
+                                               double *compile_ms, double *run_ms);
+
+/* Draws the picture that was rendered last once more, without the shader, and compares. *held: all
+   that the file expects is so, also where it expects nothing and nothing is drawn; what is not is
+   logged as "FILE:line: ...", with the first pixel and the number of pixels. Errors as of
+   whit_renderer_render. */
+WHIT_CHECK whit_result whit_renderer_check_expectations(whit_renderer *renderer, bool *held);
+
 /* The kernels that the shader has part in, by index; NULL past the last. `words`: SPIR-V. */
 const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
                                size_t *bytes);
+
+/* The GLSL of such a kernel with all that it includes, and what stands in `words` of it in the form
+   of spirv-dis. To be released by whit_memory_destroy; NULL: there is no such kernel, no memory, or
+   damaged words. */
+char *whit_shader_kernel_text(const whit_shader *shader, uint32_t index);
+char *whit_spirv_text(const uint32_t *words, size_t bytes);
 
 /* ---- In pictures ---- */
 

@@ -170,6 +170,10 @@ GPU_ASSERT_AT(gpu_frame, ambient, 112)
 /* Behind the frame stand the values of the sliders of a user's file, as floats. */
 #define SLIDERS_MAX 64u
 
+/* Tests of a user's file: seeds of each, as pixels in rows of so many. */
+#define TEST_SEEDS 4096u
+#define TEST_ROW   64u
+
 /* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest
    priority first, of equal ones the one entered first: the last entry is what the ray is in. Lies
    one for each ray. */

@@ -140,7 +140,8 @@
     X(52, SPEC_PRIORITIES, 1)         /* some media go before others where they overlap */         \
     X(53, SPEC_MINIFICATION, 1)       /* textures have smaller levels, for what is far away */     \
     X(54, SPEC_HOOKS, 0)              /* HOOK_*: functions that are a user's */                    \
-    X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */
+    X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */        \
+    X(56, SPEC_CHECK_WORDS, 1)        /* that have a bit for each check of a test */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -68,6 +68,13 @@ vec3 visible(Surface s, vec3 dir, float distance) ELSEWHERE(vec3)
 // What a ray meets, and after which distance. False: nothing; `met` then means nothing.
 bool trace(vec3 origin, vec3 dir, out Surface met, out float distance) ELSEWHERE(bool)
 
+// ---- Tests ----
+
+#ifdef HAS_TESTS
+void check(uint word, uint bit, bool holds) {}
+void run_test(uint test, uint seed);
+#endif
+
 // ---- Whit's own functions in the place of which those of the file stand ----
 
 void whit_camera(vec2 at, inout vec3 origin, inout vec3 dir) {}

@@ -49,6 +49,79 @@ check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = r
 check "its fuel" test "$(jq .fuel all.json)" = 20000
 expect 0 "dump" shader all.glsl --dump spirv
 check "SPIR-V" spirv-val --target-env vulkan1.2 spirv/resolve.spv
+check "GLSL with all that it includes" sh -c 'grep -q "^vec3 tint" spirv/resolve.comp && ! grep -q "^#include [^<]" spirv/resolve.comp'
+check "the text of the SPIR-V" sh -c 'spirv-as --target-env vulkan1.2 spirv/resolve.spvasm -o again.spv && spirv-val again.spv'
+check "variants beside whit's own" test "$(jq '[.variants[] | select(.name == "resolve" and
+    .base_instructions > 0 and .instructions > .base_instructions)] | length' all.json)" = 1
+
+# ---- Tests in it, and what it expects ----
+
+cat >tests.glsl <<'END'
+#include "part/tint.glsl"
+//@ slider bands 1 8 3
+//@ test
+void fine(uint seed)
+{
+    float x = random(seed);
+    check(x >= 0.0 && x < 1.0); check(tint(vec3(x)) == vec3(x));
+    check(bands <= 3.0);
+}
+//@ test
+void rays(uint seed)
+{
+    Surface met;
+    float t;
+    check(trace(vec3(0.0, 3.0, 0.0), vec3(0.0, -1.0, 0.0), met, t));
+}
+END
+expect 0 "tests" shader tests.glsl
+check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
+expect 1 "a slider in tests" shader tests.glsl --set bands=4
+said "the failed check" "tests.glsl:8: check(bands <= 3.0) fails for 4096 of 4096 seeds of fine, the smallest is 0"
+cat >wrong.glsl <<'END'
+//@ test
+void wrong(uint seed)
+{
+    float x = sqrt(-1.0 - float(seed));
+    check(seed != 7u && seed < 4000u); check(x == x);
+    if (seed > 4096u)
+        check(true);
+}
+END
+expect 1 "failed tests" shader wrong.glsl --json
+said "seeds" "wrong.glsl:5: check(seed != 7u && seed < 4000u) fails for 97 of 4096 seeds of wrong, the smallest is 7"
+said "what is no number" "wrong.glsl:5: check(x == x) fails for 4096 of 4096"
+said "what is not reached" "wrong.glsl:7: check(true) is not reached"
+check "in JSON" test "$(jq -c '[.tests[0].checks[] | [.line, .reached, .failed, .first_seed]]' "$OUT/stdout")" = \
+    "[[5,true,97,7],[5,true,4096,0],[7,false,0,0]]"
+cat >long.glsl <<'END'
+//@ test
+void long_loop(uint seed)
+{
+    float x = 0.0;
+    while (x >= 0.0) x += 1.0;
+    check(x < 0.0);
+}
+END
+expect 1 "a test without end" shader long.glsl
+said "its loop" "long.glsl:5: \`//@ fuel N\`"
+cat >turned.glsl <<'END'
+//@ expect rays.camera == base
+//@ expect ids == base
+//@ expect pixels == base
+void camera(vec2 at, inout vec3 origin, inout vec3 dir) { if (at.x > 0.9) dir.x += 0.1; }
+END
+expect 1 "what is expected and not so" shader turned.glsl
+said "ids" "turned.glsl:2: \`ids == base\` does not hold: "
+check "pixels and the first" grep -qE "turned.glsl:3: .*of 19200 pixels have another colour, the first at 15[0-9],[0-9]+: " "$OUT/stderr"
+check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
+# shellcheck disable=SC2086
+expect 1 "in a picture" render "$SCENES/default.json" $SMALL --shader turned.glsl -o broken.png
+said "says so" "turned.glsl:2: "
+check "no picture" test ! -e broken.png
+sed 's/0\.1;/0.0;/' turned.glsl >still.glsl
+expect 0 "what is so" shader still.glsl --scene "$CUBE"
+draw "a picture that is as expected" still.png default --shader still.glsl
 
 # broken NAME LINE REASON, of the text on standard input, which begins in line 1.
 broken() {

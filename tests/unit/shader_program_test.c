@@ -127,6 +127,12 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"fuel many", "from 1 to 30000"},
                  {"whit 2", "this whit has 1"},
                  {"sliders x", "none of whit"},
+                 {"test x", "nothing more"},
+                 {"expect ids", "WHAT == base"},
+                 {"expect id == base", "WHAT == base"},
+                 {"expect ids != base", "WHAT == base"},
+                 {"expect rays.sun == base", "WHAT == base"},
+                 {"expect ids == base 1", "WHAT == base"},
                  {"", "none of whit"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char text[256];
@@ -153,4 +159,131 @@ TEST(there_are_as_many_values_as_fit)
     assert_int_equal(errors.count, 1);
     assert_int_equal(errors.items[0].line, SHADER_SLIDERS_MAX / 3 + 1);
     shader_text_free(&shader.text);
+}
+
+TEST(expectations_are_read)
+{
+    whit_shader shader;
+    assert_int_equal(read_text("//@ expect ids == base\n//@ expect rays.shadow == base\n"
+                               "vec3 miss(vec3 dir) { return dir; }\n",
+                               &shader),
+                     WHIT_OK);
+    assert_int_equal(shader.expectation_count, 2);
+    assert_int_equal(shader.expectations[0].what, WHIT_EXPECT_IDS);
+    assert_int_equal(shader.expectations[1].what, WHIT_EXPECT_SHADOW);
+    assert_string_equal(shader.expectations[1].word, "rays.shadow");
+    assert_int_equal(shader.expectations[1].line, 2);
+    shader_text_free(&shader.text);
+}
+
+/* ---- Tests in a file ---- */
+
+static whit_result read_tests(const char *content, struct shader_text *text,
+                              struct shader_tests *tests)
+{
+    const struct shader_text_source source = {"a.glsl", content, strlen(content)};
+    errors = (struct shader_errors){0};
+    assert_int_equal(shader_text_from(NULL, &source, 1, text, &errors), WHIT_OK);
+    return shader_tests_read(NULL, text, tests, &errors);
+}
+
+static const char tested[] = "float f(float x) { return x; } // check(\n"
+                             "//@ test\n"
+                             "void one(uint seed) { /* check(0) */\n"
+                             "    if (seed > 1u) { check( f(1.0)  <=\n"
+                             "        2.0); check(true); }\n"
+                             "}\n"
+                             "  //@  test \n"
+                             "void two(uint n)\n"
+                             "{ check((n)==n); } float g() { return 1.0; }\n";
+
+TEST(tests_and_their_checks_are_found)
+{
+    struct shader_text text;
+    struct shader_tests tests;
+    assert_int_equal(read_tests(tested, &text, &tests), WHIT_OK);
+    assert_int_equal(tests.test_count, 2);
+    assert_string_equal(tests.tests[0].name, "one");
+    assert_int_equal(tests.tests[0].line, 3);
+    assert_int_equal(tests.tests[0].check_count, 2);
+    assert_int_equal(tests.tests[1].first_check, 2);
+    assert_int_equal(tests.check_count, 3);
+    assert_string_equal(tests.checks[0].text, "f(1.0) <= 2.0");
+    assert_int_equal(tests.checks[0].line, 4);
+    assert_int_equal(tests.checks[1].line, 5);
+    assert_string_equal(tests.checks[2].text, "(n)==n");
+    assert_int_equal(tests.checks[2].number, 0);
+    assert_int_equal(shader_tests_words(&tests), 1);
+    shader_tests_free(&tests);
+    shader_text_free(&text);
+}
+
+TEST(kernels_have_tests_numbered_or_blank_in_the_same_lines)
+{
+    struct shader_text text, out;
+    struct shader_tests tests;
+    char blank[sizeof tested];
+    assert_int_equal(read_tests(tested, &text, &tests), WHIT_OK);
+    strcpy(blank, tested);
+    for (uint32_t i = 0; i < tests.test_count; ++i) {
+        assert_memory_equal(blank + tests.tests[i].begin, "void ", 5);
+        assert_true(blank[tests.tests[i].end - 1] == '}');
+        for (size_t at = tests.tests[i].begin; at < tests.tests[i].end; ++at)
+            blank[at] = blank[at] == '\n' ? '\n' : ' ';
+    }
+    assert_true(shader_tests_text(&tests, &text, false, &out));
+    assert_string_equal(out.files[0].text, blank);
+    shader_tests_end_text(&out);
+    assert_true(shader_tests_text(&tests, &text, true, &out));
+    assert_int_equal(out.files[0].bytes, strlen(out.files[0].text));
+    assert_non_null(strstr(out.files[0].text, "check(0u, 1u,  f(1.0)  <=\n        2.0);"));
+    assert_non_null(strstr(out.files[0].text, "check(0u, 2u, true);"));
+    assert_non_null(strstr(out.files[0].text, "{ check(0u, 1u, (n)==n); } float g()"));
+    shader_tests_end_text(&out);
+    shader_tests_free(&tests);
+    shader_text_free(&text);
+}
+
+TEST(tests_that_are_none_are_refused_with_their_line)
+{
+    static const char form[] = "void NAME(uint seed)", outside[] = "nowhere else";
+    const struct {
+        const char *content, *why;
+        uint32_t line;
+    } cases[] = {
+        {"void f() {}\n//@ test\n", form, 2},
+        {"void f() {}\n//@ test\nvoid a(int seed) { check(true); }\n", form, 2},
+        {"void f() {}\n//@ test\nbool a(uint seed) { check(true); }\n", form, 2},
+        {"void f() {}\n//@ test\nvoid a(uint seed, int b) { check(true); }\n", form, 2},
+        {"void f() {}\n//@ test\nvoid a(uint seed);\n", form, 2},
+        {"//@ test\n//@ test\nvoid a(uint seed) { check(true); }\n", form, 2},
+        {"//@ test\nvoid a(uint seed) {\n//@ test\ncheck(true); }\n", form, 3},
+        {"//@ test\nvoid a(uint seed) { }\n", "without a check", 2},
+        {"//@ test\nvoid a(uint seed) { bool check; }\n", "is called", 2},
+        {"//@ test\nvoid a(uint seed) { check(true);\n", "does not end", 2},
+        {"//@ test\nvoid a(uint seed) { check(true); }\nvoid b() { check(true); }\n", outside, 3},
+        {"#define C check\n//@ test\nvoid a(uint seed) { check(true); }\n", outside, 1},
+        {"//@ test\nvoid a(uint seed) {\n#define C check\ncheck(true); }\n", outside, 3},
+        {"void check(bool b) {}\n//@ test\nvoid a(uint s) { check(true); }\n", outside, 1},
+        {"void f() {\n check(true); }\n", outside, 2},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct shader_text text;
+        struct shader_tests tests;
+        if (read_tests(cases[i].content, &text, &tests) != WHIT_ERROR_INPUT || errors.count != 1 ||
+            errors.items[0].line != cases[i].line || !strstr(errors.items[0].reason, cases[i].why))
+            fail_msg("%s: %u errors, %u: %s", cases[i].content, errors.count, errors.items[0].line,
+                     errors.items[0].reason);
+        shader_text_free(&text);
+    }
+}
+
+TEST(a_file_without_tests_may_have_a_function_check)
+{
+    struct shader_text text;
+    struct shader_tests tests;
+    assert_int_equal(
+        read_tests("void check(bool b) {}\nvoid f() { check(true); }\n", &text, &tests), WHIT_OK);
+    assert_int_equal(tests.test_count, 0);
+    shader_text_free(&text);
 }

@@ -215,10 +215,15 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     const struct settings *settings = &job->settings;
     struct recipe recipe;
     whit_device_info device;
+    bool held;
+    whit_result result = whit_renderer_check_expectations(renderer, &held);
+    if (result == WHIT_OK && !held)
+        result = WHIT_ERROR_FAILED;
+    if (result != WHIT_OK)
+        return result;
     whit_device_get_info(job->device, &device);
     if (!recipe_init(&recipe, settings, job->scene, job->shader, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
-    whit_result result = WHIT_OK;
     if (request->ids)
         result = save_ids(renderer, request->ids, &recipe);
     if (result == WHIT_OK && cli_cancel)
@@ -230,6 +235,15 @@ whit_result render_save(const struct job *job, const struct render_request *requ
                        : save_own_colors(renderer, settings, request, &recipe);
     recipe_finish(&recipe);
     return result;
+}
+
+/* Whether another renderer is made when the picture is done. */
+static bool expects_something(const whit_shader *shader)
+{
+    whit_shader_info info = {.expectation_count = 0};
+    if (shader)
+        whit_shader_get_info(shader, &info);
+    return info.expectation_count > 0;
 }
 
 whit_result render_prepare(struct job *job, const struct render_request *request,
@@ -252,7 +266,7 @@ whit_result render_prepare(struct job *job, const struct render_request *request
     if (result == WHIT_OK)
         result = chooses ? render_choose(job, request, progress, renderer)
                          : render_create(job, request, progress, renderer);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK && !expects_something(job->shader))
         whit_scene_drop_pictures(job->scene);
     return result;
 }

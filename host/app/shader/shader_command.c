@@ -5,16 +5,23 @@
 #include <sys/stat.h>
 
 #include "app/commands.h"
+#include "app/shader/attempt.h"
 #include "app/shader/extract.h"
 
 struct shader_options {
     struct job job;
-    const char *dump, *into;
+    const char *dump, *scene, *into;
     bool json;
 };
 
 static const struct setting options[] = {
-    {"dump", 0, "FOLDER", "write the kernels with the file in them there: SPIR-V",
+    {"scene", 0, "SCENE",
+     "beside which kernels are made, tests run and expectations are\n"
+     "held; without one a small scene of whit's own",
+     SETTING_AT_NAME(struct shader_options, scene)},
+    {"dump", 0, "FOLDER",
+     "write the kernels with the file in them there: GLSL with all\n"
+     "that it includes, SPIR-V and its text",
      SETTING_AT_NAME(struct shader_options, dump)},
     {"into", 0, "FOLDER",
      "where extract writes to, a folder that is not there yet\n"
@@ -98,7 +105,8 @@ static void print_text(const whit_shader *shader, const char *path)
             break;
         printf("%s %s", i ? "," : "", name);
     }
-    printf("; %u instructions with all that they may need\n", info.instructions);
+    printf("%s%u instructions with all that they may need\n", info.kernel_count ? "; " : " none, ",
+           info.instructions);
     if (info.fuel)
         printf("  fuel: %u iterations of loops in a call\n", info.fuel);
     else
@@ -147,7 +155,7 @@ static json_t *list_kernels(const whit_shader *shader)
     return list;
 }
 
-static int print_json(const whit_shader *shader)
+static int print_json(const whit_shader *shader, const struct attempt *attempt)
 {
     whit_shader_info info;
     whit_shader_get_info(shader, &info);
@@ -162,31 +170,58 @@ static int print_json(const whit_shader *shader)
     document_flag(object, "trusted", info.fuel == 0);
     document_count(object, "fuel", info.fuel);
     document_hash(object, "hash", info.hash);
+    attempt_describe(attempt, shader, object);
     char *text = document_lines(object);
     if (!text)
         return cli_exit_of(WHIT_ERROR_MEMORY);
     puts(text);
     free(text);
-    return EXIT_FINE;
+    return attempt_status(attempt, shader);
+}
+
+/* NULL: there is nothing, for a reason that was not said. */
+static whit_result dump_text(const char *folder, const char *name, const char *ending, char *text)
+{
+    char path[4096];
+    if (!text) {
+        cli_error("%s%s: its text cannot be had", name, ending);
+        return WHIT_ERROR_MEMORY;
+    }
+    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
+    whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
+    whit_memory_destroy(text);
+    return result;
+}
+
+static whit_result dump_kernel(const whit_shader *shader, uint32_t index, const char *folder,
+                               bool *more)
+{
+    char path[4096];
+    const uint32_t *words;
+    size_t bytes;
+    const char *name = whit_shader_kernel(shader, index, &words, &bytes);
+    *more = name != NULL;
+    if (!name)
+        return WHIT_OK;
+    snprintf(path, sizeof path, "%s/%s.spv", folder, name);
+    whit_result result = whit_file_write(path, words, bytes, &cli_log);
+    if (result == WHIT_OK)
+        result = dump_text(folder, name, ".comp", whit_shader_kernel_text(shader, index));
+    if (result == WHIT_OK)
+        result = dump_text(folder, name, ".spvasm", whit_spirv_text(words, bytes));
+    return result;
 }
 
 static whit_result dump(const whit_shader *shader, const char *folder)
 {
-    const uint32_t *words;
-    size_t bytes;
-    const char *name;
     whit_result result = WHIT_OK;
+    bool more = true;
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
         cli_error("%s: cannot be made: %s", folder, strerror(errno));
-        return WHIT_ERROR_INPUT;
+        return WHIT_ERROR_OUTPUT;
     }
-    for (uint32_t i = 0; result == WHIT_OK; ++i) {
-        char path[4096];
-        if (!(name = whit_shader_kernel(shader, i, &words, &bytes)))
-            break;
-        snprintf(path, sizeof path, "%s/%s.spv", folder, name);
-        result = whit_file_write(path, words, bytes, &cli_log);
-    }
+    for (uint32_t i = 0; result == WHIT_OK && more; ++i)
+        result = dump_kernel(shader, i, folder, &more);
     return result;
 }
 
@@ -198,6 +233,29 @@ static int extract(struct cli_reader *reader, const struct shader_options *reque
         return extract_run(reader->second, request->into, &params);
     cli_misuse(reader, "extract: out of which picture? `whit shader extract toon.png`");
     return reader->status;
+}
+
+/* What compiles, on the device. What is written comes last, so that it has the tests' kernel; what
+   was found is told before an error of what follows. */
+static int examine(struct job *job, const struct shader_options *request, const char *path)
+{
+    struct attempt attempt = {0};
+    whit_result result = attempt_make(job, request->scene, &attempt);
+    int status = cli_exit_of(result);
+    if (result == WHIT_OK && request->json)
+        status = print_json(job->shader, &attempt);
+    if (result == WHIT_OK && !request->json) {
+        print_text(job->shader, path);
+        attempt_print(&attempt, job->shader);
+        status = attempt_status(&attempt, job->shader);
+    }
+    fflush(stdout);
+    if (result == WHIT_OK)
+        attempt_say(&attempt, job->shader);
+    attempt_finish(&attempt);
+    if (request->dump && dump(job->shader, request->dump) != WHIT_OK)
+        status = EXIT_USAGE;
+    return status == EXIT_FINE ? job_check_validation(job) : status;
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
@@ -224,13 +282,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     }
     snprintf(job->settings.shader, sizeof job->settings.shader, "%s", reader.positional);
     whit_result result = job_load_shader(job);
-    if (result == WHIT_OK && request.dump)
-        result = dump(job->shader, request.dump);
-    int status = cli_exit_of(result);
-    if (result == WHIT_OK && request.json)
-        status = print_json(job->shader);
-    else if (result == WHIT_OK)
-        print_text(job->shader, reader.positional);
+    int status =
+        result == WHIT_OK ? examine(job, &request, reader.positional) : cli_exit_of(result);
     job_finish(job);
     return status;
 }
@@ -238,9 +291,14 @@ static int run(const struct cli_command *command, int argc, char **argv)
 const struct cli_command command_shader = {
     .name = "shader",
     .arguments = "FILE | new FUNCTION | extract PICTURE",
-    .summary = "Compiles a file of shader functions, begins one, or takes it out of a picture.",
-    .details = "Functions: camera, surface, shade, scatter, miss, post. See docs/shaders.md.\n"
-               "Exit codes: 0 it compiles, 2 it does not: FILE:LINE says where.\n",
+    .summary = "Compiles a file of shader functions, runs its tests, begins one, or takes it out "
+               "of a picture.",
+    .details =
+        "Functions: camera, surface, shade, scatter, miss, post. See docs/shaders.md.\n"
+        "Tests (`//@ test`) run for 4,096 seeds each; what the file expects (`//@ expect`) is\n"
+        "held against a picture without it.\n"
+        "Exit codes: 0 fine, 1 a test, an expectation or the fuel of a loop, 2 it does not\n"
+        "compile: FILE:LINE says where, 3 no device for tests.\n",
     .options = options,
     .settings = IN_SHADER,
     .takes_two = true,

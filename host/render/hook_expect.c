@@ -1,0 +1,163 @@
+/* What a user's file says that its functions do not change: the same picture without them, and what
+   of it differs. */
+#include <stdio.h>
+#include <string.h>
+
+#include "image/image.h"
+#include "render/renderer.h"
+
+/* The two pictures, and what was read of them so far. */
+struct pair {
+    struct renderer *own, *base;
+    struct image ids[2], colors[2];
+};
+
+static void say(const struct pair *pair, const whit_shader_expectation *expected, const char *found)
+{
+    log_error(&pair->own->log, "%s:%u: `%s == base` does not hold: %s", expected->file,
+              expected->line, expected->word, found);
+}
+
+/* Pixels whose bytes differ, and the first of them; `words`: of a pixel. */
+static uint64_t count_other(const uint32_t *a, const uint32_t *b, uint64_t pixels, uint32_t words,
+                            uint64_t *first)
+{
+    uint64_t count = 0;
+    for (uint64_t i = 0; i < pixels; ++i) {
+        if (memcmp(a + i * words, b + i * words, words * sizeof *a) == 0)
+            continue;
+        *first = count++ ? *first : i;
+    }
+    return count;
+}
+
+static void write_hit(const uint32_t ids[2], char *text, size_t bytes)
+{
+    if (ids[0] == HIT_NONE)
+        snprintf(text, bytes, "nothing");
+    else
+        snprintf(text, bytes, "instance %u primitive %u", ids[0], ids[1]);
+}
+
+static bool ids_hold(const struct pair *pair, const whit_shader_expectation *expected)
+{
+    const struct image *own = &pair->ids[0], *base = &pair->ids[1];
+    uint64_t pixels = (uint64_t)own->width * own->height, first = 0;
+    uint64_t count = count_other(own->words, base->words, pixels, own->channels, &first);
+    char found[384], hit[2][64];
+    if (!count)
+        return true;
+    write_hit(own->words + first * own->channels, hit[0], sizeof hit[0]);
+    write_hit(base->words + first * own->channels, hit[1], sizeof hit[1]);
+    snprintf(found, sizeof found,
+             "%llu of %llu pixels meet something else, the first at %llu,%llu: %s, and without the "
+             "shader %s",
+             (unsigned long long)count, (unsigned long long)pixels,
+             (unsigned long long)first % own->width, (unsigned long long)first / own->width, hit[0],
+             hit[1]);
+    say(pair, expected, found);
+    return false;
+}
+
+static bool pixels_hold(const struct pair *pair, const whit_shader_expectation *expected)
+{
+    const struct image *own = &pair->colors[0], *base = &pair->colors[1];
+    uint64_t pixels = (uint64_t)own->width * own->height, first = 0;
+    uint64_t count = count_other((const uint32_t *)own->pixels, (const uint32_t *)base->pixels,
+                                 pixels, own->channels, &first);
+    const float *a = own->pixels + first * own->channels, *b = base->pixels + first * own->channels;
+    char found[384];
+    if (!count)
+        return true;
+    snprintf(found, sizeof found,
+             "%llu of %llu pixels have another colour, the first at %llu,%llu: %.9g %.9g %.9g, and "
+             "without the shader %.9g %.9g %.9g",
+             (unsigned long long)count, (unsigned long long)pixels,
+             (unsigned long long)first % own->width, (unsigned long long)first / own->width,
+             (double)a[0], (double)a[1], (double)a[2], (double)b[0], (double)b[1], (double)b[2]);
+    say(pair, expected, found);
+    return false;
+}
+
+static bool rays_hold(const struct pair *pair, const whit_shader_expectation *expected)
+{
+    whit_stats stats[2];
+    renderer_get_stats(pair->own, &stats[0]);
+    renderer_get_stats(pair->base, &stats[1]);
+    uint64_t counts[2] = {0};
+    for (int i = 0; i < 2; ++i) {
+        const uint64_t kinds[] = {stats[i].rays_primary, stats[i].rays_shadow,
+                                  stats[i].rays_reflected, stats[i].rays_refracted};
+        for (uint32_t k = 0; k < 4; ++k) {
+            bool wanted = expected->what == WHIT_EXPECT_RAYS ||
+                          (uint32_t)expected->what == (uint32_t)WHIT_EXPECT_CAMERA + k;
+            counts[i] += wanted ? kinds[k] : 0;
+        }
+    }
+    char found[128];
+    if (counts[0] == counts[1])
+        return true;
+    snprintf(found, sizeof found, "%llu rays, and without the shader %llu",
+             (unsigned long long)counts[0], (unsigned long long)counts[1]);
+    say(pair, expected, found);
+    return false;
+}
+
+static bool expects(const whit_shader *shader, whit_expected what)
+{
+    for (uint32_t i = 0; i < shader->expectation_count; ++i) {
+        if (shader->expectations[i].what == what)
+            return true;
+    }
+    return false;
+}
+
+static whit_result read_pair(struct pair *pair, const whit_shader *shader)
+{
+    whit_result result = WHIT_OK;
+    for (int i = 0; i < 2; ++i) {
+        struct renderer *renderer = i == 0 ? pair->own : pair->base;
+        if (result == WHIT_OK && expects(shader, WHIT_EXPECT_IDS))
+            result = renderer_read_ids(renderer, &pair->ids[i]);
+        if (result == WHIT_OK && expects(shader, WHIT_EXPECT_PIXELS))
+            result = renderer_read_color(renderer, &pair->colors[i]);
+    }
+    return result;
+}
+
+static whit_result draw_base(struct pair *pair)
+{
+    whit_renderer_params params = pair->own->params;
+    params.shader = NULL;
+    params.sliders = NULL;
+    params.progress = NULL;
+    params.step = NULL;
+    whit_result result =
+        renderer_create(&pair->own->log, pair->own->device, pair->own->accel, &params, &pair->base);
+    return result == WHIT_OK ? renderer_render(pair->base) : result;
+}
+
+whit_result renderer_check_expectations(struct renderer *renderer, bool *held)
+{
+    const whit_shader *shader = renderer->params.shader;
+    struct pair pair = {.own = renderer};
+    *held = true;
+    if (!shader || !shader->expectation_count)
+        return WHIT_OK;
+    whit_result result = draw_base(&pair);
+    if (result == WHIT_OK)
+        result = read_pair(&pair, shader);
+    for (uint32_t i = 0; result == WHIT_OK && i < shader->expectation_count; ++i) {
+        const whit_shader_expectation *expected = &shader->expectations[i];
+        bool holds = expected->what == WHIT_EXPECT_IDS      ? ids_hold(&pair, expected)
+                     : expected->what == WHIT_EXPECT_PIXELS ? pixels_hold(&pair, expected)
+                                                            : rays_hold(&pair, expected);
+        *held = *held && holds;
+    }
+    for (int i = 0; i < 2; ++i) {
+        image_finish(&pair.ids[i]);
+        image_finish(&pair.colors[i]);
+    }
+    renderer_destroy(pair.base);
+    return result;
+}

@@ -1,0 +1,34 @@
+// Tests of a user's file: row y of the dispatch is test y, each for as many seeds as a row has invocations.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/queues.glsl"
+#include "../hook/declare.glsl"
+#include "../hook/check.glsl"
+
+layout(local_size_x_id = 0) in;
+
+// Calls test `test` of the file: what host/shader/tests.c writes takes its place.
+void run_test(uint test, uint seed)
+{
+}
+
+void main()
+{
+    load_frame();
+    begin_user();
+    uint seed = gl_GlobalInvocationID.x;
+    hook_pixel = uvec2(seed % TEST_ROW, seed / TEST_ROW); // so that random() is another one for each seed
+    hook_ray.dir = vec3(0.0, 0.0, -1.0);
+    begin_checks();
+    begin_hook();
+    run_test(gl_WorkGroupID.y, seed);
+    end_hook(true);
+    store_checks(gl_WorkGroupID.y, seed);
+    report_hooks();
+}
