@@ -72,5 +72,6 @@ whit_result bench_view(struct bench *bench);
 whit_result bench_rays(struct bench *bench);
 whit_result bench_frame(struct bench *bench);
 whit_result bench_start(struct bench *bench);
+whit_result bench_shaders(struct bench *bench);
 
 #endif

@@ -10,8 +10,9 @@
 #include "whit/whit_program.h"
 
 static whit_result (*const benches[BENCH_COUNT])(struct bench *) = {
-    [BENCH_REPORT] = bench_report, [BENCH_BUILD] = bench_build, [BENCH_VIEW] = bench_view,
-    [BENCH_RAYS] = bench_rays,     [BENCH_FRAME] = bench_frame, [BENCH_START] = bench_start,
+    [BENCH_REPORT] = bench_report,   [BENCH_BUILD] = bench_build, [BENCH_VIEW] = bench_view,
+    [BENCH_RAYS] = bench_rays,       [BENCH_FRAME] = bench_frame, [BENCH_START] = bench_start,
+    [BENCH_SHADERS] = bench_shaders,
 };
 
 /* ---- What benches share ---- */

@@ -21,12 +21,15 @@ const struct bench_kind bench_kinds[BENCH_COUNT] = {
     [BENCH_START] = {"start",
                      "the first picture, whole processes with empty caches, beside another whit",
                      320, 240, .has_goals = true},
+    [BENCH_SHADERS] = {"shaders",
+                       "what follows a save of a shader: first pixels, whole picture, errors, fuel",
+                       1280, 720},
 };
 
 const struct setting bench_options[] = {
     {"quick", 0, NULL, "tiny pictures and few runs: shows that it works, no more",
      SETTING_AT_FLAG(struct bench_request, quick)},
-    {"runs", 0, "N", "of each case, 1 to 99 (7; quick: 2)",
+    {"runs", 0, "N", "of each case, 1 to 99 (7; shaders: 50; quick: 2)",
      SETTING_AT_COUNT(struct bench_request, runs), .min = 1, .max = SAMPLE_RUNS_MAX},
     {"json", 0, "FILE", "also write all figures as JSON",
      SETTING_AT_NAME(struct bench_request, json)},
@@ -101,6 +104,6 @@ bool bench_read(struct cli_reader *reader, struct bench_request *request)
     request->width = request->quick ? kind->width / 10 : kind->width;
     request->height = request->quick ? kind->height / 10 : kind->height;
     if (request->runs == 0)
-        request->runs = request->quick ? 2 : 7;
+        request->runs = request->quick ? 2 : request->which == BENCH_SHADERS ? 50 : 7;
     return true;
 }

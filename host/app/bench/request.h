@@ -12,6 +12,7 @@ enum bench_which {
     BENCH_RAYS,
     BENCH_FRAME,
     BENCH_START,
+    BENCH_SHADERS,
     BENCH_COUNT
 };
 struct bench_kind {
