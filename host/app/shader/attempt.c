@@ -141,8 +141,9 @@ static void print_kernels(const struct attempt *attempt)
     for (uint32_t i = 0; i < attempt->kernel_count; ++i) {
         const whit_kernel *kernel = &attempt->kernels[i];
         uint32_t base = base_instructions(attempt, kernel);
-        char own[16];
-        snprintf(own, sizeof own, base ? "%u" : "-", base);
+        char own[16] = "-";
+        if (base)
+            snprintf(own, sizeof own, "%u", base);
         printf("  %-13s %12u %11s %9.1f ms\n", kernel->name, kernel->instructions, own,
                kernel->create_ms);
     }
@@ -190,7 +191,9 @@ void attempt_print(const struct attempt *attempt, const whit_shader *shader)
         uint32_t wrong = count_wrong(attempt, test);
         printf("  test %s: %s, %u check%s of %d seeds", test->name, wrong ? "FAILED" : "passed",
                test->check_count, test->check_count == 1 ? "" : "s", WHIT_TEST_SEEDS);
-        printf(wrong ? ", %u failed\n" : "\n", wrong);
+        if (wrong)
+            printf(", %u failed", wrong);
+        putchar('\n');
     }
     if (attempt->checks)
         printf("  tests: compiled in %.0f ms, made by the driver in %.0f ms, run in %.1f ms\n",
