@@ -300,6 +300,13 @@ static bool is_long_switch(const struct spv_module *m, const uint32_t *words)
     return !type || spv_op(type) != SPV_TYPE_INT || type[2] != 32;
 }
 
+/* kernel/hook.comp calls everything, so that the compiler looks at it. */
+static bool is_call_of_all(const struct link *l, const uint32_t *words)
+{
+    return spv_op(words) == SPV_FUNCTION_CALL && words[3] < l->user.bound &&
+           same_name(l->user_names[words[3]], "call_all(");
+}
+
 /* Copies the functions that the kernel is to have besides its own. */
 static void map_functions(struct link *l)
 {
@@ -312,7 +319,7 @@ static void map_functions(struct link *l)
             const uint32_t *words = user->words + at;
             if (spv_op(words) == SPV_SWITCH && is_long_switch(user, words))
                 l->why = "a switch is over integers of 32 bits";
-            else if (taken && !spv_is_remark(spv_op(words)))
+            else if (taken && !spv_is_remark(spv_op(words)) && !is_call_of_all(l, words))
                 put_mapped(l, &l->mapped, words);
         }
         at = end;

@@ -1,0 +1,127 @@
+/* Functions of users in whit's own kernels: what comes out is a module that drivers take, whatever
+   the file has, and it holds the user's functions in the place of whit's. */
+#include "shader/program.h"
+#include "shader/spirv.h"
+#include "shader_fixture.h"
+
+/* NULL: it is refused, with `errors`. */
+static whit_shader *make(const char *content)
+{
+    const struct shader_text_source source = {"a.glsl", content, strlen(content)};
+    struct shader_text text;
+    whit_shader *shader = NULL;
+    errors = (struct shader_errors){0};
+    whit_result result = shader_text_from(NULL, &source, 1, &text, &errors);
+    if (result == WHIT_OK)
+        result = shader_program_create(NULL, compiler, &text, NULL, false, &shader, &errors);
+    assert_true((result == WHIT_OK) == (shader != NULL));
+    return shader;
+}
+
+static uint32_t count_functions(const struct shader_code *code)
+{
+    uint32_t count = 0;
+    for (size_t at = SPV_HEADER_WORDS; at < code->bytes / 4; at += spv_length(code->words + at))
+        count += spv_op(code->words + at) == SPV_FUNCTION;
+    return count;
+}
+
+TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
+{
+    static const struct {
+        const char *content;
+        uint32_t kernels; /* bits 1 << SHADER_KERNEL_* */
+    } cases[] = {
+        {"void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += at.y; }\n", 7},
+        {"void surface(inout Surface s) { s.ns = normalize(s.ns + sin(s.p)); }\n", 2},
+        {"vec3 shade(Surface s, Optics o, vec3 e) { return whit_shade(s, o, e) + shade(s, o, e, 1);"
+         " }\nvec3 shade(Surface s, Optics o, vec3 e, int n) { return vec3(n); }\n",
+         0}, /* used before it is declared */
+        {"vec3 shade(Surface s, Optics o, vec3 e, int n) { return vec3(n); }\n"
+         "vec3 shade(Surface s, Optics o, vec3 e) { return shade(s, o, e, 2); }\n",
+         2},
+        {"void scatter(Surface s, Optics o, inout Rays r) { whit_scatter(s, o, r); r.reflected *= "
+         "random(1u); }\n",
+         2},
+        {"float k = 3.0; float a[4] = float[4](1.0, 2.0, 3.0, 4.0); const vec2 c[2] = vec2[2]("
+         "vec2(1.0), vec2(2.0));\n"
+         "vec3 miss(vec3 d) { k += 1.0; return vec3(k, a[int(d.x * 4.0)], c[int(d.y)].x); }\n",
+         1},
+        {"struct Hit { vec3 a; float b[3]; }; struct Own { Hit h; mat3 m; };\n"
+         "Own traverse(vec3 v) { Own o; o.h.a = v; o.m = mat3(v, v, v); return o; }\n"
+         "vec3 miss(vec3 d) { Own o = traverse(d); return o.m * o.h.a; }\n",
+         1},
+        {"vec3 post(ivec2 at, vec3 c) { switch (at.x & 3) { case 0: c.r = 1.0; break; case 1: "
+         "return c.bgr; default: c.g = 0.0; } return c; }\n",
+         8},
+        {"vec3 post(ivec2 at, vec3 c) { uint64_t n = uint64_t(at.x) << 33; return c * float(n >> "
+         "33); }\n",
+         8},
+        {"//@ slider x 0 1 0.5\n//@ color y #ff0000\n//@ toggle z on\n"
+         "bool whole(out float f, in bvec2 b) { f = x; return any(b); }\n"
+         "vec3 post(ivec2 at, vec3 c) { float f; return whole(f, bvec2(z, false)) ? y * f : c; }\n",
+         8},
+        {"vec3 shade(Surface s, Optics o, vec3 e) { Surface m; float d; vec3 sum = vec3(0.0);\n"
+         "for (uint i = 0u; i < light_count(); i++) { Light l = light(i, 0u, s); sum += l.arriving "
+         "* visible(s, l.dir, l.distance); }\n"
+         "if (trace(off_surface(s, s.ng), s.ng, m, d)) sum += m.color; return sum; }\n",
+         2},
+        {"float begin_user(float x) { return x; }\nfloat main_(float x) { return x; }\n"
+         "vec3 post(ivec2 at, vec3 c) { return c * begin_user(main_(1.0)); }\n",
+         8},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        whit_shader *shader = make(cases[i].content);
+        uint32_t kernels = 0;
+        for (uint32_t k = 0; shader && k < SHADER_KERNEL_COUNT; ++k) {
+            if (!shader->codes[k].words)
+                continue;
+            kernels |= 1u << k;
+            assert_valid(&shader->codes[k]);
+        }
+        if (kernels != cases[i].kernels)
+            fail_msg("kernels %u of %s: %s", kernels, cases[i].content,
+                     errors.count ? errors.items[0].reason : "no error");
+        shader_program_destroy(shader);
+    }
+}
+
+/* Functions that nothing calls are not part of a kernel, whit's and the user's. */
+TEST_IN(kernels_have_what_is_called_alone, compiler_begin, compiler_end)
+{
+    whit_shader *plain = make("vec3 post(ivec2 at, vec3 c) { return c; }\n");
+    whit_shader *more = make("float f(float x) { return x; }\nfloat g(float x) { return f(x); }\n"
+                             "vec3 post(ivec2 at, vec3 c) { return c * g(c.x); }\n"
+                             "float h(float x) { return f(x); }\n");
+    const struct shader_code *a = &plain->codes[SHADER_KERNEL_RESOLVE];
+    const struct shader_code *b = &more->codes[SHADER_KERNEL_RESOLVE];
+    assert_int_equal(count_functions(b), count_functions(a) + 2);
+    shader_program_destroy(plain);
+    shader_program_destroy(more);
+}
+
+TEST_IN(what_is_whits_own_is_refused, compiler_begin, compiler_end)
+{
+    static const struct {
+        const char *content, *why;
+    } cases[] = {
+        {"layout(set = 0, binding = 60) buffer B { uint b[]; };\n"
+         "vec3 post(ivec2 at, vec3 c) { return c * float(b[0]); }\n",
+         "whit's own"},
+        {"shared uint b[4];\nvec3 post(ivec2 at, vec3 c) { return c * float(b[0]); }\n",
+         "whit's own"},
+        {"layout(constant_id = 5) const uint n = 2u;\n"
+         "vec3 post(ivec2 at, vec3 c) { return c * float(n); }\n",
+         "whit's own"},
+        {"vec3 post(ivec2 at, vec3 c) { return c * frame.bailout; }\n", "frame"},
+        {"vec3 post(ivec2 at, float c) { return vec3(c); }\n", "post"},
+        {"vec3 post(ivec2 at, vec3 c) { int64_t n = at.x; switch (n) { case 0: return c; } return "
+         "c * 2.0; }\n",
+         ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        whit_shader *shader = make(cases[i].content);
+        if (shader || errors.count == 0 || !strstr(errors.items[0].reason, cases[i].why))
+            fail_msg("%s: %s", cases[i].content, errors.count ? errors.items[0].reason : "taken");
+    }
+}
