@@ -76,6 +76,31 @@ void rays(uint seed)
 END
 expect 0 "tests" shader tests.glsl
 check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
+# What the linking of a file into whit's kernels has to keep: numbers that are no ids, what global
+# variables begin with, functions and records that whit has by the same name.
+cat >linked.glsl <<'END'
+float k = 3.0, twice = 2.0 * k;
+const float table[4] = float[4](1.0, 2.0, 3.0, 4.0);
+struct Hit { vec3 a; int b[3]; };
+Hit traverse(int n) { Hit h; h.a = vec3(n, n + 1, n + 2); h.b = int[3](n, 5, 6); return h; }
+int picked(uint n) { switch (n) { case 0u: return 7; case 1u: break; case 5u: return 9; default: return 1; } return 2; }
+void out_of(in float x, out vec3 y, inout float z) { y = vec3(x).zyx; z *= x; }
+//@ test
+void linked(uint seed) {
+    check(k == 3.0 && twice == 6.0 && table[seed & 3u] == float(seed & 3u) + 1.0);
+    check(picked(0u) == 7 && picked(1u) == 2 && picked(5u) == 9 && picked(seed + 6u) == 1);
+    Hit h = traverse(4);
+    check(h.a.zx == vec2(6.0, 4.0) && h.b[seed % 3u] == int[3](4, 5, 6)[seed % 3u]);
+    vec3 y; float z = 2.0;
+    out_of(1.5, y, z);
+    check(y == vec3(1.5) && z == 3.0);
+    vec4 v = vec4(1.0, 2.0, 3.0, 4.0);
+    v.yw = v.xz;
+    check(v.wzyx == vec4(3.0, 3.0, 1.0, 1.0));
+}
+END
+expect 0 "what is linked" shader linked.glsl
+check "all of it" grep -q "test linked: passed, 5 checks of 4096 seeds" "$OUT/stdout"
 expect 1 "a slider in tests" shader tests.glsl --set bands=4
 said "the failed check" "tests.glsl:8: check(bands <= 3.0) fails for 4096 of 4096 seeds of fine, the smallest is 0"
 cat >wrong.glsl <<'END'
