@@ -349,12 +349,16 @@ void compare_set(struct view *view, enum compare_mode mode)
     struct compare *compare = &view->compare;
     if (compare->mode == COMPARE_OFF && mode != COMPARE_OFF) {
         compare->frozen = view->settings;
+        bool before = shaders_set_before(view, &compare->frozen);
         compare->divider = 0.5;
         compare->figures.known = false;
         free(compare->heat.rgba);
         compare->heat = (struct compare_heat){0};
         engine_ask_other(view->engine, &compare->frozen);
-        view_say(view, "B stays as it is now; what you change is A. C ends it, D subtracts them");
+        view_say(view, before
+                           ? "B is the shader before it was saved last; I ends it, U subtracts them"
+                           : "B stays as it is now; what you change is A. I ends it, U subtracts "
+                             "them");
     }
     if (mode == COMPARE_OFF) {
         engine_ask_other(view->engine, NULL);

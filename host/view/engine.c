@@ -138,6 +138,16 @@ static void note_speed(struct engine_lane *lane, const struct engine_frame *fram
         lane->ms_per_sample = 0.75 * lane->ms_per_sample + 0.25 * ms;
 }
 
+/* The file as it now stands may be another one than the version before. */
+static void keep_version(struct engine *engine, struct shader_ref *shader)
+{
+    if (shader == engine->versions[0])
+        return;
+    shader_ref_drop(engine->versions[1]);
+    engine->versions[1] = engine->versions[0];
+    engine->versions[0] = shader_ref_take(shader);
+}
+
 /* A picture of a lane, or a step on its way: `quality` of it. */
 static void take_picture(const struct engine_task *task, enum engine_quality quality,
                          struct engine_frame *frame)
@@ -149,6 +159,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     bool there = settings_same_camera(&task->settings, &lane->settings);
     lane->drawn = there || lane == engine->lanes ? task->asked : 0; /* 0: once more, elsewhere */
     if (lane == engine->lanes) {
+        keep_version(engine, task->session->shader);
         engine->place = task->settings;
         engine->place_divisor = task->divisor;
         ++engine->places;
@@ -399,6 +410,8 @@ uint32_t engine_destroy(struct engine *engine)
     engine_kept_finish(&engine->other);
     for (int i = 0; i < ENGINE_LANES; ++i)
         engine_refine_stop(&engine->refine[i]);
+    for (int i = 0; i < 2; ++i)
+        shader_ref_drop(engine->versions[i]);
     engine_probe_finish(&engine->probe);
     pthread_cond_destroy(&engine->work);
     pthread_cond_destroy(&engine->news);

@@ -93,10 +93,12 @@ struct engine {
     struct session *sessions[ENGINE_SESSIONS_MAX]; /* of the drawing thread; NULL: free */
     struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing is */
     double drawing_since_ms; /* when it began */
-    bool brief;          /* it is done soon: who moves on waits for it, or sees nothing at all */
-    uint32_t validation; /* messages, of sessions that are gone */
-    bool busy;           /* something is being drawn, or memory given back */
-    bool littered;       /* a session was made or dropped: its memory lies about in the heaps */
+    bool brief; /* it is done soon: who moves on waits for it, or sees nothing at all */
+    struct shader_ref *versions[2]; /* of the shader in the window's pictures: the last, and the one
+                                       before; NULL: none */
+    uint32_t validation;            /* messages, of sessions that are gone */
+    bool busy;                      /* something is being drawn, or memory given back */
+    bool littered; /* a session was made or dropped: its memory lies about in the heaps */
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];

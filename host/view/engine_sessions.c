@@ -105,6 +105,10 @@ static struct shader_ref *find_shader(const struct engine *engine, const struct 
             settings_same_shader(&session->shader->settings, settings))
             return shader_ref_take(session->shader);
     }
+    for (int i = 0; i < 2; ++i) {
+        if (engine->versions[i] && settings_same_shader(&engine->versions[i]->settings, settings))
+            return shader_ref_take(engine->versions[i]);
+    }
     return NULL;
 }
 

@@ -55,9 +55,20 @@ void shaders_take(struct view *view)
     struct shaders *shaders = &view->shaders;
     if (shaders->shown == view->frame.shader)
         return;
+    if (shaders->shown && view->frame.shader) {
+        shaders->was_saved = strcmp(shaders->shown->settings.shader, view->settings.shader) == 0;
+        shaders->before = shaders->shown->settings.shader_reload;
+    }
     shader_ref_drop(shaders->shown);
     shaders->shown = shader_ref_take(view->frame.shader);
     watch_files(view);
+}
+
+bool shaders_set_before(const struct view *view, struct settings *settings)
+{
+    if (view->shaders.was_saved)
+        settings->shader_reload = view->shaders.before;
+    return view->shaders.was_saved;
 }
 
 void shaders_refuse(struct view *view)

@@ -39,6 +39,8 @@ broken: press R | error has live/part/tint.glsl:2: | frame.pixels as red | frame
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
 until error = $NONE
 mended: | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
+beside: press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors > 100
+alone: press I | compare.mode = off
 until shader.hash = $violet
 twice: | frame.pixels not as mended | error =
 prices: press P | toast has the reference, which has no --shader | frame.pixels as twice
@@ -56,7 +58,7 @@ while read -r state; do
     *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
     *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
     *'"at":"turned"'*) cp green.new live/new && mv live/new live/part/tint.glsl ;; # put in its place
-    *'"at":"mended"'*) cp blue.new live/part/tint.glsl && cp violet.new live/part/tint.glsl ;;
+    *'"at":"alone"'*) cp blue.new live/part/tint.glsl && cp violet.new live/part/tint.glsl ;;
     esac
 done <"$OUT/pipe"
 wait $viewer
@@ -67,6 +69,7 @@ check "each change is said" grep -q "note: a.glsl: .* pixels other, ids equal" "
 mv "$OUT/read" "$OUT/states"
 read_states
 as_wanted
+check "B is the version before" test "$(value beside compare.b.pixels)" = "$(value turned frame.pixels)"
 
 # follow WHAT OPTION...: `whit view` with $OUT/replay; on_state is called with each state as it comes.
 follow() {
