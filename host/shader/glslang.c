@@ -21,6 +21,7 @@ struct compilation {
     struct glslang_answer answer;
     struct fuel fuel;
     struct refuse_variables variables;
+    struct spv_words unset; /* variables of the user's function in hand: they begin as 0 */
 };
 
 static void report(struct compilation *c, struct spv_place place, const char *why)
@@ -101,6 +102,23 @@ static bool is_counted(uint32_t op)
     return op != SPV_LINE && op != SPV_NO_LINE && op != SPV_LABEL;
 }
 
+/* Variables of the user's begin as 0, so that the same text gives the same bytes. They are written
+   in the function, not by initializers: a call in a loop is set anew each time, inlined or not. */
+static void begin_variables(struct compilation *c, struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words);
+    if (op == SPV_VARIABLE && m->user_function && spv_length(words) == 4)
+        spv_put(m, &c->unset, words + 1, 2);
+    if (op == SPV_VARIABLE || op == SPV_LINE || op == SPV_NO_LINE)
+        return;
+    for (uint32_t i = 0; i < c->unset.count; i += 2) {
+        const uint32_t *pointer = spv_def(m, c->unset.words[i]);
+        if (pointer && spv_length(pointer) == 4)
+            SPV_EMIT(m, SPV_STORE, c->unset.words[i + 1], spv_null(m, pointer[3]));
+    }
+    c->unset.count = 0;
+}
+
 /* Copies what stands in functions, and what users wrote with fuel and bounds. */
 static void take_instruction(struct compilation *c, struct spv_module *m, const uint32_t *words)
 {
@@ -114,6 +132,7 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         why = called;
     if (why)
         report(c, m->place, why);
+    begin_variables(c, m, words);
     c->answer.instructions += is_counted(op);
     if (user && !c->question->trust) {
         taken = m->fuel && m->user_function && fuel_take(&c->fuel, m, words);
@@ -138,6 +157,7 @@ static void check_global(struct compilation *c, struct spv_module *m, const uint
     const char *why = refuse_variable(&c->variables, m, variable);
     if (why)
         report(c, place, why);
+    spv_put(m, &m->zeroed, name + 1, 1);
 }
 
 static void check_module(struct compilation *c, struct spv_module *m)

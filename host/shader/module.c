@@ -162,6 +162,7 @@ void spv_finish(struct spv_module *m)
 {
     free(m->defined_at);
     free(m->globals.words);
+    free(m->zeroed.words);
     free(m->body.words);
     free(m->constants);
     *m = (struct spv_module){0};
@@ -342,12 +343,31 @@ bool spv_is_remark(uint32_t op)
            op == SPV_MODULE_PROCESSED;
 }
 
+static bool begins_as_zero(const struct spv_module *m, const uint32_t *words)
+{
+    bool found = false;
+    for (uint32_t i = 0; spv_op(words) == SPV_VARIABLE && i < m->zeroed.count; ++i)
+        found = found || m->zeroed.words[i] == words[2];
+    return found && spv_length(words) == 4;
+}
+
+/* The zero stands just before the variable: constants that are added come behind all variables. */
+static void put_zeroed(struct spv_module *m, struct spv_words *out, const uint32_t *words)
+{
+    const uint32_t zero[] = {spv_def(m, words[1])[3], m->next_id++};
+    const uint32_t variable[] = {words[1], words[2], words[3], zero[1]};
+    put_instruction(m, out, SPV_CONSTANT_NULL, zero, 2);
+    put_instruction(m, out, SPV_VARIABLE, variable, 4);
+}
+
 struct spv_words spv_write(struct spv_module *m, bool keeps_remarks)
 {
     struct spv_words out = {0};
     spv_put(m, &out, m->words, SPV_HEADER_WORDS);
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (keeps_remarks || !spv_is_remark(spv_op(m->words + at)))
+        if (begins_as_zero(m, m->words + at))
+            put_zeroed(m, &out, m->words + at);
+        else if (keeps_remarks || !spv_is_remark(spv_op(m->words + at)))
             spv_put(m, &out, m->words + at, spv_length(m->words + at));
     }
     spv_put(m, &out, m->globals.words, m->globals.count);

@@ -39,6 +39,8 @@ struct spv_module {
 
     /* What goes out: added types and constants, and functions. */
     struct spv_words globals, body;
+    struct spv_words
+        zeroed; /* variables of all functions that begin as 0 where nothing else says */
     struct spv_constant *constants;
     uint32_t constant_count, constant_capacity;
 

@@ -151,6 +151,34 @@ TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
     }
 }
 
+/* Each call sets them anew, and so does each call in a loop. */
+TEST_IN(variables_begin_as_zero, compiler_begin, compiler_end)
+{
+    static const char *const contents[] = {
+        "float f(float x, int n) { float a; return x + a; }\n",
+        "struct S { vec3 v; int a[3]; };\nfloat f(float x, int n) { S s; return x + s.v.y + "
+        "float(s.a[n]); }\n",
+        "float g(int n) { float a; a += float(n); return a; }\nfloat f(float x, int n) {\n"
+        " float sum; for (int i = 0; i < 5; i++) sum = g(n); return x + sum - float(n); }\n",
+        "float a[4]; mat3 m; bool b;\nfloat f(float x, int n) { a[0] += x; m[1][1] += b ? 7.0 : "
+        "0.0;\n"
+        " return a[n] + a[0] + m[1][1]; }\n",
+    };
+    for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
+        struct answer answers[2];
+        struct shader_code code = must_compile(contents[i]);
+        assert_valid(&code);
+        run(&code, 2, (const int32_t[][2]){{1, 1}, {30, 2}}, answers);
+        if (answers[0].value != 1 || answers[1].value != 30)
+            fail_msg("%u %u: %s", answers[0].value, answers[1].value, contents[i]);
+        struct pipeline_params params = storage_params(code.words, code.bytes, 2, "user");
+        struct pipeline_info info;
+        if (!pipeline_count(&params, &info))
+            fail_msg("not evaluated: %s", contents[i]);
+        shader_code_free(&code);
+    }
+}
+
 TEST_IN(kernels_are_evaluated, compiler_begin, compiler_end)
 {
     static const char *const contents[] = {
