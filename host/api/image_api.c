@@ -72,10 +72,21 @@ static struct image_text *texts_from_public(const whit_log *log, const char *pat
 whit_result whit_image_save(const whit_image *image, const char *path, const whit_text *texts,
                             uint32_t text_count, const whit_log *log)
 {
+    return whit_image_save_layers(image, NULL, 0, path, texts, text_count, log);
+}
+
+whit_result whit_image_save_layers(const whit_image *image, const whit_image_layer *layers,
+                                   uint32_t layer_count, const char *path, const whit_text *texts,
+                                   uint32_t text_count, const whit_log *log)
+{
+    struct image_layer items[IMAGE_LAYERS_MAX];
     struct image_text *copies = texts_from_public(log, path, texts, text_count);
     if (!copies)
         return WHIT_ERROR_MEMORY;
-    whit_result result = image_save(log, &image->image, path, copies, text_count);
+    for (uint32_t i = 0; i < layer_count && i < IMAGE_LAYERS_MAX; ++i)
+        items[i] = (struct image_layer){layers[i].name, &layers[i].image->image};
+    whit_result result =
+        image_save_layers(log, &image->image, items, layer_count, path, copies, text_count);
     free(copies);
     return result;
 }

@@ -15,10 +15,12 @@ struct whit_refine {
     bool cut;            /* rays were, in the first sample or later */
     bool radiance_known; /* cut_radiance was measured, where it is needed */
     double cut_radiance;
-    struct image color;   /* the mean of all samples */
-    struct image cuts;    /* as WHIT_AOV_CUTS, of all samples */
-    struct image changes; /* see estimate_note_change; one channel */
-    struct image errors;  /* estimate_error, of 2 samples and more */
+    struct image color;                 /* the mean of all samples */
+    struct image cuts;                  /* as WHIT_AOV_CUTS, of all samples */
+    struct image aovs[SHADER_AOVS_MAX]; /* likewise, of functions of the shader */
+    uint32_t aov_count;                 /* 0 too where others began */
+    struct image changes;               /* see estimate_note_change; one channel */
+    struct image errors;                /* estimate_error, of 2 samples and more */
     double error, error_of_cuts;
     whit_stats stats;
 };
@@ -71,13 +73,16 @@ void whit_refine_destroy(whit_refine *refine)
     image_finish(&refine->cuts);
     image_finish(&refine->changes);
     image_finish(&refine->errors);
+    for (uint32_t i = 0; i < SHADER_AOVS_MAX; ++i)
+        image_finish(&refine->aovs[i]);
     free(refine);
 }
 
 /* ---- Parts ---- */
 
 struct part {
-    struct image color, cuts;
+    struct image color, cuts, aovs[SHADER_AOVS_MAX];
+    uint32_t aov_count;
     whit_stats stats;
 };
 
@@ -85,6 +90,8 @@ static void part_finish(struct part *part)
 {
     image_finish(&part->color);
     image_finish(&part->cuts);
+    for (uint32_t i = 0; i < part->aov_count; ++i)
+        image_finish(&part->aovs[i]);
 }
 
 static whit_result draw_part(const whit_refine *refine, uint32_t first, uint32_t count,
@@ -100,6 +107,10 @@ static whit_result draw_part(const whit_refine *refine, uint32_t first, uint32_t
         result = renderer_read_color(refine->renderer->renderer, &part->color);
     if (result == WHIT_OK)
         result = renderer_read_cuts(refine->renderer->renderer, &part->cuts);
+    uint32_t aovs = params.shader ? params.shader->aov_count : 0;
+    for (; result == WHIT_OK && part->aov_count < aovs; part->aov_count++)
+        result = renderer_read_aov(refine->renderer->renderer, part->aov_count,
+                                   &part->aovs[part->aov_count]);
     if (result == WHIT_OK)
         whit_renderer_get_stats(refine->renderer, &part->stats);
     return result;
@@ -139,6 +150,9 @@ static whit_result begin(whit_refine *refine, uint32_t samples, struct part *par
     refine->color = part->color;
     refine->cuts = part->cuts;
     part->color = part->cuts = (struct image){0};
+    memcpy(refine->aovs, part->aovs, sizeof refine->aovs);
+    refine->aov_count = part->aov_count;
+    part->aov_count = 0;
     refine->stats = part->stats;
     refine->samples = samples;
     refine->cut = is_any_cut(&refine->cuts);
@@ -173,6 +187,8 @@ static void add_part(whit_refine *refine, const struct part *part)
     estimate_note_change(halves, &refine->changes);
     add_half(&refine->color, &part->color);
     add_half(&refine->cuts, &part->cuts);
+    for (uint32_t i = 0; i < refine->aov_count; ++i)
+        add_half(&refine->aovs[i], &part->aovs[i]);
     whit_stats_add(&part->stats, &refine->stats);
     refine->samples *= 2;
     ++refine->doublings;
@@ -257,6 +273,15 @@ whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
     if (result == WHIT_OK)
         whit_image_display_as(*out, &refine->params);
     return result;
+}
+
+whit_result whit_refine_aov(const whit_refine *refine, uint32_t index, whit_image **out)
+{
+    *out = NULL;
+    if (index < refine->aov_count)
+        return copy(refine, &refine->aovs[index], out);
+    log_error(&refine->log, "there is no function %u of the shader in all samples", index);
+    return WHIT_ERROR_USAGE;
 }
 
 whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out)

@@ -194,12 +194,15 @@ whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
 
 static whit_result read_aov(struct renderer *renderer, whit_aov aov, struct image *out)
 {
+    if (aov >= WHIT_AOV_SHADER)
+        return renderer_read_aov(renderer, (uint32_t)(aov - WHIT_AOV_SHADER), out);
     switch (aov) {
     case WHIT_AOV_IDS:
         return renderer_read_ids(renderer, out);
     case WHIT_AOV_CUTS:
         return renderer_read_cuts(renderer, out);
     case WHIT_AOV_COLOR:
+    case WHIT_AOV_SHADER:
         break;
     }
     return renderer_read_color(renderer, out);

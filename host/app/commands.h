@@ -48,9 +48,11 @@ WHIT_CHECK whit_result render_choose(struct job *job, const struct render_reques
                                      struct frames_progress *progress, whit_renderer **renderer);
 
 /* Saves what `request` names of the picture just rendered (render_command.c). `color`: its colours
-   where they are not the renderer's, else NULL; what is drawn over is drawn into it. */
+   where they are not the renderer's, else NULL; what is drawn over is drawn into it. `layers`: the
+   shader's functions beside them, those of the renderer where `color` is NULL. */
 whit_result render_save(const struct job *job, const struct render_request *request,
-                        whit_renderer *renderer, whit_image *color, const whit_stats *stats);
+                        whit_renderer *renderer, whit_image *color, struct layers *layers,
+                        const whit_stats *stats);
 
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */

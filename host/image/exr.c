@@ -135,14 +135,42 @@ static const char *const *channel_names(const struct image *image)
     return image->channels == 1 ? grey : colour;
 }
 
-static int channel_index(const struct image *image, const char *name)
+/* Where a channel of that name comes from. */
+struct channel_source {
+    const struct image *image;
+    uint32_t at;
+};
+
+static struct channel_source find_source(const struct image_target *target,
+                                         const struct image *image, const char *name)
 {
-    const char *const *names = channel_names(image);
-    for (uint32_t i = 0; i < image->channels; ++i) {
-        if (strcmp(names[i], name) == 0)
-            return (int)i;
+    for (uint32_t i = 0; i < target->layer_count; ++i) {
+        const struct image_layer *layer = &target->layers[i];
+        size_t length = strlen(layer->name);
+        if (strncmp(name, layer->name, length) == 0 && name[length] == '.')
+            return (struct channel_source){layer->image,
+                                           (uint32_t)strcspn("RGBA", name + length + 1)};
     }
-    return -1;
+    const char *const *names = channel_names(image);
+    uint32_t at = 0;
+    while (at + 1 < image->channels && strcmp(names[at], name) != 0)
+        at++;
+    return (struct channel_source){image, at};
+}
+
+static exr_result_t add_layer(exr_context_t context, int part, const char *name)
+{
+    exr_result_t code = EXR_ERR_SUCCESS;
+    for (const char *c = "RGBA"; *c && code == EXR_ERR_SUCCESS; ++c) {
+        char channel[256];
+        snprintf(channel, sizeof channel, "%.200s.%c", name, *c);
+        if (strlen(channel) > 31)
+            code = exr_set_longname_support(context, 1);
+        if (code == EXR_ERR_SUCCESS)
+            code = exr_add_channel(context, part, channel, EXR_PIXEL_FLOAT,
+                                   EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    }
+    return code;
 }
 
 static exr_result_t write_header(exr_context_t context, const struct image_target *target,
@@ -158,6 +186,8 @@ static exr_result_t write_header(exr_context_t context, const struct image_targe
         code = exr_add_channel(context, part, names[i],
                                image->words ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
                                EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (uint32_t i = 0; i < target->layer_count && code == EXR_ERR_SUCCESS; ++i)
+        code = add_layer(context, part, target->layers[i].name);
     for (uint32_t i = 0; i < target->text_count && code == EXR_ERR_SUCCESS; ++i) {
         if (strlen(target->texts[i].key) > 31)
             code = exr_set_longname_support(context, 1);
@@ -172,19 +202,22 @@ static const uint8_t *image_bytes(const struct image *image)
     return image->words ? (const uint8_t *)image->words : (const uint8_t *)image->pixels;
 }
 
-static void set_sources(exr_encode_pipeline_t *encode, const struct image *image, uint32_t y)
+static void set_sources(exr_encode_pipeline_t *encode, const struct image_target *target,
+                        const struct image *image, uint32_t y)
 {
-    size_t row_bytes = (size_t)image->width * image->channels * 4;
     for (int16_t i = 0; i < encode->channel_count; ++i) {
         exr_coding_channel_info_t *channel = &encode->channels[i];
-        size_t at = (size_t)channel_index(image, channel->channel_name);
-        channel->encode_from_ptr = image_bytes(image) + y * row_bytes + at * 4;
-        channel->user_pixel_stride = (int32_t)image->channels * 4;
+        struct channel_source source = find_source(target, image, channel->channel_name);
+        size_t row_bytes = (size_t)source.image->width * source.image->channels * 4;
+        channel->encode_from_ptr =
+            image_bytes(source.image) + y * row_bytes + (size_t)source.at * 4;
+        channel->user_pixel_stride = (int32_t)source.image->channels * 4;
         channel->user_line_stride = (int32_t)row_bytes;
     }
 }
 
-static exr_result_t write_chunks(exr_context_t context, const struct image *image)
+static exr_result_t write_chunks(exr_context_t context, const struct image_target *target,
+                                 const struct image *image)
 {
     int32_t chunk_rows = 0;
     bool first = true;
@@ -199,7 +232,7 @@ static exr_result_t write_chunks(exr_context_t context, const struct image *imag
                      : exr_encoding_update(context, 0, &chunk, &encode);
         if (code != EXR_ERR_SUCCESS)
             break;
-        set_sources(&encode, image, y);
+        set_sources(&encode, target, image, y);
         if (first)
             code = exr_encoding_choose_default_routines(context, 0, &encode);
         first = false;
@@ -221,7 +254,7 @@ whit_result exr_write(const struct image_target *target, const struct image *ima
     if (code == EXR_ERR_SUCCESS)
         code = write_header(context, target, image);
     if (code == EXR_ERR_SUCCESS)
-        code = write_chunks(context, image);
+        code = write_chunks(context, target, image);
     exr_result_t end_code = finish(&context); /* writes the chunk table */
     if (code == EXR_ERR_SUCCESS)
         code = end_code;

@@ -27,6 +27,8 @@ struct image_target {
     FILE *stream;
     const struct image_text *texts;
     uint32_t text_count;
+    const struct image_layer *layers; /* of an EXR */
+    uint32_t layer_count;
 };
 
 /* Key and value pairs that grow; the strings are its own. A zeroed one is empty. */

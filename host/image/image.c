@@ -142,10 +142,35 @@ static void warn_of_nonfinite(const whit_log *log, const struct image *image, co
                     format_of_path(path) == FORMAT_PNG ? " and shown as magenta" : "");
 }
 
+static whit_result check_layers(const whit_log *log, const struct image *image,
+                                const struct image_layer *layers, uint32_t count, const char *path)
+{
+    bool fit = count <= IMAGE_LAYERS_MAX && (count == 0 || format_of_path(path) == FORMAT_EXR);
+    for (uint32_t i = 0; fit && i < count; ++i) {
+        const struct image *layer = layers[i].image;
+        fit = layer->pixels && layer->channels == 4 && layer->width == image->width &&
+              layer->height == image->height;
+    }
+    if (fit)
+        return WHIT_OK;
+    log_error(log, "%s: an .exr alone keeps images beside another one, up to %d of its size", path,
+              IMAGE_LAYERS_MAX);
+    return WHIT_ERROR_USAGE;
+}
+
 whit_result image_save(const whit_log *log, const struct image *image, const char *path,
                        const struct image_text *texts, uint32_t text_count)
 {
+    return image_save_layers(log, image, NULL, 0, path, texts, text_count);
+}
+
+whit_result image_save_layers(const whit_log *log, const struct image *image,
+                              const struct image_layer *layers, uint32_t layer_count,
+                              const char *path, const struct image_text *texts, uint32_t text_count)
+{
     whit_result result = check_savable(log, image, path);
+    if (result == WHIT_OK)
+        result = check_layers(log, image, layers, layer_count, path);
     if (result != WHIT_OK)
         return result;
     warn_of_nonfinite(log, image, path);
@@ -157,7 +182,9 @@ whit_result image_save(const whit_log *log, const struct image *image, const cha
                                   .path = path,
                                   .stream = file.stream,
                                   .texts = texts,
-                                  .text_count = texts ? text_count : 0};
+                                  .text_count = texts ? text_count : 0,
+                                  .layers = layers,
+                                  .layer_count = layer_count};
     switch (format_of_path(path)) {
     case FORMAT_EXR:
         result = exr_write(&target, image);

@@ -38,6 +38,19 @@ struct image_text {
    .pfm 32-bit float RGB or grey. Atomic. Logs the path and the reason. */
 WHIT_CHECK whit_result image_save(const whit_log *log, const struct image *image, const char *path,
                                   const struct image_text *texts, uint32_t text_count);
+/* An image of 4 floats in the size of another one, beside which an .exr holds it as channels
+   NAME.R, .G, .B and .A. The name is borrowed. */
+struct image_layer {
+    const char *name;
+    const struct image *image;
+};
+enum { IMAGE_LAYERS_MAX = 16 };
+/* The same with such images, which no other format keeps: WHIT_ERROR_USAGE, also for more than
+   IMAGE_LAYERS_MAX. */
+WHIT_CHECK whit_result image_save_layers(const whit_log *log, const struct image *image,
+                                         const struct image_layer *layers, uint32_t layer_count,
+                                         const char *path, const struct image_text *texts,
+                                         uint32_t text_count);
 /* True for extensions that image_save writes; `integers`: that keep uint32 exactly (.exr). */
 bool image_format_known(const char *path, bool integers);
 

@@ -6,7 +6,7 @@
 
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
 _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SHADER_HOOK_SHADE &&
-                   HOOK_POST == 1u << SHADER_HOOK_POST,
+                   HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV,
                "the same bits");
 
 void hooks_take(struct renderer *renderer)
@@ -17,6 +17,12 @@ void hooks_take(struct renderer *renderer)
     params->compile_async = false; /* there is no general kernel of it yet */
     if (shader_has(params->shader, SHADER_HOOK_SCATTER))
         params->effects_added |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
+}
+
+uint32_t hooks_aov_count(const struct target *target)
+{
+    const whit_shader *shader = target->renderer->params.shader;
+    return shader && !target->probed ? shader->aov_count : 0;
 }
 
 whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
@@ -35,10 +41,19 @@ whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
     return WHIT_ERROR_USAGE;
 }
 
+/* Buffers are made for their number. */
+static bool same_aovs(const whit_shader *a, const whit_shader *b)
+{
+    bool same = a->aov_count == b->aov_count;
+    for (uint32_t i = 0; same && i < a->aov_count; ++i)
+        same = strcmp(a->aov_names[i], b->aov_names[i]) == 0;
+    return same;
+}
+
 bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *shader)
 {
     const whit_shader *own = renderer->params.shader;
-    return own && shader && own->hooks == shader->hooks;
+    return own && shader && own->hooks == shader->hooks && same_aovs(own, shader);
 }
 
 whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_params *params)

@@ -33,6 +33,9 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     p->levels = pixels_levels(&renderer->params);
     /* The sums of samples are in the same buffer, behind the pixels. */
     uint64_t max_pixels = limit / 16 - slots * p->levels;
+    uint32_t aovs = hooks_aov_count(target);
+    if (aovs && limit / 16 / aovs - slots < max_pixels)
+        max_pixels = limit / 16 / aovs - slots;
     uint64_t rows = max_pixels / width / 8 * 8;
     uint32_t wanted = pixels_blocks_across(height) * 8;
     p->band_rows = rows < wanted ? (uint32_t)rows : wanted;
@@ -56,6 +59,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     } all[] = {
         {&p->pixels, (pixels + sums) * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
+        {&p->aovs, (p->chunk_slots + pixels) * 16 * aovs, BUFFER_STORAGE | BUFFER_HOST,
+         "values of functions"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
         {&p->listed, lists ? (uint64_t)p->chunk_slots * 4 : 0, BUFFER_STORAGE | BUFFER_HOST,
          "listed pixels"},
@@ -80,7 +85,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
 
 static void pixels_finish(struct pixel_buffers *p)
 {
-    struct buffer *all[] = {p->pixels, p->ids, p->status, p->costs, p->listed};
+    struct buffer *all[] = {p->pixels, p->ids, p->status, p->costs, p->listed, p->aovs};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     queues_finish(&p->queues);

@@ -32,6 +32,40 @@ static whit_result read_cuts(const struct renderer *renderer, uint32_t rows, flo
     return sums ? buffer_read(sums, 0, weights, bytes) : WHIT_OK;
 }
 
+/* All functions of `count` pixels of the band, from pixel `at` of it on. */
+static whit_result read_aovs(const struct renderer *renderer, size_t at, size_t count,
+                             float *values)
+{
+    const struct pixel_buffers *p = &renderer->picture.buffers;
+    size_t pixel_bytes = (size_t)hooks_aov_count(&renderer->picture) * 4 * sizeof *values;
+    return p->aovs ? buffer_read(p->aovs, (p->chunk_slots + at) * pixel_bytes, values,
+                                 count * pixel_bytes)
+                   : WHIT_OK;
+}
+
+/* Of the pixels that the pass drew, into the picture from row `band_y` on. */
+static whit_result read_listed_aovs(struct renderer *renderer, const struct progress *progress,
+                                    uint32_t band_y, uint32_t rows)
+{
+    const struct image *aovs = &renderer->aovs;
+    uint32_t width = renderer->params.width;
+    size_t each = 4 * (size_t)hooks_aov_count(&renderer->picture);
+    whit_result result = WHIT_OK;
+    float *row = aovs->pixels ? malloc(width * each * sizeof *row) : NULL;
+    if (!row)
+        return aovs->pixels ? render_no_memory(renderer, "values of functions") : WHIT_OK;
+    for (uint32_t y = 0; result == WHIT_OK && y < rows; ++y) {
+        size_t first = (size_t)width * (band_y + y);
+        result = read_aovs(renderer, (size_t)width * y, width, row);
+        for (uint32_t x = 0; result == WHIT_OK && x < width; ++x) {
+            if (adaptive_draws(progress, first + x))
+                memcpy(&aovs->pixels[(first + x) * each], &row[x * each], each * sizeof *row);
+        }
+    }
+    free(row);
+    return result;
+}
+
 /* Those that the pass drew, of `count` pixels of the band, into the picture from pixel `first` on.
  */
 static whit_result read_listed(struct renderer *renderer, const struct progress *progress,
@@ -86,12 +120,18 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
     whit_result result = WHIT_OK;
     if (progress->listed) {
         result = read_listed(renderer, progress, first, count);
+        if (result == WHIT_OK)
+            result = read_listed_aovs(renderer, progress, band_y, rows);
     } else if (!readback_is_late(renderer)) {
         result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
         if (result == WHIT_OK)
             result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
         if (result == WHIT_OK && renderer->cuts.pixels)
             result = read_cuts(renderer, rows, &renderer->cuts.pixels[2 * first]);
+        if (result == WHIT_OK && renderer->aovs.pixels)
+            result =
+                read_aovs(renderer, 0, count,
+                          &renderer->aovs.pixels[first * 4 * hooks_aov_count(&renderer->picture)]);
     }
     return result;
 }
@@ -128,6 +168,39 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
     memcpy(out->words, renderer->ids.words,
            (size_t)out->width * out->height * 2 * sizeof(uint32_t));
     return WHIT_OK;
+}
+
+/* The numbers of one function out of those of all, of a row. */
+static void pick_aov(const float *row, uint32_t all, uint32_t index, uint32_t width, float *to)
+{
+    for (uint32_t x = 0; x < width; ++x)
+        memcpy(&to[4 * (size_t)x], &row[4 * ((size_t)x * all + index)], 4 * sizeof *to);
+}
+
+whit_result renderer_read_aov(struct renderer *renderer, uint32_t index, struct image *out)
+{
+    uint32_t all = hooks_aov_count(&renderer->picture), width = renderer->params.width;
+    if (index >= all) {
+        log_error(&renderer->log, "the shader has %u functions beside the colour, no number %u",
+                  all, index);
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result = begin_read(renderer, 4, false, out);
+    bool late = readback_is_late(renderer);
+    float *row = result == WHIT_OK && late ? malloc((size_t)width * all * 4 * sizeof *row) : NULL;
+    if (result == WHIT_OK && late && !row)
+        result = render_no_memory(renderer, "values of functions");
+    for (uint32_t y = 0; result == WHIT_OK && y < out->height; ++y) {
+        size_t at = (size_t)width * y;
+        if (late)
+            result = read_aovs(renderer, at, width, row);
+        pick_aov(late ? row : &renderer->aovs.pixels[4 * at * all], all, index, width,
+                 &out->pixels[4 * at]);
+    }
+    free(row);
+    if (result != WHIT_OK)
+        image_finish(out);
+    return result;
 }
 
 whit_result renderer_read_cuts(struct renderer *renderer, struct image *out)

@@ -46,6 +46,9 @@ WHIT_CHECK whit_result renderer_render(struct renderer *renderer);
 /* Linear RGBA floats, or instance and primitive of the first sample (HIT_NONE: miss). */
 WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
+/* Function `index` of the shader's that are kept beside the colour: 4 floats. */
+WHIT_CHECK whit_result renderer_read_aov(struct renderer *renderer, uint32_t index,
+                                         struct image *out);
 /* As WHIT_AOV_CUTS has it. WHIT_ERROR_USAGE too for adaptive samples. */
 WHIT_CHECK whit_result renderer_read_cuts(struct renderer *renderer, struct image *out);
 void renderer_get_stats(const struct renderer *renderer, whit_stats *stats);

@@ -119,6 +119,7 @@ void renderer_finish(struct renderer *renderer)
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     image_finish(&renderer->cuts);
+    image_finish(&renderer->aovs);
 }
 
 void renderer_destroy(struct renderer *renderer)

@@ -46,6 +46,7 @@ struct pixel_buffers {
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
     struct buffer *status;
+    struct buffer *aovs; /* see bind/queues.glsl; NULL: the shader has no functions for it */
     struct queue_buffers queues;
     uint32_t band_y;      /* first row that they hold now */
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
@@ -180,6 +181,7 @@ struct renderer {
     float sliders[SLIDERS_MAX];         /* of params.shader */
     struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids, cuts;      /* of the last picture, where it has more than one band */
+    struct image aovs;                  /* likewise: a pixel beside itself for each function */
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
     double create_ms;
     /* What the pipelines were made for. */
@@ -404,6 +406,8 @@ void async_finish(struct renderer *renderer);
 
 /* hooks.c: what the functions of params.shader call for, beside what the scene does. */
 void hooks_take(struct renderer *renderer);
+/* Its functions whose values are kept beside the colour. */
+uint32_t hooks_aov_count(const struct target *target);
 /* WHIT_ERROR_USAGE, logged, for sliders that the shader has not. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
 /* Forgets loops that had no fuel left. */

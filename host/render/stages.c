@@ -407,6 +407,10 @@ static void clear_queues(struct target *target)
     commands_fill(commands, target->buffers.status, 0, 4, 0);
     commands_copy(commands, queues->empty, 0, queues->generations, 0,
                   stages_generation_offset(queues->generation_count));
+    const struct pixel_buffers *pixels = &target->buffers;
+    if (pixels->aovs) /* of what is met nowhere */
+        commands_fill(commands, pixels->aovs, 0,
+                      (uint64_t)pixels->chunk_slots * hooks_aov_count(target) * 16, 0);
     if (queues->cuts)
         commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
 }

@@ -330,6 +330,7 @@ whit_result renderer_render(struct renderer *renderer)
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     image_finish(&renderer->cuts);
+    image_finish(&renderer->aovs);
     costs_clear(renderer);
     whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK)
@@ -341,6 +342,9 @@ whit_result renderer_render(struct renderer *renderer)
     if (result == WHIT_OK && !readback_is_late(renderer) &&
         params->sampling.kind == WHIT_SAMPLING_FIXED)
         result = image_init(&renderer->cuts, params->width, params->height, 2, false);
+    uint32_t aovs = hooks_aov_count(&renderer->picture);
+    if (result == WHIT_OK && !readback_is_late(renderer) && aovs)
+        result = image_init(&renderer->aovs, params->width * aovs, params->height, 4, false);
     stats_clear(&renderer->picture);
     material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);

@@ -86,6 +86,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
     spec.SPEC_LISTED = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
+    spec.SPEC_AOVS = hooks_aov_count(target);
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
@@ -268,6 +269,7 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LIT_LIST, BINDING_STORAGE, queues->lit_list);
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);
     bind(&bindings, BIND_CUTS, BINDING_STORAGE, queues->cuts);
+    bind(&bindings, BIND_AOVS, BINDING_STORAGE, pixels->aovs);
     bind(&bindings, BIND_CUT_SUMS, BINDING_STORAGE, queues->cut_sums);
     return bindings;
 }

@@ -64,6 +64,8 @@ static bool check_shader(const struct settings *settings, char *why)
 {
     if (settings->shader[0])
         return true;
+    if (settings->aov[0])
+        return setting_refuse(why, "--aov: without --shader there are no functions");
     if (settings->sliders[0])
         return setting_refuse(why, "--set: without --shader there are no sliders");
     if (settings->trust)

@@ -41,6 +41,7 @@ struct settings {
     char shader[SETTING_TEXT_BYTES];  /* a file of functions; "": none */
     char stages[SETTING_TEXT_BYTES];  /* a checkout's shaders/, in place of whit's; "": those */
     char sliders[SETTING_TEXT_BYTES]; /* of it: "NAME=VALUE,NAME=VALUE" */
+    char aov[SETTING_TEXT_BYTES];     /* a function of it in place of the colour; "": none */
     uint32_t shader_reload;           /* another number: the file is read again */
     bool trust;                       /* its loops and indices are not bounded */
 

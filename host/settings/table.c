@@ -317,6 +317,11 @@ const struct setting settings_table[] = {
      .commands = IN_RENDER | IN_VIEW | IN_SHADER, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .trusted = true},
 
+    {"aov", 0, "NAME",
+     "what the shader's function below `//@ aov NAME` gives, in place\n"
+     "of the colour",
+     "", AT(TEXT, aov), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT, .trusted = true},
+
     {"budget-ms", 0, "T",
      "choose the best of these settings that take at most T ms, by\n"
      "`whit cost`, which measures the scene for 20 s the first time",

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "shader/program.h"
+#include "shader/scan.h"
 #include "sources.h"
 
 /* One such line, taken apart from left to right. */
@@ -171,6 +172,9 @@ static bool is_function(const char *name)
     snprintf(call, sizeof call, " %s(", name);
     for (uint32_t i = 0; i < shader_source_count; ++i) {
         const char *text = shader_sources[i].text;
+        if (strcmp(shader_sources[i].path, "hook/aov.glsl") == 0 || /* no part of a kernel */
+            strncmp(shader_sources[i].path, "examples/", 9) == 0)
+            continue;
         for (const char *at = strstr(text, call); at; at = strstr(at + 1, call)) {
             const char *begin = at;
             while (begin > text && begin[-1] != '\n')
@@ -186,7 +190,7 @@ static bool is_new_name(const struct line *line, const char *name)
 {
     const whit_shader *shader = line->shader;
     if (is_function(name)) {
-        complain(line, "`%s` is a function of whit's: a slider needs another name", name);
+        complain(line, "`%s` is a function of whit's: another name is needed", name);
         return false;
     }
     for (uint32_t i = 0; i < shader->slider_count; ++i) {
@@ -196,7 +200,55 @@ static bool is_new_name(const struct line *line, const char *name)
             return false;
         }
     }
+    for (uint32_t i = 0; i < shader->aov_count; ++i) {
+        if (strcmp(shader->aovs[i].name, name) == 0) {
+            complain(line, "there is an aov `%s` already, in line %u", name, shader->aovs[i].line);
+            return false;
+        }
+    }
     return true;
+}
+
+/* Behind the line stands "vec4 NAME(Surface s)". */
+static bool stands_before_function(const struct line *line, const char *name)
+{
+    const struct shader_file *file = &line->shader->text.files[line->file];
+    const char *const words[] = {"vec4", name, "(", "Surface"};
+    struct scan scan;
+    scan_begin(&scan, line->end, (size_t)(file->text + file->bytes - line->end));
+    for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
+        bool next = scan_next(&scan);
+        if (i == 3 && next && scan_is(&scan, SCAN_WORD, "in"))
+            next = scan_next(&scan);
+        if (!next || strcmp(scan.text, words[i]) != 0)
+            return false;
+    }
+    return true;
+}
+
+static void read_aov(struct line *line)
+{
+    whit_shader *shader = line->shader;
+    char name[SHADER_NAME_BYTES], rest[4];
+    if (!next_word(line, name, sizeof name) || !is_name(name) ||
+        !next_word(line, rest, sizeof rest) || rest[0]) {
+        complain(line, "an aov has a name of letters, digits and _, and nothing more");
+        return;
+    }
+    if (!is_new_name(line, name))
+        return;
+    if (shader->aov_count == SHADER_AOVS_MAX) {
+        complain(line, "a file has at most %d aovs", SHADER_AOVS_MAX);
+        return;
+    }
+    if (!stands_before_function(line, name)) {
+        complain(line, "`//@ aov %s` stands before `vec4 %s(Surface s)`", name, name);
+        return;
+    }
+    struct shader_aov *aov = &shader->aovs[shader->aov_count];
+    *aov = (struct shader_aov){.file = line->file, .line = line->number};
+    memcpy(aov->name, name, sizeof name);
+    shader->aov_names[shader->aov_count++] = aov->name;
 }
 
 static void read_slider(struct line *line, size_t kind)
@@ -315,14 +367,16 @@ static void read_line(struct line *line)
         read_fuel(line);
     else if (fits && strcmp(word, "whit") == 0)
         read_version(line);
+    else if (fits && strcmp(word, "aov") == 0)
+        read_aov(line);
     else if (fits && strcmp(word, "test") == 0)
         read_test_mark(line);
     else if (fits && strcmp(word, "expect") == 0)
         read_expectation(line);
     else
         complain(line,
-                 "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel, test, "
-                 "expect",
+                 "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel, aov, "
+                 "test, expect",
                  word);
 }
 

@@ -14,7 +14,8 @@ enum { DEFINES_MAX = SHADER_HOOK_COUNT + 1, DEFINE_BYTES = 48 };
 static const char *const hook_names[SHADER_HOOK_COUNT] = {
     [SHADER_HOOK_CAMERA] = "camera", [SHADER_HOOK_SURFACE] = "surface",
     [SHADER_HOOK_SHADE] = "shade",   [SHADER_HOOK_SCATTER] = "scatter",
-    [SHADER_HOOK_MISS] = "miss",     [SHADER_HOOK_POST] = "post"};
+    [SHADER_HOOK_MISS] = "miss",     [SHADER_HOOK_POST] = "post",
+    [SHADER_HOOK_AOV] = "aov"};
 
 #define BIT(hook) (1u << SHADER_HOOK_##hook)
 
@@ -25,7 +26,7 @@ static const struct {
 } kernel_table[SHADER_KERNEL_COUNT] = {
     [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA) | BIT(MISS)},
     [SHADER_KERNEL_SHADE] = {"kernel/shade.comp",
-                             BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER)},
+                             BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER) | BIT(AOV)},
     [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
     [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", BIT(POST)},
     [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
@@ -75,6 +76,28 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
 }
 
 #define HOOK_TEXT "kernel/hook.comp"
+
+enum { AOV_BYTES = 256 };
+
+/* aov() of hook/declare.glsl, which calls the functions below //@ aov. NULL: no memory. */
+static char *declare_aovs(const whit_shader *shader)
+{
+    size_t bytes = (size_t)(shader->aov_count + 1) * AOV_BYTES, used = 0;
+    char *text = calloc(bytes, 1);
+    if (!text || shader->aov_count == 0)
+        return text;
+    for (uint32_t i = 0; i < shader->aov_count; ++i)
+        used += (size_t)snprintf(text + used, bytes - used, "vec4 %s(Surface s);\n",
+                                 shader->aovs[i].name);
+    used += (size_t)snprintf(text + used, bytes - used,
+                             "vec4 aov(uint index, Surface s)\n{\n    vec4 value = vec4(0.0);\n");
+    for (uint32_t i = 0; i < shader->aov_count; ++i)
+        used += (size_t)snprintf(text + used, bytes - used,
+                                 "    if (index == %uu)\n        value = %s(s);\n", i,
+                                 shader->aovs[i].name);
+    snprintf(text + used, bytes - used, "    return value;\n}\n");
+    return text;
+}
 
 /* Its text, with what is declared in front of the user's. NULL: no memory, or it has no place for
    that. */
@@ -155,15 +178,18 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
                               struct shader_errors *errors)
 {
     for (uint32_t i = 0, count = 0; i < SHADER_HOOK_COUNT; ++i) {
-        if (!shader_text_defines(&shader->text, hook_names[i], NULL, NULL))
+        if (i == SHADER_HOOK_AOV ? shader->aov_count == 0
+                                 : !shader_text_defines(&shader->text, hook_names[i], NULL, NULL))
             continue;
         shader->hooks |= 1u << i;
         shader->names[count++] = hook_names[i];
     }
     if (shader->hooks || shader->tests.test_count)
         return WHIT_OK;
-    shader_error_add(log, errors, shader->text.files[0].name, 0,
-                     "has none of the functions camera, surface, shade, scatter, miss, post");
+    shader_error_add(
+        log, errors, shader->text.files[0].name, 0,
+        "has none of the functions camera, surface, shade, scatter, miss, post, and none "
+        "below `//@ aov NAME`");
     return WHIT_ERROR_INPUT;
 }
 
@@ -177,10 +203,12 @@ static bool parts_init(const whit_shader *shader, bool tests, struct kernel_part
 {
     *parts = (struct kernel_parts){0};
     char *sliders = shader_sliders_declare(shader);
+    char *aovs = declare_aovs(shader);
     char *calls = tests ? shader_tests_call(&shader->tests) : string_copy("");
-    if (sliders && calls)
-        parts->declared = string_format("%s%s", sliders, calls);
+    if (sliders && aovs && calls)
+        parts->declared = string_format("%s%s%s", sliders, aovs, calls);
     free(calls);
+    free(aovs);
     free(sliders);
     return parts->declared && shader_tests_text(&shader->tests, &shader->text, tests, &parts->user);
 }

@@ -14,6 +14,7 @@ enum shader_hook {
     SHADER_HOOK_SCATTER,
     SHADER_HOOK_MISS,
     SHADER_HOOK_POST,
+    SHADER_HOOK_AOV, /* functions of any name below //@ aov */
     SHADER_HOOK_COUNT
 };
 
@@ -33,6 +34,7 @@ enum {
     SHADER_HELP_BYTES = 128,
     SHADER_WORDS_MAX = 16,
     SHADER_EXPECTATIONS_MAX = 16,
+    SHADER_AOVS_MAX = 16,
     SHADER_FUEL_USUAL = 10000,
     SHADER_FUEL_MAX = 30000, /* what lavapipe leaves of the 65,535 iterations of a group */
 };
@@ -42,6 +44,12 @@ struct shader_slider_text {
     char name[SHADER_NAME_BYTES], help[SHADER_HELP_BYTES];
     char text[SHADER_HELP_BYTES]; /* words, each ended by 0 */
     const char *words[SHADER_WORDS_MAX];
+    uint32_t file, line;
+};
+
+/* A function below //@ aov, and where that line is. */
+struct shader_aov {
+    char name[SHADER_NAME_BYTES];
     uint32_t file, line;
 };
 
@@ -59,6 +67,9 @@ struct whit_shader {
     uint32_t slider_count, value_count;
     whit_shader_expectation expectations[SHADER_EXPECTATIONS_MAX];
     uint32_t expectation_count;
+    struct shader_aov aovs[SHADER_AOVS_MAX];
+    const char *aov_names[SHADER_AOVS_MAX];
+    uint32_t aov_count;
     struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;

@@ -143,4 +143,7 @@ bool engine_is_refined(struct engine *engine);
 /* Waits for the next thing to take, at most `ms`. For tests and replays. */
 void engine_wait(struct engine *engine, double ms);
 
+/* The function of the frame's shader that settings.aov names; UINT32_MAX: there is none. */
+uint32_t engine_find_aov(const struct engine_frame *frame);
+
 #endif

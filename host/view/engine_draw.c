@@ -44,8 +44,8 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
 static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t divisor)
 {
     uint32_t spacing = 8, finest = first ? divisor : lane->shown / 2;
-    if (lane->moving || lane->settings.paint != PAINT_COLOR)
-        return 0;
+    if (lane->moving || lane->settings.paint != PAINT_COLOR || lane->settings.aov[0])
+        return 0; /* steps are of colours */
     if (first && lane->ms_per_sample <= 0.0)
         return spacing;
     while (spacing > 1 && spacing / 2 >= finest)
@@ -120,6 +120,32 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     return result;
 }
 
+uint32_t engine_find_aov(const struct engine_frame *frame)
+{
+    const struct shader_ref *shader = frame->shader;
+    for (uint32_t i = 0; shader && i < shader->info.aov_count; ++i) {
+        if (strcmp(shader->info.aovs[i], frame->settings.aov) == 0)
+            return i;
+    }
+    return UINT32_MAX;
+}
+
+/* Colours, or the function of the shader that is shown in their place. */
+static whit_result paint_colors(const struct engine_task *task, struct engine_frame *frame)
+{
+    const whit_overlay overlay = settings_overlay(&task->settings);
+    whit_renderer *renderer = task->session->renderer;
+    uint32_t aov = engine_find_aov(frame);
+    whit_result result = whit_renderer_image(
+        renderer, aov == UINT32_MAX ? WHIT_AOV_COLOR : (whit_aov)(WHIT_AOV_SHADER + aov),
+        &frame->color);
+    if (result == WHIT_OK && aov == UINT32_MAX)
+        result = whit_renderer_draw_over(renderer, &overlay, frame->color);
+    if (result == WHIT_OK)
+        whit_image_display_bytes(frame->color, frame->rgba);
+    return result;
+}
+
 static whit_result read_picture(const struct engine_task *task, struct engine_frame *frame)
 {
     whit_renderer *renderer = task->session->renderer;
@@ -127,16 +153,8 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
     frame->rgba = malloc((size_t)frame->width * frame->height * 4);
     if (!frame->rgba)
         return WHIT_ERROR_MEMORY;
-    if (task->settings.paint != PAINT_COLOR) {
-        result = paint_costs(task, frame);
-    } else {
-        const whit_overlay overlay = settings_overlay(&task->settings);
-        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &frame->color);
-        if (result == WHIT_OK)
-            result = whit_renderer_draw_over(renderer, &overlay, frame->color);
-        if (result == WHIT_OK)
-            whit_image_display_bytes(frame->color, frame->rgba);
-    }
+    result =
+        task->settings.paint != PAINT_COLOR ? paint_costs(task, frame) : paint_colors(task, frame);
     if (result == WHIT_OK && task->divisor == 1)
         result = whit_renderer_image(renderer, WHIT_AOV_IDS, &frame->ids);
     if (result == WHIT_OK && frame->whole && engine_refines(&task->settings))

@@ -35,7 +35,7 @@ static void set_base(struct engine_refine *refine, const struct engine_frame *fr
 bool engine_refines(const struct settings *settings)
 {
     bool drawn_over = settings->edges != EDGES_OFF || settings->grid; /* is no part of a sum */
-    return settings->paint == PAINT_COLOR && !drawn_over &&
+    return settings->paint == PAINT_COLOR && !settings->aov[0] && !drawn_over &&
            settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 

@@ -33,8 +33,16 @@ static void draw_quality(const struct view *view)
         ui_text("full size, %s", samples);
 }
 
+static void draw_aov(const struct engine_frame *frame)
+{
+    if (frame->settings.aov[0] && frame->settings.paint == PAINT_COLOR)
+        ui_text(engine_find_aov(frame) != UINT32_MAX ? "aov %s" : "no `//@ aov %s`: colours",
+                frame->settings.aov);
+}
+
 static void draw_figures(const struct view *view)
 {
+    draw_aov(&view->frame);
     const struct engine_frame *frame = &view->frame;
     const whit_stats *s = &frame->stats;
     double ms = engine_drawn_ms(s);

@@ -59,6 +59,24 @@ static void next_cost_view(struct view *view)
     view->settings.paint = next < PAINT_COUNT ? next : PAINT_DEPTH;
 }
 
+/* From the colours over the functions below //@ aov of the shader, and back. */
+static void next_aov(struct view *view)
+{
+    const struct shader_ref *shown = view->shaders.shown;
+    uint32_t count = shown ? shown->info.aov_count : 0, next = 0;
+    for (uint32_t i = 0; view->settings.aov[0] && i < count; ++i)
+        next = strcmp(shown->info.aovs[i], view->settings.aov) == 0 ? i + 1 : next;
+    if (count == 0)
+        view_say(view, "there is no `//@ aov` of a shader");
+    snprintf(view->settings.aov, sizeof view->settings.aov, "%s",
+             next < count ? shown->info.aovs[next] : "");
+}
+
+static void say_aov(const struct view *view, char *text, size_t bytes)
+{
+    snprintf(text, bytes, "%s", view->settings.aov[0] ? view->settings.aov : "colours");
+}
+
 /* Multiplies the scale of the difference, where that is shown, else that of costs. */
 static void scale_by(struct view *view, double factor)
 {
@@ -495,6 +513,8 @@ static const struct key_binding bindings[] = {
     {'B', 0, "B Shift+B", "depth, next cost", "depth view", switch_depth_view,
      .group = KEYS_EXPERTS},
     {'B', EVENT_SHIFT, NULL, NULL, "next cost view", next_cost_view, .group = KEYS_EXPERTS},
+    {KEY_F1 + 2, 0, "F3", NULL, "aov of the shader", next_aov, .state = say_aov,
+     .group = KEYS_PICTURE},
     {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", less_scale, .state = say_scale,
      .group = KEYS_EXPERTS},
     {']', 0, NULL, NULL, "twice the scale", more_scale, .state = say_scale, .group = KEYS_EXPERTS},

@@ -53,6 +53,9 @@ void whit_refine_get_info(const whit_refine *refine, whit_refine_info *info);
 
 /* Linear RGBA. WHIT_ERROR_USAGE where there is no picture yet. */
 WHIT_CHECK whit_result whit_refine_image(const whit_refine *refine, whit_image **out);
+/* A function of the shader, as WHIT_AOV_SHADER + index, of all samples. WHIT_ERROR_USAGE too for
+   those that the shader has not, and where the samples were begun with by others. */
+WHIT_CHECK whit_result whit_refine_aov(const whit_refine *refine, uint32_t index, whit_image **out);
 /* One channel: by how much each pixel may be off, in its worst channel, linear. It is what the last
    doubling of samples changed in the 3 x 3 pixels around, and the weights of rays that were cut
    times `cut_radiance`. An estimate and no bound: light that no sample has met is in none.

@@ -206,9 +206,11 @@ typedef enum whit_aov {
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
     WHIT_AOV_CUTS,      /* 2 floats: weights of rays that were not traced, for params.depth and for
                            params.bailout: sums of largest channels, means over samples */
+    WHIT_AOV_SHADER = 64, /* and up: whit_shader_info.aovs by index; 4 floats, means over samples of
+                             what the function gives for what the camera meets, 0 for nothing */
 } whit_aov;
-/* WHIT_ERROR_USAGE where nothing was rendered, and for cuts of a picture of adaptive samples;
-   WHIT_ERROR_DEVICE. */
+/* WHIT_ERROR_USAGE where nothing was rendered, for functions that the shader has not, and for cuts
+   of a picture of adaptive samples; WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 /* From here on an image of colours is displayed as a picture with these params is, which those of
    renderers and references are from the beginning. */

@@ -117,6 +117,8 @@ typedef struct whit_shader_info {
     uint32_t test_count, check_count;
     const whit_shader_expectation *expectations;
     uint32_t expectation_count;
+    const char *const *aovs; /* names of its functions beside the colour: WHIT_AOV_SHADER */
+    uint32_t aov_count;
     uint32_t fuel; /* iterations of loops that a call may take; 0: trusted */
     uint32_t kernel_count;
     uint32_t instructions; /* SPIR-V, of all kernels, with all that they may need */

@@ -49,6 +49,7 @@
 #define BIND_SUM_TEXELS          34
 #define BIND_CUTS                35
 #define BIND_CUT_SUMS            36
-#define BIND_STAGES_COUNT        37
+#define BIND_AOVS                37
+#define BIND_STAGES_COUNT        38
 
 #endif

@@ -77,6 +77,7 @@
 #define HOOK_SCATTER 8u
 #define HOOK_MISS    16u
 #define HOOK_POST    32u
+#define HOOK_AOV     64u
 
 /* What decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u
@@ -141,7 +142,8 @@
     X(53, SPEC_MINIFICATION, 1)       /* textures have smaller levels, for what is far away */     \
     X(54, SPEC_HOOKS, 0)              /* HOOK_*: functions that are a user's */                    \
     X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */        \
-    X(56, SPEC_CHECK_WORDS, 1)        /* that have a bit for each check of a test */
+    X(56, SPEC_CHECK_WORDS, 1)        /* that have a bit for each check of a test */             \
+    X(57, SPEC_AOVS, 0)               /* values of a user's functions beside the colour */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -36,6 +36,10 @@ layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
 {
     uint cuts[]; // of a slot: weights that are not traced for --depth, and for --bailout, in CUT_PARTS
 };
+layout(set = 0, binding = BIND_AOVS, std430) buffer AovBuffer
+{
+    vec4 aovs[]; // SPEC_AOVS of each slot, of the sample in hand; behind all slots those of each pixel, of all so far
+};
 layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
 {
     uint ray_kinds[]; // RAY_* in the low bits, with SPEC_COUNT or SPEC_PROBE, under ray.way

@@ -54,6 +54,12 @@ vec3 post(ivec2 at, vec3 color)
     return whit_post(at, color);
 }
 
+// Value `index` of what the user has beside the colour.
+vec4 aov(uint index, Surface s)
+{
+    return vec4(0.0);
+}
+
 // Sets the user's global variables to what they begin with.
 void begin_user()
 {

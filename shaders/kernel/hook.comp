@@ -18,6 +18,9 @@ void call_all()
     camera(vec2(0.0), sum, sum);
     surface(s);
     scatter(s, o, rays);
+#ifdef HAS_AOV
+    sum += aov(0u, s).xyz;
+#endif
 #ifdef HAS_TESTS
     run_test(0u, 0u);
 #endif

@@ -77,6 +77,18 @@ void add_cuts(bool alive, uint slot, uint pixel)
         atomicMax(tally.cut_bailout_weight, bailout);
 }
 
+// The functions of a user beside the colour: means, as of colours.
+void add_aovs(uint slot, uint pixel)
+{
+    for (uint i = 0u; i < SPEC_AOVS; i++) {
+        uint at = (chunk.sums_step + pixel) * SPEC_AOVS + i;
+        vec4 sum = aovs[slot * SPEC_AOVS + i] * chunk.sample_weight;
+        if (chunk.summed != 0u)
+            sum += aovs[at];
+        aovs[at] = sum;
+    }
+}
+
 void resolve_pixel(uint id)
 {
     bool alive = id != ITEM_NONE;
@@ -88,6 +100,8 @@ void resolve_pixel(uint id)
         add_cuts(alive, slot, pixel);
     if (!alive)
         return;
+    if (SPEC_AOVS != 0u)
+        add_aovs(slot, pixel);
     vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
     // Samples are summed in pairs, pairs in pairs: partial sum i, of 2^i samples, waits for the next like it
     // where bit i of their number is set. Behind the last sample all that wait are added; of 2^i samples these

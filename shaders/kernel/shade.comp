@@ -258,6 +258,18 @@ void change_surface(inout Surface s)
     s.u = changed.u;
     s.v = changed.v;
 }
+
+// What the user has beside the colour, of the sample in hand.
+void store_aovs(uint slot, bool alive, Surface s)
+{
+    for (uint i = 0u; i < SPEC_AOVS; i++) {
+        begin_hook();
+        vec4 value = aov(i, s);
+        end_hook(true);
+        if (alive)
+            aovs[slot * SPEC_AOVS + i] = value;
+    }
+}
 #endif
 
 void main()
@@ -312,6 +324,8 @@ void main()
     }
     vec3 own = own_light(s, o, ray.dir);
 #ifdef HOOKS
+    if (SPEC_AOVS != 0u && is_primary())
+        store_aovs(slot, alive, s);
     calls.lost = calls.lost || hook_lost;
     status |= hook_status;
     if (alive && must_wait(hook_status))

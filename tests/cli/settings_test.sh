@@ -7,7 +7,8 @@
 ROWS=$3
 mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 "$ROWS" rows >rows
-printf '%s\n' '//@ slider bright 0 2 1' '//@ toggle tint' \
+printf '%s\n' '//@ slider bright 0 2 1' '//@ toggle tint' '//@ aov gray' \
+    'vec4 gray(Surface s) { return vec4(bright); }' \
     'vec3 post(ivec2 at, vec3 color) { return color * (tint ? bright : 1.0); }' >bright.glsl
 cp -r "$SCENES/../shaders" stages
 expect 0 "a sky" render "$CUBE" -o sky.pfm --size 16x8 --quiet

@@ -16,7 +16,7 @@ said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
 
 # ---- What a file is ----
 
-for hook in camera surface shade scatter miss post; do
+for hook in camera surface shade scatter miss post aov; do
     expect 0 "new $hook" shader new $hook
     cp "$OUT/stdout" $hook.glsl
     expect 0 "the new $hook compiles" shader $hook.glsl
@@ -33,6 +33,8 @@ cat >all.glsl <<'END'
 //@ toggle on on "whether"
 //@ choice mode plain,warm
 //@ fuel 20000
+//@ aov facing
+vec4 facing(Surface s) { return vec4(-dot(s.ns, ray_dir())); }
 vec3 post(ivec2 at, vec3 color)
 {
     return tint(on ? ceil(color * bands) / bands : color) + (mode == mode_warm ? rim : vec3(0.0));
@@ -42,10 +44,11 @@ echo 'vec3 tint(vec3 c) { return c; }' >part/tint.glsl
 expect 0 "a file" shader all.glsl --json
 cp "$OUT/stdout" all.json
 check "its files" test "$(jq -r '[.files[].name] | join(" ")' all.json)" = "all.glsl part/tint.glsl"
-check "its functions" test "$(jq -r '[.functions[].name] | join(" ")' all.json)" = post
+check "its functions" test "$(jq -r '[.functions[].name] | join(" ")' all.json)" = "post aov"
+check "its aovs" test "$(jq -r '[.aovs[].name] | join(" ")' all.json)" = facing
 check "its sliders" test "$(jq -r '[.sliders[] | "\(.name)=\(.value)"] | join(",")' all.json)" = \
     "bands=3,rim=#ffcc88,on=on,mode=plain"
-check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = resolve
+check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "shade resolve"
 check "its fuel" test "$(jq .fuel all.json)" = 20000
 expect 0 "dump" shader all.glsl --dump spirv
 check "SPIR-V" spirv-val --target-env vulkan1.2 spirv/resolve.spv

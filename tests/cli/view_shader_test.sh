@@ -6,6 +6,8 @@ mkdir -p "$OUT/here/live/part" && cd "$OUT/here" || exit 1
 
 cat >live/a.glsl <<'END'
 #include "part/tint.glsl"
+//@ aov height
+vec4 height(Surface s) { return vec4(s.p.y); }
 //@ slider bands 1 8 3 "steps of light"
 //@ toggle stepped on "in steps"
 vec3 post(ivec2 at, vec3 color)
@@ -48,6 +50,8 @@ effects: press X | toast as prices | frame.pixels as twice
 panel: press X, press Tab
 off: choose stepped | render has --set stepped=off | frame.pixels not as twice | shader.hash = $violet
 on: choose stepped | render has --set stepped=on | frame.pixels as twice
+height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
+colour: press F3 | frame.pixels as on | frame.ids as on
 END
 timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 400x300 --shader live/a.glsl \
     --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &

@@ -335,6 +335,72 @@ static void exr_write_raw(const char *path, const struct image *image, bool tile
     assert_int_equal(exr_finish(&context), 0);
 }
 
+/* The four channels of `name` in a file of scanlines, as OpenEXR reads them. */
+static void exr_read_layer(const char *path, const char *name, struct image *out)
+{
+    exr_context_t context;
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    int32_t rows;
+    uint32_t found = 0;
+    assert_int_equal(exr_start_read(&context, path, &init), 0);
+    assert_int_equal(exr_get_scanlines_per_chunk(context, 0, &rows), 0);
+    for (uint32_t y = 0; y < out->height; y += (uint32_t)rows) {
+        exr_chunk_info_t chunk;
+        exr_decode_pipeline_t decode = EXR_DECODE_PIPELINE_INITIALIZER;
+        assert_int_equal(exr_read_scanline_chunk_info(context, 0, (int)y, &chunk), 0);
+        assert_int_equal(exr_decoding_initialize(context, 0, &chunk, &decode), 0);
+        for (int i = 0; i < decode.channel_count; ++i) {
+            exr_coding_channel_info_t *channel = &decode.channels[i];
+            for (uint32_t c = 0; c < 4; ++c) {
+                char full[300];
+                snprintf(full, sizeof full, "%s.%c", name, "RGBA"[c]);
+                if (strcmp(channel->channel_name, full) != 0)
+                    continue;
+                channel->decode_to_ptr = (uint8_t *)(out->pixels + y * out->width * 4 + c);
+                channel->user_bytes_per_element = 4;
+                channel->user_data_type = EXR_PIXEL_FLOAT;
+                channel->user_pixel_stride = 16;
+                channel->user_line_stride = (int32_t)out->width * 16;
+                found++;
+            }
+        }
+        assert_int_equal(exr_decoding_choose_default_routines(context, 0, &decode), 0);
+        assert_int_equal(exr_decoding_run(context, 0, &decode), 0);
+        exr_decoding_destroy(context, &decode);
+    }
+    assert_int_equal(found, 4 * ((out->height + (uint32_t)rows - 1) / (uint32_t)rows));
+    assert_int_equal(exr_finish(&context), 0);
+}
+
+TEST_IN(exr_keeps_layers_beside_the_colour, folder_begin, folder_end)
+{
+    char *path = in_folder("layers.exr");
+    struct image color = fixture_floats(45, 37, 4), other = fixture_floats(45, 37, 4),
+                 third = fixture_floats(45, 37, 4), small = fixture_floats(4, 4, 4), loaded;
+    for (size_t i = 0; i < (size_t)45 * 37 * 4; ++i) {
+        other.pixels[i] = (float)i - 7.25f;
+        third.pixels[i] = -1e-30f * (float)i;
+    }
+    const char *const name = "a_name_that_is_longer_than_what_plain_files_take";
+    const struct image_layer layers[] = {{"a", &other}, {name, &third}, {"b", &small}};
+    assert_int_equal(
+        image_save_layers(&warnings_log, &color, layers, 2, path, recipe, RECIPE_COUNT), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, path, &loaded), WHIT_OK);
+    assert_images_equal(&color, &loaded);
+    exr_read_layer(path, "a", &loaded);
+    assert_images_equal(&other, &loaded);
+    exr_read_layer(path, name, &loaded);
+    assert_images_equal(&third, &loaded);
+    assert_int_equal(image_save_layers(&warnings_log, &color, layers, 3, path, NULL, 0),
+                     WHIT_ERROR_USAGE);
+    assert_int_equal(
+        image_save_layers(&warnings_log, &color, layers, 2, in_folder("a.png"), NULL, 0),
+        WHIT_ERROR_USAGE);
+    struct image *all[] = {&color, &other, &third, &small, &loaded};
+    for (int i = 0; i < 5; ++i)
+        image_finish(all[i]);
+}
+
 TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
 {
     static const exr_compression_t compressions[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,

@@ -30,6 +30,7 @@ static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES]
         strcpy(text, strcmp(row->name, "environment") == 0 ? "sky.pfm"
                      : strcmp(row->name, "shader") == 0    ? "bright.glsl"
                      : strcmp(row->name, "stages") == 0    ? "stages"
+                     : strcmp(row->name, "aov") == 0       ? "gray"
                                                            : "0");
         return;
     case SETTING_PAIRS:

@@ -126,6 +126,10 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"fuel 0", "from 1 to 30000"},
                  {"fuel many", "from 1 to 30000"},
                  {"whit 2", "this whit has 1"},
+                 {"aov", "has a name"},
+                 {"aov x y", "has a name"},
+                 {"aov shade", "is a function of whit's"},
+                 {"aov other", "stands before `vec4 other(Surface s)`"},
                  {"sliders x", "none of whit"},
                  {"test x", "nothing more"},
                  {"expect ids", "WHAT == base"},
@@ -144,6 +148,33 @@ TEST(lines_that_are_none_are_refused_with_their_line)
         assert_int_equal(errors.items[0].line, 2);
         if (!strstr(errors.items[0].reason, cases[i].why))
             fail_msg("%s: %s", cases[i].line, errors.items[0].reason);
+        shader_text_free(&shader.text);
+    }
+}
+
+TEST(aovs_stand_before_their_functions)
+{
+    whit_shader shader;
+    char text[2048] = "//@ slider x 0 1 0\n";
+    for (int i = 0; i < SHADER_AOVS_MAX; ++i)
+        snprintf(text + strlen(text), sizeof text - strlen(text),
+                 "//@ aov a%d\n// what it is\nvec4 a%d(in Surface s) { return vec4(x); }\n", i, i);
+    size_t full = strlen(text);
+    assert_int_equal(read_text(text, &shader), WHIT_OK);
+    assert_int_equal(shader.aov_count, SHADER_AOVS_MAX);
+    assert_string_equal(shader.aov_names[15], "a15");
+    shader_text_free(&shader.text);
+    static const char *const more[][2] = {
+        {"//@ aov b\nvec4 b(Surface s) { return vec4(0); }\n", "at most 16 aovs"},
+        {"//@ aov a3\n", "an aov `a3` already, in line 11"},
+        {"//@ slider a3 0 1 0\n", "an aov `a3` already"},
+        {"//@ aov x\n", "a slider `x` already"}};
+    for (size_t i = 0; i < sizeof more / sizeof *more; ++i) {
+        strcpy(text + full, more[i][0]);
+        assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
+        assert_int_equal(errors.items[0].line, 2 + 3 * SHADER_AOVS_MAX);
+        if (!strstr(errors.items[0].reason, more[i][1]))
+            fail_msg("%s: %s", more[i][0], errors.items[0].reason);
         shader_text_free(&shader.text);
     }
 }

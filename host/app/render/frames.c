@@ -172,6 +172,15 @@ void sequence_finish(struct sequence *sequence)
 
 /* ---- Frames ---- */
 
+static whit_result save_with_layers(const struct job *job, const struct render_request *single,
+                                    whit_renderer *renderer, const whit_stats *stats)
+{
+    struct layers layers = {0};
+    whit_result result = render_save(job, single, renderer, NULL, &layers, stats);
+    layers_finish(&layers);
+    return result;
+}
+
 static whit_result save_frame(const struct job *job, const struct render_request *request,
                               whit_renderer *renderer, const whit_stats *stats, uint32_t frame)
 {
@@ -182,7 +191,7 @@ static whit_result save_frame(const struct job *job, const struct render_request
     single.output = output;
     single.ids = ids;
     if (output && (ids || !request->ids))
-        result = render_save(job, &single, renderer, NULL, stats);
+        result = save_with_layers(job, &single, renderer, stats);
     else
         cli_error("out of memory");
     free(output);

@@ -128,7 +128,7 @@ static whit_result draw_first_sample(const struct job *job, whit_renderer *rende
 
 static whit_result finish(struct job *job, const struct refine_goal *goal,
                           const struct refine_steps *steps, struct refined *refined,
-                          whit_image **color)
+                          whit_image **color, struct layers *layers)
 {
     const whit_refine_info *now = &steps->now;
     *refined = (struct refined){
@@ -139,12 +139,14 @@ static whit_result finish(struct job *job, const struct refine_goal *goal,
         .reached = goal->limit_ms > 0.0 || (now->error >= 0.0 && now->error <= goal->error),
     };
     job->settings.picture.sampling = (whit_sampling){.count = now->samples};
-    return whit_refine_image(steps->refine, color);
+    whit_result result = whit_refine_image(steps->refine, color);
+    return result == WHIT_OK ? layers_read(job->shader, NULL, steps->refine, layers) : result;
 }
 
 whit_result refine_render(struct job *job, const struct render_request *request,
                           whit_renderer *renderer, struct frames_progress *progress,
-                          struct refined *refined, whit_image **color, whit_stats *stats)
+                          struct refined *refined, whit_image **color, struct layers *layers,
+                          whit_stats *stats)
 {
     const whit_renderer_params params = job_picture(job);
     const struct refine_goal *goal = &request->refine;
@@ -155,13 +157,14 @@ whit_result refine_render(struct job *job, const struct render_request *request,
     while (result == WHIT_OK && !is_done(goal, &steps.now) && has_time(goal, &steps))
         result = take_step(goal, &steps, progress);
     if (result == WHIT_OK)
-        result = finish(job, goal, &steps, refined, color);
+        result = finish(job, goal, &steps, refined, color, layers);
     whit_refine_destroy(steps.refine);
     *stats = steps.stats;
     if (result == WHIT_OK && needs_ids)
         result = draw_first_sample(job, renderer);
     if (result != WHIT_OK) {
         whit_image_destroy(*color);
+        layers_finish(layers);
         *color = NULL;
     }
     return result;

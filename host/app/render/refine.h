@@ -3,6 +3,7 @@
 #define APP_RENDER_REFINE_H
 
 #include "app/job.h"
+#include "app/render/layers.h"
 
 struct render_request;
 struct frames_progress;
@@ -33,13 +34,14 @@ bool refine_check(struct cli_reader *reader, const struct job *job,
 /* Samples that most pictures end with: kernels that take longer to make are right for them. */
 enum { REFINE_SAMPLES_USUAL = 64 };
 
-/* Draws until request->refine is met: *color, with `stats` of all of it; the job's samples are then
-   those of the picture, so that its recipe draws it again, and the renderer's identities are those
-   of the first sample where `request` needs them. After an error *color is NULL. */
+/* Draws until request->refine is met: *color and `layers`, with `stats` of all of it; the job's
+   samples are then those of the picture, so that its recipe draws it again, and the renderer's
+   identities are those of the first sample where `request` needs them. After an error *color is
+   NULL and there are no layers. */
 WHIT_CHECK whit_result refine_render(struct job *job, const struct render_request *request,
                                      whit_renderer *renderer, struct frames_progress *progress,
                                      struct refined *refined, whit_image **color,
-                                     whit_stats *stats);
+                                     struct layers *layers, whit_stats *stats);
 
 /* Prints samples and error, as a note, or as an error where the goal was not reached. */
 void refine_say(const struct refine_goal *goal, const struct refined *refined);

@@ -171,25 +171,26 @@ static whit_result save_thumbnail(const whit_image *image, const char *path)
 
 static whit_result save_colors(whit_renderer *renderer, const struct settings *settings,
                                const struct render_request *request, whit_image *image,
-                               const struct recipe *recipe)
+                               const struct layers *layers, const struct recipe *recipe)
 {
     const whit_overlay overlay = settings_overlay(settings);
     whit_result result = whit_renderer_draw_over(renderer, &overlay, image);
     if (result == WHIT_OK)
-        result = request->thumbnail ? save_thumbnail(image, request->output)
-                                    : whit_image_save(image, request->output, recipe->texts,
-                                                      recipe->count, &cli_log);
+        result = request->thumbnail
+                     ? save_thumbnail(image, request->output)
+                     : whit_image_save_layers(image, layers->items, layers->count, request->output,
+                                              recipe->texts, recipe->count, &cli_log);
     return result;
 }
 
 static whit_result save_own_colors(whit_renderer *renderer, const struct settings *settings,
                                    const struct render_request *request,
-                                   const struct recipe *recipe)
+                                   const struct layers *layers, const struct recipe *recipe)
 {
     whit_image *image;
     whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
     if (result == WHIT_OK)
-        result = save_colors(renderer, settings, request, image, recipe);
+        result = save_colors(renderer, settings, request, image, layers, recipe);
     whit_image_destroy(image);
     return result;
 }
@@ -209,8 +210,16 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
     return result;
 }
 
+/* Whether the picture's file has the shader's functions beside the colour, or one in its place. */
+static bool keeps_layers(const struct settings *settings, const struct render_request *request)
+{
+    bool beside = layers_is_exr(request->output) && !request->thumbnail;
+    return settings->paint == PAINT_COLOR && (settings->aov[0] || beside);
+}
+
 whit_result render_save(const struct job *job, const struct render_request *request,
-                        whit_renderer *renderer, whit_image *color, const whit_stats *stats)
+                        whit_renderer *renderer, whit_image *color, struct layers *layers,
+                        const whit_stats *stats)
 {
     const struct settings *settings = &job->settings;
     struct recipe recipe;
@@ -228,11 +237,17 @@ whit_result render_save(const struct job *job, const struct render_request *requ
         result = save_ids(renderer, request->ids, &recipe);
     if (result == WHIT_OK && cli_cancel)
         result = WHIT_ERROR_CANCELLED;
+    if (result == WHIT_OK && !color && keeps_layers(settings, request))
+        result = layers_read(job->shader, renderer, NULL, layers);
+    if (!keeps_layers(settings, request))
+        layers_finish(layers);
     if (result == WHIT_OK && settings->paint != PAINT_COLOR)
         result = save_view(renderer, settings, request->output, &recipe);
+    else if (result == WHIT_OK && settings->aov[0])
+        result = layers_save(layers, settings->aov, request->output, &recipe);
     else if (result == WHIT_OK)
-        result = color ? save_colors(renderer, settings, request, color, &recipe)
-                       : save_own_colors(renderer, settings, request, &recipe);
+        result = color ? save_colors(renderer, settings, request, color, layers, &recipe)
+                       : save_own_colors(renderer, settings, request, layers, &recipe);
     recipe_finish(&recipe);
     return result;
 }
@@ -250,6 +265,8 @@ whit_result render_prepare(struct job *job, const struct render_request *request
                            struct frames_progress *progress, whit_renderer **renderer)
 {
     whit_result result = job_load_shader(job);
+    if (result == WHIT_OK && !layers_check(job))
+        result = WHIT_ERROR_USAGE;
     if (result == WHIT_OK) {
         job_begin_device(job);
         result = job_load(job);
@@ -300,11 +317,12 @@ static void say_done(const struct job *job, const struct render_request *request
 /* *color: NULL where it is the renderer's. */
 static whit_result draw_one(struct job *job, const struct render_request *request,
                             whit_renderer *renderer, struct frames_progress *progress,
-                            struct refined *refined, whit_image **color, whit_stats *stats)
+                            struct refined *refined, whit_image **color, struct layers *layers,
+                            whit_stats *stats)
 {
     *color = NULL;
     if (refine_is_wanted(&request->refine))
-        return refine_render(job, request, renderer, progress, refined, color, stats);
+        return refine_render(job, request, renderer, progress, refined, color, layers, stats);
     whit_result result = whit_renderer_render(renderer);
     if (result == WHIT_OK)
         whit_renderer_get_stats(renderer, stats);
@@ -316,17 +334,19 @@ static whit_result render_one(struct job *job, const struct render_request *requ
                               struct refined *refined, struct sequence *sequence)
 {
     whit_image *color;
+    struct layers layers = {0};
     whit_result result =
-        draw_one(job, request, renderer, progress, refined, &color, &sequence->stats);
+        draw_one(job, request, renderer, progress, refined, &color, &layers, &sequence->stats);
     cli_progress_finish(&progress->bar);
     if (result != WHIT_OK)
         return result;
     double start_ms = whit_clock_ms();
     if (!cli_cancel)
         cli_set_saving();
-    result = render_save(job, request, renderer, color, &sequence->stats);
+    result = render_save(job, request, renderer, color, &layers, &sequence->stats);
     sequence->save_ms = whit_clock_ms() - start_ms;
     whit_image_destroy(color);
+    layers_finish(&layers);
     return result;
 }
 
@@ -379,7 +399,8 @@ static int work(struct job *job, const struct render_request *request)
 static bool check_choice(struct cli_reader *reader, const struct settings *settings,
                          const struct render_request *request)
 {
-    bool other = request->frames.given || request->ids || settings->paint != PAINT_COLOR;
+    bool other =
+        request->frames.given || request->ids || settings->paint != PAINT_COLOR || settings->aov[0];
     if (request->thumbnail && other)
         return cli_misuse(reader, "--thumbnail is for one picture of colours");
     if (request->frames.given && (settings->budget_ms > 0.0 || settings->max_error > 0.0))

@@ -90,6 +90,8 @@ static void print_text(const whit_shader *shader, const char *path)
     for (uint32_t i = 0; i < info.hook_count; ++i)
         printf("%s %s", i ? "," : "", info.hooks[i]);
     printf("\n");
+    for (uint32_t i = 0; i < info.aov_count; ++i)
+        printf("  --aov %s\n", info.aovs[i]);
     for (uint32_t i = 0; i < info.slider_count; ++i) {
         const whit_slider *slider = &info.sliders[i];
         char value[64], range[64] = "";
@@ -164,6 +166,7 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
         document_append(sliders, describe_slider(&info.sliders[i]));
     document_put(object, "files", list_texts(info.files, info.file_count));
     document_put(object, "functions", list_texts(info.hooks, info.hook_count));
+    document_put(object, "aovs", list_texts(info.aovs, info.aov_count));
     document_put(object, "sliders", sliders);
     document_put(object, "kernels", list_kernels(shader));
     document_count(object, "instructions", info.instructions);
@@ -294,7 +297,8 @@ const struct cli_command command_shader = {
     .summary = "Compiles a file of shader functions, runs its tests, begins one, or takes it out "
                "of a picture.",
     .details =
-        "Functions: camera, surface, shade, scatter, miss, post. See docs/shaders.md.\n"
+        "Functions: camera, surface, shade, scatter, miss, post, and those below\n"
+        "`//@ aov NAME` (new aov). See docs/shaders.md.\n"
         "Tests (`//@ test`) run for 4,096 seeds each; what the file expects (`//@ expect`) is\n"
         "held against a picture without it.\n"
         "Exit codes: 0 fine, 1 a test, an expectation or the fuel of a loop, 2 it does not\n"

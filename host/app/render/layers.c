@@ -1,0 +1,91 @@
+#include "app/render/layers.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "app/commands.h"
+
+whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
+                        const whit_refine *refine, struct layers *layers)
+{
+    whit_shader_info info = {0};
+    whit_result result = WHIT_OK;
+    *layers = (struct layers){0};
+    if (shader)
+        whit_shader_get_info(shader, &info);
+    for (uint32_t i = 0; result == WHIT_OK && i < info.aov_count && i < LAYERS_MAX; ++i) {
+        whit_image **image = &layers->images[i];
+        result = renderer ? whit_renderer_image(renderer, (whit_aov)(WHIT_AOV_SHADER + i), image)
+                          : whit_refine_aov(refine, i, image);
+        layers->items[i] = (whit_image_layer){info.aovs[i], *image};
+        layers->count = i + 1;
+    }
+    if (result != WHIT_OK)
+        layers_finish(layers);
+    return result;
+}
+
+void layers_finish(struct layers *layers)
+{
+    for (uint32_t i = 0; i < layers->count; ++i)
+        whit_image_destroy(layers->images[i]);
+    *layers = (struct layers){0};
+}
+
+bool layers_check(const struct job *job)
+{
+    char list[512] = "";
+    whit_shader_info info = {0};
+    const char *wanted = job->settings.aov;
+    if (!wanted[0])
+        return true;
+    whit_shader_get_info(job->shader, &info);
+    for (uint32_t i = 0; i < info.aov_count; ++i) {
+        size_t used = strlen(list);
+        if (strcmp(info.aovs[i], wanted) == 0)
+            return true;
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : ": there is ", info.aovs[i]);
+    }
+    cli_error("--aov %s: %s has no such `//@ aov`%s", wanted, job->settings.shader, list);
+    return false;
+}
+
+bool layers_is_exr(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && strcasecmp(path + length - 4, ".exr") == 0;
+}
+
+static whit_result leave_alpha_out(const whit_image *image, whit_image **out)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    size_t count = (size_t)info.width * info.height;
+    float *rgb = malloc(count * 3 * sizeof *rgb);
+    if (!rgb)
+        return WHIT_ERROR_MEMORY;
+    for (size_t i = 0; i < count; ++i)
+        memcpy(rgb + 3 * i, whit_image_floats(image) + 4 * i, 3 * sizeof *rgb);
+    whit_result result = whit_image_create(info.width, info.height, 3, rgb, out);
+    free(rgb);
+    return result;
+}
+
+whit_result layers_save(const struct layers *layers, const char *name, const char *path,
+                        const struct recipe *recipe)
+{
+    const whit_image *image = NULL;
+    whit_image *opaque = NULL;
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; i < layers->count; ++i)
+        image = strcmp(layers->items[i].name, name) == 0 ? layers->images[i] : image;
+    if (!layers_is_exr(path))
+        result = leave_alpha_out(image, &opaque);
+    if (result == WHIT_OK)
+        result =
+            whit_image_save(opaque ? opaque : image, path, recipe->texts, recipe->count, &cli_log);
+    whit_image_destroy(opaque);
+    return result;
+}

@@ -1,0 +1,251 @@
+/* Functions of a shader that are kept beside the colour: what they say of the camera's hits, as
+   means over samples, and that nothing else changes by them. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "unit.h"
+#include "whit.h"
+
+enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT, AOVS = 3 };
+
+static const char content[] = "//@ aov place\n"
+                              "vec4 place(Surface s)\n"
+                              "{\n"
+                              "    return vec4(s.p, 1.0);\n"
+                              "}\n"
+                              "//@ aov ids\n"
+                              "vec4 ids(Surface s)\n"
+                              "{\n"
+                              "    return vec4(float(s.instance), -1.0, 1000.0, 0.0);\n"
+                              "}\n"
+                              "//@ aov noise\n"
+                              "vec4 noise(in Surface s) { return vec4(random(3u)); }\n";
+
+static void tell(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    if (level == WHIT_LOG_ERROR)
+        print_error("%s\n", message);
+}
+
+static const whit_log told = {.fn = tell};
+static whit_device *device;
+static whit_shader_compiler *compiler;
+static whit_shader *shader;
+static whit_scene *scene;
+static whit_accel *accel;
+
+static int begin(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/whit_aov_XXXXXX";
+    int file = mkstemp(path);
+    FILE *stream = file >= 0 ? fdopen(file, "w") : NULL;
+    if (!stream || fputs(content, stream) < 0 || fclose(stream) != 0)
+        return -1;
+    bool fine = whit_shader_compiler_create(NULL, &told, &compiler) == WHIT_OK &&
+                whit_shader_load(compiler, path, false, &shader) == WHIT_OK &&
+                whit_device_create(NULL, &told, &device) == WHIT_OK &&
+                whit_scene_load(WHIT_SCENES_DIR "/default.json", NULL, &told, &scene) == WHIT_OK &&
+                whit_accel_create(scene, NULL, &accel) == WHIT_OK;
+    remove(path);
+    return fine ? 0 : -1;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    whit_device_destroy(device);
+    whit_shader_destroy(shader);
+    whit_shader_compiler_destroy(compiler);
+    return 0;
+}
+
+static whit_renderer_params usual(uint32_t samples)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.sampling.count = samples;
+    params.shader = shader;
+    return params;
+}
+
+struct drawn {
+    whit_image *color, *ids, *aovs[AOVS];
+};
+
+static struct drawn draw(const whit_renderer_params *params)
+{
+    struct drawn drawn = {0};
+    whit_renderer *renderer;
+    assert_int_equal(whit_renderer_create(device, accel, params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &drawn.color), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &drawn.ids), WHIT_OK);
+    for (uint32_t i = 0; params->shader && i < AOVS; ++i)
+        assert_int_equal(
+            whit_renderer_image(renderer, (whit_aov)(WHIT_AOV_SHADER + i), &drawn.aovs[i]),
+            WHIT_OK);
+    whit_image *none;
+    assert_int_equal(whit_renderer_image(renderer,
+                                         (whit_aov)(WHIT_AOV_SHADER + (params->shader ? AOVS : 0)),
+                                         &none),
+                     WHIT_ERROR_USAGE);
+    whit_renderer_destroy(renderer);
+    return drawn;
+}
+
+static void drop(struct drawn *drawn)
+{
+    whit_image_destroy(drawn->color);
+    whit_image_destroy(drawn->ids);
+    for (int i = 0; i < AOVS; ++i)
+        whit_image_destroy(drawn->aovs[i]);
+}
+
+static const float *floats(const whit_image *image)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    assert_int_equal(info.width * info.height, PIXELS);
+    return whit_image_floats(image);
+}
+
+static void assert_same(const whit_image *a, const whit_image *b)
+{
+    assert_memory_equal(floats(a), floats(b), PIXELS * 4 * sizeof(float));
+}
+
+static bool is_miss(const struct drawn *drawn, uint32_t pixel)
+{
+    return whit_image_words(drawn->ids)[2 * pixel] == UINT32_MAX;
+}
+
+TEST(a_sample_says_what_the_camera_meets)
+{
+    const whit_renderer_params params = usual(1);
+    struct drawn drawn = draw(&params);
+    const uint32_t *ids = whit_image_words(drawn.ids);
+    const float *place = floats(drawn.aovs[0]), *id = floats(drawn.aovs[1]);
+    uint32_t misses = 0;
+    for (uint32_t i = 0; i < PIXELS; ++i) {
+        bool miss = is_miss(&drawn, i);
+        misses += miss;
+        assert_true(place[4 * i + 3] == (miss ? 0.0f : 1.0f));
+        assert_true(id[4 * i] == (miss ? 0.0f : (float)ids[2 * i]));
+        assert_true(id[4 * i + 1] == (miss ? 0.0f : -1.0f) &&
+                    id[4 * i + 2] == (miss ? 0.0f : 1000.0f));
+    }
+    assert_true(misses > 100 && misses < PIXELS - 100);
+    drop(&drawn);
+}
+
+/* Neither colours nor identities, with any number of samples. */
+TEST(nothing_else_changes)
+{
+    for (uint32_t samples = 1; samples <= 4; samples *= 4) {
+        whit_renderer_params params = usual(samples);
+        struct drawn with = draw(&params);
+        params.shader = NULL;
+        struct drawn without = draw(&params);
+        assert_same(with.color, without.color);
+        assert_memory_equal(whit_image_words(with.ids), whit_image_words(without.ids),
+                            PIXELS * 2 * sizeof(uint32_t));
+        drop(&with);
+        drop(&without);
+    }
+}
+
+/* Of samples 0 to 3: the mean of those of 0, 1 and of 2, 3. */
+TEST(samples_are_averaged)
+{
+    whit_renderer_params params = usual(4);
+    struct drawn all = draw(&params);
+    params.sampling.count = 2;
+    struct drawn first = draw(&params);
+    params.sampling.first = 2;
+    struct drawn second = draw(&params);
+    uint32_t others = 0;
+    for (int aov = 0; aov < AOVS; ++aov) {
+        const float *mean = floats(all.aovs[aov]), *a = floats(first.aovs[aov]),
+                    *b = floats(second.aovs[aov]);
+        for (uint32_t i = 0; i < PIXELS * 4; ++i) {
+            double expected = 0.5 * ((double)a[i] + (double)b[i]);
+            assert_true(fabs((double)mean[i] - expected) <= 1e-6 * (1.0 + fabs(expected)));
+            others += a[i] != b[i];
+        }
+    }
+    assert_true(others > PIXELS);
+    drop(&all);
+    drop(&first);
+    drop(&second);
+}
+
+TEST(tiles_leave_them_as_they_are)
+{
+    whit_renderer_params params = usual(4);
+    struct drawn whole = draw(&params);
+    params.tile_size = 16;
+    struct drawn tiled = draw(&params);
+    for (int aov = 0; aov < AOVS; ++aov)
+        assert_same(whole.aovs[aov], tiled.aovs[aov]);
+    drop(&tiled);
+    drop(&whole);
+}
+
+/* Where a pixel has as many samples as in a picture of that many, it has that picture's values. */
+TEST(adaptive_samples_have_those_of_their_number)
+{
+    whit_renderer_params params = usual(4);
+    struct drawn four = draw(&params);
+    params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1};
+    struct drawn adaptive = draw(&params);
+    uint32_t same = 0, flat = 0;
+    for (uint32_t i = 0; i < PIXELS; ++i) {
+        bool colors = memcmp(floats(four.color) + 4 * i, floats(adaptive.color) + 4 * i, 12) == 0;
+        bool values =
+            memcmp(floats(four.aovs[0]) + 4 * i, floats(adaptive.aovs[0]) + 4 * i, 16) == 0;
+        flat += colors;
+        same += colors && values;
+    }
+    assert_true(flat > PIXELS / 4 && flat < PIXELS);
+    assert_true(same * 100 > flat * 99); /* colours may be the same by chance */
+    drop(&adaptive);
+    drop(&four);
+}
+
+TEST(refined_pictures_have_those_of_all_samples)
+{
+    whit_renderer_params params = usual(4);
+    struct drawn four = draw(&params);
+    whit_renderer *renderer;
+    whit_refine *refine;
+    whit_refine_info info;
+    whit_image *aov;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_refine_create(renderer, &params, &refine), WHIT_OK);
+    do {
+        assert_int_equal(whit_refine_step(refine), WHIT_OK);
+        whit_refine_get_info(refine, &info);
+    } while (info.samples < 4);
+    for (uint32_t k = 0; k < AOVS; ++k) {
+        assert_int_equal(whit_refine_aov(refine, k, &aov), WHIT_OK);
+        for (uint32_t i = 0; i < PIXELS * 4; ++i) {
+            double expected = (double)floats(four.aovs[k])[i];
+            assert_true(fabs((double)floats(aov)[i] - expected) <= 1e-6 * (1.0 + fabs(expected)));
+        }
+        whit_image_destroy(aov);
+    }
+    assert_int_equal(whit_refine_aov(refine, AOVS, &aov), WHIT_ERROR_USAGE);
+    whit_refine_destroy(refine);
+    whit_renderer_destroy(renderer);
+    drop(&four);
+}
+
+int main(void)
+{
+    return unit_run(begin, end);
+}
