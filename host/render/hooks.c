@@ -9,6 +9,25 @@ _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SH
                    HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV,
                "the same bits");
 
+#define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
+
+/* With a `shade` of the user's nothing else asks lights, but for shadow catchers. */
+static uint64_t effects_not_asked_for(const struct renderer *renderer)
+{
+    const whit_renderer_params *params = &renderer->params;
+    uint64_t effects = 0;
+    if (!shader_has(params->shader, SHADER_HOOK_SHADE) || params->all_effects ||
+        renderer->effects.called[SCENE_EFFECT_CATCHERS])
+        return 0;
+    uint32_t reaches = shader_reaches(params->shader);
+    if (!(reaches & SHADER_REACHES_LIGHTS))
+        effects |= EFFECT(POINT_LIGHTS) | EFFECT(DIRECTIONAL_LIGHTS) | EFFECT(SPOT_LIGHTS) |
+                   EFFECT(AREA_LIGHTS) | EFFECT(TERMINATOR);
+    if (!(reaches & SHADER_REACHES_SHADOWS))
+        effects |= EFFECT(SHADOWS);
+    return effects & ~params->effects_added;
+}
+
 void hooks_take(struct renderer *renderer)
 {
     whit_renderer_params *params = &renderer->params;
@@ -16,7 +35,8 @@ void hooks_take(struct renderer *renderer)
         return;
     params->compile_async = false; /* there is no general kernel of it yet */
     if (shader_has(params->shader, SHADER_HOOK_SCATTER))
-        params->effects_added |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
+        params->effects_added |= EFFECT(REFLECTION);
+    params->effects_removed |= effects_not_asked_for(renderer);
 }
 
 uint32_t hooks_aov_count(const struct target *target)
@@ -53,7 +73,8 @@ static bool same_aovs(const whit_shader *a, const whit_shader *b)
 bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *shader)
 {
     const whit_shader *own = renderer->params.shader;
-    return own && shader && own->hooks == shader->hooks && same_aovs(own, shader);
+    return own && shader && own->hooks == shader->hooks && same_aovs(own, shader) &&
+           shader_reaches(own) == shader_reaches(shader);
 }
 
 whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_params *params)

@@ -60,8 +60,8 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
     renderer->scene = accel->scene;
     if (params)
         renderer->params = *params;
-    hooks_take(renderer);
     scene_effects_scan(renderer->scene, &renderer->effects);
+    hooks_take(renderer);
     effects_choose(&renderer->params, &renderer->effects);
     whit_result result = params_check(log, &renderer->params);
     if (result == WHIT_OK)

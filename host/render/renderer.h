@@ -84,6 +84,7 @@ struct stage_set {
     enum stage of[STAGE_COUNT]; /* whose kernel a stage runs: its own, or a later one's */
     uint32_t classes;           /* of materials, each with a shading kernel of its own */
     bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
+    bool asks;                  /* whether hits ask lights, for stages of their own */
 };
 
 /* How long each stage of the tile being drawn takes, see stage_times.c. */
@@ -344,6 +345,7 @@ void passes_finish(struct renderer *renderer);
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
+    bool asks;                  /* as of a set */
     bool wanted[STAGE_COUNT];   /* a kernel of its own */
     enum stage of[STAGE_COUNT]; /* as of a set */
     struct variant_job stages[STAGE_COUNT];

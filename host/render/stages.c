@@ -44,11 +44,14 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
 {
     const struct renderer *renderer = target->renderer;
     *job = (struct stages_job){.spec = *spec};
+    /* A shading function of the user's has asked them itself, as all but catchers do. */
+    job->asks = !shader_has(renderer->params.shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
+        bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
-        job->wanted[i] = (!later || renderer->has_secondary) &&
+        job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
@@ -81,7 +84,7 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){.classes = job->classes};
+    *out = (struct stage_set){.classes = job->classes, .asks = job->asks};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
@@ -377,7 +380,8 @@ static whit_result record_generation(struct tile_run *run)
         result = dispatch(run, STAGE_SHADE, LIST_HITS);
     if (result == WHIT_OK && run->target->stages.set.classes > 1)
         result = dispatch(run, STAGE_SHADE_GLASS, LIST_HITS + CLASS_GLASS);
-    for (uint32_t i = 0; result == WHIT_OK && i < renderer->frame.light_count; ++i) {
+    uint32_t lights = run->target->stages.set.asks ? renderer->frame.light_count : 0;
+    for (uint32_t i = 0; result == WHIT_OK && i < lights; ++i) {
         run->chunk.light = i;
         result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER,
                           LIST_LIGHTS + (by_light ? i : 0));

@@ -294,6 +294,7 @@ static bool take_code(const struct glslang_answer *answer, const uint8_t *data,
     memcpy(code->loops, data + code->bytes, answer->loop_count * sizeof *code->loops);
     code->loop_count = answer->loop_count;
     code->instructions = answer->instructions;
+    code->reaches = answer->reaches & SHADER_REACHES_ALL;
     return true;
 }
 

@@ -42,6 +42,13 @@ struct shader_loop {
     uint32_t line;
 };
 
+/* What functions of a user may come to call of whit's; what is not among it they cannot read. */
+enum {
+    SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
+    SHADER_REACHES_SHADOWS = 2, /* what is on the way to a place */
+    SHADER_REACHES_ALL = 3
+};
+
 /* What whit_fuel_loop holds is 1 + the index in `loops`. */
 struct shader_code {
     uint32_t *words; /* SPIR-V 1.5 without debug information; float operations are NoContraction */
@@ -49,6 +56,7 @@ struct shader_code {
     struct shader_loop *loops; /* none with `trust`, or where the kernel declares no whit_fuel */
     uint32_t loop_count;
     uint32_t instructions; /* in all functions */
+    uint32_t reaches;      /* bits SHADER_REACHES_* */
 };
 
 struct shader_compiler;

@@ -13,6 +13,7 @@
 #include "shader/link.h"
 #include "shader/messages.h"
 #include "shader/module.h"
+#include "shader/reach.h"
 #include "shader/refuse.h"
 #include "shader/returns.h"
 
@@ -132,6 +133,8 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         why = called;
     if (why)
         report(c, m->place, why);
+    if (m->user_function && op == SPV_FUNCTION_CALL)
+        c->answer.reaches |= reach_of(spv_name(m, words[3]));
     begin_variables(c, m, words);
     c->answer.instructions += is_counted(op);
     if (user && !c->question->trust) {

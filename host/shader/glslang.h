@@ -30,7 +30,7 @@ struct glslang_answer {
     struct glslang_error errors[SHADER_ERROR_MAX];
     uint32_t error_count, more;
     uint64_t word_count;
-    uint32_t loop_count, instructions;
+    uint32_t loop_count, instructions, reaches;
 };
 
 /* What glslang takes long for once in a process. Called by what is then forked, or not at all. */

@@ -63,6 +63,15 @@ bool shader_is_hooked(const whit_shader *shader, const char *kernel)
     return false;
 }
 
+uint32_t shader_reaches(const whit_shader *shader)
+{
+    /* Other stages may call other functions than those that are looked for. */
+    uint32_t reaches = shader->stages ? SHADER_REACHES_ALL : 0;
+    for (uint32_t i = 0; i < SHADER_KERNEL_TEST; ++i)
+        reaches |= shader->codes[i].reaches;
+    return reaches;
+}
+
 /* As report_hooks() of hook/prelude.glsl puts it together. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file, uint32_t *line)
 {

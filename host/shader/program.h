@@ -87,6 +87,8 @@ static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
 /* Whether functions of the user's are part of it. */
 bool shader_is_hooked(const whit_shader *shader, const char *kernel);
+/* Bits SHADER_REACHES_* of what its functions may come to call. */
+uint32_t shader_reaches(const whit_shader *shader);
 /* Where a loop begins, by the number that a kernel reports; false: no such loop. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file,
                       uint32_t *line);

@@ -161,7 +161,8 @@ WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double ti
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 
-/* Whether `shader` is another version of the renderer's own: a file with the same functions. */
+/* Whether `shader` is another version of the renderer's own: a file with the same functions,
+   which ask for the same of lights and shadows. */
 bool whit_renderer_takes_shader(const whit_renderer *renderer, const whit_shader *shader);
 /* The same with another version of the renderer's shader, params->shader, whose kernels alone are
    made anew; the one before may go afterwards. The rest of `params` as of whit_renderer_set_view.

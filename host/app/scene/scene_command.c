@@ -32,7 +32,9 @@ static int work(struct job *job, const struct scene_request *request)
 {
     whit_scene_info info;
     job->keeps_axes = request->triangles != NULL;
-    whit_result result = job_load(job);
+    whit_result result = job_load_shader(job);
+    if (result == WHIT_OK)
+        result = job_load(job);
     if (result == WHIT_OK && request->triangles)
         result = triangles_write(job->scene, job->settings.picture.time_s, request->triangles);
     if (result != WHIT_OK)
@@ -50,7 +52,7 @@ static int work(struct job *job, const struct scene_request *request)
 /* Options of pictures, which a list of what is in the scene has no use for. */
 static bool is_for_picture(const struct settings *settings)
 {
-    static const char *const names[] = {"size", "camera", "aa", "depth", "numerics"};
+    static const char *const names[] = {"size", "camera", "aa", "depth", "numerics", "shader"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
         if (settings_given(settings, names[i]))
             return true;
@@ -75,9 +77,10 @@ static int run(const struct cli_command *command, int argc, char **argv)
         !cli_no_dash(&reader, "--triangles", request.triangles, "for a pipe give /dev/stdout"))
         return reader.status;
     if (is_for_picture(&job.settings) && !request.effects && !request.kernels) {
-        cli_misuse(&reader,
-                   "--size, --camera, --aa, --depth and --numerics are for the pictures of "
-                   "--effects and --kernels");
+        cli_misuse(
+            &reader,
+            "--size, --camera, --aa, --depth, --numerics and --shader are for the pictures of "
+            "--effects and --kernels");
         return reader.status;
     }
     if (request.effects && request.kernels) {
@@ -96,9 +99,9 @@ const struct cli_command command_scene = {
     .name = "scene",
     .arguments = "SCENE [options]",
     .summary = "Lists what is in a scene, what is wrong with it, and the effects it calls for.",
-    .details =
-        "--size, --camera, --aa, --depth and --numerics are for the pictures of --effects and\n"
-        "--kernels.\n",
+    .details = "--size, --camera, --aa, --depth, --numerics and --shader are for the pictures of "
+               "--effects and\n"
+               "--kernels.\n",
     .options = options,
     .settings = IN_SCENE,
     .usual = set_usual,

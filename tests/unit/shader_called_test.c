@@ -1,0 +1,129 @@
+/* What a shading function of the user's asks for is compiled and traced, and nothing else. */
+#include <string.h>
+
+#include "unit.h"
+#include "whit.h"
+
+enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
+
+static whit_device *device;
+static whit_shader_compiler *compiler;
+static whit_scene *scene;
+static whit_accel *accel;
+
+static int begin(void **state)
+{
+    (void)state;
+    bool fine = whit_shader_compiler_create(NULL, NULL, &compiler) == WHIT_OK &&
+                whit_device_create(NULL, NULL, &device) == WHIT_OK &&
+                whit_scene_load(WHIT_SCENES_DIR "/default.json", NULL, NULL, &scene) == WHIT_OK &&
+                whit_accel_create(scene, NULL, &accel) == WHIT_OK;
+    return fine ? 0 : -1;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    whit_device_destroy(device);
+    whit_shader_compiler_destroy(compiler);
+    return 0;
+}
+
+static whit_shader *load(const char *content)
+{
+    char path[] = "/tmp/whit_called_XXXXXX";
+    whit_shader *shader = NULL;
+    FILE *stream = fdopen(mkstemp(path), "w");
+    assert_non_null(stream);
+    assert_true(fputs(content, stream) >= 0 && fclose(stream) == 0);
+    assert_int_equal(whit_shader_load(compiler, path, false, &shader), WHIT_OK);
+    remove(path);
+    return shader;
+}
+
+static uint64_t effect(const char *name)
+{
+    for (uint32_t i = 0; whit_effect_name(i); ++i) {
+        if (strcmp(whit_effect_name(i), name) == 0)
+            return UINT64_C(1) << i;
+    }
+    fail_msg("no effect %s", name);
+    return 0;
+}
+
+/* The picture with effects added; *compiled: bits of its effects. */
+static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *compiled,
+                        uint32_t *kernels)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_kernel list[WHIT_KERNELS_MAX];
+    whit_renderer *renderer;
+    whit_image *color;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    params.effects_added = added;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &color), WHIT_OK);
+    *compiled = 0;
+    for (uint32_t i = 0; whit_effect_name(i); ++i)
+        *compiled |= (uint64_t)whit_renderer_compiles(renderer, i) << i;
+    whit_renderer_destroy(renderer);
+    *kernels = 0;
+    uint32_t count;
+    assert_int_equal(whit_kernels_list(device, accel, &params, list, &count), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i)
+        *kernels += strncmp(list[i].name, "shadow", 6) == 0;
+    return color;
+}
+
+TEST(what_is_not_asked_for_is_not_compiled)
+{
+    static const struct {
+        const char *content;
+        bool lights, shadows;
+        uint32_t kernels; /* of shadow rays */
+    } cases[] = {
+        {"vec3 post(ivec2 at, vec3 color) { return color; }\n", true, true, 1},
+        {"vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns + o.diffuse; }\n", false,
+         false, 0},
+        {"vec3 shade(Surface s, Optics o, vec3 to_eye) { return visible(s, s.ns, 1.0); }\n", false,
+         true, 0},
+        {"vec3 shade(Surface s, Optics o, vec3 to_eye) { return light(0u, 0u, s).arriving; }\n",
+         true, false, 0},
+        {"vec3 other(Surface s, Optics o, vec3 v) { return whit_shade(s, o, v); }\n"
+         "#define CALL other\n"
+         "vec3 shade(Surface s, Optics o, vec3 to_eye) { return CALL(s, o, to_eye); }\n",
+         true, true, 0},
+        {"//@ aov lit\nvec4 lit(Surface s) { return vec4(visible(s, s.ns, 1.0), 1.0); }\n"
+         "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }\n",
+         false, true, 0},
+    };
+    uint64_t shadows = effect("shadows"), lights = effect("point-lights");
+    uint64_t all = shadows | lights | effect("directional-lights") | effect("tinted-shadows");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        uint64_t compiled, forced;
+        uint32_t kernels, more;
+        whit_shader *shader = load(cases[i].content);
+        whit_image *usual = draw(shader, 0, &compiled, &kernels);
+        if ((compiled & lights) != (cases[i].lights ? lights : 0) ||
+            (compiled & shadows) != (cases[i].shadows ? shadows : 0) || kernels != cases[i].kernels)
+            fail_msg("lights %d, shadows %d, %u kernels: %s", (compiled & lights) != 0,
+                     (compiled & shadows) != 0, kernels, cases[i].content);
+        whit_image *whole = draw(shader, all, &forced, &more);
+        assert_int_equal(forced & all, all);
+        assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
+                            PIXELS * 4 * sizeof(float));
+        whit_image_destroy(usual);
+        whit_image_destroy(whole);
+        whit_shader_destroy(shader);
+    }
+}
+
+int main(void)
+{
+    return unit_run(begin, end);
+}
