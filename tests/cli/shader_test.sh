@@ -49,6 +49,12 @@ check "its aovs" test "$(jq -r '[.aovs[].name] | join(" ")' all.json)" = facing
 check "its sliders" test "$(jq -r '[.sliders[] | "\(.name)=\(.value)"] | join(",")' all.json)" = \
     "bands=3,rim=#ffcc88,on=on,mode=plain"
 check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "shade resolve"
+expect 2 "no such aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov face -o aov.exr
+said "names those that there are" "there is facing"
+expect 0 "an aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov facing -o aov.exr
+expect 0 "beside the colour" render "$CUBE" --size 16x12 --quiet --shader all.glsl -o both.exr
+check "it is in both files" test "$(grep -ac facing.R both.exr) $(grep -ac facing.R aov.exr)" = "1 0"
+expect 2 "--aov without --shader" render "$CUBE" --aov facing -o aov.exr
 check "its fuel" test "$(jq .fuel all.json)" = 20000
 expect 0 "dump" shader all.glsl --dump spirv
 check "SPIR-V" spirv-val --target-env vulkan1.2 spirv/resolve.spv
