@@ -203,16 +203,21 @@ TEST(adaptive_samples_have_those_of_their_number)
     struct drawn four = draw(&params);
     params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1};
     struct drawn adaptive = draw(&params);
-    uint32_t same = 0, flat = 0;
+    uint32_t same = 0, flat = 0, hits = 0, anew = 0;
     for (uint32_t i = 0; i < PIXELS; ++i) {
         bool colors = memcmp(floats(four.color) + 4 * i, floats(adaptive.color) + 4 * i, 12) == 0;
         bool values =
             memcmp(floats(four.aovs[0]) + 4 * i, floats(adaptive.aovs[0]) + 4 * i, 16) == 0;
+        bool hit = !colors && !is_miss(&four, i);
+        hits += hit;
+        anew +=
+            hit && memcmp(floats(four.aovs[2]) + 4 * i, floats(adaptive.aovs[2]) + 4 * i, 16) != 0;
         flat += colors;
         same += colors && values;
     }
     assert_true(flat > PIXELS / 4 && flat < PIXELS);
-    assert_true(same * 100 > flat * 99); /* colours may be the same by chance */
+    assert_true(hits > 0 && anew == hits); /* other samples, other random numbers */
+    assert_true(same * 100 > flat * 99);   /* colours may be the same by chance */
     drop(&adaptive);
     drop(&four);
 }
