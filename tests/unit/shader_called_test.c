@@ -123,6 +123,36 @@ TEST(what_is_not_asked_for_is_not_compiled)
     }
 }
 
+/* What buffers and kernels follow from is the same in another version of a shader. */
+TEST(another_version_has_the_same_values_and_asks_for_the_same)
+{
+#define SHADE     "vec3 shade(Surface s, Optics o, vec3 to_eye) { return "
+#define AOV(name) "//@ aov " name "\nvec4 " name "(Surface s) { return vec4(1.0); }\n"
+    static const struct {
+        const char *content;
+        bool taken;
+    } cases[] = {
+        {AOV("one") SHADE "-s.ns; }\n", true},
+        {AOV("one") SHADE "visible(s, s.ns, 1.0); }\n", false},
+        {AOV("two") SHADE "s.ns; }\n", false},
+        {AOV("one") AOV("two") SHADE "s.ns; }\n", false},
+        {SHADE "s.ns; }\n", false},
+    };
+    whit_shader *shader = load(AOV("one") SHADE "s.ns; }\n");
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    params.shader = shader;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        whit_shader *other = load(cases[i].content);
+        if (whit_renderer_takes_shader(renderer, other) != cases[i].taken)
+            fail_msg("%s", cases[i].content);
+        whit_shader_destroy(other);
+    }
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(shader);
+}
+
 int main(void)
 {
     return unit_run(begin, end);
