@@ -23,7 +23,7 @@ const struct bench_kind bench_kinds[BENCH_COUNT] = {
                      320, 240, .has_goals = true},
     [BENCH_SHADERS] = {"shaders",
                        "what follows a save of a shader: first pixels, whole picture, errors, fuel",
-                       1280, 720},
+                       1280, 720, .has_goals = false},
 };
 
 const struct setting bench_options[] = {
