@@ -29,12 +29,12 @@ typedef struct whit_text {
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
-/* The same with images of 4 floats beside it, in its size: channels NAME.R, .G, .B and .A of an
-   .exr. WHIT_ERROR_USAGE too for other files, and for more than 16. */
 typedef struct whit_image_layer {
     const char *name;
     const whit_image *image;
 } whit_image_layer;
+/* The same with images of 4 floats beside it, in its size: channels NAME.R, .G, .B and .A of an
+   .exr. WHIT_ERROR_USAGE too for other files, and for more than 16. */
 WHIT_CHECK whit_result whit_image_save_layers(const whit_image *image,
                                               const whit_image_layer *layers, uint32_t layer_count,
                                               const char *path, const whit_text *texts,

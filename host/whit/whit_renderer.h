@@ -197,7 +197,8 @@ WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                                          const whit_renderer_params *params, whit_kernel *kernels,
                                          uint32_t *count);
-/* The same, but counts their instructions and makes none: other figures are 0. */
+/* The same, but counts their instructions and makes none: other figures are 0. It
+   gives what whit_kernels_list gives. */
 WHIT_CHECK whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
                                           const whit_renderer_params *params, whit_kernel *kernels,
                                           uint32_t *count);

@@ -48,9 +48,9 @@ WHIT_CHECK whit_result whit_shader_load(whit_shader_compiler *compiler, const ch
                                         bool trust, whit_shader **out);
 /* The same with the stages of a checkout in place of those that are built in: `stages` is its
    folder shaders/, whose kernel/ is compiled with all that it includes below the folder. `path`
-   NULL: they alone. What is in them is taken as whit's own: nothing in it is bounded. Errors stand
-   in them with file and line, as above; a file of abi/ that is not the one whit was built with is
-   one. */
+   NULL: they alone. What is in them is taken as whit's own: nothing in it is bounded.
+   WHIT_ERROR_INPUT and others as above, for errors in them too, which stand there with file and
+   line; a file of abi/ that is not the one whit was built with is one. */
 WHIT_CHECK whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *path,
                                                const char *stages, bool trust, whit_shader **out);
 void whit_shader_destroy(whit_shader *shader);
@@ -147,8 +147,8 @@ WHIT_CHECK whit_result whit_renderer_run_tests(whit_renderer *renderer, whit_che
 
 /* Draws the picture that was rendered last once more, without the shader, and compares. *held: all
    that the file expects is so, also where it expects nothing and nothing is drawn; what is not is
-   logged as "FILE:line: ...", with the first pixel and the number of pixels. Errors as of
-   whit_renderer_render. */
+   logged as "FILE:line: ...", with the first pixel and the number of pixels.
+   WHIT_ERROR_USAGE without a device, and others as of whit_renderer_render. */
 WHIT_CHECK whit_result whit_renderer_check_expectations(whit_renderer *renderer, bool *held);
 
 /* The kernels that the shader has part in, by index; NULL past the last. `words`: SPIR-V. */
