@@ -129,6 +129,7 @@ static whit_result draw_base(struct pair *pair)
 {
     whit_renderer_params params = pair->own->params;
     params.shader = NULL;
+    params.effects_removed &= ~pair->own->effects_unasked;
     params.sliders = NULL;
     params.progress = NULL;
     params.step = NULL;

@@ -36,7 +36,8 @@ void hooks_take(struct renderer *renderer)
     params->compile_async = false; /* there is no general kernel of it yet */
     if (shader_has(params->shader, SHADER_HOOK_SCATTER))
         params->effects_added |= EFFECT(REFLECTION);
-    params->effects_removed |= effects_not_asked_for(renderer);
+    renderer->effects_unasked = effects_not_asked_for(renderer) & ~params->effects_removed;
+    params->effects_removed |= renderer->effects_unasked;
 }
 
 uint32_t hooks_aov_count(const struct target *target)

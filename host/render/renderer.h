@@ -180,6 +180,7 @@ struct renderer {
     struct commands *commands;
     struct gpu_frame frame;
     float sliders[SLIDERS_MAX];         /* of params.shader */
+    uint64_t effects_unasked;           /* of params.effects_removed, for the shader alone */
     struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids, cuts;      /* of the last picture, where it has more than one band */
     struct image aovs;                  /* likewise: a pixel beside itself for each function */

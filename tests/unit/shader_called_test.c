@@ -153,6 +153,24 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
     whit_shader_destroy(shader);
 }
 
+/* The picture without the shader has the lights that the shader does not ask for. */
+TEST(expectations_are_held_against_all_effects)
+{
+    whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    bool held;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_check_expectations(renderer, &held), WHIT_OK);
+    assert_false(held);
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(shader);
+}
+
 int main(void)
 {
     return unit_run(begin, end);
