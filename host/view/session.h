@@ -83,8 +83,8 @@ WHIT_CHECK whit_result session_open(struct session *session, const struct settin
                                     const whit_log *scene_log, struct session_progress *progress);
 /* A session that has drawn with another version of the shader: compiles the one of `settings`,
    which differ from the session's in what its renderer can change, and draws the first step of
-   their picture, with which the driver compiles. Where the shader is wrong the session stays as it
-   was. After other errors it has no renderer, and is to be closed. */
+   their picture, for which the driver compiles. Where the shader is wrong the session stays as it
+   was; where its kernels cannot be made it has no renderer, and is to be closed. */
 WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
                                       const struct session_parts *parts,
                                       struct session_progress *progress);
