@@ -128,7 +128,8 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
                               : pose_on_cpu(renderer->accel, time_s);
 }
 
-/* What rays on the CPU go by stays. */
+/* Remembers the parameters of a picture. Rays on the CPU keep the cancel flag, traversal and
+   numerics that the renderer was made with. */
 static void take_params(whit_renderer *renderer, const whit_renderer_params *params)
 {
     const whit_renderer_params made = renderer->params;

@@ -19,7 +19,8 @@ static whit_result begin(const whit_log *log, whit_scene **out)
     return WHIT_OK;
 }
 
-/* What is derived of a scene that is there; or, after a failure, nothing is left of it. */
+/* Derives the pose and the choice of trees of a scene that was read. After a failure the scene is
+   destroyed. */
 static whit_result complete(whit_scene *scene, whit_result result, whit_scene **out)
 {
     if (result == WHIT_OK)

@@ -153,6 +153,47 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
     whit_shader_destroy(shader);
 }
 
+/* A version in the place of the one before draws what a renderer of its own draws, and its sliders
+   are its own. */
+TEST(a_version_in_place_draws_the_same)
+{
+    static const char *const versions[] = {
+        "//@ slider k 0 1 0.25\n" SHADE "s.ns * k; }\n"
+        "vec3 post(ivec2 at, vec3 c) { return c; }\n",
+        "//@ slider k 0 1 0.25\n" SHADE "s.ns * k; }\n"
+        "vec3 post(ivec2 at, vec3 c) { return c.bgr; }\n",
+        "//@ slider l 0 1 0.5\n//@ slider k 0 1 0.75\n" SHADE "s.ns * k + l; }\n"
+        "vec3 post(ivec2 at, vec3 c) { return c.bgr; }\n",
+    };
+    whit_shader *before = load(versions[0]);
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = before;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    for (size_t i = 1; i < sizeof versions / sizeof *versions; ++i) {
+        uint64_t compiled;
+        uint32_t kernels;
+        whit_image *in_place;
+        whit_shader *shader = load(versions[i]);
+        params.shader = shader;
+        assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+        whit_shader_destroy(before);
+        before = shader;
+        assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &in_place), WHIT_OK);
+        whit_image *alone = draw(shader, 0, &compiled, &kernels);
+        assert_memory_equal(whit_image_floats(in_place), whit_image_floats(alone),
+                            PIXELS * 4 * sizeof(float));
+        whit_image_destroy(in_place);
+        whit_image_destroy(alone);
+    }
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(before);
+}
+
 /* The picture without the shader has the lights that the shader does not ask for. */
 TEST(expectations_are_held_against_all_effects)
 {

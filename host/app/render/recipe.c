@@ -47,7 +47,8 @@ static void add(struct recipe *recipe, const char *key, const char *value)
     recipe->texts[recipe->count++] = (whit_text){.key = key, .value = value};
 }
 
-/* What cannot be kept is left out: the picture is good without it. */
+/* Functions that a picture cannot carry, as they are too large, are left out with a warning: the
+   picture is written all the same. */
 static void add_functions(struct recipe *recipe, const whit_shader *shader, const char *output)
 {
     const char *why;

@@ -175,11 +175,12 @@ static uint32_t count_lines(const whit_shader_file *file)
     return lines;
 }
 
-/* What is told once the functions in it are known to be whole. */
+/* Tells the user what the picture would load and compile. Its functions were read before, and are
+   not damaged. */
 static void tell(const struct recipe_read *recipe, const struct settings *settings,
                  const whit_shader_file *files, uint32_t count)
 {
-    fprintf(stderr, "whit: %s is to load\n  scene      %s\n", cli_shown(recipe->picture),
+    fprintf(stderr, "whit: %s would load\n  scene      %s\n", cli_shown(recipe->picture),
             cli_shown(settings->scene));
     if (settings->environment[0])
         fprintf(stderr, "  sky        %s\n", cli_shown(settings->environment));
@@ -193,7 +194,7 @@ static void tell(const struct recipe_read *recipe, const struct settings *settin
     if (settings->sliders[0])
         fprintf(stderr, "  sliders    %s\n", cli_shown(settings->sliders));
     if (recipe->left[0])
-        fprintf(stderr, "  not taken %s: what may be done is said by you\n",
+        fprintf(stderr, "  not taken %s: such options count on the command line alone\n",
                 cli_shown(recipe->left));
 }
 

@@ -5,7 +5,7 @@
 
 #include "app/job.h"
 
-/* What a command's own options say of it. */
+/* The options with which a command draws again what a picture says of itself. */
 struct repeat {
     const char *picture; /* --recipe; NULL: a picture in the place of the scene */
     bool yes;            /* --yes */

@@ -5,7 +5,7 @@
 
 #include "app/cache.h"
 
-/* Of the picture that expectations are held against. */
+/* Pixels of the picture in which expectations are looked at. */
 enum { WIDTH = 160, HEIGHT = 120 };
 
 /* ---- On the device ---- */
@@ -123,7 +123,7 @@ void attempt_finish(struct attempt *attempt)
 
 /* ---- What came of it ---- */
 
-/* Of whit's own kernel of that name; 0: there is none. */
+/* The SPIR-V instructions of whit's own kernel of the same name; 0: there is no such kernel. */
 static uint32_t base_instructions(const struct attempt *attempt, const whit_kernel *kernel)
 {
     for (uint32_t i = 0; i < attempt->base_count; ++i) {

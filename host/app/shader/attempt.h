@@ -19,7 +19,7 @@ struct attempt {
 WHIT_CHECK whit_result attempt_make(struct job *job, const char *scene, struct attempt *attempt);
 void attempt_finish(struct attempt *attempt); /* accepts a zeroed one */
 
-/* What failed, as errors. */
+/* Logs each failed check as an error: its place, its text, how many seeds it failed for. */
 void attempt_say(const struct attempt *attempt, const whit_shader *shader);
 /* Kernels, tests and expectations in text. */
 void attempt_print(const struct attempt *attempt, const whit_shader *shader);
