@@ -6,7 +6,8 @@
 
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
 _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SHADER_HOOK_SHADE &&
-                   HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV,
+                   HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV &&
+                   HOOK_INTERSECT == 1u << SHADER_HOOK_INTERSECT,
                "the same bits");
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
@@ -83,27 +84,79 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
     const whit_shader *before = renderer->params.shader;
     renderer->params.shader = params->shader;
     stage_set_finish(&renderer->probe.stages.set);
-    whit_result result = stages_replace(&renderer->picture, before);
+    whit_result result = hooks_find_material(renderer);
+    if (result == WHIT_OK)
+        result = stages_replace(&renderer->picture, before);
     return result == WHIT_OK ? renderer_set_view(renderer, params) : result;
 }
 
-whit_result hooks_clear_fuel(const struct target *target)
+whit_result hooks_find_material(struct renderer *renderer)
 {
-    const uint32_t none = 0;
-    return buffer_write(target->buffers.status, STATUS_LOOP_AT, &none, sizeof none);
+    const whit_shader *shader = renderer->params.shader;
+    if (!shader_has(shader, SHADER_HOOK_INTERSECT))
+        return WHIT_OK;
+    const struct shader_box *box = &shader->box;
+    uint32_t index = scene_find_worn(renderer->scene, box->material);
+    if (index == SCENE_NONE) {
+        log_warning(&renderer->log, "%s:%u: nothing in the scene wears a material `%s`",
+                    shader->text.files[box->file].name, box->line, box->material);
+        index = scene_find_worn(renderer->scene, "");
+    }
+    if (index == SCENE_NONE) {
+        log_error(&renderer->log, "%s:%u: the scene has no material for the shape",
+                  shader->text.files[box->file].name, box->line);
+        return WHIT_ERROR_INPUT;
+    }
+    const float *passes = renderer->scene->materials[index].transmission;
+    bool glass = passes[0] > 0.0f || passes[1] > 0.0f || passes[2] > 0.0f;
+    renderer->frame.shape_material = index | (glass ? SHAPE_IS_GLASS : 0);
+    return WHIT_OK;
+}
+
+whit_result hooks_clear_status(const struct target *target)
+{
+    const uint32_t none[2] = {0, 0};
+    return buffer_write(target->buffers.status, STATUS_LOOP_AT, none, sizeof none);
+}
+
+/* A word of the status buffer, which the next picture begins without; 0 where it cannot be read. */
+static uint32_t take_status(const struct target *target, uint64_t at)
+{
+    uint32_t number = 0;
+    if (buffer_read(target->buffers.status, at, &number, sizeof number) != WHIT_OK)
+        number = 0;
+    /* An error here is told by the next picture. */
+    whit_result result = hooks_clear_status(target);
+    (void)result;
+    return number;
 }
 
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes)
 {
-    uint32_t number = 0, line = 0;
+    uint32_t line = 0;
     const char *file = "";
     const whit_shader *shader = target->renderer->params.shader;
     text[0] = 0;
-    if (buffer_read(target->buffers.status, STATUS_LOOP_AT, &number, sizeof number) == WHIT_OK &&
-        shader && shader_find_loop(shader, number, &file, &line))
+    if (shader && shader_find_loop(shader, take_status(target, STATUS_LOOP_AT), &file, &line))
         snprintf(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
                  line, shader->fuel, SHADER_FUEL_MAX);
-    /* The next picture begins without one. An error here is told by that picture. */
-    whit_result result = hooks_clear_fuel(target);
-    (void)result;
+}
+
+void hooks_describe_shape(const struct target *target, char *text, size_t text_bytes)
+{
+    static const char *const reasons[] = {
+        [SHAPE_NOT_A_NUMBER] = "gives what is no number",
+        [SHAPE_BY_REACH] = "meets something else with a larger `far`",
+        [SHAPE_OUTSIDE] = "meets its shape outside of the box of `//@ box`",
+    };
+    uint32_t file, line;
+    const struct renderer *renderer = target->renderer;
+    const whit_shader *shader = renderer->params.shader;
+    uint32_t word = take_status(target, STATUS_SHAPE_AT), reason = word >> SHAPE_REASON_SHIFT;
+    uint32_t pixel = SHAPE_PIXEL_MASK - (word & SHAPE_PIXEL_MASK), width = renderer->params.width;
+    text[0] = 0;
+    if (shader && reason && shader_text_defines(&shader->text, "intersect", &file, &line))
+        snprintf(text, text_bytes, ": %s:%u: intersect() %s, in pixel %u, %u",
+                 shader->text.files[file].name, line, reasons[reason], pixel % width,
+                 pixel / width);
 }

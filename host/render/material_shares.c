@@ -62,7 +62,10 @@ static uint32_t material_of(const struct renderer *renderer, const struct tile_h
     const struct accel *accel = renderer->accel;
     const struct scene *scene = renderer->scene;
     const uint32_t *row = &hits->rows[(size_t)id * variant_hit_rows(renderer) * 4];
-    const struct gpu_triangle *record = &accel->triangles[row[3] & ~HIT_AT_EXIT];
+    uint32_t index = row[3] & ~HIT_AT_EXIT;
+    if (index == HIT_SHAPE)
+        return renderer->frame.shape_material & ~SHAPE_IS_GLASS;
+    const struct gpu_triangle *record = &accel->triangles[index];
     uint32_t instance = accel->flat              ? record->flags >> TRIANGLE_INSTANCE_SHIFT
                         : accel->single_identity ? 0
                                                  : row[4];

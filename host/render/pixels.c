@@ -74,7 +74,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
             renderer->scene_buffers.bytes += all[i].bytes;
     }
     if (result == WHIT_OK)
-        result = hooks_clear_fuel(target);
+        result = hooks_clear_status(target);
     if (result == WHIT_OK)
         result = queues_create(target);
     if (result == WHIT_OK)

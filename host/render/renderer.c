@@ -68,6 +68,8 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
         result = effects_check(log, &renderer->params);
     if (result == WHIT_OK)
         result = hooks_read_sliders(renderer, renderer->params.sliders);
+    if (result == WHIT_OK)
+        result = hooks_find_material(renderer);
     if (renderer->scene->pictures_dropped) {
         log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
                   renderer->scene->name);

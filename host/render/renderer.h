@@ -195,9 +195,10 @@ struct renderer {
 };
 
 enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
-enum { STATUS_LOOP_AT = 8 }; /* byte of status_loop (shaders/bind/trees.glsl) */
-enum { READ_SLICE = 4096 };  /* pixels that are read at once */
-enum { ADAPTIVE_MAX = 64 };  /* samples of a pixel of an adaptive picture */
+/* Bytes of the status buffer (shaders/bind/trees.glsl) where status_loop and status_shape are. */
+enum { STATUS_LOOP_AT = 8, STATUS_SHAPE_AT = 12 };
+enum { READ_SLICE = 4096 }; /* pixels that are read at once */
+enum { ADAPTIVE_MAX = 64 }; /* samples of a pixel of an adaptive picture */
 
 /* renderer.c: whether surfaces leave rays, for the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
@@ -413,10 +414,14 @@ void hooks_take(struct renderer *renderer);
 uint32_t hooks_aov_count(const struct target *target);
 /* WHIT_ERROR_USAGE, logged, for sliders that the shader has not. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
-/* Forgets loops that had no fuel left. */
-WHIT_CHECK whit_result hooks_clear_fuel(const struct target *target);
+/* Finds the material of its shape in the scene, which may have none of that name. */
+WHIT_CHECK whit_result hooks_find_material(struct renderer *renderer);
+/* Forgets loops that had no fuel left, and answers for a shape that were wrong. */
+WHIT_CHECK whit_result hooks_clear_status(const struct target *target);
 /* What ran out of iterations, as the status buffer names it. */
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
+/* Which answer for a shape was wrong, likewise. */
+void hooks_describe_shape(const struct target *target, char *text, size_t text_bytes);
 
 /* trace.c */
 void trace_finish(struct trace_state *trace);

@@ -46,18 +46,22 @@ whit_result status_check(struct target *target)
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
         {STATUS_FUEL, "a loop of the shader took more iterations than it may"},
+        {STATUS_SHAPE, "the answer for the shader's shape is wrong"},
     };
-    char text[1536] = "", where[96] = "", loop[768] = "";
+    char text[2048] = "", where[96] = "", loop[768] = "", shape[768] = "";
     if (word & STATUS_NON_FINITE)
         describe_non_finite(target, where, sizeof where);
     if (word & STATUS_FUEL)
         hooks_describe_fuel(target, loop, sizeof loop);
+    if (word & STATUS_SHAPE)
+        hooks_describe_shape(target, shape, sizeof shape);
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         size_t used = strlen(text);
         if (word & reasons[i].bit)
             snprintf(text + used, sizeof text - used, "%s%s%s", used ? "; " : "", reasons[i].text,
                      reasons[i].bit == STATUS_NON_FINITE ? where
                      : reasons[i].bit == STATUS_FUEL     ? loop
+                     : reasons[i].bit == STATUS_SHAPE    ? shape
                                                          : "");
     }
     log_error(&target->renderer->log, "the result is not to be trusted: %s", text);

@@ -279,6 +279,19 @@ static uint8_t *worn_materials(const struct scene *scene)
     return worn;
 }
 
+uint32_t scene_find_worn(const struct scene *scene, const char *name)
+{
+    uint8_t *worn = worn_materials(scene);
+    uint32_t found = SCENE_NONE;
+    for (uint32_t i = 0; i < scene->material_count && found == SCENE_NONE; ++i) {
+        const char *own = scene->materials[i].name;
+        if ((!worn || worn[i]) && (!name[0] || (own && strcmp(own, name) == 0)))
+            found = i;
+    }
+    free(worn);
+    return found;
+}
+
 uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
                                       struct scene_effects *out)
 {

@@ -402,6 +402,11 @@ enum scene_materials {
     SCENE_MATERIALS_OPAQUE, /* nothing passes through them */
     SCENE_MATERIALS_GLASS,  /* the others */
 };
+/* The first material of that name, "": of any, that some primitive wears; SCENE_NONE: there is
+ * none.
+ */
+uint32_t scene_find_worn(const struct scene *scene, const char *name);
+
 /* Adds what these materials call for; gives how many of them some primitive wears. */
 uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
                                       struct scene_effects *out);

@@ -173,6 +173,7 @@ static bool is_function(const char *name)
     for (uint32_t i = 0; i < shader_source_count; ++i) {
         const char *text = shader_sources[i].text;
         if (strcmp(shader_sources[i].path, "hook/aov.glsl") == 0 || /* no part of a kernel */
+            strcmp(shader_sources[i].path, "hook/intersect.glsl") == 0 ||
             strncmp(shader_sources[i].path, "examples/", 9) == 0)
             continue;
         for (const char *at = strstr(text, call); at; at = strstr(at + 1, call)) {
@@ -284,6 +285,30 @@ static void read_slider(struct line *line, size_t kind)
     shader->slider_count++;
 }
 
+/* X0 Y0 Z0 X1 Y1 Z1 ERROR [MATERIAL] */
+static void read_box(struct line *line)
+{
+    struct shader_box box = {.file = line->file, .line = line->number}, *own = &line->shader->box;
+    double number;
+    char rest[4];
+    for (int i = 0; i < 6; ++i) {
+        double least = i < 3 ? -1e18 : (double)box.lo[i - 3];
+        if (!read_number(line, "a side of the box", least, 1e18, &number))
+            return;
+        *(i < 3 ? &box.lo[i] : &box.hi[i - 3]) = (float)number;
+    }
+    if (!read_number(line, "how far answers may be from the shape", 1e-18, 1e18, &number))
+        return;
+    box.error = (float)number;
+    if (!next_word(line, box.material, sizeof box.material) ||
+        !next_word(line, rest, sizeof rest) || rest[0])
+        complain(line, "behind the box stands the name of a material, and nothing more");
+    else if (own->line)
+        complain(line, "there is a box already, in line %u", own->line);
+    else
+        *own = box;
+}
+
 static void read_fuel(struct line *line)
 {
     double fuel;
@@ -369,6 +394,8 @@ static void read_line(struct line *line)
         read_version(line);
     else if (fits && strcmp(word, "aov") == 0)
         read_aov(line);
+    else if (fits && strcmp(word, "box") == 0)
+        read_box(line);
     else if (fits && strcmp(word, "test") == 0)
         read_test_mark(line);
     else if (fits && strcmp(word, "expect") == 0)
@@ -376,7 +403,7 @@ static void read_line(struct line *line)
     else
         complain(line,
                  "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel, aov, "
-                 "test, expect",
+                 "box, test, expect",
                  word);
 }
 

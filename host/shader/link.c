@@ -254,8 +254,9 @@ static uint32_t find_named(const struct link *l, const char *name)
 
 static bool is_hook(const char *name)
 {
-    static const char *const hooks[] = {"camera(", "surface(", "shade(", "scatter(",
-                                        "miss(",   "post(",    "aov(",   "run_test("};
+    static const char *const hooks[] = {"camera(",    "surface(",  "shade(", "scatter(",
+                                        "miss(",      "post(",     "aov(",   "run_test(",
+                                        "intersect(", "shape_box("};
     for (size_t i = 0; i < sizeof hooks / sizeof *hooks; ++i) {
         if (strncmp(name, hooks[i], strlen(hooks[i])) == 0)
             return true;
@@ -287,7 +288,7 @@ static void name_functions(struct link *l)
     }
 }
 
-/* aov() and run_test() are written for the user, in whit's own text. */
+/* aov(), shape_box() and run_test() are written for the user, in whit's own text. */
 static bool is_taken(const struct link *l, const uint32_t *words)
 {
     bool own = refuse_file(&l->user, words) != NULL;

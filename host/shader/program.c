@@ -15,7 +15,7 @@ static const char *const hook_names[SHADER_HOOK_COUNT] = {
     [SHADER_HOOK_CAMERA] = "camera", [SHADER_HOOK_SURFACE] = "surface",
     [SHADER_HOOK_SHADE] = "shade",   [SHADER_HOOK_SCATTER] = "scatter",
     [SHADER_HOOK_MISS] = "miss",     [SHADER_HOOK_POST] = "post",
-    [SHADER_HOOK_AOV] = "aov"};
+    [SHADER_HOOK_AOV] = "aov",       [SHADER_HOOK_INTERSECT] = "intersect"};
 
 #define BIT(hook) (1u << SHADER_HOOK_##hook)
 
@@ -24,10 +24,10 @@ static const struct {
     const char *path;
     uint32_t hooks;
 } kernel_table[SHADER_KERNEL_COUNT] = {
-    [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA) | BIT(MISS)},
-    [SHADER_KERNEL_SHADE] = {"kernel/shade.comp",
-                             BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER) | BIT(AOV)},
-    [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
+    [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA) | BIT(MISS) | BIT(INTERSECT)},
+    [SHADER_KERNEL_SHADE] = {"kernel/shade.comp", BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) |
+                                                      BIT(SCATTER) | BIT(AOV) | BIT(INTERSECT)},
+    [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA) | BIT(INTERSECT)},
     [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", BIT(POST)},
     [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
 };
@@ -108,6 +108,20 @@ static char *declare_aovs(const whit_shader *shader)
     return text;
 }
 
+/* shape_box() of hook/declare.glsl. NULL: no memory. */
+static char *declare_box(const whit_shader *shader)
+{
+    const struct shader_box *box = &shader->box;
+    if (!shader_has(shader, SHADER_HOOK_INTERSECT))
+        return string_copy("");
+    return string_format("void shape_box(out vec3 lo, out vec3 hi, out float error)\n{\n"
+                         "    lo = vec3(%.9e, %.9e, %.9e);\n    hi = vec3(%.9e, %.9e, %.9e);\n"
+                         "    error = %.9e;\n}\n",
+                         (double)box->lo[0], (double)box->lo[1], (double)box->lo[2],
+                         (double)box->hi[0], (double)box->hi[1], (double)box->hi[2],
+                         (double)box->error);
+}
+
 /* Its text, with what is declared in front of the user's. NULL: no memory, or it has no place for
    that. */
 static char *hook_text(const struct shader_stages *stages, const char *declared)
@@ -183,6 +197,22 @@ static whit_result compile(const whit_log *log, struct shader_compiler *compiler
     return result;
 }
 
+/* A function without a box, or a box without one, is an error. */
+static bool find_box(const whit_log *log, const whit_shader *shader, struct shader_errors *errors)
+{
+    uint32_t file, line;
+    bool has = shader_has(shader, SHADER_HOOK_INTERSECT);
+    if (has == (shader->box.line > 0))
+        return true;
+    if (has && shader_text_defines(&shader->text, "intersect", &file, &line))
+        shader_error_add(log, errors, shader->text.files[file].name, line,
+                         "intersect() needs `//@ box` with the box that its shape is in");
+    else
+        shader_error_add(log, errors, shader->text.files[shader->box.file].name, shader->box.line,
+                         "the box has no shape: there is no function intersect()");
+    return false;
+}
+
 static whit_result find_hooks(const whit_log *log, whit_shader *shader,
                               struct shader_errors *errors)
 {
@@ -193,12 +223,14 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
         shader->hooks |= 1u << i;
         shader->names[count++] = hook_names[i];
     }
+    if (!find_box(log, shader, errors))
+        return WHIT_ERROR_INPUT;
     if (shader->hooks || shader->tests.test_count)
         return WHIT_OK;
     shader_error_add(
         log, errors, shader->text.files[0].name, 0,
-        "has none of the functions camera, surface, shade, scatter, miss, post, and none "
-        "below `//@ aov NAME`");
+        "has none of the functions camera, surface, shade, scatter, miss, post, intersect, and "
+        "none below `//@ aov NAME`");
     return WHIT_ERROR_INPUT;
 }
 
@@ -212,11 +244,12 @@ static bool parts_init(const whit_shader *shader, bool tests, struct kernel_part
 {
     *parts = (struct kernel_parts){0};
     char *sliders = shader_sliders_declare(shader);
-    char *aovs = declare_aovs(shader);
+    char *aovs = declare_aovs(shader), *box = declare_box(shader);
     char *calls = tests ? shader_tests_call(&shader->tests) : string_copy("");
-    if (sliders && aovs && calls)
-        parts->declared = string_format("%s%s%s", sliders, aovs, calls);
+    if (sliders && aovs && box && calls)
+        parts->declared = string_format("%s%s%s%s", sliders, aovs, box, calls);
     free(calls);
+    free(box);
     free(aovs);
     free(sliders);
     return parts->declared && shader_tests_text(&shader->tests, &shader->text, tests, &parts->user);

@@ -14,7 +14,8 @@ enum shader_hook {
     SHADER_HOOK_SCATTER,
     SHADER_HOOK_MISS,
     SHADER_HOOK_POST,
-    SHADER_HOOK_AOV, /* functions of any name below //@ aov */
+    SHADER_HOOK_AOV,       /* functions of any name below //@ aov */
+    SHADER_HOOK_INTERSECT, /* with //@ box */
     SHADER_HOOK_COUNT
 };
 
@@ -53,6 +54,14 @@ struct shader_aov {
     uint32_t file, line;
 };
 
+/* What //@ box says of the shape of intersect(), in world space. */
+struct shader_box {
+    float lo[3], hi[3];
+    float error;                      /* how far from the shape an answer may be */
+    char material[SHADER_NAME_BYTES]; /* of the scene, by name; else the first that is worn */
+    uint32_t file, line;              /* from 1; line 0: there is no box */
+};
+
 struct whit_shader {
     struct shader_text text;      /* without files: the stages alone */
     struct shader_stages *stages; /* NULL: those that are embedded */
@@ -70,6 +79,7 @@ struct whit_shader {
     struct shader_aov aovs[SHADER_AOVS_MAX];
     const char *aov_names[SHADER_AOVS_MAX];
     uint32_t aov_count;
+    struct shader_box box;
     struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;

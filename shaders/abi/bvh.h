@@ -157,6 +157,10 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 
 #define HIT_NONE 0xffffffffu
 
+/* Record and instance of a hit on the shape of a user's file (HOOK_INTERSECT), which is in no tree. Its
+   primitive is 0. */
+#define HIT_SHAPE 0x7fffffffu
+
 /* Reasons not to trust a result. Kernels or them into the status word; the host obeys. */
 #define STATUS_UNFINISHED_TRAVERSAL 1u /* a loop ended before its stack was empty */
 #define STATUS_NODE_STACK_OVERFLOW  2u
@@ -167,8 +171,18 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 /* A queue between stages was full. That voids no result: the tile is drawn again in smaller ones. */
 #define STATUS_QUEUE_FULL 128u
 #define STATUS_FUEL 256u /* a loop of a user's function took more iterations than it may */
+#define STATUS_SHAPE 512u /* a user's function has answered for its shape as it must not: SHAPE_* */
 /* The status of a single ray, never in the status word: a deferred ray, whose hit floats do not decide
    (without SPEC_SETTLES). The rest of its result is ignored. */
 #define STATUS_RAY_DEFERRED 64u
+
+/* What is wrong with an answer for a user's shape, in the upper bits of status_shape; below them
+   SHAPE_PIXEL_MASK less the number of the pixel, so that of equal reasons the first pixel is the
+   largest. */
+#define SHAPE_NOT_A_NUMBER 1u
+#define SHAPE_BY_REACH     2u /* another answer with a larger `far` */
+#define SHAPE_OUTSIDE      3u /* the shape is met outside of its box */
+#define SHAPE_REASON_SHIFT 30u
+#define SHAPE_PIXEL_MASK   0x3fffffffu
 
 #endif

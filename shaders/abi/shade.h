@@ -162,10 +162,12 @@ struct gpu_frame {
     gpu_uint nested;          /* 1: media of the scene may meet or overlap */
     gpu_float inv_width, inv_height; /* 1 / width, 1 / height: so that no kernel divides by them */
     gpu_uint root8;     /* of eight children a node, see accel_bvh8 */
-    gpu_float pad0;
+    gpu_uint shape_material; /* of a user's shape; SHAPE_IS_GLASS: light passes through it */
 };
 GPU_ASSERT_SIZE(gpu_frame, 208)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
+
+#define SHAPE_IS_GLASS 0x80000000u
 
 /* Behind the frame stand the values of the sliders of a user's file, as floats. */
 #define SLIDERS_MAX 64u

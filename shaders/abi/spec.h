@@ -78,6 +78,7 @@
 #define HOOK_MISS    16u
 #define HOOK_POST    32u
 #define HOOK_AOV     64u
+#define HOOK_INTERSECT 128u
 
 /* What decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u

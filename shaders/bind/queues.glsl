@@ -92,10 +92,12 @@ const uint HIT_ROWS = SPEC_NUMERICS == NUMERICS_EXACT || SPEC_FLAT == 0u ? 2u : 
 // Instance and primitive of a record; `instance`: where SPEC_INSTANCED.
 uvec2 fetch_record_ids(uint record, uint instance)
 {
-    uint row = record * TRIANGLE_ROWS;
+    bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && record == HIT_SHAPE; // it is in no tree
+    uint row = (on_shape ? 0u : record) * TRIANGLE_ROWS;
     if (SPEC_FLAT != 0u)
         instance = fetch_triangle_row(row + 1u).w >> TRIANGLE_INSTANCE_SHIFT;
-    return uvec2(SPEC_INSTANCED != 0u || SPEC_FLAT != 0u ? instance : 0u, fetch_triangle_row(row).w);
+    uvec2 ids = uvec2(SPEC_INSTANCED != 0u || SPEC_FLAT != 0u ? instance : 0u, fetch_triangle_row(row).w);
+    return on_shape ? uvec2(HIT_SHAPE, 0u) : ids;
 }
 
 // The word of `item` in its row, which holds those of four items.

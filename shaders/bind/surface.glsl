@@ -137,9 +137,23 @@ bool is_on_sphere(Hit hit)
            (fetch_triangle_row(hit.triangle * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u;
 }
 
+#ifdef HOOKS
+// The ray of the hit that fetch_surface() is called for: what a user's shape, which is in no tree, is met by.
+vec3 met_origin, met_dir;
+
+// Puts the surface where a user's shape is met.
+void put_on_shape(float t, vec2 square, inout Surface s);
+#endif
+
 Surface fetch_surface(Hit hit)
 {
     Surface s;
+#ifdef HOOKS
+    Hit own = hit;
+    bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && hit.triangle == HIT_SHAPE;
+    if (on_shape) // what is fetched below is any primitive's
+        hit.triangle = hit.instance = hit.primitive = 0u;
+#endif
     uint row = hit.triangle * TRIANGLE_ROWS;
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
     s.instance = hit.instance;
@@ -176,6 +190,10 @@ Surface fetch_surface(Hit hit)
     s.color = color.rgb;
     s.color_alpha = color.a;
     s.footprint = vec3(0.0);
+#ifdef HOOKS
+    if (on_shape)
+        put_on_shape(own.t, vec2(own.u, own.v), s);
+#endif
     return s;
 }
 

@@ -14,7 +14,7 @@ vec3 vertex_normal(Surface s, uint corner)
     uint row = frame.triangle_row + s.shade_index * TRIANGLE_SHADE_ROWS + corner;
     vec3 n = row_vec3(fetch_shading_row(row));
     if (SPEC_INSTANCED != 0u || SPEC_FLAT != 0u)
-        n = place_normal(fetch_instance_frame(s.instance), n);
+        n = place_normal(fetch_instance_frame(s.instance == HIT_SHAPE ? 0u : s.instance), n);
     return normalize_or(n, vec3(0.0));
 }
 
@@ -39,7 +39,7 @@ vec3 smooth_lift(Surface s)
     vec3 from0 = s.e1 * s.u + s.e2 * s.v;
     vec3 size = max(abs(s.e1), abs(s.e2));
     float slack = max(size.x, max(size.y, size.z)) * (1.0 / 65536.0);
-    bool smooth_mesh = SPEC_SPHERES == SPHERES_NONE || !s.on_sphere;
+    bool smooth_mesh = (SPEC_SPHERES == SPHERES_NONE && (SPEC_HOOKS & HOOK_INTERSECT) == 0u) || !s.on_sphere;
     vec3 lift0 = lift_to_plane(from0, vertex_normal(s, 0u), s.ng, slack, smooth_mesh);
     vec3 lift1 = lift_to_plane(from0 - s.e1, vertex_normal(s, 1u), s.ng, slack, smooth_mesh);
     vec3 lift2 = lift_to_plane(from0 - s.e2, vertex_normal(s, 2u), s.ng, slack, smooth_mesh);

@@ -24,6 +24,7 @@ layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer
     uint status_word;
     uint status_waits; // items listed by list_deferred() so far
     uint status_loop;  // with STATUS_FUEL: the largest number of such a loop
+    uint status_shape; // with STATUS_SHAPE: the largest SHAPE_* with a pixel
 };
 
 uvec4 fetch_node_row(uint row)

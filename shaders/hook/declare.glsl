@@ -60,6 +60,23 @@ vec4 aov(uint index, Surface s)
     return vec4(0.0);
 }
 
+// Whether a ray meets the user's shape, which is at `t` then. Whit has no shape.
+bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)
+{
+    t = 0.0;
+    normal = vec3(0.0);
+    return false;
+}
+
+// The box of that shape, and how far from it answers may be.
+void shape_box(out vec3 lo, out vec3 hi, out float error)
+{
+    lo = hi = vec3(0.0);
+    error = 0.0;
+}
+
+#include "shape.glsl"
+
 // Sets the user's global variables to what they begin with.
 void begin_user()
 {

@@ -55,18 +55,33 @@ uint light_count() ELSEWHERE(uint)
 uint light_points(uint index) ELSEWHERE(uint)
 // Point `point` of a light, as a surface has it; behind the last light that.
 Light light(uint index, uint point, Surface s) ELSEWHERE(Light)
-// What a light, with its shadows, lets a surface send to `to_eye`.
-vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye) ELSEWHERE(vec3)
 
 // ---- Rays ----
+
+#ifdef HAS_INTERSECT
+bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal);
+// What traces calls it, so that the compiler finds where it would come to call itself.
+#define TRACES(type)                                                                                         \
+    {                                                                                                        \
+        type none;                                                                                           \
+        float t;                                                                                             \
+        vec3 normal;                                                                                         \
+        intersect(vec3(0.0), vec3(0.0), 0.0, t, normal);                                                     \
+        return none;                                                                                         \
+    }
+#else
+#define TRACES ELSEWHERE
+#endif
 
 // Just off the surface, on the side that `dir` goes to: where a ray from it starts.
 vec3 off_surface(Surface s, vec3 dir) ELSEWHERE(vec3)
 // How much light comes along a way of length `distance` from a surface, which is not in its own way: 1 where
 // nothing is in it, 0 behind something opaque.
-vec3 visible(Surface s, vec3 dir, float distance) ELSEWHERE(vec3)
+vec3 visible(Surface s, vec3 dir, float distance) TRACES(vec3)
 // What a ray meets, and after which distance. False: nothing; `met` then means nothing.
-bool trace(vec3 origin, vec3 dir, out Surface met, out float distance) ELSEWHERE(bool)
+bool trace(vec3 origin, vec3 dir, out Surface met, out float distance) TRACES(bool)
+// What a light, with its shadows, lets a surface send to `to_eye`.
+vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye) TRACES(vec3)
 
 // ---- Tests ----
 
@@ -79,7 +94,7 @@ void run_test(uint test, uint seed);
 
 void whit_camera(vec2 at, inout vec3 origin, inout vec3 dir) {}
 void whit_surface(inout Surface s) {}
-vec3 whit_shade(Surface s, Optics o, vec3 to_eye) ELSEWHERE(vec3)
+vec3 whit_shade(Surface s, Optics o, vec3 to_eye) TRACES(vec3)
 void whit_scatter(Surface s, Optics o, inout Rays rays) {}
 vec3 whit_miss(vec3 dir) ELSEWHERE(vec3)
 vec3 whit_post(ivec2 at, vec3 color) ELSEWHERE(vec3)

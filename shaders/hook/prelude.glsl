@@ -18,6 +18,7 @@ bool hook_lost = false;  // a hook gave no number
 uint whit_fuel = 0u;     // iterations of loops that the call may still take
 uint whit_fuel_loop = 0u; // number of the loop in which there were none left; 0: none
 uint hook_loop = 0u;      // the same, of any call
+uint hook_shape = 0u;     // what status_shape is to hold of the answers for a shape
 
 void begin_hook()
 {
@@ -35,6 +36,10 @@ void report_hooks()
     if (hook_loop != 0u) {
         atomicMax(status_loop, hook_loop + (HOOK_KERNEL << 16));
         report_status(STATUS_FUEL);
+    }
+    if (hook_shape != 0u) {
+        atomicMax(status_shape, hook_shape);
+        report_status(STATUS_SHAPE);
     }
 }
 
@@ -177,6 +182,8 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
     bool some = hit.primitive != HIT_NONE;
     distance = hit.t;
     if (some) {
+        met_origin = origin;
+        met_dir = dir;
         met = fetch_surface(hit);
         if (dot(dir, met.ng) > 0.0)
             met.ng = -met.ng;

@@ -63,6 +63,10 @@ void take_ray(uint r)
     packet_dir[r] = ray.dir;
     packet_t_max[r] = FLOAT_LARGEST;
     packet_skip[r] = uvec2(ray.skip_instance, ray.skip_primitive);
+#ifdef HOOKS
+    uvec2 at = slot_pixel(slot);
+    packet_checked[r] = primary && alive && chunk.sample_index == 0u ? at.y * frame.width + at.x + 1u : 0u;
+#endif
 }
 
 // Where the rays begin that those of the dispatch call for.

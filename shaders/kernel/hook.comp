@@ -21,6 +21,10 @@ void call_all()
 #ifdef HAS_AOV
     sum += aov(0u, s).xyz;
 #endif
+#ifdef HAS_INTERSECT
+    sum.x += float(intersect(sum, sum, sum.x, sum.x, sum));
+    shape_box(sum, sum, sum.x);
+#endif
 #ifdef HAS_TESTS
     run_test(0u, 0u);
 #endif

@@ -46,6 +46,9 @@ void face_light(uint r, bool alive, gpu_light light, uint point)
     packet_dir[r] = a.dir;
     packet_t_max[r] = a.distance;
     packet_skip[r] = uvec2(lit.skip_instance, a.above ? lit.skip_primitive : HIT_NONE);
+#ifdef HOOKS
+    packet_checked[r] = 0u;
+#endif
     arrival_of[r] = a;
 }
 
@@ -138,6 +141,9 @@ void main()
         status |= alive[r] && !must_wait(status_of[r]) ? status_of[r] : 0u;
     }
     report_status(status);
+#ifdef HOOKS
+    report_hooks();
+#endif
     rays = add_up_lanes(rays);
     if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
         atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);

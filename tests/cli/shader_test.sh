@@ -16,7 +16,7 @@ said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
 
 # ---- What a file is ----
 
-for hook in camera surface shade scatter miss post aov; do
+for hook in camera surface shade scatter miss post aov intersect; do
     expect 0 "new $hook" shader new $hook
     cp "$OUT/stdout" $hook.glsl
     expect 0 "the new $hook compiles" shader $hook.glsl

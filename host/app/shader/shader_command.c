@@ -297,7 +297,7 @@ const struct cli_command command_shader = {
     .summary = "Compiles a file of shader functions, runs its tests, begins one, or takes it out "
                "of a picture.",
     .details =
-        "Functions: camera, surface, shade, scatter, miss, post, and those below\n"
+        "Functions: camera, surface, shade, scatter, miss, post, intersect, and those below\n"
         "`//@ aov NAME` (new aov). See docs/shaders.md.\n"
         "Tests (`//@ test`) run for 4,096 seeds each; what the file expects (`//@ expect`) is\n"
         "held against a picture without it.\n"

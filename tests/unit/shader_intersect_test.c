@@ -1,0 +1,237 @@
+/* A shape of the user's is in the scene as its meshes are, and an answer that is not a shape's is
+ * told. */
+#include <math.h>
+#include <string.h>
+
+#include "unit.h"
+#include "whit.h"
+
+enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT, SHAPE = 0x7fffffff };
+
+static whit_device *device;
+static whit_shader_compiler *compiler;
+static char logged[4096];
+
+static void keep_message(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    snprintf(logged, sizeof logged, "%s", message);
+}
+
+static const whit_log keeps = {.fn = keep_message, .level = WHIT_LOG_ERROR};
+
+static int begin(void **state)
+{
+    (void)state;
+    bool fine = whit_shader_compiler_create(NULL, &keeps, &compiler) == WHIT_OK &&
+                whit_device_create(NULL, &keeps, &device) == WHIT_OK;
+    return fine ? 0 : -1;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    whit_device_destroy(device);
+    whit_shader_compiler_destroy(compiler);
+    return 0;
+}
+
+/* A floor and a mirror behind it, with a ball or without. */
+static const char room[] =
+    "{\"camera\":{\"eye\":[0,1.2,4],\"target\":[0,0.8,0],\"fov\":45},\n"
+    "\"lights\":[{\"kind\":\"point\",\"position\":[2,4,3],\"intensity\":20}],\n"
+    "\"materials\":{\"floor\":{\"diffuse\":[0.5,0.4,0.3]},\"mirror\":{\"reflection\":0.9},\n"
+    "\"gold\":{\"diffuse\":[0.6,0.5,0.1],\"reflection\":0.3,\"specular\":0.5,\"shininess\":50}},\n"
+    "\"objects\":[{\"shape\":\"plane\",\"size\":[9,9],\"material\":\"floor\"},\n"
+    "{\"shape\":\"ball\",\"radius\":0.2,\"translation\":[-0.9,0.2,1],\"material\":\"gold\"},\n"
+    "%s{\"shape\":\"plane\",\"size\":[6,4],\"rotation\":[90,0,0],\"translation\":[0,1,-2],"
+    "\"material\":\"mirror\"}]}\n";
+static const char real_ball[] = "{\"shape\":\"ball\",\"radius\":0.7,"
+                                "\"translation\":[0.2,0.75,0],\"material\":\"gold\"},\n";
+
+/* The same ball as a function. */
+#define BOX "//@ box -0.5 0.05 -0.7  0.9 1.45 0.7  0.000001 gold\n"
+#define INTERSECT                                                                                  \
+    "bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)\n{\n"
+#define MEET                                                                                       \
+    "    vec3 from = origin - vec3(0.2, 0.75, 0.0);\n"                                             \
+    "    float b = dot(from, dir);\n"                                                              \
+    "    vec3 aside = from - b * dir;\n"                                                           \
+    "    float root = sqrt(max(0.49 - dot(aside, aside), 0.0));\n"                                 \
+    "    t = -b - root;\n"                                                                         \
+    "    normal = from + t * dir;\n"
+#define GIVE       "    return dot(aside, aside) < 0.49 && t >= 0.0;\n}\n"
+#define SHAPE_TEXT BOX INTERSECT MEET GIVE
+
+static void write_text(char *path, int suffix, const char *format, const char *part)
+{
+    FILE *stream = fdopen(mkstemps(path, suffix), "w");
+    assert_non_null(stream);
+    assert_true(fprintf(stream, format, part) >= 0 && fclose(stream) == 0);
+}
+
+static whit_result load(const char *content, whit_shader **shader)
+{
+    char path[] = "/tmp/whit_shape_XXXXXX";
+    write_text(path, 0, "%s", content);
+    whit_result result = whit_shader_load(compiler, path, false, shader);
+    remove(path);
+    return result;
+}
+
+struct picture {
+    float color[PIXELS * 4];
+    uint32_t ids[PIXELS * 2];
+};
+
+/* Of the room with `part` in it. WHIT_OK, or what the renderer says. */
+static whit_result draw(const char *part, const whit_shader *shader, whit_numerics numerics,
+                        struct picture *out)
+{
+    char path[] = "/tmp/whit_room_XXXXXX.json";
+    whit_scene *scene;
+    whit_accel *accel;
+    whit_renderer *renderer = NULL;
+    whit_renderer_params params = whit_renderer_defaults();
+    write_text(path, 5, room, part);
+    if (whit_scene_load(path, NULL, &keeps, &scene) != WHIT_OK)
+        fail_msg("%s", logged);
+    remove(path);
+    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    params.numerics = numerics;
+    whit_result result = whit_renderer_create(device, accel, &params, &renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    whit_image *color = NULL, *ids = NULL;
+    if (result == WHIT_OK && out) {
+        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &color), WHIT_OK);
+        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &ids), WHIT_OK);
+        memcpy(out->color, whit_image_floats(color), sizeof out->color);
+        memcpy(out->ids, whit_image_words(ids), sizeof out->ids);
+    }
+    whit_image_destroy(color);
+    whit_image_destroy(ids);
+    whit_renderer_destroy(renderer);
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    return result;
+}
+
+/* Colours, shadows, mirror images and what is hidden are those of a real ball. But for its rim, a
+   pixel of which may be seen by one and not by the other, where rays pass within rounding. */
+static void compare(const struct picture *shape, const struct picture *real)
+{
+    uint32_t on_shape = 0, apart = 0;
+    for (uint32_t i = 0; i < PIXELS; ++i) {
+        bool seen = shape->ids[2 * i] == SHAPE;
+        on_shape += seen;
+        bool same = seen == (real->ids[2 * i] == 2);
+        for (uint32_t c = 0; c < 3; ++c)
+            same = same && fabsf(shape->color[4 * i + c] - real->color[4 * i + c]) < 0.01f;
+        apart += !same;
+    }
+    assert_true(on_shape > PIXELS / 12);
+    if (apart > PIXELS / 500)
+        fail_msg("%u of %d pixels are not as with the real ball", apart, PIXELS);
+}
+
+TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
+{
+    static struct picture shape, real;
+    whit_shader *shader;
+    assert_int_equal(load(SHAPE_TEXT, &shader), WHIT_OK);
+    static const whit_numerics levels[] = {WHIT_NUMERICS_WATERTIGHT, WHIT_NUMERICS_EXACT};
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
+        assert_int_equal(draw("", shader, levels[i], &shape), WHIT_OK);
+        assert_int_equal(draw(real_ball, NULL, levels[i], &real), WHIT_OK);
+        compare(&shape, &real);
+    }
+    whit_shader_destroy(shader);
+}
+
+/* What the user's other functions trace meets the shape, and its loops have their own fuel. */
+TEST(functions_that_trace_meet_the_shape)
+{
+    static const char shade[] =
+        "%s" SHAPE_TEXT "vec3 shade(Surface s, Optics o, vec3 to_eye)\n{\n"
+        "    Surface met;\n    float distance;\n    vec3 sum = vec3(0.0);\n"
+        "    bool some = trace(off_surface(s, s.ng), s.ng, met, distance);\n"
+        "    return vec3(visible(s, s.ng, 5.0).x, some ? distance : 0.0, some ? met.ns.y : 0.0);\n"
+        "}\n";
+    static struct picture shape, real;
+    char text[4096];
+    whit_shader *shader;
+    snprintf(text, sizeof text, shade, "");
+    assert_int_equal(load(text, &shader), WHIT_OK);
+    assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, &shape), WHIT_OK);
+    whit_shader_destroy(shader);
+    assert_int_equal(load(strstr(text, "vec3 shade"), &shader), WHIT_OK);
+    assert_int_equal(draw(real_ball, shader, WHIT_NUMERICS_WATERTIGHT, &real), WHIT_OK);
+    whit_shader_destroy(shader);
+    compare(&shape, &real);
+}
+
+/* `part` is in the message. */
+static void expect_error(const char *content, whit_result wanted, const char *part)
+{
+    whit_shader *shader = NULL;
+    logged[0] = 0;
+    whit_result result = load(content, &shader);
+    if (result == WHIT_OK)
+        result = draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL);
+    if (result != wanted || !strstr(logged, part))
+        fail_msg("%d, `%s` in place of %d, `%s`", (int)result, logged, (int)wanted, part);
+    whit_shader_destroy(shader);
+}
+
+TEST(answers_that_are_no_shape_s_are_told)
+{
+    static const struct {
+        const char *content, *part;
+    } cases[] = {
+        {"//@ box -0.5 0.05 -0.7  0.9 0.8 0.7  0.000001 gold\n" INTERSECT MEET GIVE,
+         ":2: intersect() meets its shape outside of the box of `//@ box`, in pixel "},
+        {BOX INTERSECT MEET "    t = min(t, far * 0.5);\n" GIVE,
+         ":2: intersect() meets something else with a larger `far`, in pixel "},
+        {BOX "float count = 0.0;\n" INTERSECT MEET
+             "    count += 1.0;\n    t += count * 0.01;\n" GIVE,
+         ":3: intersect() meets something else with a larger `far`, in pixel "},
+        {BOX INTERSECT MEET "    t = sqrt(-1.0 - t * t);\n    return true;\n}\n",
+         ":2: intersect() gives what is no number, in pixel "},
+        {BOX INTERSECT
+         "    t = 0.5;\n    while (t > 0.0)\n        t += 1.0;\n    return false;\n}\n",
+         ":5: `//@ fuel N` gives it more than 10000"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
+        expect_error(cases[i].content, WHIT_ERROR_STATUS, cases[i].part);
+}
+
+TEST(files_with_half_a_shape_are_refused)
+{
+    static const struct {
+        const char *content, *part;
+    } cases[] = {
+        {INTERSECT MEET GIVE, ":1: intersect() needs `//@ box`"},
+        {BOX "vec3 miss(vec3 dir) { return dir; }\n", ":1: the box has no shape"},
+        {BOX BOX INTERSECT MEET GIVE, ":2: there is a box already, in line 1"},
+        {"//@ box 1 0 0 0 1 1 0.1\n" INTERSECT MEET GIVE,
+         ":1: a side of the box is a number from 1 to"},
+        {"//@ box 0 0 0 1 1 1 0\n" INTERSECT MEET GIVE, ":1: how far answers may be"},
+        {"//@ box 0 0 0 1 1 1 0.1 gold x\n" INTERSECT MEET GIVE, ":1: behind the box"},
+        {BOX INTERSECT "    Surface met;\n    return trace(origin, dir, met, t);\n}\n",
+         "recursion"},
+        {BOX INTERSECT "    Surface s;\n    normal = visible(s, dir, far);\n    return false;\n}\n",
+         "recursion"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
+        expect_error(cases[i].content, WHIT_ERROR_INPUT, cases[i].part);
+}
+
+int main(void)
+{
+    return unit_run(begin, end);
+}
