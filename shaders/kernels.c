@@ -2,6 +2,7 @@
 
 #include "kernel_closest.h"
 #include "kernel_closest_hooks.h"
+#include "kernel_miss_hooks.h"
 #include "kernel_present.h"
 #include "kernel_resolve.h"
 #include "kernel_resolve_hooks.h"
@@ -19,6 +20,7 @@ const struct kernel_code kernels[KERNEL_COUNT] = {
     [KERNEL_SHADE] = {"shade", kernel_shade, sizeof kernel_shade},
     [KERNEL_SHADOW] = {"shadow", kernel_shadow, sizeof kernel_shadow},
     [KERNEL_RESOLVE] = {"resolve", kernel_resolve, sizeof kernel_resolve},
+    [KERNEL_MISS] = {"miss", NULL, 0},
 };
 
 const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
@@ -26,5 +28,6 @@ const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
     [HOOK_KERNEL_SHADE] = {"shade", kernel_shade_hooks, sizeof kernel_shade_hooks},
     [HOOK_KERNEL_SHADOW] = {"shadow", kernel_shadow_hooks, sizeof kernel_shadow_hooks},
     [HOOK_KERNEL_RESOLVE] = {"resolve", kernel_resolve_hooks, sizeof kernel_resolve_hooks},
+    [HOOK_KERNEL_MISS] = {"miss", kernel_miss_hooks, sizeof kernel_miss_hooks},
     [HOOK_KERNEL_TEST] = {"test", kernel_test_hooks, sizeof kernel_test_hooks},
 };

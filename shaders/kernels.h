@@ -12,6 +12,7 @@ enum kernel {
     KERNEL_SHADE,
     KERNEL_SHADOW,
     KERNEL_RESOLVE,
+    KERNEL_MISS, /* there is none but of a user's functions */
     KERNEL_COUNT
 };
 
@@ -30,6 +31,7 @@ enum hook_kernel {
     HOOK_KERNEL_SHADE,
     HOOK_KERNEL_SHADOW,
     HOOK_KERNEL_RESOLVE,
+    HOOK_KERNEL_MISS,
     HOOK_KERNEL_TEST, /* runs tests of the user's file */
     HOOK_KERNEL_COUNT
 };

@@ -74,6 +74,7 @@ enum stage {
     STAGE_SHADOW_LATER,
     STAGE_RESOLVE, /* into pixels */
     STAGE_RESOLVE_LATER,
+    STAGE_MISS, /* of a user's function */
     STAGE_COUNT
 };
 
@@ -85,6 +86,7 @@ struct stage_set {
     uint32_t classes;           /* of materials, each with a shading kernel of its own */
     bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
     bool asks;                  /* whether hits ask lights, for stages of their own */
+    bool misses;                /* whether a stage of its own says what misses see */
 };
 
 /* How long each stage of the tile being drawn takes, see stage_times.c. */
@@ -347,7 +349,7 @@ void passes_finish(struct renderer *renderer);
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
-    bool asks;                  /* as of a set */
+    bool asks, misses;          /* as of a set */
     bool wanted[STAGE_COUNT];   /* a kernel of its own */
     enum stage of[STAGE_COUNT]; /* as of a set */
     struct variant_job stages[STAGE_COUNT];

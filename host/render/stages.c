@@ -46,12 +46,14 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     *job = (struct stages_job){.spec = *spec};
     /* A shading function of the user's has asked them itself, as all but catchers do. */
     job->asks = !shader_has(renderer->params.shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
+    job->misses = shader_has(renderer->params.shader, SHADER_HOOK_MISS);
     job->classes = own ? variant_classes(target) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
         bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
+                         (i != STAGE_MISS || job->misses) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
@@ -84,7 +86,7 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){.classes = job->classes, .asks = job->asks};
+    *out = (struct stage_set){.classes = job->classes, .asks = job->asks, .misses = job->misses};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
@@ -283,6 +285,7 @@ static uint32_t row_of(enum stage stage, uint32_t list)
 {
     static const uint32_t rows[STAGE_COUNT] = {
         [STAGE_CAMERA] = RENDER_STAGE_CAMERA,
+        [STAGE_MISS] = RENDER_STAGE_CAMERA,
         [STAGE_CLOSEST] = RENDER_STAGE_CLOSEST,
         [STAGE_SHADE] = RENDER_STAGE_SHADE,
         [STAGE_SHADOW] = RENDER_STAGE_SHADOW,
@@ -376,6 +379,8 @@ static whit_result record_generation(struct tile_run *run)
     const struct renderer *renderer = run->target->renderer;
     bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
     whit_result result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
+    if (result == WHIT_OK && run->target->stages.set.misses)
+        result = dispatch(run, STAGE_MISS, LIST_RAYS);
     if (result == WHIT_OK)
         result = dispatch(run, STAGE_SHADE, LIST_HITS);
     if (result == WHIT_OK && run->target->stages.set.classes > 1)

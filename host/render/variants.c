@@ -457,6 +457,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_SHADOW_LATER] = {KERNEL_SHADOW, "shadow later", true, 2},
         [STAGE_RESOLVE] = {KERNEL_RESOLVE, "resolve", false, 1},
         [STAGE_RESOLVE_LATER] = {KERNEL_RESOLVE, "resolve later", false, 2},
+        [STAGE_MISS] = {KERNEL_MISS, "miss", false, 3},
     };
     struct bindings bindings = bind_stages(target);
     *job = (struct variant_job){.spec = *set_spec};

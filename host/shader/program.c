@@ -24,11 +24,12 @@ static const struct {
     const char *path;
     uint32_t hooks;
 } kernel_table[SHADER_KERNEL_COUNT] = {
-    [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA) | BIT(MISS) | BIT(INTERSECT)},
+    [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA) | BIT(INTERSECT)},
     [SHADER_KERNEL_SHADE] = {"kernel/shade.comp", BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) |
                                                       BIT(SCATTER) | BIT(AOV) | BIT(INTERSECT)},
     [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA) | BIT(INTERSECT)},
     [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", BIT(POST)},
+    [SHADER_KERNEL_MISS] = {"kernel/miss.comp", BIT(MISS)},
     [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
 };
 _Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
@@ -302,7 +303,7 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
         if (kernel_table[i].hooks & shader->hooks)
             result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
-        else if (shader->stages && i != SHADER_KERNEL_TEST)
+        else if (shader->stages && i != SHADER_KERNEL_TEST && i != SHADER_KERNEL_MISS)
             result = compile_stage(compiler, shader, (enum shader_kernel)i, false,
                                    &shader->codes[i], errors);
     }

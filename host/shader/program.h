@@ -25,6 +25,7 @@ enum shader_kernel {
     SHADER_KERNEL_SHADE,
     SHADER_KERNEL_SHADOW,
     SHADER_KERNEL_RESOLVE,
+    SHADER_KERNEL_MISS,
     SHADER_KERNEL_TEST, /* of no picture: see tests.h */
     SHADER_KERNEL_COUNT
 };

@@ -30,6 +30,8 @@
 #define SUM_REFRACTED  0x10000000u
 #define SUM_STRAIGHT   0x20000000u
 #define SUM_REFLECTED  0x40000000u
+/* The ray has met nothing, and a user's miss() is to say what it sees, by the weight that is its sum. */
+#define SUM_MISSED 0x0fffffffu
 #define SUM_IS_CATCHER 0x80000000u /* its light, unweighted; without shadows in the first row of its hit */
 
 /* The lists of a generation: what waits for each stage. */

@@ -341,6 +341,15 @@ uint camera_item(uint r)
     return !is_queue_full() && at < camera_ray_count() ? at : ITEM_NONE;
 }
 
+// The id of a ray of the generation, of a dispatch over all of them; ITEM_NONE: there is none.
+uint traced_item(uint r)
+{
+    if (is_primary())
+        return camera_item(r);
+    uint item = own_item(r, chunk.ray_capacity);
+    return item == ITEM_NONE ? ITEM_NONE : place_in_tile(item);
+}
+
 // The sum of `wanted` over the invocations of the subgroup before this one; `all`: over all of them. All
 // invocations must be here.
 uint count_before(uint wanted, out uint all)

@@ -26,26 +26,17 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, 
 }
 #define miss whit_miss
 #include "../hook/miss.glsl"
+#undef miss
 #endif
 
 uint ray_slot[SPEC_PACKET_RAYS], ray_id[SPEC_PACKET_RAYS], ray_kind[SPEC_PACKET_RAYS];
 uvec4 ray_media_of[SPEC_PACKET_RAYS];
 vec3 ray_weight[SPEC_PACKET_RAYS];
 
-// The ray's id; ITEM_NONE: there is none.
-uint own_ray(uint r)
-{
-    if (SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u)
-        return deferred_item(r);
-    if (is_primary())
-        return camera_item(r);
-    uint item = own_item(r, chunk.ray_capacity);
-    return item == ITEM_NONE ? ITEM_NONE : place_in_tile(item);
-}
-
 void take_ray(uint r)
 {
-    uint id = own_ray(r);
+    bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
+    uint id = waited ? deferred_item(r) : traced_item(r);
     bool primary = is_primary(), alive = id != ITEM_NONE;
     id = alive ? id : 0u;
     alive = alive && (!primary || is_in_picture(slot_pixel(slot_of(id))));
@@ -101,19 +92,10 @@ bool leave_ray(uint r, bool alive)
     if (met)
         store_hit(ray_id[r], hit);
     vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // the largest float
-#ifdef HOOKS
-    hook_ray.origin = packet_origin[r];
-    hook_ray.dir = packet_dir[r];
-    hook_pixel = slot_pixel(ray_slot[r]);
-    hook_hit = hit;
-    begin_hook();
-#endif
-    vec3 sky = miss(packet_dir[r]) * weight;
-#ifdef HOOKS
-    end_hook(alive && !met);
-#endif
-    if (alive && !met)
-        store_sum(ray_id[r], sky, 0u);
+    const bool asked = (SPEC_HOOKS & HOOK_MISS) != 0u; // by miss.comp
+    vec3 sky = asked ? weight : whit_miss(packet_dir[r]) * weight;
+    if (alive && (asked || !met))
+        store_sum(ray_id[r], sky, asked && !met ? SUM_MISSED : 0u);
     if (SPEC_PROBE != 0u && alive)
         probe_traced(ray_id[r], packet_origin[r], packet_dir[r], packet_skip[r], ray_weight[r], weight,
                      sky, ray_media_of[r], hit);

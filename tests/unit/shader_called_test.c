@@ -123,6 +123,27 @@ TEST(what_is_not_asked_for_is_not_compiled)
     }
 }
 
+/* What is met nowhere is asked in a kernel of its own, of camera rays as of reflected ones. */
+TEST(misses_know_their_ray)
+{
+    uint64_t compiled;
+    uint32_t kernels, seen = 0, mirrored = 0;
+    whit_shader *shader =
+        load("vec3 miss(vec3 dir)\n{\n    return vec3(bounces(), ray_distance() > "
+             "1e30, length(dir));\n}\n");
+    whit_image *image = draw(shader, 0, &compiled, &kernels);
+    const float *color = whit_image_floats(image);
+    for (uint32_t i = 0; i < PIXELS; ++i, color += 4) {
+        bool straight = color[0] == 0.0f && color[1] == 1.0f;
+        seen += straight && color[2] > 0.999f && color[2] < 1.001f;
+        mirrored += color[0] > 0.5f && color[0] < 3.0f;
+    }
+    if (seen < PIXELS / 8 || mirrored < PIXELS / 50)
+        fail_msg("%u pixels see the sky, %u in a mirror", seen, mirrored);
+    whit_image_destroy(image);
+    whit_shader_destroy(shader);
+}
+
 /* What buffers and kernels follow from is the same in another version of a shader. */
 TEST(another_version_has_the_same_values_and_asks_for_the_same)
 {

@@ -1,0 +1,40 @@
+// What the rays of a generation see that have met nothing, where a user's function says so: in a kernel of its
+// own, which is small, so that the file's next version is soon made.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/probe.glsl"
+#include "../bind/queues.glsl"
+#include "../hook/declare.glsl"
+
+layout(local_size_x_id = 0) in;
+
+void main()
+{
+    load_frame();
+    begin_user();
+    uint id = traced_item(0u);
+    id = id == ITEM_NONE ? 0u : id;
+    vec4 own = fetch_sum(id);
+    bool alive = traced_item(0u) != ITEM_NONE && floatBitsToUint(own.w) == SUM_MISSED;
+    uint slot;
+    hook_ray = fetch_ray(id, slot);
+    alive = alive && (!is_primary() || is_in_picture(slot_pixel(slot)));
+    hook_pixel = slot_pixel(slot);
+    hook_hit = make_hit(FLOAT_LARGEST);
+    begin_hook();
+    vec3 sky = miss(hook_ray.dir) * own.rgb;
+    end_hook(alive);
+    if (alive)
+        store_sum(id, sky, 0u);
+    if (SPEC_PROBE != 0u && alive)
+        probe_added(id, sky, false);
+    if (alive)
+        report_status(hook_status);
+    report_hooks();
+}
