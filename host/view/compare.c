@@ -152,14 +152,9 @@ static void run_figures(void *context)
     }
     difference_measure(&sides[0], &sides[1], info.channels, (uint64_t)info.width * info.height,
                        &figures->difference);
-    if (info.channels > 1) {
-        whit_difference difference;
-        const whit_compare_params params = {0};
-        figures->has_flip = whit_image_compare(pair->color[0], pair->color[1], &params, NULL,
-                                               &difference, NULL) == WHIT_OK;
-        figures->flip_mean = difference.flip_mean;
-        figures->flip_largest = difference.flip_largest;
-    }
+    figures->has_flip =
+        info.channels > 1 && difference_flip(pair->color[0], pair->color[1], &figures->flip_mean,
+                                             &figures->flip_largest);
     figures->known = true;
     atomic_store(&job->done, true);
     window_wake(NULL);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "whit/whit_compare.h"
+
 static void measure_ids(const uint32_t *p, const uint32_t *q, struct difference *out)
 {
     for (uint64_t i = 0; i < out->pixels; ++i)
@@ -36,4 +38,15 @@ void difference_measure(const struct difference_side *a, const struct difference
         measure_ids(a->ids, b->ids, out);
     if (a->color && b->color)
         measure_colors(a->color, b->color, channels, out);
+}
+
+bool difference_flip(const whit_image *a, const whit_image *b, double *mean, double *largest)
+{
+    whit_difference difference;
+    const whit_compare_params params = {0};
+    bool known = whit_image_compare(a, b, &params, NULL, &difference, NULL) == WHIT_OK;
+    *mean = known ? difference.flip_mean : 0.0;
+    if (largest)
+        *largest = known ? difference.flip_largest : 0.0;
+    return known;
 }

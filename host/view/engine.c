@@ -116,12 +116,17 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
     struct engine_change change = engine->change; /* which no other thread writes */
-    bool same = engine_is_same(&engine->last, frame);
-    engine_compare(&engine->last, frame, &change);
+    struct engine_kept before = engine->last;
+    bool same = engine_is_same(&before, frame);
+    engine_compare(&before, frame, &change);
+    engine->last = (struct engine_kept){0};
     engine_keep(&engine->last, frame);
     pthread_mutex_lock(&engine->lock);
+    bool compared = change.number != engine->change.number;
     engine->change = change;
+    engine_reload_note(engine, &before, &frame->settings, compared ? &change.difference : NULL);
     pthread_mutex_unlock(&engine->lock);
+    engine_kept_finish(&before);
     return same;
 }
 
@@ -338,6 +343,7 @@ static void run_engine(void *context)
             probe_one(engine);
             drew = true;
         }
+        drew = drew || engine_reload_step(engine);
         struct engine_lane *lane = drew || engine->quit ? NULL : engine_refine_lane(engine);
         if (lane) {
             engine_refine_one(engine, lane);
@@ -408,6 +414,8 @@ uint32_t engine_destroy(struct engine *engine)
         engine_frame_finish(&engine->lanes[i].frame);
     engine_kept_finish(&engine->last);
     engine_kept_finish(&engine->other);
+    engine_kept_finish(&engine->reloading.before);
+    engine_flip_destroy(engine->flip);
     for (int i = 0; i < ENGINE_LANES; ++i)
         engine_refine_stop(&engine->refine[i]);
     for (int i = 0; i < 2; ++i)
@@ -427,6 +435,7 @@ static void ask(struct engine *engine, struct engine_lane *lane, const struct se
     if (same && lane->moving == moving)
         return;
     engine_refine_pause(engine);
+    engine_reload_stop(engine);
     if (!same) {
         ++lane->asked;
         lane->asked_ms = whit_clock_ms();
@@ -486,8 +495,10 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         .result = engine->result,
         .device_lost = engine->device_lost,
         .change = engine->change,
+        .reload = engine->reload,
     };
-    if (engine->drawing && !engine->refining) { /* that is no work that anybody waits for */
+    if (engine->drawing && !engine->refining &&
+        !engine->timing) { /* that is no work that anybody waits for */
         status->drawing_ms = whit_clock_ms() - engine->drawing_since_ms;
         status->part = atomic_load(&engine->drawing->part);
     }
@@ -518,6 +529,7 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y)
     engine->probe_x = x;
     engine->probe_y = y;
     engine_refine_pause(engine);
+    engine_reload_stop(engine);
     pthread_cond_signal(&engine->work);
     pthread_mutex_unlock(&engine->lock);
 }

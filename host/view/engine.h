@@ -3,6 +3,8 @@
 #ifndef VIEW_ENGINE_H
 #define VIEW_ENGINE_H
 
+#include "base/sample.h"
+#include "view/difference.h"
 #include "view/session.h"
 #include "whit/whit_program.h"
 
@@ -87,11 +89,24 @@ struct engine_change {
     uint64_t number;          /* counts up; 0: none yet */
     struct settings settings; /* after it */
     char what[128];           /* "traversal distance -> sign" */
-    uint64_t pixels;          /* of both pictures */
-    uint64_t other_ids;       /* pixels that hit something else */
-    uint64_t other_colors;
-    double largest, mean;       /* difference of a channel, linear */
+    struct difference difference;
     double before_ms, after_ms; /* of drawing, on the device where it measures */
+};
+
+/* What a new version of the shader makes of the window's picture, beside the version before. Both
+   are still there: what is not known at once is measured while nothing else is to be done. */
+struct engine_reload {
+    uint64_t number;          /* counts up; 0: none yet */
+    struct settings settings; /* of the first whole picture after it */
+    bool compared;   /* with the last whole picture before, as all other settings are equal */
+    bool has_colors; /* both are of colours */
+    struct difference difference;
+    bool has_flip; /* `flip`: the mean over all pixels */
+    double flip;
+    bool over;               /* nothing more will be known */
+    struct sample_median ms; /* by how much a whole picture takes longer, of pairs that were drawn
+                                in turns; count 0: not measured */
+    const char *why;         /* it was not; "": it was, or may be yet */
 };
 
 struct engine_status {
@@ -106,6 +121,7 @@ struct engine_status {
     whit_result result; /* of `error`; once there is none any more, of the last one */
     bool device_lost;
     struct engine_change change; /* the last one */
+    struct engine_reload reload; /* likewise */
 };
 void engine_get_status(struct engine *engine, struct engine_status *status);
 
@@ -129,6 +145,9 @@ void engine_probe_finish(struct engine_probe *probe);
 void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y);
 /* As engine_take. */
 bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
+
+/* Something else comes first: what is not known of a reload by now will not be measured. */
+void engine_stop_reload(struct engine *engine);
 
 /* True when nothing is left to do: the whole picture of what was last asked for was taken, or there
    is an error, and memory that is free was given back. Never while something moves. */

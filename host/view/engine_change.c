@@ -63,11 +63,7 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
     *change = (struct engine_change){
         .number = change->number + 1,
         .settings = after->settings,
-        .pixels = difference.pixels,
-        .other_ids = difference.other_ids,
-        .other_colors = difference.other_colors,
-        .largest = difference.largest,
-        .mean = difference.mean,
+        .difference = difference,
         .before_ms = engine_drawn_ms(&before->stats),
         .after_ms = engine_drawn_ms(&after->stats),
     };

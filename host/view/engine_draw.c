@@ -253,6 +253,21 @@ whit_result engine_draw_step(const struct engine_task *task, const whit_step *st
     return result;
 }
 
+static whit_result draw_as(struct session *session, const whit_renderer_params *params)
+{
+    whit_result result = whit_renderer_set_view(session->renderer, params);
+    return result == WHIT_OK ? whit_renderer_render(session->renderer) : result;
+}
+
+whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats)
+{
+    const whit_renderer_params params = task_params(task);
+    whit_result result = draw_as(task->session, &params);
+    if (result == WHIT_OK)
+        whit_renderer_get_stats(task->session->renderer, stats);
+    return result;
+}
+
 whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame)
 {
     struct session *session = task->session;
@@ -266,9 +281,7 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     session->step = engine_show_step;
     session->step_user = (void *)task;
     double start_ms = whit_clock_ms();
-    whit_result result = whit_renderer_set_view(session->renderer, &params);
-    if (result == WHIT_OK)
-        result = whit_renderer_render(session->renderer);
+    whit_result result = draw_as(session, &params);
     session->step = NULL;
     if (result == WHIT_OK)
         result = read_picture(task, frame);

@@ -77,10 +77,34 @@ struct engine_refine {
     uint32_t estimate_count;
 };
 
+/* FLIP of the first whole picture of a new version of the shader, in a thread of its own. */
+struct engine_flip {
+    struct engine *engine;
+    struct thread *thread;
+    uint64_t number;         /* of the reload */
+    struct engine_kept kept; /* before it */
+    whit_image *after;
+    bool known, done; /* done: under the lock */
+    double mean;
+};
+
+/* What is measured of a reload; of the drawing thread. */
+struct engine_reloading {
+    struct engine_kept before;   /* the picture that FLIP is still missing of; without ids: none */
+    struct settings settings[2]; /* of the picture by the version before and by the new one */
+    struct sample_runs ms[2];
+    double start_ms;
+    bool stopped; /* something else came first */
+};
+
 struct engine {
     struct engine_params params;
     struct engine_refine refine[ENGINE_LANES];
     bool refining; /* something of it is being drawn */
+    struct engine_reload reload;
+    struct engine_reloading reloading;
+    struct engine_flip *flip; /* NULL: not at work */
+    bool timing;              /* a picture of `reloading` is being drawn */
     pthread_mutex_t lock;
     pthread_cond_t work, news;
     struct thread *thread;
@@ -174,6 +198,20 @@ void engine_refine_one(struct engine *engine, struct engine_lane *lane);
 void engine_refine_restart(struct engine *engine, struct engine_lane *lane);
 /* With the lock. What is asked for comes first; what was being drawn is drawn again later. */
 void engine_refine_pause(struct engine *engine);
+
+/* The picture of a task once more, for its times alone. Of the drawing thread, without the lock. */
+WHIT_CHECK whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats);
+
+/* engine_reload.c, of the drawing thread, with the lock. There is a whole picture of settings
+   `after`, and before it there was *before, which it may take; `difference`: between them, NULL
+   where they are not of one place. */
+void engine_reload_note(struct engine *engine, struct engine_kept *before,
+                        const struct settings *after, const struct difference *difference);
+/* Measures, where there is something to measure and nothing else to do; gives the lock back
+   meanwhile. False: there was not. */
+bool engine_reload_step(struct engine *engine);
+void engine_reload_stop(struct engine *engine); /* with the lock: engine_stop_reload */
+void engine_flip_destroy(struct engine_flip *flip);
 
 /* engine_change.c: what differs between two whole pictures of one place; *change stays where they
    are none, or differ in nothing that has a name. */

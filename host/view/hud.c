@@ -171,17 +171,22 @@ static void draw_change(const struct view *view)
         ui_text("%.*s", length < 46 ? length : 46, at);
         at += length + (end ? 2 : 0);
     }
-    ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
-    if (c->other_ids == 0 && c->other_colors == 0) {
+    if (view->shaders.line[0])
+        ui_text("%s", view->shaders.line);
+    else
+        ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
+    if (c->difference.other_ids == 0 && c->difference.other_colors == 0) {
         ui_text_color(COLOR_GOOD, "same picture");
         return;
     }
-    ui_text_color(c->other_ids ? COLOR_WARNING : COLOR_GOOD, "%llu of %llu pixels changed",
-                  (unsigned long long)c->other_ids, (unsigned long long)c->pixels);
+    ui_text_color(c->difference.other_ids ? COLOR_WARNING : COLOR_GOOD,
+                  "%llu of %llu pixels changed", (unsigned long long)c->difference.other_ids,
+                  (unsigned long long)c->difference.pixels);
     ui_text_beside(COLOR_TEXT, "what they hit,");
-    if (c->other_colors > 0)
-        ui_text("%llu colours by up to %.3g, %.2g on average", (unsigned long long)c->other_colors,
-                c->largest, c->mean);
+    if (c->difference.other_colors > 0)
+        ui_text("%llu colours by up to %.3g, %.2g on average",
+                (unsigned long long)c->difference.other_colors, c->difference.largest,
+                c->difference.mean);
     else
         ui_text("0 colours");
 }

@@ -151,6 +151,8 @@ static void on_size(struct view *view, const struct view_event *event)
 
 void input_event(struct view *view, const struct view_event *event)
 {
+    if (event->kind != EVENT_REFRESH)
+        engine_stop_reload(view->engine);
     switch (event->kind) {
     case EVENT_KEY:
         on_key(view, event);

@@ -306,8 +306,8 @@ void panels_step(struct view *view)
                                   .added = (view->frame.effects >> index & 1) != 0,
                                   .before_ms = change->before_ms,
                                   .after_ms = change->after_ms,
-                                  .other_colors = change->other_colors,
-                                  .pixels = change->pixels};
+                                  .other_colors = change->difference.other_colors,
+                                  .pixels = change->difference.pixels};
     }
     panels->pending = 0;
 }

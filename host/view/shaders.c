@@ -1,5 +1,6 @@
 #include "view/shaders.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -44,9 +45,10 @@ void shaders_watch(struct view *view)
     struct shaders *shaders = &view->shaders;
     if (!watch_changed(shaders->watch))
         return;
-    shaders->read_ms = whit_clock_ms();
-    shaders->error[0] = '\0';
+    shaders->error[0] = shaders->line[0] = '\0';
     view->settings.shader_reload = ++view->reloads;
+    shaders->wait = (struct shaders_wait){.saved_ms = whit_clock_ms(), .asked = view->settings};
+    engine_stop_reload(view->engine);
     view->dirty = true;
 }
 
@@ -82,25 +84,84 @@ void shaders_refuse(struct view *view)
 
 /* ---- What a reload changed ---- */
 
+/* "1,204" */
+static void write_count(uint64_t count, char text[32])
+{
+    char digits[24];
+    int length = snprintf(digits, sizeof digits, "%llu", (unsigned long long)count);
+    for (int i = 0; i < length; ++i) {
+        *text++ = digits[i];
+        if ((length - i) % 3 == 1 && i + 1 < length)
+            *text++ = ',';
+    }
+    *text = '\0';
+}
+
+WHIT_PRINTF(2, 3)
+static void add(char line[SHADERS_LINE], const char *format, ...)
+{
+    va_list args;
+    size_t used = strlen(line);
+    va_start(args, format);
+    vsnprintf(line + used, SHADERS_LINE - used, format, args);
+    va_end(args);
+}
+
+void shaders_say(const struct engine_reload *reload, const struct shaders_wait *wait,
+                 char line[SHADERS_LINE])
+{
+    const struct difference *difference = &reload->difference;
+    char count[32];
+    line[0] = '\0';
+    if (reload->ms.count > 0)
+        add(line, "%+.2f ms [%.2f, %.2f]", reload->ms.median, reload->ms.low, reload->ms.high);
+    else
+        add(line, "time not measured: %s", reload->why);
+    write_count(difference->other_colors, count);
+    if (reload->compared && reload->has_colors)
+        add(line, "  %s pixels other", count);
+    if (reload->has_flip)
+        add(line, "  FLIP %.3f", reload->flip);
+    write_count(difference->other_ids, count);
+    if (reload->compared)
+        add(line, "  %s", difference->other_ids == 0 ? "ids equal" : "");
+    if (reload->compared && difference->other_ids > 0)
+        add(line, "%s ids other", count);
+    if (wait->first_ms > 0.0)
+        add(line, "  preview %.0f ms", wait->first_ms);
+    if (wait->whole_ms > 0.0)
+        add(line, ", whole %.1f s", wait->whole_ms * 1e-3);
+}
+
+void shaders_shown(struct view *view)
+{
+    struct shaders_wait *wait = &view->shaders.wait;
+    const struct engine_frame *frame = &view->frame;
+    double passed_ms = whit_clock_ms() - wait->saved_ms;
+    if (wait->saved_ms <= 0.0 || frame->settings.shader_reload != wait->asked.shader_reload)
+        return;
+    if (wait->first_ms <= 0.0)
+        wait->first_ms = passed_ms;
+    if (frame->whole && wait->whole_ms <= 0.0 && settings_same(&frame->settings, &wait->asked))
+        wait->whole_ms = passed_ms;
+}
+
 void shaders_step(struct view *view)
 {
     struct shaders *shaders = &view->shaders;
-    const struct engine_change *change = &view->status.change;
-    if (shaders->change == change->number)
+    const struct engine_reload *reload = &view->status.reload;
+    if (shaders->reload == reload->number || !reload->over)
         return;
-    shaders->change = change->number;
-    if (shaders->read_ms <= 0.0 || change->settings.shader_reload != view->settings.shader_reload)
+    shaders->reload = reload->number;
+    if (shaders->wait.saved_ms <= 0.0 ||
+        reload->settings.shader_reload != shaders->wait.asked.shader_reload)
         return;
     const char *name = view->settings.shader[0] ? path_name(view->settings.shader) : "stages";
-    char line[256];
-    snprintf(line, sizeof line,
-             "%+.2f ms, %llu of %llu pixels other, ids %s, %.2f s after the file",
-             change->after_ms - change->before_ms, (unsigned long long)change->other_colors,
-             (unsigned long long)change->pixels, change->other_ids ? "other" : "equal",
-             (whit_clock_ms() - shaders->read_ms) * 1e-3);
-    shaders->read_ms = 0.0;
-    log_info(&view->log, "%s: %s", name, line);
-    view_say(view, "%s: %s", name, line);
+    shaders_say(reload, &shaders->wait, shaders->line);
+    shaders->wait.saved_ms = 0.0;
+    log_info(&view->log, "%s: %s", name, shaders->line);
+    if (reload->ms.count > 0 || !view->toast[0]) /* what a key said, which ended it, stays */
+        view_say(view, "%s: %s", name, shaders->line);
 }
 
 /* ---- Sliders ---- */

@@ -53,6 +53,7 @@ static json_t *shader_json(const struct shaders *shaders)
     put_text(object, "hash", hash);
     put_count(object, "files", shown->info.file_count);
     put_count(object, "sliders", shown->info.slider_count);
+    put_text(object, "changed", shaders->line);
     return object;
 }
 
@@ -91,10 +92,10 @@ static json_t *change_json(const struct engine_change *change)
     json_t *object = json_object();
     put_count(object, "number", change->number);
     put_text(object, "what", change->what);
-    put_count(object, "pixels", change->pixels);
-    put_count(object, "other_ids", change->other_ids);
-    put_count(object, "other_colors", change->other_colors);
-    put_number(object, "largest", change->largest);
+    put_count(object, "pixels", change->difference.pixels);
+    put_count(object, "other_ids", change->difference.other_ids);
+    put_count(object, "other_colors", change->difference.other_colors);
+    put_number(object, "largest", change->difference.largest);
     return object;
 }
 

@@ -180,7 +180,8 @@ static whit_result take_status(struct view *view)
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
     if (old.stage != view->status.stage || strcmp(old.error, view->status.error) != 0 ||
-        old.change.number != view->status.change.number || old.drawing != view->status.drawing ||
+        old.change.number != view->status.change.number ||
+        old.reload.over != view->status.reload.over || old.drawing != view->status.drawing ||
         is_progress_due(view))
         view->dirty = true;
     /* Hidden, it is asked for nothing: the failure is that of something older. */
@@ -266,6 +267,7 @@ static whit_result draw_window(struct view *view)
     if (result == WHIT_OK && shown && view->picture_set) {
         ++view->shown;
         measure_shown(view);
+        shaders_shown(view);
     }
     return result == WHIT_OK && shown && keep ? keep_shot(view) : result;
 }
@@ -332,6 +334,8 @@ static void ask(struct view *view)
         engine_set_refine(view->engine, view->settings.refines && prices_are_still(view->prices) &&
                                             prices_are_still(view->panels.measured) &&
                                             wish_is_still(view));
+    if (!prices_are_still(view->prices) || !prices_are_still(view->panels.measured))
+        engine_stop_reload(view->engine);
 }
 
 static whit_result step(struct view *view)

@@ -40,7 +40,8 @@ until error
 broken: press R | error has live/part/tint.glsl:2: | frame.pixels as red | frame.ids as start | shader.hash = $red
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
 until error = $NONE
-mended: | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
+until shader.changed
+mended: | shader.changed has ms [ | shader.changed has ids equal  preview | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
 beside: press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors > 100
 alone: press I | compare.mode = off
 until shader.hash = $violet
@@ -69,7 +70,7 @@ wait $viewer
 check "exit code 0" test $? -eq 0
 check "the error is said once" test "$(grep -c 'error: live/part/tint.glsl:2: ' "$OUT/stderr")" -eq 1
 check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 1
-check "each change is said" grep -q "note: a.glsl: .* pixels other, ids equal" "$OUT/stderr"
+check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
 mv "$OUT/read" "$OUT/states"
 read_states
 as_wanted

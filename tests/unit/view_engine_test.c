@@ -300,7 +300,7 @@ TEST(a_switch_keeps_the_picture)
     engine_get_status(engine, &status);
     assert_true(frame.whole);
     assert_int_equal(status.change.number, 1);
-    assert_int_equal(status.change.other_ids, 0);
+    assert_int_equal(status.change.difference.other_ids, 0);
     close_engine(engine, &frame);
 }
 

@@ -1,0 +1,224 @@
+/* What a new version of the shader makes of the picture. Both versions keep their sessions, so that
+   what a save changed is measured while nothing else is to be done. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/difference.h"
+#include "view/engine_private.h"
+
+/* Of 9 pairs the interval goes from the second to the eighth difference; 6 are the fewest that an
+   interval of 95 % takes (base/sample.h). */
+enum { PAIRS = 9, PAIRS_MIN = 6 };
+static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3; /* for 6 pairs; for as many as there are */
+static const char STOPPED[] = "something else came first";
+
+/* ---- How different they look ---- */
+
+static whit_result copy_picture(const struct engine_kept *kept, whit_image **image)
+{
+    const whit_renderer_params params = settings_picture(&kept->settings);
+    whit_result result = whit_image_create(kept->width, kept->height, 4, kept->color, image);
+    if (result == WHIT_OK)
+        whit_image_display_as(*image, &params);
+    return result;
+}
+
+static void run_flip(void *context)
+{
+    struct engine_flip *flip = context;
+    struct engine *engine = flip->engine;
+    whit_image *before = NULL;
+    flip->known = copy_picture(&flip->kept, &before) == WHIT_OK &&
+                  difference_flip(before, flip->after, &flip->mean, NULL);
+    whit_image_destroy(before);
+    pthread_mutex_lock(&engine->lock);
+    flip->done = true;
+    pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+void engine_flip_destroy(struct engine_flip *flip)
+{
+    if (!flip)
+        return;
+    thread_join(flip->thread);
+    engine_kept_finish(&flip->kept);
+    whit_image_destroy(flip->after);
+    free(flip);
+}
+
+/* Of copies: whoever asks for something else meanwhile does not wait for it. With the lock, which
+   it gives back meanwhile. */
+static void start_flip(struct engine *engine)
+{
+    struct engine_flip *flip = calloc(1, sizeof *flip);
+    struct engine_kept kept = engine->reloading.before;
+    engine->reloading.before = (struct engine_kept){0};
+    if (!flip) {
+        engine_kept_finish(&kept);
+        return;
+    }
+    *flip = (struct engine_flip){.engine = engine, .number = engine->reload.number, .kept = kept};
+    pthread_mutex_unlock(&engine->lock);
+    if (engine->last.color && copy_picture(&engine->last, &flip->after) == WHIT_OK)
+        flip->thread = thread_start(run_flip, flip);
+    pthread_mutex_lock(&engine->lock);
+    if (flip->thread)
+        engine->flip = flip;
+    else
+        engine_flip_destroy(flip);
+}
+
+static void reap_flip(struct engine *engine)
+{
+    struct engine_flip *flip = engine->flip;
+    if (!flip || !flip->done)
+        return;
+    if (flip->number == engine->reload.number) {
+        engine->reload.has_flip = flip->known;
+        engine->reload.flip = flip->mean;
+    }
+    engine->flip = NULL;
+    engine_flip_destroy(flip);
+    engine_wake(engine);
+}
+
+/* ---- How long they take ---- */
+
+static bool is_idle(const struct engine *engine)
+{
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        const struct engine_lane *lane = &engine->lanes[i];
+        if (!engine_is_done(lane) || (lane->wanted && (lane->moving || lane->failed)) ||
+            lane->frame.number > 0)
+            return false;
+    }
+    return !engine->quit && !engine->job && !engine->probe_wanted;
+}
+
+static void end_reload(struct engine *engine, const char *why)
+{
+    engine->reload.over = true;
+    engine->reload.why = why;
+    engine_kept_finish(&engine->reloading.before);
+    engine_wake(engine);
+}
+
+/* One picture of one version; with the lock, which it gives back meanwhile. */
+static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
+{
+    struct engine *engine = user;
+    struct engine_reloading *reloading = &engine->reloading;
+    struct engine_task task = {.settings = reloading->settings[way],
+                               .quality = ENGINE_WHOLE,
+                               .divisor = 1,
+                               .session = engine_find_session(engine, &reloading->settings[way])};
+    whit_stats stats;
+    double spent_ms = whit_clock_ms() - reloading->start_ms;
+    if (!task.session || !is_idle(engine) || reloading->stopped)
+        return WHIT_ERROR_CANCELLED;
+    if (spent_ms > PATIENCE_MS || (round >= PAIRS_MIN && spent_ms > ENOUGH_MS))
+        return WHIT_ERROR_CANCELLED;
+    task.session->cancel = false;
+    engine->drawing = task.session;
+    engine->timing = true;
+    engine->brief = false;
+    pthread_mutex_unlock(&engine->lock);
+    whit_result result = engine_draw_again(&task, &stats);
+    pthread_mutex_lock(&engine->lock);
+    engine->drawing = NULL;
+    engine->timing = false;
+    if (result == WHIT_OK)
+        sample_add(&reloading->ms[way], engine_drawn_ms(&stats));
+    else if (result == WHIT_ERROR_DEVICE)
+        engine_lose_device(engine, task.session);
+    return result;
+}
+
+/* Of too few pairs. */
+static const char *why_not(const struct engine *engine, whit_result result)
+{
+    const struct engine_reloading *reloading = &engine->reloading;
+    if (!engine_find_session(engine, &reloading->settings[0]))
+        return "the version before is gone";
+    if (reloading->stopped || !is_idle(engine))
+        return STOPPED;
+    return result == WHIT_ERROR_CANCELLED ? "pictures take too long" : "a picture failed";
+}
+
+static void measure_times(struct engine *engine)
+{
+    struct engine_reloading *reloading = &engine->reloading;
+    double differences[PAIRS];
+    struct sample_runs *before = &reloading->ms[0], *after = &reloading->ms[1];
+    before->count = after->count = 0;
+    reloading->start_ms = whit_clock_ms();
+    whit_result result = sample_in_turns(2, PAIRS, draw_turn, engine);
+    uint32_t pairs = before->count < after->count ? before->count : after->count;
+    if (pairs < PAIRS_MIN) {
+        end_reload(engine, why_not(engine, result));
+        return;
+    }
+    (void)sample_compare(after->values, before->values, pairs, differences, &engine->reload.ms);
+    end_reload(engine, "");
+}
+
+/* ---- When ---- */
+
+bool engine_reload_step(struct engine *engine)
+{
+    struct engine_reloading *reloading = &engine->reloading;
+    reap_flip(engine);
+    if (engine->reload.number == 0 || engine->reload.over || !is_idle(engine))
+        return false;
+    if (engine->flip)
+        return false; /* it signals its end */
+    if (reloading->before.color) {
+        start_flip(engine);
+        return true;
+    }
+    measure_times(engine);
+    return true;
+}
+
+void engine_reload_note(struct engine *engine, struct engine_kept *before,
+                        const struct settings *after, const struct difference *difference)
+{
+    struct engine_reloading *reloading = &engine->reloading;
+    struct settings same = *after;
+    same.shader_reload = before->settings.shader_reload;
+    if (!before->ids || after->shader_reload <= before->settings.shader_reload ||
+        !settings_same_shader(&same, &before->settings))
+        return;
+    engine_kept_finish(&reloading->before);
+    reloading->settings[0] = same;
+    reloading->settings[1] = *after;
+    reloading->stopped = false;
+    engine->reload =
+        (struct engine_reload){.number = engine->reload.number + 1, .settings = *after, .why = ""};
+    if (!difference || !settings_same(&same, &before->settings))
+        return;
+    engine->reload.compared = true;
+    engine->reload.has_colors = before->color && after->paint == PAINT_COLOR;
+    engine->reload.difference = *difference;
+    reloading->before = *before;
+    *before = (struct engine_kept){.settings = before->settings};
+}
+
+void engine_reload_stop(struct engine *engine)
+{
+    if (engine->reload.number == 0 || engine->reload.over)
+        return;
+    engine->reloading.stopped = true;
+    if (engine->timing)
+        engine->drawing->cancel = true;
+    else
+        end_reload(engine, STOPPED);
+}
+
+void engine_stop_reload(struct engine *engine)
+{
+    pthread_mutex_lock(&engine->lock);
+    engine_reload_stop(engine);
+    pthread_mutex_unlock(&engine->lock);
+}

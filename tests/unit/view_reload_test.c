@@ -1,0 +1,172 @@
+/* A file of functions that is saved while the engine shows it: what is said of the change. */
+#include "base/clock.h"
+#include "folder_fixture.h"
+#include "view/shaders.h"
+#include "whit/whit_compare.h"
+
+enum { WIDTH = 96, HEIGHT = 64 };
+static const double PATIENCE_MS = 60e3;
+
+static whit_shader_compiler *compiler;
+static struct engine *engine;
+static struct settings settings;
+static struct engine_frame frame;
+
+static void save(const char *text)
+{
+    FILE *to = fopen(settings.shader, "w");
+    assert_non_null(to);
+    fputs(text, to);
+    assert_int_equal(fclose(to), 0);
+}
+
+static struct engine_status status_now(void)
+{
+    struct engine_status status;
+    engine_get_status(engine, &status);
+    return status;
+}
+
+/* Takes pictures until there is nothing to be done, and nothing to be measured where `measured`. */
+static void take_all(bool measured)
+{
+    double start_ms = clock_ms();
+    while (!engine_is_still(engine) || (measured && !status_now().reload.over)) {
+        engine_wait(engine, 5.0);
+        (void)engine_take(engine, false, &frame);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
+    }
+    (void)engine_take(engine, false, &frame);
+    assert_true(frame.whole);
+}
+
+static void ask(const char *text)
+{
+    save(text);
+    ++settings.shader_reload;
+    engine_ask(engine, &settings, false);
+}
+
+static int begin(void **state)
+{
+    if (folder_begin(state) != 0)
+        return -1;
+    settings = (struct settings){.picture = {.width = WIDTH, .height = HEIGHT}};
+    snprintf(settings.scene, sizeof settings.scene, "%s/cube.json", WHIT_SCENES_DIR);
+    snprintf(settings.shader, sizeof settings.shader, "%s/a.glsl", folder);
+    frame = (struct engine_frame){0};
+    const whit_log silent = {0};
+    assert_int_equal(whit_shader_compiler_create(NULL, &silent, &compiler), WHIT_OK);
+    const struct engine_params params = {.compiler = compiler};
+    assert_int_equal(engine_create(&params, &engine), WHIT_OK);
+    save("vec3 post(ivec2 at, vec3 color) { return color; }\n");
+    engine_ask(engine, &settings, false);
+    take_all(false);
+    assert_int_equal(status_now().reload.number, 0);
+    return 0;
+}
+
+static int end(void **state)
+{
+    engine_frame_finish(&frame);
+    assert_int_equal(engine_destroy(engine), 0);
+    whit_shader_compiler_destroy(compiler);
+    return folder_end(state);
+}
+
+static double flip_of(const whit_image *a, const whit_image *b)
+{
+    whit_difference difference;
+    const whit_compare_params params = {0};
+    assert_int_equal(whit_image_compare(a, b, &params, NULL, &difference, NULL), WHIT_OK);
+    return difference.flip_mean;
+}
+
+/* A column of pixels is another one, and what they hit is the same. */
+TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
+{
+    struct engine_frame before = frame;
+    frame = (struct engine_frame){.number = before.number};
+    ask("vec3 post(ivec2 at, vec3 color) { return at.x == 40 ? vec3(0.5) : color; }\n");
+    take_all(true);
+    const struct engine_reload reload = status_now().reload;
+    assert_int_equal(reload.number, 1);
+    assert_true(reload.compared && reload.has_colors && reload.has_flip);
+    assert_int_equal(reload.difference.pixels, WIDTH * HEIGHT);
+    assert_int_equal(reload.difference.other_colors, HEIGHT);
+    assert_int_equal(reload.difference.other_ids, 0);
+    assert_true(reload.flip > 0.0 && reload.flip == flip_of(before.color, frame.color));
+    assert_string_equal(reload.why, "");
+    assert_true(reload.ms.count >= 6 && reload.ms.coverage >= 0.95);
+    assert_true(reload.ms.low <= reload.ms.median && reload.ms.median <= reload.ms.high);
+    /* What was measured left the picture and its session as they are. */
+    engine_frame_finish(&before);
+    before = frame;
+    frame = (struct engine_frame){.number = before.number};
+    settings.picture.exposure_ev = 1.0;
+    engine_ask(engine, &settings, false);
+    take_all(false);
+    settings.picture.exposure_ev = 0.0;
+    engine_ask(engine, &settings, false);
+    take_all(false);
+    assert_memory_equal(before.rgba, frame.rgba, (size_t)WIDTH * HEIGHT * 4);
+    assert_int_equal(status_now().reload.number, 1);
+    engine_frame_finish(&before);
+}
+
+/* What is asked for comes first: nothing is guessed of what was not measured. */
+TEST_IN(measuring_gives_way, begin, end)
+{
+    double start_ms = clock_ms();
+    ask("vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
+    while (status_now().reload.number == 0) /* its picture is not taken: it has not begun */
+    {
+        engine_wait(engine, 1.0);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS);
+    }
+    engine_stop_reload(engine);
+    struct engine_reload reload = status_now().reload;
+    assert_true(reload.over && reload.compared && !reload.has_flip);
+    assert_int_equal(reload.ms.count, 0);
+    assert_string_equal(reload.why, "something else came first");
+    take_all(true);
+    assert_int_equal(status_now().reload.ms.count, 0);
+
+    /* By other settings there is nothing to compare with, but both can be drawn by these. */
+    settings.picture.exposure_ev = 1.0;
+    ask("vec3 post(ivec2 at, vec3 color) { return color.grb; }\n");
+    while (status_now().reload.number == 1)
+        take_all(false);
+    take_all(true);
+    reload = status_now().reload;
+    assert_int_equal(reload.number, 2);
+    assert_false(reload.compared || reload.has_flip);
+    assert_true(reload.ms.count >= 6);
+}
+
+TEST(what_a_save_changed_is_one_line)
+{
+    char line[SHADERS_LINE];
+    struct engine_reload reload = {.compared = true,
+                                   .has_colors = true,
+                                   .difference = {.pixels = 921600, .other_colors = 1204},
+                                   .has_flip = true,
+                                   .flip = 0.0031,
+                                   .ms = {.median = 0.41, .low = 0.36, .high = 0.47, .count = 9},
+                                   .why = ""};
+    struct shaders_wait wait = {.first_ms = 82.3, .whole_ms = 402.0};
+    shaders_say(&reload, &wait, line);
+    assert_string_equal(line, "+0.41 ms [0.36, 0.47]  1,204 pixels other  FLIP 0.003  ids equal  "
+                              "preview 82 ms, whole 0.4 s");
+    reload.ms = (struct sample_median){.median = -0.4, .low = -1.0, .high = 0.2, .count = 6};
+    reload.difference.other_colors = 921600;
+    reload.difference.other_ids = 12;
+    reload.has_flip = false;
+    wait.whole_ms = 0.0;
+    shaders_say(&reload, &wait, line);
+    assert_string_equal(line, "-0.40 ms [-1.00, 0.20]  921,600 pixels other  12 ids other  "
+                              "preview 82 ms");
+    reload = (struct engine_reload){.why = "pictures take too long"};
+    shaders_say(&reload, &wait, line);
+    assert_string_equal(line, "time not measured: pictures take too long  preview 82 ms");
+}
