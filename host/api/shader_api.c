@@ -61,7 +61,12 @@ static void show_errors(whit_shader_compiler *compiler)
     const struct shader_errors *errors = &compiler->errors;
     for (uint32_t i = 0; i < errors->count; ++i)
         compiler->shown[i] = (whit_shader_error){errors->items[i].file, errors->items[i].line,
-                                                 errors->items[i].reason};
+                                                 errors->items[i].reason, errors->items[i].column};
+}
+
+uint32_t whit_shader_compiler_errors_left(const whit_shader_compiler *compiler)
+{
+    return compiler->errors.more;
 }
 
 /* ---- In pictures ---- */

@@ -233,14 +233,44 @@ static uint32_t count_lines(const struct shader_file *file)
     return count;
 }
 
+static const char *find_in(const char *at, const char *end, const char *token, size_t bytes)
+{
+    for (; at + bytes <= end; ++at) {
+        if (memcmp(at, token, bytes) == 0)
+            return at;
+    }
+    return NULL;
+}
+
+/* Where the token that a reason quotes first, as 'token', stands on its line, if it stands there
+   once; else 0. */
+static uint32_t find_column(const struct shader_file *file, uint32_t line, const char *reason)
+{
+    const char *open = strchr(reason, '\''), *close = open ? strchr(open + 1, '\'') : NULL;
+    const char *at = file->text, *end = at + file->bytes;
+    for (uint32_t i = 1; at && i < line; ++i) {
+        at = memchr(at, '\n', (size_t)(end - at));
+        at = at ? at + 1 : NULL;
+    }
+    if (!at || !close || close == open + 1)
+        return 0;
+    const char *line_end = memchr(at, '\n', (size_t)(end - at));
+    size_t bytes = (size_t)(close - open - 1);
+    line_end = line_end ? line_end : end;
+    const char *found = find_in(at, line_end, open + 1, bytes);
+    return found && !find_in(found + 1, line_end, open + 1, bytes) ? (uint32_t)(found - at) + 1 : 0;
+}
+
 /* What a file leaves open may be told behind its end. */
 static void add_user_error(const struct place *place, const struct glslang_error *error,
                            const char *reason)
 {
     const struct shader_file *file = &place->text->files[error->file];
-    uint32_t last = count_lines(file);
-    shader_error_add(place->log, place->errors, file->name, error->line < last ? error->line : last,
-                     "%s", reason);
+    uint32_t last = count_lines(file), line = error->line < last ? error->line : last;
+    uint32_t count = place->errors ? place->errors->count : 0;
+    shader_error_add(place->log, place->errors, file->name, line, "%s", reason);
+    if (place->errors && place->errors->count > count)
+        place->errors->items[count].column = find_column(file, line, reason);
 }
 
 /* What a child tells is not to be believed. */

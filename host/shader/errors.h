@@ -14,6 +14,7 @@ struct shader_error {
     char file[SHADER_FILE_BYTES]; /* as struct shader_file's `name`; of whit's own:
                                      "whit:lib/x.glsl" */
     uint32_t line;                /* from 1; 0: of the file as a whole */
+    uint32_t column;              /* from 1, in bytes; 0: not known */
     char reason[SHADER_REASON_BYTES];
 };
 

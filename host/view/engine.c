@@ -503,6 +503,7 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         status->part = atomic_load(&engine->drawing->part);
     }
     memcpy(status->error, engine->error, sizeof status->error);
+    snprintf(status->errors, sizeof status->errors, "%s", engine->errors);
     memcpy(status->refused, engine->refused, sizeof status->refused);
     pthread_mutex_unlock(&engine->lock);
 }

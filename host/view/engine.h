@@ -116,6 +116,7 @@ struct engine_status {
     double drawing_ms;                /* that the drawing thread is at one; 0: it is at none */
     float part;                       /* of it, 0..1 */
     char error[ENGINE_MESSAGE];       /* the last failure, until something succeeds; "": none */
+    char errors[SESSION_ERRORS];      /* as session.errors, of `error` */
     char refused[SETTING_PATH_BYTES]; /* as session.refused, of the scene that was loaded last */
     bool failed;        /* what was asked for last cannot be drawn: `error` says why */
     whit_result result; /* of `error`; once there is none any more, of the last one */
@@ -146,6 +147,8 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y);
 /* As engine_take. */
 bool engine_take_probe(struct engine *engine, struct engine_probe *probe);
 
+/* Measures what is not known of the last reload, whenever there is nothing else to do. */
+void engine_measure_reload(struct engine *engine);
 /* Something else comes first: what is not known of a reload by now will not be measured. */
 void engine_stop_reload(struct engine *engine);
 

@@ -94,6 +94,7 @@ struct engine_reloading {
     struct settings settings[2]; /* of the picture by the version before and by the new one */
     struct sample_runs ms[2];
     double start_ms;
+    bool wanted;  /* engine_measure_reload */
     bool stopped; /* something else came first */
 };
 
@@ -126,6 +127,7 @@ struct engine {
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];
+    char errors[SESSION_ERRORS];
     char refused[SETTING_PATH_BYTES]; /* as session.refused, of the last job that loaded a scene */
     whit_result result;               /* that failed last */
     bool device_lost;

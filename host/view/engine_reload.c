@@ -169,7 +169,7 @@ bool engine_reload_step(struct engine *engine)
 {
     struct engine_reloading *reloading = &engine->reloading;
     reap_flip(engine);
-    if (engine->reload.number == 0 || engine->reload.over || !is_idle(engine))
+    if (!reloading->wanted || engine->reload.over || !is_idle(engine))
         return false;
     if (engine->flip)
         return false; /* it signals its end */
@@ -193,7 +193,7 @@ void engine_reload_note(struct engine *engine, struct engine_kept *before,
     engine_kept_finish(&reloading->before);
     reloading->settings[0] = same;
     reloading->settings[1] = *after;
-    reloading->stopped = false;
+    reloading->wanted = reloading->stopped = false;
     engine->reload =
         (struct engine_reload){.number = engine->reload.number + 1, .settings = *after, .why = ""};
     if (!difference || !settings_same(&same, &before->settings))
@@ -214,6 +214,14 @@ void engine_reload_stop(struct engine *engine)
         engine->drawing->cancel = true;
     else
         end_reload(engine, STOPPED);
+}
+
+void engine_measure_reload(struct engine *engine)
+{
+    pthread_mutex_lock(&engine->lock);
+    engine->reloading.wanted = engine->reload.number > 0;
+    pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
 }
 
 void engine_stop_reload(struct engine *engine)

@@ -157,7 +157,7 @@ bool engine_start_job(struct engine *engine, const struct settings *settings)
     struct session *session = version ? version : calloc(1, sizeof *session);
     if (job && session) {
         session->ready = session->cancel = false;
-        session->error[0] = '\0';
+        session->error[0] = session->errors[0] = '\0';
         session->owner = engine;
         job->session = session;
         job->reloads = version != NULL;
@@ -262,7 +262,7 @@ void engine_forget_error(struct engine *engine)
         if (engine->lanes[i].wanted && engine->lanes[i].failed)
             return;
     }
-    engine->error[0] = '\0';
+    engine->error[0] = engine->errors[0] = '\0';
 }
 
 void engine_reap_job(struct engine *engine)
@@ -277,6 +277,7 @@ void engine_reap_job(struct engine *engine)
         engine_forget_error(engine);
     } else if (job->result != WHIT_ERROR_CANCELLED) {
         memcpy(engine->error, job->session->error, sizeof engine->error);
+        memcpy(engine->errors, job->session->errors, sizeof engine->errors);
         engine->result = job->result;
         if (!engine->error[0])
             snprintf(engine->error, sizeof engine->error, "out of memory");

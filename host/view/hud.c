@@ -335,15 +335,49 @@ static void draw_work(const struct view *view)
     ui_panel_end();
 }
 
-static void draw_messages(const struct view *view)
+/* Lines of the window that a text takes, wrapped at its right end. */
+static float lines_of(const struct view *view, const char *text)
+{
+    float width, height;
+    ui_text_size(text, &width, &height);
+    return 1.0f + floorf(width / fmaxf((float)view->settings.picture.width - 2.0f * height, 1.0f));
+}
+
+/* As many errors as half of the window has room for, one a line, and how many there are besides. */
+static void draw_errors(struct view *view)
+{
+    float width, height, room;
+    uint32_t drawn = 0, left = 0;
+    char line[2 * ENGINE_MESSAGE];
+    ui_text_size("A", &width, &height);
+    room = 0.5f * (float)view->settings.picture.height / height - 1.0f;
+    for (const char *at = view_error(view); *at;) {
+        size_t length = strcspn(at, "\n");
+        snprintf(line, sizeof line, "%.*s", (int)length, at);
+        room -= lines_of(view, line);
+        if (left == 0 && (drawn == 0 || room >= 0.0f)) {
+            ui_text_color(COLOR_ERROR, "%s", line);
+            ++drawn;
+        } else {
+            ++left;
+        }
+        at += length + (at[length] == '\n');
+    }
+    if (left > 0)
+        ui_text_color(COLOR_ERROR, "and %u more, told on the terminal", left);
+    view->shaders.errors_drawn = drawn;
+}
+
+static void draw_messages(struct view *view)
 {
     bool toast = view->toast[0] != '\0', error = view_error(view)[0] != '\0';
     bool hint = view->hint && view->params->hint;
+    view->shaders.errors_drawn = 0;
     if (!toast && !error && !hint)
         return;
     if (ui_panel_begin("messages", 0.0f, 1.0f, UI_PANEL_STAYS)) {
         if (error)
-            ui_text_color(COLOR_ERROR, "%s", view_error(view));
+            draw_errors(view);
         if (toast)
             ui_text_color(COLOR_TEXT, "%s", view->toast);
         if (hint)

@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "whit/whit_program.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,19 +53,39 @@ static void tell(struct session_progress *progress, enum session_stage stage)
         atomic_store(&progress->stage, (int)stage);
 }
 
+WHIT_PRINTF(2, 3)
+static void add_error(struct session *session, const char *format, ...)
+{
+    char line[SESSION_ERROR];
+    size_t used = strlen(session->errors);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    snprintf(session->errors + used, sizeof session->errors - used, "%s%s", used ? "\n" : "", line);
+    log_error(&session->log, "%s", line);
+}
+
 /* The compiler keeps its errors to itself: they are those of the session. */
-static void log_shader_errors(const struct session *session, const whit_shader_compiler *compiler)
+static void log_shader_errors(struct session *session, const whit_shader_compiler *compiler)
 {
     const whit_shader_error *errors;
     uint32_t count = whit_shader_compiler_errors(compiler, &errors);
+    uint32_t left = whit_shader_compiler_errors_left(compiler);
     for (uint32_t i = 0; i < count; ++i) {
-        if (errors[i].line)
-            log_error(&session->log, "%s:%u: %s", errors[i].file, errors[i].line, errors[i].reason);
+        const whit_shader_error *error = &errors[i];
+        if (error->column)
+            add_error(session, "%s:%u:%u: %s", error->file, error->line, error->column,
+                      error->reason);
+        else if (error->line)
+            add_error(session, "%s:%u: %s", error->file, error->line, error->reason);
         else
-            log_error(&session->log, "%s: %s", errors[i].file, errors[i].reason);
+            add_error(session, "%s: %s", error->file, error->reason);
     }
+    if (left > 0)
+        add_error(session, "and %u more errors", left);
     if (count == 0)
-        log_error(&session->log, "%s: could not be compiled",
+        add_error(session, "%s: could not be compiled",
                   session->settings.shader[0] ? session->settings.shader
                                               : session->settings.stages);
 }

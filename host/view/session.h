@@ -39,6 +39,10 @@ enum session_stage {
 };
 const char *session_stage_name(enum session_stage stage);
 
+/* Room for as many errors of a shader as its compiler keeps, 32, with names and reasons of 512
+   bytes. */
+enum { SESSION_ERROR = 1100, SESSION_ERRORS = 34 * SESSION_ERROR };
+
 struct session {
     void (*step)(void *user, const whit_step *step); /* of the picture that is drawn; or NULL */
     void *step_user;
@@ -52,6 +56,7 @@ struct session {
     whit_log log;         /* of all that the session is made of */
     void *owner;          /* of who made it, as is `error` */
     char error[512];
+    char errors[SESSION_ERRORS];      /* all that is wrong with a shader, one a line; else "" */
     char refused[SETTING_PATH_BYTES]; /* folder of a file that the scene names and may not read; "":
                                          none */
     bool ready;

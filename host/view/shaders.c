@@ -1,5 +1,6 @@
 #include "view/shaders.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 #include "view/view_private.h"
 
 enum { PAIR_BYTES = 256 };
+static const double SEEN_MS = 250.0; /* before times are measured: who types goes on by then */
 
 /* ---- The file ---- */
 
@@ -45,9 +47,10 @@ void shaders_watch(struct view *view)
     struct shaders *shaders = &view->shaders;
     if (!watch_changed(shaders->watch))
         return;
-    shaders->error[0] = shaders->line[0] = '\0';
+    shaders->errors[0] = shaders->line[0] = '\0';
     view->settings.shader_reload = ++view->reloads;
-    shaders->wait = (struct shaders_wait){.saved_ms = whit_clock_ms(), .asked = view->settings};
+    shaders->wait = (struct shaders_wait){
+        .goes_on = true, .saved_ms = whit_clock_ms(), .asked = view->settings};
     engine_stop_reload(view->engine);
     view->dirty = true;
 }
@@ -78,8 +81,8 @@ void shaders_refuse(struct view *view)
     struct shaders *shaders = &view->shaders;
     if (settings_same_shader(&view->settings, &view->fallback) || view->frame.number == 0)
         return;
-    memcpy(shaders->error, view->status.error, sizeof shaders->error);
-    log_error(&view->log, "%s", shaders->error);
+    snprintf(shaders->errors, sizeof shaders->errors, "%s", view_failure(view));
+    view_log_failure(view);
 }
 
 /* ---- What a reload changed ---- */
@@ -128,37 +131,72 @@ void shaders_say(const struct engine_reload *reload, const struct shaders_wait *
     if (reload->compared && difference->other_ids > 0)
         add(line, "%s ids other", count);
     if (wait->first_ms > 0.0)
-        add(line, "  preview %.0f ms", wait->first_ms);
+        add(line, "  preview %.0f ms", wait->first_ms - wait->saved_ms);
     if (wait->whole_ms > 0.0)
-        add(line, ", whole %.1f s", wait->whole_ms * 1e-3);
+        add(line, ", whole %.1f s", (wait->whole_ms - wait->saved_ms) * 1e-3);
+}
+
+bool shaders_are_awaited(const struct view *view)
+{
+    const struct shaders_wait *wait = &view->shaders.wait;
+    return wait->goes_on && wait->first_ms <= 0.0 && wait->error_ms <= 0.0;
+}
+
+/* Notes the moment, the first time alone. */
+static void note_moment(double *at_ms, uint64_t *count)
+{
+    if (*at_ms > 0.0)
+        return;
+    *at_ms = whit_clock_ms();
+    ++*count;
 }
 
 void shaders_shown(struct view *view)
 {
     struct shaders_wait *wait = &view->shaders.wait;
+    struct shaders_counts *counts = &view->shaders.counts;
     const struct engine_frame *frame = &view->frame;
-    double passed_ms = whit_clock_ms() - wait->saved_ms;
-    if (wait->saved_ms <= 0.0 || frame->settings.shader_reload != wait->asked.shader_reload)
+    if (!wait->goes_on)
         return;
-    if (wait->first_ms <= 0.0)
-        wait->first_ms = passed_ms;
-    if (frame->whole && wait->whole_ms <= 0.0 && settings_same(&frame->settings, &wait->asked))
-        wait->whole_ms = passed_ms;
+    if (view->shaders.errors[0])
+        note_moment(&wait->error_ms, &counts->refused);
+    if (frame->settings.shader_reload != wait->asked.shader_reload)
+        return;
+    note_moment(&wait->first_ms, &counts->first);
+    if (frame->whole && settings_same(&frame->settings, &wait->asked))
+        note_moment(&wait->whole_ms, &counts->whole);
+}
+
+/* All pictures that there will be of what the save asked for. */
+static bool is_shown(const struct view *view)
+{
+    const struct shaders_wait *wait = &view->shaders.wait;
+    return wait->first_ms > 0.0 &&
+           (wait->whole_ms > 0.0 || !settings_same(&wait->asked, &view->settings));
+}
+
+/* Once the user has seen the picture for a moment. */
+static bool is_seen(const struct shaders *shaders)
+{
+    return shaders->wait.first_ms > 0.0 &&
+           whit_clock_ms() - fmax(shaders->wait.first_ms, shaders->wait.whole_ms) > SEEN_MS;
 }
 
 void shaders_step(struct view *view)
 {
     struct shaders *shaders = &view->shaders;
     const struct engine_reload *reload = &view->status.reload;
-    if (shaders->reload == reload->number || !reload->over)
-        return;
-    shaders->reload = reload->number;
-    if (shaders->wait.saved_ms <= 0.0 ||
+    if (shaders->reload == reload->number || !shaders->wait.goes_on ||
         reload->settings.shader_reload != shaders->wait.asked.shader_reload)
         return;
+    if (!reload->over && is_seen(shaders))
+        engine_measure_reload(view->engine);
+    if (!reload->over || !is_shown(view))
+        return;
     const char *name = view->settings.shader[0] ? path_name(view->settings.shader) : "stages";
+    shaders->reload = reload->number;
+    shaders->wait.goes_on = false;
     shaders_say(reload, &shaders->wait, shaders->line);
-    shaders->wait.saved_ms = 0.0;
     log_info(&view->log, "%s: %s", name, shaders->line);
     if (reload->ms.count > 0 || !view->toast[0]) /* what a key said, which ended it, stays */
         view_say(view, "%s: %s", name, shaders->line);

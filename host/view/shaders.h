@@ -11,22 +11,31 @@ struct watch;
 
 enum { SHADERS_LINE = 256 };
 
-/* What the user waits for after a save. */
+/* What the user waits for after a save: moments by whit_clock_ms, 0 where that did not come yet. */
 struct shaders_wait {
-    double saved_ms;       /* when the window saw the save; 0: what is shown is up to date */
-    struct settings asked; /* then */
-    double first_ms;       /* from then to the first picture by the new file; 0: not shown yet */
-    double whole_ms;       /* likewise to the whole picture of what was asked for then */
+    bool goes_on;          /* until the line of it is said, or the next save */
+    struct settings asked; /* when the window saw the save */
+    double saved_ms;       /* that moment */
+    double first_ms;       /* the first picture by the new file was shown */
+    double whole_ms;       /* the whole picture of what was asked for then */
+    double error_ms;       /* why there is none was shown */
+};
+
+/* How many saves came as far as that, for replays. */
+struct shaders_counts {
+    uint64_t first, whole, refused;
 };
 
 struct shaders {
-    struct watch *watch;        /* on the file and what it includes; NULL: not possible */
-    struct shader_ref *shown;   /* of the picture that is shown; NULL: none */
-    char error[ENGINE_MESSAGE]; /* why the file as it now stands is not shown; "": it is, or may be
-                                   yet */
-    bool was_saved;             /* `before` is settings.shader_reload of the version before */
+    struct watch *watch;         /* on the file and what it includes; NULL: not possible */
+    struct shader_ref *shown;    /* of the picture that is shown; NULL: none */
+    char errors[SESSION_ERRORS]; /* why the file as it now stands is not shown, an error a line; "":
+                                    it is, or may be yet */
+    uint32_t errors_drawn;       /* of them, in the window */
+    bool was_saved;              /* `before` is settings.shader_reload of the version before */
     uint32_t before;
     struct shaders_wait wait;
+    struct shaders_counts counts;
     uint64_t reload;         /* number of the last one that was looked at */
     char line[SHADERS_LINE]; /* what the last one changed; "": not known yet */
 };
@@ -43,8 +52,10 @@ void shaders_take(struct view *view);
 bool shaders_set_before(const struct view *view, struct settings *settings);
 /* What was asked for failed: keeps why, where it is the shader. */
 void shaders_refuse(struct view *view);
-/* The window was drawn just now, with `view->frame`. */
+/* The window was drawn just now, with `view->frame` and what went wrong. */
 void shaders_shown(struct view *view);
+/* Whether a save was seen, and neither a picture by it nor its error was shown. */
+bool shaders_are_awaited(const struct view *view);
 /* Says what a reload changed, once that is known. */
 void shaders_step(struct view *view);
 /* That, as a line: what is not known is left out, but why the time is not. */

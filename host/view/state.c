@@ -54,6 +54,13 @@ static json_t *shader_json(const struct shaders *shaders)
     put_count(object, "files", shown->info.file_count);
     put_count(object, "sliders", shown->info.slider_count);
     put_text(object, "changed", shaders->line);
+    put_count(object, "first", shaders->counts.first);
+    put_count(object, "whole", shaders->counts.whole);
+    put_count(object, "refused", shaders->counts.refused);
+    put_number(object, "saved_ms", shaders->wait.saved_ms);
+    put_number(object, "first_ms", shaders->wait.first_ms);
+    put_number(object, "whole_ms", shaders->wait.whole_ms);
+    put_number(object, "error_ms", shaders->wait.error_ms);
     return object;
 }
 
@@ -238,6 +245,7 @@ static json_t *measure_json(struct view_measure *measure)
     json_object_set_new(object, "quick_ms", figures_json(&measure->quick));
     json_object_set_new(object, "divisor", figures_json(&measure->size));
     json_object_set_new(object, "gap_ms", figures_json(&measure->gap));
+    json_object_set_new(object, "reload_gap_ms", figures_json(&measure->reload));
     json_object_set_new(object, "latency_ms", figures_json(&measure->latency));
     json_object_set_new(object, "present_ms", figures_json(&measure->present));
     return object;
@@ -307,6 +315,7 @@ static json_t *state_json(struct view *view, const char *name)
     put_bool(root, "playing", view->clock.playing);
     put_text(root, "toast", view->toast);
     put_text(root, "error", view_error(view));
+    put_count(root, "errors_drawn", view->shaders.errors_drawn);
     put_text(root, "question", scenes_question(view));
     put_text(root, "work", session_stage_name(view->status.stage));
     put_number(root, "part", (double)view->status.part);
@@ -347,10 +356,21 @@ static const json_t *find_field(const json_t *object, const char *path, size_t l
     return object;
 }
 
+/* What has the field of a condition. The shader's come without the hashes of pictures: who waits
+   for them measures. */
+static json_t *condition_json(struct view *view, const char *condition)
+{
+    if (strncmp(condition, "shader.", 7) != 0)
+        return state_json(view, "");
+    json_t *root = json_object();
+    json_object_set_new(root, "shader", shader_json(&view->shaders));
+    return root;
+}
+
 bool state_has(struct view *view, const char *condition)
 {
     const char *equals = strstr(condition, " = ");
-    json_t *root = state_json(view, "");
+    json_t *root = condition_json(view, condition);
     const json_t *field =
         find_field(root, condition, equals ? (size_t)(equals - condition) : strlen(condition));
     char *dumped = json_dumps(field, JSON_ENCODE_ANY);

@@ -39,9 +39,23 @@ void view_say(struct view *view, const char *format, ...)
 
 const char *view_error(const struct view *view)
 {
-    if (view->shaders.error[0])
-        return view->shaders.error;
+    if (view->shaders.errors[0])
+        return view->shaders.errors;
     return view->refused[0] ? view->refused : view->status.error;
+}
+
+const char *view_failure(const struct view *view)
+{
+    return view->status.errors[0] ? view->status.errors : view->status.error;
+}
+
+void view_log_failure(const struct view *view)
+{
+    for (const char *at = view_failure(view); *at;) {
+        int length = (int)strcspn(at, "\n");
+        log_error(&view->log, "%.*s", length, at);
+        at += length + (at[length] == '\n');
+    }
 }
 
 void view_changed(struct view *view)
@@ -153,7 +167,7 @@ static whit_result take_failure(struct view *view)
     }
     if (view->frame.number > 0)
         return WHIT_OK;
-    log_error(&view->log, "%s", view->status.error);
+    view_log_failure(view);
     return view->status.result;
 }
 

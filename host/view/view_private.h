@@ -50,6 +50,7 @@ struct view_figures {
 struct view_measure {
     double first_ms;             /* when the first picture was shown, by the clock; 0: none yet */
     double last_ms;              /* the last new picture while something moved; 0: it stood */
+    double shown_ms;             /* when the window was drawn last; 0: not yet */
     double cpu_ms;               /* of the process, when this began */
     double start_ms;             /* when this began */
     uint32_t drawn;              /* how often the window was drawn */
@@ -58,6 +59,8 @@ struct view_measure {
     struct view_figures quick;   /* of those while something moves */
     struct view_figures size;    /* their divisors */
     struct view_figures gap;     /* ms from one new picture to the next, while something moves */
+    struct view_figures reload;  /* ms from one drawing of the window to the next, from a save of
+                                    the shader to its first picture or error */
     struct view_figures latency; /* ms from the input to the picture that shows it */
     struct view_figures present; /* ms in the call that presents */
 };
@@ -181,7 +184,10 @@ void scenes_watch(struct view *view);
 void scenes_read_again(struct view *view);
 /* The settings, unless they are of a scene that is not shown yet: then the last picture's. */
 const struct settings *scenes_shown(const struct view *view);
-/* What went wrong; "": nothing. */
+/* What the engine could not do, an error a line; and the same for the log. */
+const char *view_failure(const struct view *view);
+void view_log_failure(const struct view *view);
+/* What went wrong, an error a line; "": nothing. */
 const char *view_error(const struct view *view);
 /* Sets the camera of the scene with this index; -1: the text of the settings. */
 void view_use_camera(struct view *view, int index);

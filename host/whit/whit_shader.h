@@ -33,11 +33,14 @@ typedef struct whit_shader_error {
     const char *file; /* as it was named */
     uint32_t line;    /* from 1; 0: the file as a whole */
     const char *reason;
+    uint32_t column; /* of the token that the reason quotes, from 1, in bytes; 0: not known */
 } whit_shader_error;
 /* The first of those of the last call of whit_shader_load: their number. They live up to the next
    call. */
 uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
                                      const whit_shader_error **errors);
+/* How many there were besides. */
+uint32_t whit_shader_compiler_errors_left(const whit_shader_compiler *compiler);
 
 /* Reads the file with all that it includes, or the functions that a .png or .exr carries under
    WHIT_SHADER_KEY, and compiles the kernels that its functions are part of.

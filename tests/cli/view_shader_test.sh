@@ -28,8 +28,9 @@ tint violet '1.0, 0.2, 1.0'
 tint red '1.0, 0.2, 0.2'
 tint white '1.0, 1.0, 1.0'
 check "five versions" test "$(printf '%s\n' "$green" "$blue" "$violet" "$red" "$white" | sort -u | wc -l)" -eq 5
-# The second line has the error: the one that the file had is still shown.
-printf 'vec3 tint(vec3 c) {\n    return c }\n' >broken.new
+# Lines 2 to 5 have errors: the version that the file had is still shown. Of `here` there are two on a line.
+printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z = other;\n    c = far;\n    return c;\n}\n' \
+    >broken.new
 mkfifo "$OUT/pipe"
 NONE=
 steps >"$OUT/replay" <<END
@@ -37,7 +38,8 @@ start: | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render h
 until shader.hash = $red
 red: | frame.ids as start | frame.pixels not as start | error =
 until error
-broken: press R | error has live/part/tint.glsl:2: | frame.pixels as red | frame.ids as start | shader.hash = $red
+broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/part/tint.glsl:3: 'here' | errors_drawn = 4
+    | error has live/part/tint.glsl:4:11: 'other' | error has live/part/tint.glsl:5:9: 'far' | frame.pixels as red | frame.ids as start | shader.hash = $red
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
 until error = $NONE
 until shader.changed
@@ -58,7 +60,7 @@ timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 400x300 
     --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
 viewer=$!
 while read -r state; do
-    echo "$state" >>"$OUT/read"
+    printf "%s\n" "$state" >>"$OUT/read"
     case $state in
     *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
     *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
@@ -68,8 +70,8 @@ while read -r state; do
 done <"$OUT/pipe"
 wait $viewer
 check "exit code 0" test $? -eq 0
-check "the error is said once" test "$(grep -c 'error: live/part/tint.glsl:2: ' "$OUT/stderr")" -eq 1
-check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 1
+check "each error is said once" test "$(grep -cE 'error: live/part/tint.glsl:(2:11|3|4:11|5:9): ' "$OUT/stderr")" -eq 4
+check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 4
 check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
 mv "$OUT/read" "$OUT/states"
 read_states
@@ -85,7 +87,7 @@ follow() {
         >"$OUT/pipe" 2>"$OUT/stderr" &
     viewer=$!
     while read -r state; do
-        echo "$state" >>"$OUT/states"
+        printf "%s\n" "$state" >>"$OUT/states"
         on_state "$state"
     done <"$OUT/pipe"
     wait $viewer
@@ -179,5 +181,5 @@ follow "stages" cube.json --size 96x64 --stages st
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
 expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet
-check "says where" grep -q 'live/bad.glsl:1: ' "$OUT/stderr"
+check "says where" grep -q 'live/bad.glsl:1:48: ' "$OUT/stderr"
 finish

@@ -237,6 +237,21 @@ TEST_IN(a_line_has_one_error_and_a_text_has_many, compiler_begin, compiler_end)
     assert_int_equal(errors.items[31].line, 33);
 }
 
+/* Where the token that is quoted stands once on its line, from 1. */
+TEST_IN(errors_name_the_column, compiler_begin, compiler_end)
+{
+    struct shader_code code;
+    const char *text = "float f(float x, int n) {\r\n"
+                       "\tx += here;\r\n"
+                       " x += twice * twice;\r\n"
+                       " return last; }";
+    assert_int_equal(compile_files(text, NULL, false, &code), WHIT_ERROR_INPUT);
+    assert_int_equal(errors.count, 3);
+    assert_true(errors.items[0].line == 2 && errors.items[0].column == 7);
+    assert_true(errors.items[1].line == 3 && errors.items[1].column == 0);
+    assert_true(errors.items[2].line == 4 && errors.items[2].column == 9);
+}
+
 TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
 {
     struct shader_code code;
