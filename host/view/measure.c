@@ -1,5 +1,4 @@
 /* What the user waits for: how long pictures take, and how far apart they are. */
-#include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -23,11 +22,10 @@ double figures_quantile(struct view_figures *figures, double share)
 void measure_begin(struct view *view)
 {
     struct view_measure *measure = &view->measure;
-    double first_ms = measure->first_ms, shown_ms = measure->shown_ms;
+    double first_ms = measure->first_ms;
     uint64_t number = measure->number;
     memset(measure, 0, sizeof *measure);
     measure->first_ms = first_ms;
-    measure->shown_ms = shown_ms;
     measure->number = number;
     measure->start_ms = clock_ms();
     measure->cpu_ms = clock_cpu_ms();
@@ -59,8 +57,8 @@ void measure_shown(struct view *view)
     swapchain_get_info(view->swapchain, &chain);
     if (measure->first_ms <= 0.0)
         measure->first_ms = now_ms;
-    if (shaders_are_awaited(view))
-        note(&measure->reload, now_ms - fmax(measure->shown_ms, view->shaders.wait.saved_ms));
+    if (measure->shown_ms > 0.0)
+        note(&measure->between, now_ms - measure->shown_ms);
     measure->shown_ms = now_ms;
     ++measure->drawn;
     note(&measure->present, chain.present_ms);

@@ -136,12 +136,6 @@ void shaders_say(const struct engine_reload *reload, const struct shaders_wait *
         add(line, ", whole %.1f s", (wait->whole_ms - wait->saved_ms) * 1e-3);
 }
 
-bool shaders_are_awaited(const struct view *view)
-{
-    const struct shaders_wait *wait = &view->shaders.wait;
-    return wait->goes_on && wait->first_ms <= 0.0 && wait->error_ms <= 0.0;
-}
-
 /* Notes the moment, the first time alone. */
 static void note_moment(double *at_ms, uint64_t *count)
 {

@@ -54,8 +54,6 @@ bool shaders_set_before(const struct view *view, struct settings *settings);
 void shaders_refuse(struct view *view);
 /* The window was drawn just now, with `view->frame` and what went wrong. */
 void shaders_shown(struct view *view);
-/* Whether a save was seen, and neither a picture by it nor its error was shown. */
-bool shaders_are_awaited(const struct view *view);
 /* Says what a reload changed, once that is known. */
 void shaders_step(struct view *view);
 /* That, as a line: what is not known is left out, but why the time is not. */

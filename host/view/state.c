@@ -245,7 +245,7 @@ static json_t *measure_json(struct view_measure *measure)
     json_object_set_new(object, "quick_ms", figures_json(&measure->quick));
     json_object_set_new(object, "divisor", figures_json(&measure->size));
     json_object_set_new(object, "gap_ms", figures_json(&measure->gap));
-    json_object_set_new(object, "reload_gap_ms", figures_json(&measure->reload));
+    json_object_set_new(object, "between_ms", figures_json(&measure->between));
     json_object_set_new(object, "latency_ms", figures_json(&measure->latency));
     json_object_set_new(object, "present_ms", figures_json(&measure->present));
     return object;

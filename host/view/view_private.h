@@ -59,8 +59,7 @@ struct view_measure {
     struct view_figures quick;   /* of those while something moves */
     struct view_figures size;    /* their divisors */
     struct view_figures gap;     /* ms from one new picture to the next, while something moves */
-    struct view_figures reload;  /* ms from one drawing of the window to the next, from a save of
-                                    the shader to its first picture or error */
+    struct view_figures between; /* ms from one drawing of the window to the next */
     struct view_figures latency; /* ms from the input to the picture that shows it */
     struct view_figures present; /* ms in the call that presents */
 };

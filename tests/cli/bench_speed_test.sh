@@ -57,12 +57,6 @@ if [ "${3:-}" = all ]; then
         done
     } | sort >"$OUT/musts"
     check "every row, with its goal" sh -c "sort '$OUT/rows' | diff '$OUT/musts' -"
-    J=$OUT/files/shaders.json
-    expect 0 "shaders, quick" bench shaders --quick --runs 1 --scenes "$SCENES" --json "$J"
-    check "saves of each function on two scenes" holds '.tables[0].rows | length == 14 and
-        all(.first_ms.p50 > .text_ms.p50 and .whole_ms.p95 >= .first_ms.p95 and .text_ms.runs == 1)'
-    check "fuel beside none" grep -q "^- 34k, two loops .* with --trust; the median ratio is [0-9]" "$OUT/stdout"
-    check "time to an error" grep -q "^- From a save to the text of its error: p50 [0-9]" "$OUT/stdout"
     J=$OUT/files/start.json
     expect 0 "start, quick" bench start --quick --runs 1 --scenes "$SCENES" --against "$WHIT" --json "$J"
     check "verdicts at the ends of rows alone" verdicts

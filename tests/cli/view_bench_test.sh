@@ -45,6 +45,18 @@ if [ "$FIGURES" = figures ]; then
         '.moving.quick_ms.median > 0 and .moving.latency_ms.median > 0'
     every "the idle window leaves the machine alone" '.idle_share < 0.5'
 fi
+if [ "$FIGURES" = figures ]; then
+    J=$OUT/files/shaders.json
+    expect 0 "saves of a shader, quick" bench shaders cube --quick --runs 2 --scenes "$SCENES" --json "$J"
+    check "each function" holds '[.tables[0].rows[].function] == ["shade", "surface", "miss", "aov", "post", "shade, visible"]'
+    every "from a save on" '.scene == "cube" and .first_ms.p50 > 0 and .whole_ms.p95 >= .first_ms.p50 and .whole_ms.runs == 2'
+    for key in gap_over_ms gap_drags_ms gap_pictures_ms; do
+        every "with $key" ".$key.saved > 0 and .$key.alone > 0"
+    done
+    check "fuel beside none" grep -q "^- cube, two loops .* with --trust; the median ratio is [0-9]" "$OUT/stdout"
+    check "time to an error" grep -q "^- cube, from a save to its error in the window: p50 [0-9].* of 2\.$" "$OUT/stdout"
+    rm "$J"
+fi
 check "no scratch files stay" is_empty "$OUT/tmp"
 unset DISPLAY
 expect 3 "no display" bench view --quick --scenes "$SCENES" --json "$OUT/files/never"

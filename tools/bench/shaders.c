@@ -1,29 +1,32 @@
-/* `whit bench shaders`: what follows a save of a user's file, by the library: the viewer's window,
-   its looking at the file and its showing of a picture are not in the figures. */
+/* `whit bench shaders`: what follows a save of a user's file. Saves are seen by a `whit view` on
+   the display that there is, which is told by a replay when to look; fuel is measured by the
+   library. */
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "bench/table.h"
 
-enum { TEXT_BYTES = 1024, SPACING = 8 };
+enum { TEXT_BYTES = 1024, MOVES = 60, MOVES_QUICK = 8, MOVE_MS = 16, HELD_SAVES = 2 };
 
 /* `%.9g` is another number in each save, so that no cache has the kernel. */
 static const struct edited {
     const char *label, *text;
+    const char *aov; /* that the window shows; NULL: the colour */
     bool traces;
 } edits[] = {
-    {"shade", "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.color * %.9g; }\n", false},
+    {"shade", "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.color * %.9g; }\n", NULL,
+     false},
     {"surface", "void surface(inout Surface s) { s.ns = normalize(s.ns + %.9g * s.p.yzx); }\n",
+     NULL, false},
+    {"miss", "vec3 miss(vec3 dir) { return whit_miss(dir) * %.9g; }\n", NULL, false},
+    {"aov", "//@ aov height\nvec4 height(Surface s) { return vec4(s.p * %.9g, 1.0); }\n", "height",
      false},
-    {"miss", "vec3 miss(vec3 dir) { return whit_miss(dir) * %.9g; }\n", false},
-    {"post", "vec3 post(ivec2 at, vec3 color) { return color * %.9g; }\n", false},
-    {"camera", "void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += 0.1 * %.9g; }\n",
-     false},
+    {"post", "vec3 post(ivec2 at, vec3 color) { return color * %.9g; }\n", NULL, false},
     {"shade, visible",
      "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.color * visible(s, s.ns, %.9g); }\n",
-     true},
-    {"scatter",
-     "void scatter(Surface s, Optics o, inout Rays r) { r.reflected = vec3(0.1 * %.9g); }\n", true},
+     NULL, true},
 };
 enum { EDITS = sizeof edits / sizeof *edits };
 
@@ -43,12 +46,10 @@ struct saves {
     whit_log silent;
     char path[BENCH_PATH];
     uint32_t number; /* of the save */
-    double start_ms, first_ms;
-    whit_shader *saved[EDITS]; /* the version before, and what draws with it */
-    whit_renderer *drawing[EDITS];
+    double start_ms;
     whit_shader *looping[2];
     whit_renderer *renderers[2]; /* with fuel, and trusted */
-    struct sample_runs loops[2];
+    struct sample_runs loops[2], errors;
 };
 
 static whit_result save(struct saves *s, const char *form)
@@ -58,13 +59,6 @@ static whit_result save(struct saves *s, const char *form)
     snprintf(text, sizeof text, form, number); /* of the tables above */
     s->start_ms = whit_clock_ms();
     return whit_file_write(s->path, text, strlen(text), &cli_log);
-}
-
-static void note_first(void *user, const whit_step *step)
-{
-    struct saves *s = user;
-    (void)step;
-    s->first_ms = s->first_ms > 0.0 ? s->first_ms : whit_clock_ms() - s->start_ms;
 }
 
 static whit_renderer_params params_of(struct saves *s, const whit_shader *shader)
@@ -80,56 +74,198 @@ static whit_renderer_params params_of(struct saves *s, const whit_shader *shader
 
 /* ---- Saves ---- */
 
-struct save_times {
-    struct sample_runs text, first, whole; /* to SPIR-V, to the first pixels, to the picture; ms */
+/* What is done while a version is made: nothing, the mouse moves over the picture, or drags it. */
+enum hand { HAND_NONE, HAND_OVER, HAND_DRAGS, HAND_ERROR };
+
+/* The longest times of each round with a hand on the mouse, ms. */
+struct hand_times {
+    struct sample_runs over, drags; /* from one drawing of the window to the next */
+    struct sample_runs pictures;    /* from one new picture to the next while it is dragged */
 };
 
-/* As the viewer does: from the second version on in the place of the one before. */
-static whit_result draw(struct saves *s, uint32_t edit, const whit_shader *shader)
+struct save_times {
+    struct sample_runs first, whole; /* to the first changed picture, to the whole one; ms */
+    struct hand_times saved, alone;  /* with saves, and without one */
+};
+
+struct viewer {
+    struct process process;
+    FILE *states;
+    char replay[BENCH_PATH], err[BENCH_PATH];
+};
+
+/* What is done in a window in its order: a hand on the mouse without a save; saves that are timed,
+   behind one that makes the second session; saves with a hand on the mouse; those with an error. */
+enum { ALONE = 2 };
+static enum hand hand_of(const struct saves *s, uint32_t at)
 {
-    whit_renderer **renderer = &s->drawing[edit];
-    whit_renderer_params params = params_of(s, shader);
-    params.step = note_first;
-    params.step_spacing = SPACING;
-    params.progress_user = s;
-    whit_result result = *renderer
-                             ? whit_renderer_set_shader(*renderer, &params)
-                             : whit_renderer_create(s->bench->device, s->accel, &params, renderer);
-    return result == WHIT_OK ? whit_renderer_render(*renderer) : result;
+    uint32_t timed = ALONE + s->bench->ask.runs + 1;
+    uint32_t held = s->bench->ask.quick ? 1 : HELD_SAVES;
+    return at < ALONE              ? (at == 0 ? HAND_OVER : HAND_DRAGS)
+           : at < timed            ? HAND_NONE
+           : at < timed + held     ? HAND_OVER
+           : at < timed + 2 * held ? HAND_DRAGS
+                                   : HAND_ERROR;
 }
 
-static void forget_edits(struct saves *s)
+static uint32_t count_rounds(const struct saves *s, bool errors)
 {
-    for (uint32_t i = 0; i < EDITS; ++i) {
-        whit_renderer_destroy(s->drawing[i]);
-        whit_shader_destroy(s->saved[i]);
-        s->drawing[i] = NULL;
-        s->saved[i] = NULL;
-    }
+    uint32_t count = ALONE + s->bench->ask.runs + 1;
+    while (hand_of(s, count) != HAND_ERROR)
+        ++count;
+    return count + (errors ? s->bench->ask.runs : 0);
 }
 
-static whit_result save_once(struct saves *s, uint32_t edit, struct save_times *times)
+static bool is_held(enum hand hand)
 {
-    whit_shader *shader = NULL;
-    bool first = !s->drawing[edit];
-    whit_result result = save(s, edits[edit].text);
-    if (result == WHIT_OK)
-        result = whit_shader_load(s->compiler, s->path, false, &shader);
-    double text_ms = whit_clock_ms() - s->start_ms;
-    s->first_ms = 0.0;
-    if (result == WHIT_OK)
-        result = draw(s, edit, shader);
-    double whole_ms = whit_clock_ms() - s->start_ms;
-    if (shader) {
-        whit_shader_destroy(s->saved[edit]);
-        s->saved[edit] = shader;
+    return hand == HAND_OVER || hand == HAND_DRAGS;
+}
+
+static void write_hand(FILE *to, const struct saves *s, enum hand hand)
+{
+    int moves = s->bench->ask.quick ? MOVES_QUICK : MOVES;
+    if (hand == HAND_DRAGS)
+        fprintf(to, "button left down\n");
+    for (int i = 1; i <= moves; ++i)
+        fprintf(to, "move %d %d\nwait %d\n", 20 + 2 * i, 20 + i, MOVE_MS);
+    fprintf(to, "state moved\n");
+    if (hand == HAND_DRAGS)
+        fprintf(to, "button left up\n");
+}
+
+/* Each state `saved` tells the bench to save, and what came of the save before; `moved` what it was
+   like to move the mouse meanwhile. */
+static whit_result write_replay(const struct saves *s, bool errors)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    uint32_t first = 0, refused = 0;
+    FILE *to = open_memstream(&text, &bytes);
+    if (!to)
+        return WHIT_ERROR_MEMORY;
+    fprintf(to, "clock real\nmove 20 20\nstill\nstate ready\n");
+    for (uint32_t i = 0; i < count_rounds(s, errors); ++i) {
+        enum hand hand = hand_of(s, i);
+        if (is_held(hand))
+            write_hand(to, s, hand);
+        if (hand == HAND_ERROR)
+            fprintf(to, "until shader.refused = %u\n", ++refused);
+        else if (i >= ALONE)
+            fprintf(to, "until shader.first = %u\n", ++first);
+        if (hand != HAND_ERROR)
+            fprintf(to, "still\n");
+        fprintf(to, "state saved\nmove 20 20\n"); /* which ends what is measured of the change */
     }
-    if (result != WHIT_OK || first)
-        return result;
-    sample_add(&times->text, text_ms);
-    sample_add(&times->first, s->first_ms > 0.0 ? s->first_ms : whole_ms);
-    sample_add(&times->whole, whole_ms);
-    return bench_step(s->bench);
+    whit_result result =
+        fclose(to) == 0 ? bench_write(s->bench, "replay", text, bytes) : WHIT_ERROR_MEMORY;
+    free(text);
+    return result;
+}
+
+static whit_result start_viewer(const struct saves *s, const char *scene, const struct edited *edit,
+                                struct viewer *viewer)
+{
+    int ends[2];
+    char size[32];
+    const struct bench *bench = s->bench;
+    snprintf(size, sizeof size, "%ux%u", bench->ask.width, bench->ask.height);
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        return WHIT_ERROR_OUTPUT;
+    bench_file(bench, "replay", viewer->replay);
+    bench_file(bench, "messages", viewer->err);
+    viewer->process =
+        (struct process){.program = bench->whit, .socket = ends[1], .err = viewer->err};
+    process_add(&viewer->process, "whit", "view", scene, "--shader", s->path, "--size", size,
+                "--quiet", "--replay", viewer->replay, "--no-vsync", "--remember", "no", NULL);
+    if (edit->aov)
+        process_add(&viewer->process, "--aov", edit->aov, NULL);
+    process_add_device(&viewer->process, bench);
+    whit_result result = process_start(&viewer->process);
+    close(ends[1]);
+    viewer->states = fdopen(ends[0], "r");
+    return result == WHIT_OK && !viewer->states ? WHIT_ERROR_MEMORY : result;
+}
+
+/* The next state, for the caller to give back; NULL: the viewer has ended. */
+static json_t *read_state(struct viewer *viewer)
+{
+    return json_loadf(viewer->states, JSON_DISABLE_EOF_CHECK, NULL);
+}
+
+static double number_at(const json_t *state, const char *group, const char *name, const char *part)
+{
+    const json_t *value = json_object_get(json_object_get(state, group), name);
+    return json_number_value(part ? json_object_get(value, part) : value);
+}
+
+static void note_save(struct saves *s, enum hand hand, const json_t *state,
+                      struct save_times *times)
+{
+    if (hand == HAND_ERROR)
+        sample_add(&s->errors, number_at(state, "shader", "error_ms", NULL) - s->start_ms);
+    if (hand != HAND_NONE)
+        return;
+    sample_add(&times->first, number_at(state, "shader", "first_ms", NULL) - s->start_ms);
+    sample_add(&times->whole, number_at(state, "shader", "whole_ms", NULL) - s->start_ms);
+}
+
+static void note_hand(enum hand hand, const json_t *state, struct hand_times *times)
+{
+    double between_ms = number_at(state, "measure", "between_ms", "max");
+    sample_add(hand == HAND_OVER ? &times->over : &times->drags, between_ms);
+    if (hand == HAND_DRAGS)
+        sample_add(&times->pictures, number_at(state, "measure", "gap_ms", "max"));
+}
+
+/* One round: a save but in the first ones, and what the viewer says of it. */
+static whit_result watch_round(struct saves *s, struct viewer *viewer, const struct edited *edit,
+                               uint32_t at, struct save_times *times)
+{
+    enum hand hand = hand_of(s, at);
+    json_t *state = NULL;
+    whit_result result = at < ALONE ? WHIT_OK : save(s, hand == HAND_ERROR ? broken : edit->text);
+    if (result == WHIT_OK && is_held(hand)) {
+        state = read_state(viewer);
+        note_hand(hand, state, at < ALONE ? &times->alone : &times->saved);
+        json_decref(state);
+    }
+    if (result == WHIT_OK)
+        state = read_state(viewer);
+    if (result == WHIT_OK && !state)
+        result = WHIT_ERROR_FAILED;
+    if (result == WHIT_OK && at > ALONE)
+        note_save(s, hand, state, times);
+    json_decref(state);
+    return result == WHIT_OK ? bench_step(s->bench) : result;
+}
+
+/* All saves of one function in one window. */
+static whit_result watch_saves(struct saves *s, struct viewer *viewer, const struct edited *edit,
+                               bool errors, struct save_times *times)
+{
+    json_t *state = read_state(viewer);
+    whit_result result = state ? WHIT_OK : WHIT_ERROR_FAILED;
+    json_decref(state);
+    for (uint32_t i = 0; result == WHIT_OK && i < count_rounds(s, errors); ++i)
+        result = watch_round(s, viewer, edit, i, times);
+    return result;
+}
+
+static whit_result view_saves(struct saves *s, const char *scene, uint32_t edit, bool errors,
+                              struct save_times *times)
+{
+    struct viewer viewer = {.states = NULL};
+    whit_result result = write_replay(s, errors);
+    if (result == WHIT_OK)
+        result = save(s, edits[edit].text);
+    if (result == WHIT_OK)
+        result = start_viewer(s, scene, &edits[edit], &viewer);
+    if (result == WHIT_OK)
+        result = watch_saves(s, &viewer, &edits[edit], errors, times);
+    if (viewer.states)
+        fclose(viewer.states); /* it ends where it still has something to say */
+    whit_result end = viewer.process.pid > 0 ? process_end(&viewer.process, NULL) : WHIT_OK;
+    return end == WHIT_OK ? result : end;
 }
 
 static double quantile(const struct sample_runs *runs, double share)
@@ -152,6 +288,17 @@ static void put_times(struct table *table, json_t *row, const char *name,
     table_cell(table, "%.0f", quantile(runs, 0.95));
 }
 
+/* The longest time with saves, and without one. */
+static void put_most(struct table *table, json_t *row, const char *name,
+                     const struct sample_runs *saved, const struct sample_runs *alone)
+{
+    json_t *times = document_object();
+    document_number(times, "saved", quantile(saved, 1.0));
+    document_number(times, "alone", quantile(alone, 1.0));
+    document_put(row, name, times);
+    table_cell(table, "%.0f, %.0f", quantile(saved, 1.0), quantile(alone, 1.0));
+}
+
 static void put_row(struct table *table, const char *scene, const struct edited *edit,
                     const struct save_times *times)
 {
@@ -162,24 +309,25 @@ static void put_row(struct table *table, const char *scene, const struct edited 
     table_row(table);
     table_cell(table, "%s", scene);
     table_cell(table, "%s", edit->label);
-    put_times(table, row, "text_ms", &times->text);
     put_times(table, row, "first_ms", &times->first);
     put_times(table, row, "whole_ms", &times->whole);
+    put_most(table, row, "gap_over_ms", &times->saved.over, &times->alone.over);
+    put_most(table, row, "gap_drags_ms", &times->saved.drags, &times->alone.drags);
+    put_most(table, row, "gap_pictures_ms", &times->saved.pictures, &times->alone.pictures);
     table_keep(table, row);
 }
 
-static whit_result measure_saves(struct saves *s, struct table *table, const char *scene)
+/* Errors are those of the first function alone: the file that is broken is the same. */
+static whit_result measure_saves(struct saves *s, struct table *table, const char *scene,
+                                 const char *path)
 {
-    struct save_times *times = calloc(EDITS, sizeof *times);
-    whit_result result = times ? WHIT_OK : WHIT_ERROR_MEMORY;
-    for (uint32_t round = 0; result == WHIT_OK && round <= s->bench->ask.runs; ++round) {
-        for (uint32_t i = 0; result == WHIT_OK && i < EDITS; ++i)
-            result = save_once(s, i, &times[i]);
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < EDITS; ++i) {
+        struct save_times times = {.first = {.count = 0}};
+        result = view_saves(s, path, i, i == 0, &times);
+        if (result == WHIT_OK)
+            put_row(table, scene, &edits[i], &times);
     }
-    forget_edits(s);
-    for (uint32_t i = 0; result == WHIT_OK && i < EDITS; ++i)
-        put_row(table, scene, &edits[i], &times[i]);
-    free(times);
     return result;
 }
 
@@ -226,40 +374,23 @@ static whit_result measure_fuel(struct saves *s, struct table *table, const char
     return WHIT_OK;
 }
 
-/* ---- Errors ---- */
-
-static whit_result measure_errors(struct saves *s, struct table *table)
-{
-    struct sample_runs times = {.count = 0};
-    whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < s->bench->ask.runs; ++i) {
-        whit_shader *shader = NULL;
-        result = save(s, broken);
-        if (result != WHIT_OK)
-            break;
-        bool refused = whit_shader_load(s->compiler, s->path, false, &shader) == WHIT_ERROR_INPUT;
-        sample_add(&times, whit_clock_ms() - s->start_ms);
-        whit_shader_destroy(shader);
-        result = refused ? WHIT_OK : WHIT_ERROR_FAILED;
-    }
-    if (result == WHIT_OK)
-        table_say(table, "From a save to the text of its error: p50 %.0f ms, p95 %.0f ms of %u.",
-                  quantile(&times, 0.5), quantile(&times, 0.95), times.count);
-    return result;
-}
-
-/* ---- Both scenes ---- */
+/* ---- Scenes ---- */
 
 static whit_result run_scene(struct saves *s, struct table *table, const char *scene)
 {
     char path[BENCH_PATH];
+    s->errors.count = 0;
     whit_result result = bench_find(s->bench, scene, path);
+    if (result == WHIT_OK)
+        result = measure_saves(s, table, scene, path);
+    if (result == WHIT_OK)
+        table_say(table,
+                  "%s, from a save to its error in the window: p50 %.0f ms, p95 %.0f ms of %u.",
+                  scene, quantile(&s->errors, 0.5), quantile(&s->errors, 0.95), s->errors.count);
     if (result == WHIT_OK)
         result = bench_load(path, &s->loaded);
     if (result == WHIT_OK)
         result = whit_accel_create(s->loaded.scene, NULL, &s->accel);
-    if (result == WHIT_OK)
-        result = measure_saves(s, table, scene);
     if (result == WHIT_OK)
         result = measure_fuel(s, table, scene);
     whit_accel_destroy(s->accel);
@@ -270,26 +401,33 @@ static whit_result run_scene(struct saves *s, struct table *table, const char *s
 
 whit_result bench_shaders(struct bench *bench)
 {
-    static const char *const scenes[] = {"34k", "default"};
-    static const char *const heads[] = {"scene", "function",  "SPIR-V p50", "p95", "first p50",
-                                        "p95",   "whole p50", "p95, ms",    NULL};
+    static const char *const usual[] = {"34k", "default"};
+    static const char *const heads[] = {
+        "scene",           "function",     "first p50",         "p95", "whole p50", "p95",
+        "gap, mouse over", "gap, dragged", "gap, pictures, ms", NULL};
+    const struct bench_request *ask = &bench->ask;
+    const char *const *scenes = ask->name_count ? ask->names : usual;
+    uint32_t count = ask->name_count ? ask->name_count : 2;
     struct table table;
     struct saves *s = calloc(1, sizeof *s);
     if (!s)
         return WHIT_ERROR_MEMORY;
     s->bench = bench;
     bench_file(bench, "edited.glsl", s->path);
-    table_begin(&table, bench, "shaders", heads, false, 2 * EDITS * bench->ask.runs);
+    table_begin(&table, bench, "shaders", heads, false,
+                count * (EDITS * count_rounds(s, false) + ask->runs));
     table_say(&table,
-              "From a save to SPIR-V, to the first pixels (every %d-th) and to the whole "
-              "picture, by the library: without the window; a version takes the place of "
-              "the one before.",
-              SPACING);
+              "From a save to the first changed picture on the screen and to the whole one, in the "
+              "viewer's window; a version takes the place of the one before last.");
+    table_say(
+        &table,
+        "Gaps: the most from one drawing of the window to the next in %.1f s from a save on, "
+        "while the mouse moves over the picture, or drags it; and from one new picture to the "
+        "next while it is dragged. Behind the comma: the same without a save.",
+        (bench->ask.quick ? MOVES_QUICK : MOVES) * MOVE_MS * 1e-3);
     whit_result result = whit_shader_compiler_create(NULL, &s->silent, &s->compiler);
-    for (int i = 0; result == WHIT_OK && i < 2; ++i)
+    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
         result = run_scene(s, &table, scenes[i]);
-    if (result == WHIT_OK)
-        result = measure_errors(s, &table);
     whit_shader_compiler_destroy(s->compiler);
     free(s);
     return table_end(&table, "Saves of a shader", result);

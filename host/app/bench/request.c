@@ -21,9 +21,9 @@ const struct bench_kind bench_kinds[BENCH_COUNT] = {
     [BENCH_START] = {"start",
                      "the first picture, whole processes with empty caches, beside another whit",
                      320, 240, .has_goals = true},
-    [BENCH_SHADERS] = {"shaders",
-                       "what follows a save of a shader: first pixels, whole picture, errors, fuel",
-                       1280, 720, .has_goals = false},
+    [BENCH_SHADERS] =
+        {"shaders", "[SCENE...]: what follows a save of a shader in the viewer, on a display; fuel",
+         1280, 720, .takes_names = true},
 };
 
 const struct setting bench_options[] = {
