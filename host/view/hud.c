@@ -158,6 +158,17 @@ static void draw_more(const struct view *view)
                 chain.draw_ms, chain.wait_ms);
 }
 
+/* Its parts, which two spaces divide, each on a line of its own. */
+static void draw_reload(const char *line)
+{
+    for (const char *at = line; *at;) {
+        const char *end = strstr(at, "  ");
+        int length = end ? (int)(end - at) : (int)strlen(at);
+        ui_text("%.*s", length, at);
+        at += length + (end ? 2 : 0);
+    }
+}
+
 /* "traversal distance -> sign", one change a line; then what that did. */
 static void draw_change(const struct view *view)
 {
@@ -171,10 +182,11 @@ static void draw_change(const struct view *view)
         ui_text("%.*s", length < 46 ? length : 46, at);
         at += length + (end ? 2 : 0);
     }
-    if (view->shaders.line[0])
-        ui_text("%s", view->shaders.line);
-    else
-        ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
+    if (view->shaders.line[0]) {
+        draw_reload(view->shaders.line);
+        return;
+    }
+    ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
     if (c->difference.other_ids == 0 && c->difference.other_colors == 0) {
         ui_text_color(COLOR_GOOD, "same picture");
         return;
