@@ -4,8 +4,11 @@
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 SCENES=$(realpath "$SCENES")
+# What ends: the smaller an object is in the picture, the fewer samples change nothing that is seen.
+camera="--camera 1.6,1.3,2.4,0,0,0,0,1,0"
 
-play "refined" "$SCENES/cube.json" --size 48x36 --aa 4 <<END
+# shellcheck disable=SC2086
+play "refined" "$SCENES/cube.json" --size 48x36 --aa 4 $camera,90 <<END
 start: | frame.samples = 4 | frame.estimates = 0
 refined
 better: | frame.samples > 4 | frame.pixels not as start | frame.ids as start | words as start | frame.whole = true
@@ -37,7 +40,8 @@ check "B is refined with A" test "$(value both compare.b.pixels)" = "$(value bet
 check "the estimate is of what is shown" test "$(value better frame.error_samples)" -eq "$samples"
 doublings=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 2; k++ } print k }')
 check "one estimate each time that samples were doubled" test "$(value better frame.estimates)" -eq "$doublings"
-expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 --aa "$samples" -o same.png --quiet
+# shellcheck disable=SC2086
+expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 $camera,90 --aa "$samples" -o same.png --quiet
 expect 0 "F12 saved it" compare same.png whit-0001.png --metric largest --tolerance 0
 check "with its samples in the recipe" grep -aq -- "whit render .*--aa $samples " whit-0001.png
 check "the line of Ctrl+C names them" grep -q -- "--aa $samples -o" <<END
@@ -48,9 +52,14 @@ rounds=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 4; k++ } print k }')
 check "a picture for each step ($rounds)" \
     test $(($(value better frame.number) - $(value start frame.number))) -eq "$rounds"
 
-play "A and B that differ" "$SCENES/balls.json" --size 24x18 --aa 4 <<END
+cat >mirror.json <<'END'
+{ "camera": { "eye": [0, 1, 4], "target": [0, 0.5, 0], "fov": 60 },
+  "materials": { "mirror": { "reflection": 0.8 } },
+  "objects": [ { "shape": "box", "translation": [0.6, 0.5, 0] },
+    { "shape": "box", "material": "mirror", "translation": [-0.6, 0.5, 0], "rotation": [0, 30, 0] } ] }
+END
+play "A and B that differ" "$PWD/mirror.json" --size 24x18 --aa 4 <<END
 start: press I | compare.known = true | compare.other_colors = 0
-refined
 changed: press Minus x8 | frame.samples = 4 | compare.b.samples = 4 | compare.other_colors > 10
 refined
 apart: | frame.samples > 4 | compare.known = true | compare.other_colors > 10 | compare.other_ids = 0
@@ -67,7 +76,8 @@ check "the words of a state name it" test "$(value stays words | grep -c -- "--a
 check "and no line that renders" test "$(value stays render | grep -c -- at-rest)" -eq 0
 
 # With all figures the estimate is a curve over time, below a line and above another.
-play "a curve" "$SCENES/cube.json" --size 320x480 <<END
+# shellcheck disable=SC2086
+play "a curve" "$SCENES/cube.json" --size 320x480 $camera,10 <<END
 plain: press F2 | hud = full | frame.estimates = 0
 refined
 curve: | frame.estimates > 1
