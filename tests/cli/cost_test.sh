@@ -121,12 +121,27 @@ check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
 # ---- Choices of `whit render` ----
 
 tiny="$CUBE --size 48x36 -o $OUT/chosen.png"
-expect 0 "a time that is enough" render $tiny --budget-ms 1e6
+enough="$tiny --budget-ms 1e6"
+chosen() { sed -n 's/^whit: note: chosen: \(.*\); predicted.*/\1/p' "$OUT/stderr"; }
+expect 0 "a time that is enough" render $enough
 check "takes the most samples" grep -q "^whit: note: chosen: --aa 64.*; predicted" "$OUT/stderr"
+most=$(chosen)
 check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
 expect 0 "an error that one sample has" render $tiny --max-error 0.9
 check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
 check "takes less" test "$(grep -c "chosen: --aa" "$OUT/stderr")" -eq 0
+expect 0 "--fresh" render $enough --fresh
+check "measures anew" grep -q "measuring what settings cost" "$OUT/stderr"
+expect 0 "other trees" render $enough --build median
+check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
+# Records that are cut, of something else or empty are measured again, and nothing is said of them.
+record=$(ls -t "$OUT"/cache/whit/cost-* | sed -n 2p)
+for damage in "truncate -s 2000" "truncate -s 0" "cp $(ls -t "$OUT"/cache/whit/cost-* | sed -n 1p)"; do
+    $damage "$record"
+    expect 0 "a record damaged by ${damage%% /*}" render $enough
+    check "is measured again" grep -q "measuring what settings cost" "$OUT/stderr"
+    check "with the same choice, and no error" test "$(chosen)$(grep -c "error\|warning" "$OUT/stderr")" = "${most}0"
+done
 refuse 1 "no time at all" "no setting takes" render $tiny --budget-ms 0.001 --quiet
 refuse 2 "chosen and given" "chooses --aa" render $tiny --budget-ms 10 --aa 4
 refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
@@ -136,7 +151,6 @@ refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
 most=" --depth 16 --bailout 0"
 tiny="$GLASS --size 48x36 -o $OUT/chosen.png --budget-ms 1000"
 kept="kept with the scene; --fresh measures anew"
-chosen() { sed -n 's/^whit: note: chosen: \(.*\); predicted.*/\1/p' "$OUT/stderr"; }
 expect 0 "what is left of the time goes to samples" render $tiny
 first=$(chosen)
 check "six of them ($first)" test "$first" = "--aa 6$most"
@@ -152,18 +166,6 @@ expect 0 "another time, by the same figures" render $tiny --budget-ms 1400
 check "gets its own choice ($(chosen))" test "$(chosen)" = "--aa 9$most"
 expect 0 "and the first one again" render $tiny
 check "its own" test "$(chosen)" = "$first"
-expect 0 "--fresh" render $tiny --fresh
-check "measures anew" grep -q "measuring what settings cost" "$OUT/stderr"
-expect 0 "other trees" render $tiny --build median
-check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
-# Records that are cut, of something else or empty are measured again, and nothing is said of them.
-record=$(ls -t "$OUT"/cache/whit/cost-* | sed -n 2p)
-for damage in "truncate -s 2000" "truncate -s 0" "cp $(ls -t "$OUT"/cache/whit/cost-* | sed -n 1p)"; do
-    $damage "$record"
-    expect 0 "a record damaged by ${damage%% /*}" render $tiny
-    check "is measured again" grep -q "measuring what settings cost" "$OUT/stderr"
-    check "with the same choice, and no error" test "$(chosen)$(grep -c "error\|warning" "$OUT/stderr")" = "${first}0"
-done
 
 # ---- What is wrong is found, in its row ----
 
