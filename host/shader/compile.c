@@ -72,11 +72,13 @@ void shader_compiler_destroy(struct shader_compiler *compiler)
     free(compiler);
 }
 
-static struct child_limits child_limits_of(const struct shader_limits *limits)
+static struct child_limits child_limits_of(const struct shader_limits *limits,
+                                           const struct shader_request *request)
 {
+    double usual_s = request->cpu_s > 0.0 ? request->cpu_s : 5.0;
     return (struct child_limits){
         .who = "compiler",
-        .cpu_s = limits->cpu_s > 0.0 ? limits->cpu_s : 5.0,
+        .cpu_s = limits->cpu_s > 0.0 ? limits->cpu_s : usual_s,
         .clock_s = limits->clock_s > 0.0 ? limits->clock_s : 20.0,
         .memory_bytes = limits->memory_bytes ? limits->memory_bytes : UINT64_C(1) << 30,
         .reply_bytes = REPLY_BYTES,
@@ -412,7 +414,7 @@ whit_result shader_compile(struct shader_compiler *compiler, const struct shader
     *code = (struct shader_code){0};
     const struct place place = {&compiler->log, text && text->file_count ? text : NULL, request,
                                 errors};
-    struct child_limits limits = child_limits_of(&compiler->limits);
+    struct child_limits limits = child_limits_of(&compiler->limits, request);
     size_t bytes;
     uint8_t *question = make_question(&place, &bytes);
     if (!question)

@@ -13,7 +13,7 @@
 
 /* Of one request. A zeroed one means the defaults. */
 struct shader_limits {
-    double cpu_s;                /* of the processor; 0: 5 */
+    double cpu_s;                /* of the processor; 0: as the request says */
     double clock_s;              /* 0: 20 */
     uint64_t memory_bytes;       /* 0: 1 GiB */
     bool require_sandbox;        /* where it cannot be set: an error in place of a warning */
@@ -34,6 +34,7 @@ struct shader_request {
        `kernel` is whole. */
     const uint32_t *base;
     size_t base_bytes;
+    double cpu_s; /* of the processor, where shader_limits say none; 0: 5 */
 };
 
 /* Where a loop of the user's text begins. */

@@ -9,7 +9,11 @@
 
 enum { DEFINES_MAX = SHADER_HOOK_COUNT + 1, DEFINE_BYTES = 48 };
 
-#define USER_INCLUDE "#include \"../hook/user.glsl\"\n"
+/* Functions of a few thousand lines take half of it; a text that is made to take for ever is told
+   within a second. */
+#define FUNCTIONS_CPU_S 0.8
+
+#define USER_INCLUDE    "#include \"../hook/user.glsl\"\n"
 
 static const char *const hook_names[SHADER_HOOK_COUNT] = {
     [SHADER_HOOK_CAMERA] = "camera", [SHADER_HOOK_SURFACE] = "surface",
@@ -192,6 +196,7 @@ static whit_result compile(const whit_log *log, struct shader_compiler *compiler
         return WHIT_ERROR_MEMORY;
     of.request.base = base->words;
     of.request.base_bytes = base->bytes;
+    of.request.cpu_s = kernel == SHADER_KERNEL_TEST ? 0.0 : FUNCTIONS_CPU_S;
     whit_result result =
         shader_compile(compiler, user, &of.request, &shader->codes[kernel], errors);
     free(of.text);

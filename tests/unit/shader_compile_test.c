@@ -312,8 +312,6 @@ TEST_IN(a_file_included_again_and_again_is_refused, compiler_begin, compiler_end
     free(filler);
 }
 
-/* ---- What means harm ---- */
-
 static char *repeat(const char *before, const char *what, size_t count, const char *behind)
 {
     size_t length = strlen(what), used = strlen(before);
@@ -323,59 +321,6 @@ static char *repeat(const char *before, const char *what, size_t count, const ch
         memcpy(text + used, what, length);
     strcpy(text + used, behind);
     return text;
-}
-
-/* One error, and the compiler goes on. */
-static void assert_survives(char *content, const char *reason)
-{
-    struct shader_code code;
-    whit_result result = compile_files(content, NULL, false, &code);
-    if (reason && (result != WHIT_ERROR_INPUT || !strstr(logged, reason)))
-        fail_msg("\"%s\" is not in \"%s\"", reason, logged);
-    if (result != WHIT_OK)
-        assert_true(errors.count >= 1 && strncmp(errors.items[0].file, "a.glsl", 6) == 0);
-    shader_code_free(&code);
-    free(content);
-    code = must_compile(FINE);
-    shader_code_free(&code);
-}
-
-static void try_harm(void)
-{
-    assert_survives(repeat("float f(float x, int n) { return ", "(", 100000, "x; }"), "a.glsl:1: ");
-    assert_survives(repeat("float f(float x, int n) { ", "{", 100000, "return x; }"), "a.glsl");
-    assert_survives(repeat("float f(float x, int n) { return ", "-(", 100000, "x; }"), "a.glsl");
-    assert_survives(repeat("#if ", "(", 100000, "\n#endif\n" FINE), "a.glsl");
-    assert_survives(repeat("float f(float x, int n) { return x", " + x", 250000, "; }"), NULL);
-    assert_survives(repeat("// ", "x", 1000000, "\n" FINE), NULL);
-    assert_survives(repeat("float ", "x", 1000000, ";\n" FINE), NULL);
-    assert_survives(
-        repeat("float f(float x, int n) { float a[2684354560]; return a[n]; }", "", 0, ""),
-        "a.glsl:1");
-    assert_survives(
-        repeat("float f(float x, int n) { float a[2000000000]; a[1] = x; return a[n]; }", "", 0,
-               ""),
-        "a.glsl:1: variables of more than 16 KiB");
-    assert_survives(
-        repeat("\nfloat a[1000000];\nfloat f(float x, int n) { a[n] = x; return a[1]; }", "", 0,
-               ""),
-        "a.glsl:2: variables of more than 16 KiB");
-    if (HAS_ASAN)
-        return;
-    /* Macros that double: 2^40 words. */
-    char *bomb = malloc(8192);
-    size_t used = (size_t)sprintf(bomb, "#define B0 x + x\n");
-    for (int i = 1; i < 40; ++i)
-        used += (size_t)sprintf(bomb + used, "#define B%d B%d + B%d\n", i, i - 1, i - 1);
-    sprintf(bomb + used, "float f(float x, int n) { return B39; }\n");
-    assert_survives(bomb, "a.glsl: ");
-}
-
-TEST_IN(texts_that_mean_harm_are_one_error, NULL, compiler_end)
-{
-    const struct shader_limits limits = {.cpu_s = 2.0, .memory_bytes = 300u << 20};
-    compiler_open(&limits);
-    try_harm();
 }
 
 /* ---- The process ---- */

@@ -1,0 +1,370 @@
+/* Files that mean harm, as the program meets them: each is reported, or has a picture where that is
+   what is promised, and the next good file is compiled and drawn as before. How long each took is
+   printed, and is no part of the test. */
+#include <sys/stat.h>
+
+#include "base/clock.h"
+#include "folder_fixture.h"
+#include "whit.h"
+
+enum { WIDTH = 16, HEIGHT = 12, PIXELS = WIDTH * HEIGHT };
+
+static whit_device *device;
+static whit_shader_compiler *compiler;
+static whit_scene *scene;
+static whit_accel *accel;
+static float good_pixels[PIXELS * 4];
+static char logged[1 << 14];
+static uint32_t reported, tried;
+static double slowest_ms;
+
+static void keep_message(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    (void)level;
+    size_t used = strlen(logged);
+    snprintf(logged + used, sizeof logged - used, "%s\n", message);
+}
+
+static const whit_log harm_log = {.fn = keep_message, .level = WHIT_LOG_WARNING};
+
+static void put(const char *name, const char *content)
+{
+    put_file(in_folder(name), content, strlen(content));
+}
+
+/* The picture of a file with values of its sliders. `pixels` is set where there is one. */
+static whit_result draw(const whit_shader *shader, const char *sliders, float *pixels)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer = NULL;
+    whit_image *color = NULL;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    params.sliders = sliders;
+    whit_result result = whit_renderer_create(device, accel, &params, &renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_render(renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
+    if (result == WHIT_OK)
+        memcpy(pixels, whit_image_floats(color), sizeof good_pixels);
+    whit_image_destroy(color);
+    whit_renderer_destroy(renderer);
+    return result;
+}
+
+static void draw_good(float *pixels)
+{
+    whit_shader *shader = NULL;
+    assert_int_equal(whit_shader_load(compiler, in_folder("good.glsl"), false, &shader), WHIT_OK);
+    assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
+    whit_shader_destroy(shader);
+}
+
+static int begin(void **state)
+{
+    int failed = folder_begin(state);
+    if (failed || whit_shader_compiler_create(NULL, &harm_log, &compiler) != WHIT_OK ||
+        whit_device_create(NULL, &harm_log, &device) != WHIT_OK ||
+        whit_scene_load(WHIT_SCENES_DIR "/cube.json", NULL, NULL, &scene) != WHIT_OK ||
+        whit_accel_create(scene, NULL, &accel) != WHIT_OK)
+        return -1;
+    put("good.glsl", "vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
+    draw_good(good_pixels);
+    reported = tried = 0;
+    slowest_ms = 0.0;
+    return 0;
+}
+
+static int end(void **state)
+{
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    whit_device_destroy(device);
+    whit_shader_compiler_destroy(compiler);
+    return folder_end(state);
+}
+
+/* Whether a line of the log names the place, "a.glsl:2: ", where it is not NULL, and behind it the
+ * reason. */
+static bool is_told(const char *place, const char *reason)
+{
+    char begins[512];
+    snprintf(begins, sizeof begins, "%s/%s", folder, place ? place : "");
+    const char *line = place ? strstr(logged, begins) : logged;
+    const char *why = line ? strstr(line, reason) : NULL;
+    return why && why < strchr(line, '\n');
+}
+
+/* Counts a row that began at `start_ms`, and draws the good file behind it. */
+static void count(const char *name, double start_ms, bool as_wanted)
+{
+    double ms = clock_ms() - start_ms;
+    float pixels[PIXELS * 4];
+    const char *place = strstr(logged, folder);
+    const char *told = place ? place + strlen(folder) + 1 : logged[0] ? logged : "a picture\n";
+    tried++;
+    reported += as_wanted;
+    slowest_ms = ms > slowest_ms ? ms : slowest_ms;
+    print_message("%s %-40s %5.0f ms  %.*s\n", as_wanted ? "ok    " : "FAILED", name, ms,
+                  (int)strcspn(told, "\n"), told);
+    draw_good(pixels);
+    assert_memory_equal(pixels, good_pixels, sizeof pixels);
+}
+
+static void all_are_reported(void)
+{
+    print_message("%u of %u, the slowest after %.0f ms\n", reported, tried, slowest_ms);
+    assert_int_equal(reported, tried);
+}
+
+/* ---- What is refused before it is drawn ---- */
+
+/* The file a.glsl of the folder. */
+static void refuse(const char *name, const char *place, const char *reason)
+{
+    whit_shader *shader = NULL;
+    logged[0] = 0;
+    double start_ms = clock_ms();
+    whit_result result = whit_shader_load(compiler, in_folder("a.glsl"), false, &shader);
+    count(name, start_ms, result == WHIT_ERROR_INPUT && !shader && is_told(place, reason));
+    whit_shader_destroy(shader);
+}
+
+static void refuse_repeated(const char *name, const char *before, const char *what, size_t times,
+                            const char *behind, const char *place, const char *reason)
+{
+    FILE *file = fopen(in_folder("a.glsl"), "wb");
+    assert_non_null(file);
+    fputs(before, file);
+    for (size_t i = 0; i < times; ++i)
+        fputs(what, file);
+    fputs(behind, file);
+    assert_int_equal(fclose(file), 0);
+    refuse(name, place, reason);
+}
+
+#define POST "vec3 post(ivec2 at, vec3 color) {\n"
+
+TEST_IN(texts_that_mean_harm_are_refused, begin, end)
+{
+    static const struct {
+        const char *name, *content, *place, *reason;
+    } cases[] = {
+        {"recursion", "float f(float x) {\n return f(x); }\n" POST " return color * f(1.0); }\n",
+         "a.glsl:1: ", "f calls itself"},
+        {"mutual recursion",
+         "float g(float x);\nfloat f(float x) { return g(x); }\nfloat g(float x) { return f(x); "
+         "}\n" POST " return color * f(1.0); }\n",
+         "a.glsl:", "which leads back to it"},
+        {"an array of 10 GB", POST " float a[2684354560];\n return color * a[at.x]; }\n",
+         "a.glsl:2: ", "array size"},
+        {"an array of 8 GB", POST " float a[2000000000]; a[1] = 1.0;\n return color * a[at.x]; }\n",
+         "a.glsl:1: ", "variables of more than 16 KiB"},
+        {"a global array of 4 MB",
+         "\nfloat a[1000000];\n" POST " a[1] = 1.0; return color * a[at.x]; }\n",
+         "a.glsl:2: ", "variables of more than 16 KiB"},
+        {"the index -1", POST " float a[4];\n return color * a[-1]; }\n",
+         "a.glsl:3: ", "index out of range"},
+        {"the index 2^31", POST " float a[4];\n return color * a[2147483648u]; }\n",
+         "a.glsl:3: ", "out of range"},
+        {"discard", POST " discard;\n return color; }\n", "a.glsl:2: ", "discard"},
+        {"discard in a loop of another function",
+         "void f() {\n for (int i = 0; i < 2; ++i)\n  if (i == 1) discard;\n}\n" POST
+         " f(); return color; }\n",
+         "a.glsl:3: ", "discard"},
+        {"barrier", POST " if (at.x == 1)\n barrier();\n return color; }\n",
+         "a.glsl:3: ", "barrier"},
+        {"return of nothing", POST " return;\n}\n", "a.glsl:2: ", "return"},
+        {"return outside of functions", "return 1;\n" POST " return color; }\n",
+         "a.glsl:1: ", "RETURN"},
+        {"no return", POST " color *= 2.0;\n}\n", "a.glsl:", "return"},
+        {"#version 100", "#version 100\n" POST " return color; }\n", "a.glsl:1: ", "version"},
+        {"an empty file", "", "a.glsl: ", "it has no function"},
+        {"an include of itself", "#include \"a.glsl\"\n" POST " return color; }\n",
+         "a.glsl:1: ", "itself"},
+        {"a circle of includes", "\n#include \"b.glsl\"\n" POST " return color; }\n",
+         "b.glsl:1: ", "include each other"},
+        {"an include of a folder", "\n#include \"folder\"\n" POST " return color; }\n",
+         "a.glsl:2: ", "folder"},
+        {"an include of /dev/zero", "#include \"/dev/zero\"\n" POST " return color; }\n",
+         "a.glsl:1: ", "/dev/zero"},
+        {"a link to /dev/zero", "#include \"zero\"\n" POST " return color; }\n",
+         "a.glsl:1: ", "zero"},
+        {"a pipe", "#include \"pipe\"\n" POST " return color; }\n", "a.glsl:1: ", "pipe"},
+    };
+    put("b.glsl", "#include \"a.glsl\"\n");
+    assert_int_equal(mkdir(in_folder("folder"), 0777), 0);
+    assert_int_equal(symlink("/dev/zero", in_folder("zero")), 0);
+    assert_int_equal(mkfifo(in_folder("pipe"), 0666), 0);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        put("a.glsl", cases[i].content);
+        refuse(cases[i].name, cases[i].place, cases[i].reason);
+    }
+    put_file(in_folder("a.glsl"),
+             "\x7f"
+             "ELF\0\1\2\xff\xfe\0 vec3 post",
+             20);
+    refuse("a binary file", "a.glsl", "");
+    refuse_repeated("10^5 nested brackets", POST " return color * ", "(", 100000, "1.0; }\n",
+                    "a.glsl:2: ", "");
+    refuse_repeated("10^5 nested blocks", POST, "{", 100000, " return color; }\n", "a.glsl", "");
+    refuse_repeated("10^5 nested calls", POST " return color * ", "-(", 100000, "1.0; }\n",
+                    "a.glsl", "");
+    refuse_repeated("10^5 brackets of a condition", "#if ", "(", 100000,
+                    "\n#endif\n" POST " return color; }\n", "a.glsl", "");
+    refuse_repeated("a number that is 1 MB long", POST " return color * ", "1", 1000000, ".0; }\n",
+                    "a.glsl", "");
+    refuse_repeated("a name of 1 MB", "float ", "x", 1000000, ";\n" POST " return color; }\n",
+                    "a.glsl", "");
+    refuse_repeated("a line of 1 MB", POST " return color", " + color", 125000, "; }\n", "a.glsl",
+                    "");
+    all_are_reported();
+}
+
+/* 2^40 words of macros that double. */
+TEST_IN(a_macro_bomb_is_refused, begin, end)
+{
+    FILE *file = fopen(in_folder("a.glsl"), "wb");
+    assert_non_null(file);
+    fprintf(file, "#define B0 color + color\n");
+    for (int i = 1; i < 40; ++i)
+        fprintf(file, "#define B%d B%d + B%d\n", i, i - 1, i - 1);
+    fprintf(file, POST " return B39; }\n");
+    assert_int_equal(fclose(file), 0);
+    refuse("a macro bomb", "a.glsl", "");
+    all_are_reported();
+}
+
+/* ---- What is drawn ---- */
+
+/* One file, whose slider chooses what it does: its kernels are made once. */
+static whit_shader *load(const char *content)
+{
+    whit_shader *shader = NULL;
+    put("a.glsl", content);
+    assert_int_equal(whit_shader_load(compiler, in_folder("a.glsl"), false, &shader), WHIT_OK);
+    return shader;
+}
+
+static void fail_to_draw(const whit_shader *shader, const char *sliders, const char *place,
+                         const char *reason)
+{
+    float pixels[PIXELS * 4];
+    logged[0] = 0;
+    double start_ms = clock_ms();
+    whit_result result = draw(shader, sliders, pixels);
+    count(sliders, start_ms, result == WHIT_ERROR_STATUS && is_told(place, reason));
+}
+
+TEST_IN(loops_without_end_have_no_picture, begin, end)
+{
+    whit_shader *shader =
+        load("//@ choice loop none,for,while,do,nested,camera,shade,miss\n"
+             "void camera(vec2 at, inout vec3 origin, inout vec3 dir) {\n"
+             " for (; loop == loop_camera;) dir.x += 1.0; }\n"
+             "vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
+             " float sum = 0.0; while (loop == loop_shade && sum >= 0.0) sum += 1.0;\n"
+             " return vec3(sum); }\n"
+             "vec3 miss(vec3 dir) {\n"
+             " while (loop == loop_miss) dir += 1e-9; return dir * dir; }\n"
+             "vec3 post(ivec2 at, vec3 color) {\n"
+             " for (; loop == loop_for;) color.r += 1.0;\n"
+             " while (loop == loop_while) color.r += 1.0;\n"
+             " do color.r += 1.0; while (loop == loop_do);\n"
+             " if (loop == loop_nested) for (int i = 0; i < 1000; ++i)\n"
+             "  for (int k = 0; k < 1000; ++k) color.r += 1e-9;\n"
+             " return color; }\n");
+    float pixels[PIXELS * 4];
+    assert_int_equal(draw(shader, "loop=none", pixels), WHIT_OK);
+    static const struct {
+        const char *name, *place;
+    } cases[] = {{"for", "a.glsl:10: "},    {"while", "a.glsl:11: "}, {"do", "a.glsl:12: "},
+                 {"nested", "a.glsl:14: "}, {"camera", "a.glsl:3: "}, {"shade", "a.glsl:5: "},
+                 {"miss", "a.glsl:8: "}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char sliders[32];
+        snprintf(sliders, sizeof sliders, "loop=%s", cases[i].name);
+        fail_to_draw(shader, sliders, cases[i].place, "fuel");
+    }
+    whit_shader_destroy(shader);
+    all_are_reported();
+}
+
+/* What stands in an aov may be no number. */
+TEST_IN(what_is_no_number_has_no_picture, begin, end)
+{
+    static const char *const hooks[] = {"camera", "surface", "shade", "scatter", "miss", "post"};
+    whit_shader *shader =
+        load("//@ choice where none,camera,surface,shade,scatter,miss,aov,post,division\n"
+             "//@ choice what nan,inf\n"
+             "//@ slider zero 0 1 0\n"
+             "float bad(float x, bool here) {\n"
+             " return !here ? x : what == what_nan ? sqrt(-1.0 - x * x) : (1.0 + x * x) * 1e30 * "
+             "1e30; }\n"
+             "void camera(vec2 at, inout vec3 origin, inout vec3 dir) {\n"
+             " dir.x = bad(dir.x, where == where_camera); }\n"
+             "void surface(inout Surface s) { s.ns.x = bad(s.ns.x, where == where_surface); }\n"
+             "vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
+             " return vec3(bad(s.u, where == where_shade)); }\n"
+             "void scatter(Surface s, Optics o, inout Rays r) { if (where == where_scatter) {\n"
+             " r.reflected = vec3(1.0); r.reflected_dir = vec3(bad(s.u, true)); } }\n"
+             "vec3 miss(vec3 dir) { return vec3(bad(dir.x * dir.x, where == where_miss)); }\n"
+             "//@ aov facing\n"
+             "vec4 facing(Surface s) { return vec4(bad(s.u, where == where_aov)); }\n"
+             "vec3 post(ivec2 at, vec3 color) {\n"
+             " if (where == where_division) color = (1.0 + color) / zero;\n"
+             " return vec3(bad(color.r, where == where_post)); }\n");
+    float usual[PIXELS * 4], pixels[PIXELS * 4];
+    assert_int_equal(draw(shader, "where=none", usual), WHIT_OK);
+    for (size_t i = 0; i < sizeof hooks / sizeof *hooks; ++i) {
+        for (int k = 0; k < 2; ++k) {
+            char sliders[64];
+            snprintf(sliders, sizeof sliders, "where=%s,what=%s", hooks[i], k ? "inf" : "nan");
+            fail_to_draw(shader, sliders, NULL, "not finite: in ");
+        }
+    }
+    fail_to_draw(shader, "where=division", NULL, "not finite: in ");
+    logged[0] = 0;
+    double start_ms = clock_ms();
+    bool same =
+        draw(shader, "where=aov", pixels) == WHIT_OK && memcmp(usual, pixels, sizeof usual) == 0;
+    count("where=aov", start_ms, same && !logged[0]);
+    whit_shader_destroy(shader);
+    all_are_reported();
+}
+
+/* Bounded, and drawn. */
+TEST_IN(indices_and_divisions_of_integers_have_a_picture, begin, end)
+{
+    static const struct {
+        const char *name;
+        float value; /* of all pixels; -1: any that is finite */
+    } cases[] = {
+        {"first", 1.0f}, {"minus", 4.0f}, {"large", 4.0f}, {"division", -1.0f}, {"early", 5.0f}};
+    whit_shader *shader = load(
+        "//@ choice how first,minus,large,division,early\n"
+        "const float table[4] = float[4](1.0, 2.0, 3.0, 4.0);\n" POST
+        " if (how == how_early) { for (int i = 0; i < 9; ++i) { if (i == 5) return vec3(i); } }\n"
+        " int zero = at.x - at.x;\n"
+        " if (how == how_minus) return vec3(table[zero - 1]);\n"
+        " if (how == how_large) return vec3(table[uint(zero) + 2147483648u]);\n"
+        " if (how == how_division) return vec3(table[7 / zero & 3], table[7 % zero & 3], 0.0);\n"
+        " return vec3(table[zero]); }\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        float pixels[PIXELS * 4];
+        char sliders[32];
+        logged[0] = 0;
+        snprintf(sliders, sizeof sliders, "how=%s", cases[i].name);
+        double start_ms = clock_ms();
+        bool fine = draw(shader, sliders, pixels) == WHIT_OK;
+        for (uint32_t k = 0; fine && k < PIXELS; ++k)
+            fine = cases[i].value < 0.0f ? pixels[4 * k] >= 1.0f && pixels[4 * k] <= 4.0f
+                                         : pixels[4 * k] == cases[i].value;
+        count(sliders, start_ms, fine && !logged[0]);
+    }
+    whit_shader_destroy(shader);
+    all_are_reported();
+}
