@@ -1,13 +1,15 @@
 /* What holds of the picture of every scene:
 
-       picture_check SCENE [full | validated | stored | levels | all-levels | flat | small-flat |
-                            stages | few-stages]
+       picture_check SCENE [full | threads | validated | stored | levels | all-levels | flat |
+                            small-flat | stages | few-stages]
 
    The picture is finite, neither black nor of one colour, and nothing that may not change it does
    so by one bit: tiles, threads, load paths, builders, a kernel with more effects. The kernel made
    for the scene is smaller than the one with every effect, which traces the same rays, and none of
    a kind that the scene does not call for. `full`: also the whole kernel by storage buffers, for
    which the driver takes up to 7 s; else that load path has a kernel of camera rays and lights.
+   `full` and `threads`: by one, two and three threads; else by one of these numbers, in turns
+   (WHIT_TEST_OFFSET).
    `validated`: the same picture under GPU-assisted validation; `stored`: by storage buffers, as
    GPUs read. `levels`: the kernel with every effect beside the scene's own at the other levels of
    numerics; at `exact` both without refraction, whose traversal makes the driver take twice as
@@ -308,13 +310,25 @@ static void check_ways(const struct subject *subject, const struct drawn *first)
     check_median(subject, first);
 }
 
+/* By scene, and another one with each commit. */
+static uint32_t turn_of(const struct subject *subject)
+{
+    const char *offset = getenv("WHIT_TEST_OFFSET");
+    uint32_t turn = offset ? (uint32_t)strtoul(offset, NULL, 10) : 0;
+    for (const char *c = subject->path; *c; ++c)
+        turn += (unsigned char)*c;
+    return turn;
+}
+
 /* Each number of threads of the driver's and of whit's own, over tiles that are larger and smaller
-   than needed. */
-static void check_threads(const struct subject *subject, const struct drawn *first)
+   than needed; one of them where not `all` are asked for. */
+static void check_threads(const struct subject *subject, const struct drawn *first, bool all)
 {
     static const char *const drivers[] = {"0", "1", "2"};
     static const uint32_t tiles[] = {16, 17, 32};
     for (uint32_t i = 0; i < 3; ++i) {
+        if (!all && turn_of(subject) % 3 != i)
+            continue;
         char way[64];
         const whit_accel_params trees = {.threads = i + 1};
         const whit_renderer_params params = {.tile_size = tiles[i]};
@@ -339,9 +353,10 @@ static void check_usual(const struct subject *subject, const char *what)
             check_apart(subject, &first, NULL, stored ? &storage : &usual,
                         "GPU-assisted validation");
         } else {
-            check_threads(subject, &first);
+            bool full = strcmp(what, "full") == 0;
+            check_threads(subject, &first, full || strcmp(what, "threads") == 0);
             check_ways(subject, &first);
-            check_storage(subject, &first, strcmp(what, "full") == 0);
+            check_storage(subject, &first, full);
             check_all_effects(subject, &first, usual, 0);
         }
     }
@@ -475,11 +490,11 @@ static void check_scene(const char *path, const char *what)
 int main(int argc, char **argv)
 {
     const char *what = argc == 3 ? argv[2] : "";
-    bool known = !*what || strcmp(what, "full") == 0 || strcmp(what, "validated") == 0 ||
-                 strcmp(what, "stored") == 0 || strcmp(what, "levels") == 0 ||
-                 strcmp(what, "all-levels") == 0 || strcmp(what, "flat") == 0 ||
-                 strcmp(what, "small-flat") == 0 || strcmp(what, "stages") == 0 ||
-                 strcmp(what, "few-stages") == 0;
+    bool known = !*what || strcmp(what, "full") == 0 || strcmp(what, "threads") == 0 ||
+                 strcmp(what, "validated") == 0 || strcmp(what, "stored") == 0 ||
+                 strcmp(what, "levels") == 0 || strcmp(what, "all-levels") == 0 ||
+                 strcmp(what, "flat") == 0 || strcmp(what, "small-flat") == 0 ||
+                 strcmp(what, "stages") == 0 || strcmp(what, "few-stages") == 0;
     if (argc < 2 || argc > 4 || !known) {
         fputs(
             "usage: picture_check SCENE [full | validated | stored | levels | all-levels | flat | "
