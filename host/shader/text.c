@@ -106,13 +106,20 @@ static whit_result copy_source(struct reading *r, const struct place *place,
     return WHIT_OK;
 }
 
-/* Bytes that no text has. */
+/* Bytes that no text has, and lines that nobody writes. */
 static whit_result check_bytes(struct reading *r, const struct shader_file *file)
 {
     uint32_t line = 1;
+    size_t begin = 0;
     for (size_t i = 0; i < file->bytes; ++i) {
         unsigned char c = (unsigned char)file->text[i];
+        if (i - begin > SHADER_TEXT_LINE_BYTES) {
+            shader_error_add(r->log, r->errors, file->name, line, "a line of more than %d bytes",
+                             SHADER_TEXT_LINE_BYTES);
+            return WHIT_ERROR_INPUT;
+        }
         line += c == '\n';
+        begin = c == '\n' ? i + 1 : begin;
         if ((c < ' ' && !strchr("\t\n\v\f\r", c)) || c == 0 || c == 127) {
             shader_error_add(r->log, r->errors, file->name, line,
                              "a byte %u, which is no text: this is no GLSL", c);

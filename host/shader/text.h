@@ -10,8 +10,10 @@
 
 enum {
     SHADER_TEXT_FILES_MAX = 64,
-    SHADER_TEXT_DEPTH_MAX = 16,      /* files that are open at once, the first one too */
-    SHADER_TEXT_FILE_BYTES = 1 << 20 /* of one file */
+    SHADER_TEXT_DEPTH_MAX = 16,       /* files that are open at once, the first one too */
+    SHADER_TEXT_FILE_BYTES = 1 << 20, /* of one file */
+    SHADER_TEXT_LINE_BYTES =
+        1 << 16 /* of one line: what is in longer ones is deeper than glslang's stack */
 };
 
 /* `#include "x"` on a line of a file. */

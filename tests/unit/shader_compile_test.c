@@ -376,7 +376,7 @@ TEST(one_process_is_kept_and_none_is_left)
 TEST(limits_are_kept)
 {
     volatile bool cancel = true;
-    char *long_text = repeat("float f(float x, int n) { return x", " + sin(x)", 60000, "; }");
+    char *long_text = repeat("float f(float x, int n) { return x", " + sin(x)\n", 60000, "; }");
     const struct {
         struct shader_limits limits;
         whit_result result;

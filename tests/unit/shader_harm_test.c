@@ -208,19 +208,20 @@ TEST_IN(texts_that_mean_harm_are_refused, begin, end)
              "ELF\0\1\2\xff\xfe\0 vec3 post",
              20);
     refuse("a binary file", "a.glsl", "");
-    refuse_repeated("10^5 nested brackets", POST " return color * ", "(", 100000, "1.0; }\n",
-                    "a.glsl:2: ", "");
-    refuse_repeated("10^5 nested blocks", POST, "{", 100000, " return color; }\n", "a.glsl", "");
-    refuse_repeated("10^5 nested calls", POST " return color * ", "-(", 100000, "1.0; }\n",
-                    "a.glsl", "");
-    refuse_repeated("10^5 brackets of a condition", "#if ", "(", 100000,
+    refuse_repeated("10^5 nested brackets", POST " return color * ", "((((((((((\n", 10000,
+                    "1.0; }\n", "a.glsl:", "too deep");
+    refuse_repeated("10^5 nested blocks", POST, "{{{{{{{{{{\n", 10000, " return color; }\n",
+                    "a.glsl:", "too deep");
+    refuse_repeated("10^5 nested calls", POST " return color * ", "-(-(-(-(-(\n", 20000, "1.0; }\n",
+                    "a.glsl:", "too deep");
+    refuse_repeated("10^5 brackets of a condition", "#if ", "((((((((((\\\n", 10000,
                     "\n#endif\n" POST " return color; }\n", "a.glsl", "");
-    refuse_repeated("a number that is 1 MB long", POST " return color * ", "1", 1000000, ".0; }\n",
+    refuse_repeated("a sum of 10^5 terms", POST " return color", " + color\n", 100000, "; }\n",
                     "a.glsl", "");
+    refuse_repeated("a line of 1 MB", POST " return color", " + color", 125000, "; }\n",
+                    "a.glsl:2: ", "a line of more than 65536 bytes");
     refuse_repeated("a name of 1 MB", "float ", "x", 1000000, ";\n" POST " return color; }\n",
-                    "a.glsl", "");
-    refuse_repeated("a line of 1 MB", POST " return color", " + color", 125000, "; }\n", "a.glsl",
-                    "");
+                    "a.glsl:1: ", "a line of more than 65536 bytes");
     all_are_reported();
 }
 
