@@ -18,11 +18,12 @@ said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
 
 # ---- What a file is ----
 
-for hook in camera surface shade scatter miss post aov intersect; do # own.glsl below has them all
+for hook in camera surface shade scatter miss post aov intersect; do # the others are own.glsl, below
     expect 0 "new $hook" shader new $hook
     cp "$OUT/stdout" $hook.glsl
 done
-expect 0 "the new aov compiles" shader aov.glsl
+cat aov.glsl intersect.glsl >more.glsl
+expect 0 "the new aov and the new intersect compile" shader more.glsl
 expect 2 "new nothing" shader new nothing
 said "names what there is" "camera, surface, shade, scatter, miss, post"
 expect 2 "new alone" shader new
