@@ -1,9 +1,12 @@
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "api/handles.h"
 #include "render/probe.h"
+#include "shader/program.h"
 
 const char *whit_probe_end_name(whit_probe_end end)
 {
@@ -109,14 +112,101 @@ static whit_probe_ray ray_of(const struct scene *scene, const struct probe_repor
     return ray;
 }
 
+/* ---- Values of dbg(x) ---- */
+
+static whit_probe_value value_of(const struct probe_value *from)
+{
+    const struct gpu_dbg *traced = &from->traced;
+    whit_probe_value value = {.kind = (whit_value_kind)(traced->type / DBG_INT),
+                              .size = traced->type % DBG_INT + 1,
+                              .ray = from->ray,
+                              .generation = traced->generation};
+    for (uint32_t i = 0; i < value.size; ++i) {
+        float real;
+        int32_t whole;
+        memcpy(&real, &traced->bits[i], sizeof real);
+        memcpy(&whole, &traced->bits[i], sizeof whole);
+        value.v[i] = value.kind == WHIT_VALUE_FLOAT ? (double)real
+                     : value.kind == WHIT_VALUE_INT ? (double)whole
+                                                    : (double)traced->bits[i];
+    }
+    return value;
+}
+
+static char *put_text(char **at, const char *text)
+{
+    char *to = *at;
+    strcpy(to, text);
+    *at += strlen(text) + 1;
+    return to;
+}
+
+/* One block with its texts, since the shader may end before the report. NULL: no memory. */
+static whit_probe_call *calls_from(const whit_shader *shader, const struct probe_report *from)
+{
+    const struct shader_dbg *dbg = &shader->dbg;
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < dbg->count; ++i)
+        bytes += strlen(dbg->sites[i].text) + strlen(shader->files[dbg->sites[i].file]) + 2;
+    whit_probe_call *calls = calloc(1, dbg->count * sizeof *calls + bytes);
+    char *at = calls ? (char *)(calls + dbg->count) : NULL;
+    for (uint32_t i = 0; calls && i < dbg->count; ++i) {
+        const struct shader_dbg_site *site = &dbg->sites[i];
+        calls[i].text = put_text(&at, site->text);
+        calls[i].file = put_text(&at, shader->files[site->file]);
+        calls[i].line = site->line;
+        calls[i].count = from->call_counts[i];
+    }
+    for (uint32_t i = 0; calls && i < from->value_count; ++i) {
+        whit_probe_call *call = &calls[from->values[i].call];
+        if (call->value_count < WHIT_PROBE_VALUES)
+            call->values[call->value_count++] = value_of(&from->values[i]);
+    }
+    return calls;
+}
+
+/* `text` has room for `bytes`, of which *used are used. */
+static void add_text(char *text, size_t bytes, size_t *used, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int count = vsnprintf(text + *used, bytes - *used, format, arguments);
+    va_end(arguments);
+    *used += count > 0 ? (size_t)count : 0;
+    *used = *used < bytes ? *used : bytes - 1;
+}
+
+void whit_probe_value_text(const whit_probe_value *value, int digits, char *text, size_t bytes)
+{
+    size_t used = 0;
+    if (bytes == 0)
+        return;
+    text[0] = 0;
+    for (uint32_t i = 0; i < value->size && i < 4; ++i) {
+        add_text(text, bytes, &used, i ? ", " : value->size > 1 ? "(" : "");
+        if (value->kind == WHIT_VALUE_BOOL)
+            add_text(text, bytes, &used, value->v[i] != 0.0 ? "true" : "false");
+        else
+            add_text(text, bytes, &used, "%.*g", value->kind == WHIT_VALUE_FLOAT ? digits : 10,
+                     value->v[i]);
+    }
+    add_text(text, bytes, &used, value->size > 1 ? ")" : "");
+}
+
+/* ---- Reports ---- */
+
 static whit_result report_from(const whit_renderer *renderer, const struct probe_report *from,
                                whit_probe_report **out)
 {
     whit_probe_report *report = calloc(1, sizeof *report);
     whit_probe_ray *rays = calloc(from->ray_count ? from->ray_count : 1, sizeof *rays);
-    if (!report || !rays) {
+    const whit_shader *shader = renderer->params.shader;
+    uint32_t call_count = shader ? shader->dbg.count : 0;
+    whit_probe_call *calls = call_count ? calls_from(shader, from) : NULL;
+    if (!report || !rays || (call_count && !calls)) {
         free(report);
         free(rays);
+        free(calls);
         log_error(&renderer->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
@@ -133,6 +223,8 @@ static whit_result report_from(const whit_renderer *renderer, const struct probe
         .ray_count = from->ray_count,
         .dropped = from->dropped,
         .differing = from->differing,
+        .calls = calls,
+        .call_count = call_count,
     };
     memcpy(report->color, from->color, sizeof report->color);
     whit_image pixel = {.image = {.width = 1, .height = 1, .channels = 4, .pixels = report->color}};
@@ -162,5 +254,6 @@ void whit_probe_report_destroy(whit_probe_report *report)
     if (!report)
         return;
     free(report->rays);
+    free(report->calls);
     free(report);
 }

@@ -4,6 +4,7 @@
 
 #include "render/renderer.h"
 
+_Static_assert(DBG_CALLS == SHADER_DBG_MAX, "room for all of them");
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
 _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SHADER_HOOK_SHADE &&
                    HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV &&
@@ -41,10 +42,24 @@ void hooks_take(struct renderer *renderer)
     params->effects_removed |= renderer->effects_unasked;
 }
 
+uint32_t hooks_dbg_count(const struct target *target)
+{
+    const whit_shader *shader = target->renderer->params.shader;
+    return shader && target->probed ? shader->dbg.count : 0;
+}
+
+const struct shader_code *hooks_code(const struct target *target, const char *kernel)
+{
+    const whit_shader *shader = target->renderer->params.shader;
+    const struct shader_code *code =
+        hooks_dbg_count(target) ? shader_dbg_code_of(shader, kernel) : NULL;
+    return code ? code : shader_code_of(shader, kernel);
+}
+
 uint32_t hooks_aov_count(const struct target *target)
 {
     const whit_shader *shader = target->renderer->params.shader;
-    return shader && !target->probed ? shader->aov_count : 0;
+    return shader && (!target->probed || shader->dbg.count) ? shader->aov_count : 0;
 }
 
 whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
@@ -82,8 +97,11 @@ bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *s
 whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_params *params)
 {
     const whit_shader *before = renderer->params.shader;
+    uint32_t aovs = hooks_aov_count(&renderer->probe);
     renderer->params.shader = params->shader;
     stage_set_finish(&renderer->probe.stages.set);
+    if (hooks_aov_count(&renderer->probe) != aovs)
+        target_drop_pixels(&renderer->probe);
     whit_result result = hooks_find_material(renderer);
     if (result == WHIT_OK)
         result = stages_replace(&renderer->picture, before);

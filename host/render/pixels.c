@@ -109,5 +109,6 @@ void target_finish(struct target *target)
     material_shares_clear(target);
     pixels_finish(&target->buffers);
     buffer_destroy(target->records);
+    buffer_destroy(target->dbg);
     *target = (struct target){0};
 }

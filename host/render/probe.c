@@ -11,6 +11,16 @@
 
 enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 
+#define DBG_HEAD  ((uint64_t)DBG_CALLS * sizeof(uint32_t))
+#define DBG_BYTES (DBG_HEAD + (uint64_t)DBG_CALLS * DBG_VALUES * sizeof(struct gpu_dbg))
+
+/* Until their tree is in order. */
+struct record_list {
+    struct gpu_probe_ray *records; /* free() both */
+    uint32_t *places;              /* of the ray with an id, PROBE_RAYS_MAX of them, among records;
+                                      HIT_NONE: there is none */
+};
+
 /* ---- On the device ---- */
 
 static whit_result create_buffers(struct target *probe)
@@ -21,6 +31,9 @@ static whit_result create_buffers(struct target *probe)
     if (!probe->records)
         result = buffer_create(probe->renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
                                "probed rays", &probe->records);
+    if (result == WHIT_OK && !probe->dbg && hooks_dbg_count(probe))
+        result = buffer_create(probe->renderer->device, DBG_BYTES, BUFFER_STORAGE | BUFFER_HOST,
+                               "values of dbg(x)", &probe->dbg);
     if (result == WHIT_OK && !probe->buffers.pixels)
         result = pixels_create(probe, 8, TILE_MIN);
     if (result != WHIT_OK)
@@ -129,20 +142,20 @@ static void weigh_caught(struct gpu_probe_ray *records, uint32_t count, float (*
 }
 
 /* From the order of ids to that of a tree. */
-static whit_result sort_records(const struct renderer *renderer, struct gpu_probe_ray *records,
+static whit_result sort_records(const struct renderer *renderer, struct record_list *list,
                                 uint32_t count)
 {
-    uint32_t *places = array_alloc(PROBE_RAYS_MAX, sizeof *places);
+    list->places = array_alloc(PROBE_RAYS_MAX, sizeof *list->places);
     float(*shares)[3] = array_alloc(count, sizeof *shares);
     whit_result result = WHIT_OK;
-    if (places && shares) {
-        qsort(records, count, sizeof *records, compare_records);
-        name_places(records, count, places);
-        weigh_caught(records, count, shares);
+    if (list->places && shares) {
+        memset(list->places, 0xff, PROBE_RAYS_MAX * sizeof *list->places);
+        qsort(list->records, count, sizeof *list->records, compare_records);
+        name_places(list->records, count, list->places);
+        weigh_caught(list->records, count, shares);
     } else {
         result = render_no_memory(renderer, "probed rays");
     }
-    free(places);
     free(shares);
     return result;
 }
@@ -152,9 +165,8 @@ static uint32_t min(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/* *records is free()d by the caller. */
 static whit_result read_records(const struct renderer *renderer, uint32_t max,
-                                struct probe_report *report, struct gpu_probe_ray **records)
+                                struct probe_report *report, struct record_list *list)
 {
     struct gpu_probe head;
     struct buffer *buffer = renderer->probe.records;
@@ -163,23 +175,52 @@ static whit_result read_records(const struct renderer *renderer, uint32_t max,
         return result;
     uint32_t rays = min(head.rays, PROBE_RAYS_MAX);
     uint32_t others = min(head.others, PROBE_RAYS_MAX);
-    *records = array_alloc((size_t)rays + others, sizeof **records);
-    if (!*records)
+    list->records = array_alloc((size_t)rays + others, sizeof *list->records);
+    if (!list->records)
         return render_no_memory(renderer, "probed rays");
-    uint64_t bytes = sizeof **records;
-    result = buffer_read(buffer, sizeof head, *records, rays * bytes);
+    uint64_t bytes = sizeof *list->records;
+    result = buffer_read(buffer, sizeof head, list->records, rays * bytes);
     if (result == WHIT_OK)
-        result = buffer_read(buffer, sizeof head + PROBE_RAYS_MAX * bytes, *records + rays,
+        result = buffer_read(buffer, sizeof head + PROBE_RAYS_MAX * bytes, list->records + rays,
                              others * bytes);
     if (result == WHIT_OK)
-        result = sort_records(renderer, *records, rays + others);
+        result = sort_records(renderer, list, rays + others);
     report->ray_count = min(rays + others, max);
     report->dropped = head.rays + head.others - report->ray_count;
     return result;
 }
 
+/* As the device leaves them. */
+static whit_result read_values(const struct renderer *renderer, struct probe_report *report)
+{
+    struct buffer *buffer = renderer->probe.dbg;
+    uint32_t calls = hooks_dbg_count(&renderer->probe);
+    if (!calls)
+        return WHIT_OK;
+    struct gpu_dbg kept[DBG_VALUES];
+    report->values = array_alloc((size_t)calls * DBG_VALUES, sizeof *report->values);
+    if (!report->values)
+        return render_no_memory(renderer, "values of dbg(x)");
+    whit_result result = buffer_read(buffer, 0, report->call_counts, DBG_HEAD);
+    for (uint32_t call = 0; result == WHIT_OK && call < calls; ++call) {
+        uint32_t count = min(report->call_counts[call], DBG_VALUES);
+        if (count)
+            result = buffer_read(buffer, DBG_HEAD + (uint64_t)call * sizeof kept, kept,
+                                 count * sizeof *kept);
+        for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
+            report->values[report->value_count++] = (struct probe_value){kept[i], call, HIT_NONE};
+    }
+    return result;
+}
+
+static whit_result clear_values(const struct target *probe)
+{
+    static const uint32_t none[DBG_CALLS] = {0};
+    return hooks_dbg_count(probe) ? buffer_write(probe->dbg, 0, none, sizeof none) : WHIT_OK;
+}
+
 static whit_result run(struct renderer *renderer, uint32_t max, struct probe_report *report,
-                       struct gpu_probe_ray **records)
+                       struct record_list *list)
 {
     struct target *probe = &renderer->probe;
     const struct gpu_probe head = {0};
@@ -189,9 +230,13 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
     if (result == WHIT_OK)
         result = buffer_write(probe->records, 0, &head, sizeof head);
     if (result == WHIT_OK)
+        result = clear_values(probe);
+    if (result == WHIT_OK)
         result = trace_pixel(probe, report);
     if (result == WHIT_OK)
-        result = read_records(renderer, max, report, records);
+        result = read_records(renderer, max, report, list);
+    if (result == WHIT_OK)
+        result = read_values(renderer, report);
     return result;
 }
 
@@ -254,9 +299,34 @@ static bool count_branches(const struct gpu_probe_ray *records, uint32_t count,
     return true;
 }
 
-static whit_result order_rays(const struct renderer *renderer, const struct gpu_probe_ray *records,
+static int compare_values(const void *a, const void *b)
+{
+    const struct probe_value *x = a, *y = b;
+    if (x->call != y->call)
+        return x->call < y->call ? -1 : 1;
+    if (x->ray != y->ray)
+        return x->ray < y->ray ? -1 : 1;
+    return (x->traced.order > y->traced.order) - (x->traced.order < y->traced.order);
+}
+
+/* By rays of the tree, whose ids are others in every run. */
+static void order_values(const struct branch *branches, const uint32_t *places,
+                         struct probe_report *report)
+{
+    for (uint32_t i = 0; i < report->value_count; ++i) {
+        struct probe_value *value = &report->values[i];
+        uint32_t id = value->traced.id;
+        uint32_t record = id < PROBE_RAYS_MAX ? places[id] : HIT_NONE;
+        value->ray = record < report->ray_count ? branches[record].place : HIT_NONE;
+    }
+    if (report->value_count)
+        qsort(report->values, report->value_count, sizeof *report->values, compare_values);
+}
+
+static whit_result order_rays(const struct renderer *renderer, const struct record_list *list,
                               struct probe_report *report)
 {
+    const struct gpu_probe_ray *records = list->records;
     uint32_t count = report->ray_count, top = 0, place = 0;
     struct branch *branches = calloc(count ? count : 1, sizeof *branches);
     report->rays = array_alloc(count, sizeof *report->rays);
@@ -276,6 +346,8 @@ static whit_result order_rays(const struct renderer *renderer, const struct gpu_
         place_ray(&records[record], branches, report->rays, place++);
         top = push_branches(records, branches[record].first, branches[record].count, branches, top);
     }
+    if (result == WHIT_OK)
+        order_values(branches, list->places, report);
     free(branches);
     return result;
 }
@@ -299,7 +371,7 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
                            struct probe_report *out)
 {
     const whit_renderer_params *params = &renderer->params;
-    struct gpu_probe_ray *records = NULL;
+    struct record_list list = {0};
     *out = (struct probe_report){.x = x,
                                  .y = y,
                                  .light_samples = renderer->frame.light_samples,
@@ -310,13 +382,13 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     if (result == WHIT_OK)
         result = params_check_loops(renderer);
     if (result == WHIT_OK)
-        result =
-            run(renderer, max > 0 && max < PROBE_RAYS_MAX ? max : PROBE_RAYS_MAX, out, &records);
+        result = run(renderer, max > 0 && max < PROBE_RAYS_MAX ? max : PROBE_RAYS_MAX, out, &list);
     if (result == WHIT_OK)
-        result = order_rays(renderer, records, out);
+        result = order_rays(renderer, &list, out);
     if (result == WHIT_OK)
         result = probe_ask_twin(renderer, out);
-    free(records);
+    free(list.records);
+    free(list.places);
     if (result != WHIT_OK)
         probe_report_finish(out);
     return result;
@@ -325,5 +397,6 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
 void probe_report_finish(struct probe_report *report)
 {
     free(report->rays);
+    free(report->values);
     *report = (struct probe_report){0};
 }

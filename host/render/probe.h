@@ -24,6 +24,14 @@ struct probe_ray {
     bool exact_equal; /* ids (shadow rays: blocked or not); at NUMERICS_EXACT t as well */
 };
 
+/* What a dbg(x) of the user's functions was. */
+struct probe_value {
+    struct gpu_dbg traced;
+    uint32_t call; /* index in shader_dbg.sites */
+    uint32_t ray;  /* index in rays, of the ray that the function was called for; HIT_NONE: one that
+                      is not recorded */
+};
+
 struct probe_report {
     uint32_t x, y;
     uint32_t samples;       /* that `color` is of; of an adaptive picture the 4 of its first pass */
@@ -35,6 +43,11 @@ struct probe_report {
     uint32_t ray_count;
     uint32_t dropped;   /* rays that had no room; what is recorded of their tree is its front */
     uint32_t differing; /* rays with equal == false */
+    /* Of the first sample, and of post() that of all of them together: how often each dbg(x) was
+       reached, and the first DBG_VALUES values of each, in the order of calls, then of rays. */
+    uint32_t call_counts[DBG_CALLS];
+    struct probe_value *values;
+    uint32_t value_count;
 };
 
 /* Traces pixel (x, y) from the upper left once more, and nothing else of the picture; what was

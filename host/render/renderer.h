@@ -160,6 +160,7 @@ struct target {
     struct stage_sample timed[RENDER_STAGE_COUNT];
     bool probed;            /* rays are recorded, those of listed pixels alone (probe.c) */
     struct buffer *records; /* of a probe: gpu_probe, and gpu_probe_ray */
+    struct buffer *dbg;     /* of a probe with dbg(x): as hook/record.glsl; NULL before the first */
 };
 
 struct renderer {
@@ -412,7 +413,11 @@ void async_finish(struct renderer *renderer);
 
 /* hooks.c: what the functions of params.shader call for, beside what the scene does. */
 void hooks_take(struct renderer *renderer);
-/* Its functions whose values are kept beside the colour. */
+/* Its code of a kernel, for a probe with dbg(x) that which records; NULL: whit's own serves. */
+const struct shader_code *hooks_code(const struct target *target, const char *kernel);
+/* How often dbg(x) stands in it, where `target` records what it is; else 0. */
+uint32_t hooks_dbg_count(const struct target *target);
+/* Its functions whose values are kept beside the colour. A probe calls them for what dbg(x) is. */
 uint32_t hooks_aov_count(const struct target *target);
 /* WHIT_ERROR_USAGE, logged, for sliders that the shader has not. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);

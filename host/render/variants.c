@@ -217,12 +217,12 @@ static struct bindings bind_trees(const struct target *target)
 }
 
 /* A kernel's code: with the functions of the renderer's shader in it where it has any there. */
-static struct pipeline_params pass_params(const struct renderer *renderer, enum kernel kernel,
+static struct pipeline_params pass_params(const struct target *target, enum kernel kernel,
                                           const struct gpu_spec *spec,
                                           const struct bindings *bindings, uint32_t binding_count,
                                           uint32_t push_bytes, const char *name)
 {
-    const struct shader_code *code = shader_code_of(renderer->params.shader, kernels[kernel].name);
+    const struct shader_code *code = hooks_code(target, kernels[kernel].name);
     return (struct pipeline_params){
         .spirv = code ? code->words : kernels[kernel].words,
         .spirv_bytes = code ? code->bytes : kernels[kernel].bytes,
@@ -252,6 +252,7 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LISTED, BINDING_STORAGE, pixels->listed);
     bind(&bindings, BIND_COSTS, BINDING_STORAGE, pixels->costs);
     bind(&bindings, BIND_PROBE, BINDING_STORAGE, target->records);
+    bind(&bindings, BIND_DBG, BINDING_STORAGE, target->dbg);
     bind(&bindings, BIND_GENERATIONS, BINDING_STORAGE, queues->generations);
     bind(&bindings, BIND_GENERATION_TEXELS, BINDING_TEXELS, queues->generations);
     bind(&bindings, BIND_RAY_ROWS, BINDING_STORAGE, queues->rays);
@@ -473,7 +474,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     choose_packets(renderer, stage, spec);
     if (classes > 1 && stages[stage].kernel == KERNEL_SHADE)
         narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN, spec);
-    job->params = pass_params(renderer, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
+    job->params = pass_params(target, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
                               sizeof(struct gpu_chunk), stages[stage].name);
     job->params.bindings = job->kinds;
 }
@@ -537,11 +538,12 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams
         spec.SPEC_PACKET_STACK = renderer->packet_stack_size;
     }
     pass->rays_each = spec.SPEC_PACKET_RAYS;
-    const struct pipeline_params params = pass_params(
-        renderer, KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT, sizeof(struct gpu_batch),
-        beams ? any ? "trace any together" : "trace closest together"
-        : any ? "trace any"
-              : "trace closest");
+    const struct pipeline_params params =
+        pass_params(&renderer->picture, KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT,
+                    sizeof(struct gpu_batch),
+                    beams ? any ? "trace any together" : "trace closest together"
+                    : any ? "trace any"
+                          : "trace closest");
     whit_result result = create_pipelines(renderer->device, &params, pass);
     return result == WHIT_OK ? create_sets(pass, &bindings, BIND_TRACE_COUNT) : result;
 }

@@ -246,6 +246,9 @@ static void take_error(struct glslang_answer *answer, const struct glslang_quest
         own = NOBODY;
     }
     tidy(line, why);
+    if (strncmp(why, "'dbg': no matching", 18) == 0 && strstr(question->text, "#define HAS_DBG\n"))
+        snprintf(why, sizeof why,
+                 "dbg(x) takes a float, int, uint, bool or a vector of two to four of these");
     if (strcmp(why, "memory exhausted") == 0) /* as bison says it */
         snprintf(why, sizeof why, "brackets or blocks that are too deep");
     if (!strstr(why, "compilation terminated") && !strstr(why, "compilation errors.") && why[0])

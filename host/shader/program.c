@@ -50,22 +50,32 @@ const char *shader_kernel_name(enum shader_kernel kernel)
     return hook_kernels[kernel].name;
 }
 
+/* SHADER_KERNEL_COUNT: it is none that hooks are parts of. */
+static uint32_t find_kernel(const char *name)
+{
+    uint32_t i = 0;
+    while (i < SHADER_KERNEL_COUNT && strcmp(hook_kernels[i].name, name) != 0)
+        i++;
+    return i;
+}
+
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel)
 {
-    for (uint32_t i = 0; shader && i < SHADER_KERNEL_COUNT; ++i) {
-        if (strcmp(hook_kernels[i].name, kernel) == 0 && shader->codes[i].words)
-            return &shader->codes[i];
-    }
-    return NULL;
+    uint32_t i = find_kernel(kernel);
+    return shader && i < SHADER_KERNEL_COUNT && shader->codes[i].words ? &shader->codes[i] : NULL;
+}
+
+const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel)
+{
+    uint32_t i = find_kernel(kernel);
+    return shader && i < SHADER_KERNEL_COUNT && shader->dbg_codes[i].words ? &shader->dbg_codes[i]
+                                                                           : NULL;
 }
 
 bool shader_is_hooked(const whit_shader *shader, const char *kernel)
 {
-    for (uint32_t i = 0; shader && i < SHADER_KERNEL_COUNT; ++i) {
-        if (strcmp(hook_kernels[i].name, kernel) == 0)
-            return kernel_table[i].hooks & shader->hooks;
-    }
-    return false;
+    uint32_t i = find_kernel(kernel);
+    return shader && i < SHADER_KERNEL_COUNT && (kernel_table[i].hooks & shader->hooks);
 }
 
 uint32_t shader_reaches(const whit_shader *shader)
@@ -147,6 +157,56 @@ static char *hook_text(const struct shader_stages *stages, const char *declared)
     return text;
 }
 
+/* What of the user's text a kernel has besides its functions. */
+enum kernel_text {
+    TEXT_PLAIN,
+    TEXT_TESTS,
+    TEXT_DBG /* dbg(x) records */
+};
+
+/* The user's text as a kernel has it, and what is declared in front of it. */
+struct kernel_parts {
+    enum kernel_text kind;
+    struct shader_text user;
+    char *declared;
+};
+
+/* Each step finds its places by what the one before leaves where it was. */
+static bool make_text(const whit_shader *shader, enum kernel_text kind, struct shader_text *out)
+{
+    struct shader_text between;
+    bool fine;
+    if (kind == TEXT_DBG)
+        fine = shader_tests_text(&shader->tests, &shader->text, false, &between) &&
+               shader_dbg_text(&shader->dbg, &between, true, out);
+    else
+        fine = shader_dbg_text(&shader->dbg, &shader->text, false, &between) &&
+               shader_tests_text(&shader->tests, &between, kind == TEXT_TESTS, out);
+    shader_text_end_copy(&between);
+    return fine;
+}
+
+static bool parts_init(const whit_shader *shader, enum kernel_text kind, struct kernel_parts *parts)
+{
+    *parts = (struct kernel_parts){.kind = kind};
+    char *sliders = shader_sliders_declare(shader);
+    char *aovs = declare_aovs(shader), *box = declare_box(shader);
+    char *calls = kind == TEXT_TESTS ? shader_tests_call(&shader->tests) : string_copy("");
+    if (sliders && aovs && box && calls)
+        parts->declared = string_format("%s%s%s%s", sliders, aovs, box, calls);
+    free(calls);
+    free(box);
+    free(aovs);
+    free(sliders);
+    return parts->declared && make_text(shader, kind, &parts->user);
+}
+
+static void parts_finish(struct kernel_parts *parts)
+{
+    shader_text_end_copy(&parts->user);
+    free(parts->declared);
+}
+
 /* What a kernel is compiled of; it borrows all but its own text, and is not to be moved. */
 struct kernel_request {
     char texts[DEFINES_MAX][DEFINE_BYTES];
@@ -155,14 +215,14 @@ struct kernel_request {
     struct shader_request request;
 };
 
-/* `declared` stands in front of the user's text. False: no memory. */
+/* False: no memory. */
 static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
-                                enum shader_kernel kernel, const char *declared,
-                                struct kernel_request *of)
+                                const struct kernel_parts *parts, struct kernel_request *of)
 {
     uint32_t count = 0;
-    if (kernel == SHADER_KERNEL_TEST)
-        snprintf(of->texts[count++], DEFINE_BYTES, "HAS_TESTS");
+    if (parts->kind != TEXT_PLAIN)
+        snprintf(of->texts[count++], DEFINE_BYTES,
+                 parts->kind == TEXT_TESTS ? "HAS_TESTS" : "HAS_DBG");
     for (uint32_t i = 0; i < SHADER_HOOK_COUNT; ++i) {
         if (!shader_has(shader, (enum shader_hook)i))
             continue;
@@ -173,7 +233,7 @@ static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
     }
     for (uint32_t i = 0; i < count; ++i)
         of->defines[i] = of->texts[i];
-    of->text = hook_text(shader->stages, declared);
+    of->text = hook_text(shader->stages, parts->declared);
     of->request = (struct shader_request){.kernel = HOOK_TEXT,
                                           .kernel_text = of->text,
                                           .defines = of->defines,
@@ -185,20 +245,19 @@ static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
     return of->text != NULL;
 }
 
-/* `user`: the text as the kernel is to have it. */
+/* The kernel `base` with the functions of the user. */
 static whit_result compile(const whit_log *log, struct shader_compiler *compiler,
-                           whit_shader *shader, const struct shader_text *user,
-                           enum shader_kernel kernel, const struct kernel_code *base,
-                           const char *declared, struct shader_errors *errors)
+                           const whit_shader *shader, const struct kernel_parts *parts,
+                           const struct kernel_code *base, struct shader_code *code,
+                           struct shader_errors *errors)
 {
     struct kernel_request of;
-    if (!kernel_request_init(log, shader, kernel, declared, &of))
+    if (!kernel_request_init(log, shader, parts, &of))
         return WHIT_ERROR_MEMORY;
     of.request.base = base->words;
     of.request.base_bytes = base->bytes;
-    of.request.cpu_s = kernel == SHADER_KERNEL_TEST ? 0.0 : FUNCTIONS_CPU_S;
-    whit_result result =
-        shader_compile(compiler, user, &of.request, &shader->codes[kernel], errors);
+    of.request.cpu_s = parts->kind == TEXT_TESTS ? 0.0 : FUNCTIONS_CPU_S;
+    whit_result result = shader_compile(compiler, &parts->user, &of.request, code, errors);
     free(of.text);
     return result;
 }
@@ -240,33 +299,6 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
     return WHIT_ERROR_INPUT;
 }
 
-/* The user's text as a kernel has it, and what is declared in front of it. */
-struct kernel_parts {
-    struct shader_text user;
-    char *declared;
-};
-
-static bool parts_init(const whit_shader *shader, bool tests, struct kernel_parts *parts)
-{
-    *parts = (struct kernel_parts){0};
-    char *sliders = shader_sliders_declare(shader);
-    char *aovs = declare_aovs(shader), *box = declare_box(shader);
-    char *calls = tests ? shader_tests_call(&shader->tests) : string_copy("");
-    if (sliders && aovs && box && calls)
-        parts->declared = string_format("%s%s%s%s", sliders, aovs, box, calls);
-    free(calls);
-    free(box);
-    free(aovs);
-    free(sliders);
-    return parts->declared && shader_tests_text(&shader->tests, &shader->text, tests, &parts->user);
-}
-
-static void parts_finish(struct kernel_parts *parts)
-{
-    shader_tests_end_text(&parts->user);
-    free(parts->declared);
-}
-
 /* A kernel of other stages than the embedded ones: as it is, or with room for the user's functions.
  */
 static whit_result compile_stage(struct shader_compiler *compiler, const whit_shader *shader,
@@ -294,8 +326,9 @@ static whit_result compile_hooked(const whit_log *log, struct shader_compiler *c
         result = compile_stage(compiler, shader, kernel, true, &code, errors);
     const struct kernel_code base = {hook_kernels[kernel].name, code.words, code.bytes};
     if (result == WHIT_OK)
-        result = compile(log, compiler, shader, &parts->user, kernel,
-                         shader->stages ? &base : &hook_kernels[kernel], parts->declared, errors);
+        result = compile(
+            log, compiler, shader, parts, shader->stages ? &base : &hook_kernels[kernel],
+            parts->kind == TEXT_DBG ? &shader->dbg_codes[kernel] : &shader->codes[kernel], errors);
     shader_code_free(&code);
     return result;
 }
@@ -304,13 +337,28 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
                                whit_shader *shader, struct shader_errors *errors)
 {
     struct kernel_parts parts;
-    whit_result result = parts_init(shader, false, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    whit_result result = parts_init(shader, TEXT_PLAIN, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
         if (kernel_table[i].hooks & shader->hooks)
             result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
         else if (shader->stages && i != SHADER_KERNEL_TEST && i != SHADER_KERNEL_MISS)
             result = compile_stage(compiler, shader, (enum shader_kernel)i, false,
                                    &shader->codes[i], errors);
+    }
+    parts_finish(&parts);
+    return result;
+}
+
+/* Kernels that record what dbg(x) is. The shadow stage makes the camera's rays once more, of which
+   the first stage tells. */
+static whit_result compile_dbg(const whit_log *log, struct shader_compiler *compiler,
+                               whit_shader *shader, struct shader_errors *errors)
+{
+    struct kernel_parts parts;
+    whit_result result = parts_init(shader, TEXT_DBG, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_TEST; ++i) {
+        if ((kernel_table[i].hooks & shader->hooks) && i != SHADER_KERNEL_SHADOW)
+            result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
     }
     parts_finish(&parts);
     return result;
@@ -342,7 +390,7 @@ whit_result shader_program_compile_tests(const whit_log *log, struct shader_comp
     struct kernel_parts parts;
     whit_result result = WHIT_ERROR_MEMORY;
     shader_code_free(&shader->codes[SHADER_KERNEL_TEST]);
-    if (parts_init(shader, true, &parts))
+    if (parts_init(shader, TEXT_TESTS, &parts))
         result = compile_hooked(log, compiler, shader, &parts, SHADER_KERNEL_TEST, errors);
     parts_finish(&parts);
     return result;
@@ -355,8 +403,8 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader,
     struct kernel_request of;
     char *text = NULL;
     size_t bytes;
-    if (parts_init(shader, kernel == SHADER_KERNEL_TEST, &parts) &&
-        kernel_request_init(log, shader, kernel, parts.declared, &of)) {
+    if (parts_init(shader, kernel == SHADER_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts) &&
+        kernel_request_init(log, shader, &parts, &of)) {
         text = shader_expand(log, &parts.user, &of.request, &bytes, NULL);
         free(of.text);
     }
@@ -409,9 +457,13 @@ whit_result shader_program_create(const whit_log *log, struct shader_compiler *c
     if (result == WHIT_OK && has_text)
         result = shader_tests_read(log, &shader->text, &shader->tests, errors);
     if (result == WHIT_OK && has_text)
+        result = shader_dbg_read(log, &shader->text, &shader->tests, &shader->dbg, errors);
+    if (result == WHIT_OK && has_text)
         result = find_hooks(log, shader, errors);
     if (result == WHIT_OK)
         result = compile_all(log, compiler, shader, errors);
+    if (result == WHIT_OK && shader->dbg.count)
+        result = compile_dbg(log, compiler, shader, errors);
     if (result == WHIT_OK && !fill_infos(shader))
         result = WHIT_ERROR_MEMORY;
     if (result != WHIT_OK) {
@@ -426,8 +478,10 @@ void shader_program_destroy(whit_shader *shader)
 {
     if (!shader)
         return;
-    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i)
+    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i) {
         shader_code_free(&shader->codes[i]);
+        shader_code_free(&shader->dbg_codes[i]);
+    }
     shader_text_free(&shader->text);
     shader_stages_destroy(shader->stages);
     shader_tests_free(&shader->tests);

@@ -3,6 +3,7 @@
 #define SHADER_PROGRAM_H
 
 #include "shader/compile.h"
+#include "shader/dbg.h"
 #include "shader/tests.h"
 #include "whit/whit_shader.h"
 
@@ -82,6 +83,10 @@ struct whit_shader {
     uint32_t aov_count;
     struct shader_box box;
     struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
+    struct shader_dbg dbg;
+    struct shader_code dbg_codes[SHADER_KERNEL_COUNT]; /* the same, that record what dbg(x) is; no
+                                                          words without any, and of a stage that
+                                                          does the same anew */
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;
     const char *names[SHADER_HOOK_COUNT + 1]; /* of its hooks; NULL behind the last */
@@ -96,6 +101,8 @@ static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
 }
 /* Its code of kernel "closest", "shade", "shadow" or "resolve"; NULL: whit's own serves. */
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
+/* The same for a pixel that is looked at: what dbg(x) is is recorded. */
+const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel);
 /* Whether functions of the user's are part of it. */
 bool shader_is_hooked(const whit_shader *shader, const char *kernel);
 /* Bits SHADER_REACHES_* of what its functions may come to call. */

@@ -206,12 +206,6 @@ static void follow_directive(const struct scan *scan, struct scan_functions *f)
     f->depth_count -= f->depth_count && strcmp(scan->text, "endif") == 0;
 }
 
-static void skip_line(struct scan *scan)
-{
-    while (scan_next(scan) && scan->kind != SCAN_NEWLINE)
-        ;
-}
-
 /* Whether the sign in hand opens the body of a function. */
 static bool follow_sign(char sign, struct scan_functions *f)
 {
@@ -236,19 +230,47 @@ static bool follow_sign(char sign, struct scan_functions *f)
     return body;
 }
 
+bool scan_follow(const struct scan *scan, struct scan_functions *f)
+{
+    if (scan->kind == SCAN_DIRECTIVE) {
+        follow_directive(scan, f);
+    } else if (scan->in_directive) {
+        return false;
+    } else if (scan->kind == SCAN_WORD && f->braces == 0 && f->brackets == 0) {
+        memcpy(f->name, scan->text, sizeof f->name);
+        f->line = scan->token_line;
+        f->closed = false;
+    } else if (scan->kind == SCAN_SIGN) {
+        return follow_sign(scan->text[0], f);
+    }
+    return false;
+}
+
 bool scan_next_function(struct scan *scan, struct scan_functions *f)
 {
     while (scan_next(scan)) {
-        if (scan->kind == SCAN_DIRECTIVE) {
-            follow_directive(scan, f);
-            skip_line(scan);
-        } else if (scan->kind == SCAN_WORD && f->braces == 0 && f->brackets == 0) {
-            memcpy(f->name, scan->text, sizeof f->name);
-            f->line = scan->token_line;
-            f->closed = false;
-        } else if (scan->kind == SCAN_SIGN && follow_sign(scan->text[0], f)) {
+        if (scan_follow(scan, f))
             return true;
-        }
     }
     return false;
+}
+
+void scan_copy_brackets(const char *at, char *out, size_t bytes)
+{
+    uint32_t open = 1;
+    size_t used = 0;
+    for (; *at; ++at) {
+        open += *at == '(';
+        open -= *at == ')';
+        bool blank = is_blank(*at) || is_newline(*at);
+        if (open == 0 || used + 4 >= bytes)
+            break;
+        if (!blank)
+            out[used++] = *at;
+        else if (used && out[used - 1] != ' ')
+            out[used++] = ' ';
+    }
+    while (used && out[used - 1] == ' ')
+        used--;
+    strcpy(out + used, open ? "..." : "");
 }

@@ -47,5 +47,11 @@ struct scan_functions {
     bool closed;                      /* name and its brackets are complete */
 };
 bool scan_next_function(struct scan *scan, struct scan_functions *functions);
+/* The same token by token, each after scan_next: true where the one in hand opens a body. */
+bool scan_follow(const struct scan *scan, struct scan_functions *functions);
+
+/* What stands behind a bracket up to its other one, blanks as one and none at the ends; "..." where
+   `bytes`, of `out`, are too few or the bracket does not close. */
+void scan_copy_brackets(const char *at, char *out, size_t bytes);
 
 #endif

@@ -77,28 +77,6 @@ static bool read_head(struct reading *r, struct shader_test *test)
            take(r, SCAN_SIGN, ")") && take(r, SCAN_SIGN, "{");
 }
 
-/* What stands between the brackets of a check, blanks as one. */
-static void copy_text(struct reading *r, struct shader_check *check)
-{
-    const char *text = file_of(r)->text;
-    uint32_t open = 1;
-    size_t used = 0;
-    for (const char *c = text + check->at; *c; ++c) {
-        open += *c == '(';
-        open -= *c == ')';
-        bool blank = isspace((unsigned char)*c);
-        if (open == 0 || used + 4 >= sizeof check->text)
-            break;
-        if (!blank)
-            check->text[used++] = *c;
-        else if (used && check->text[used - 1] != ' ')
-            check->text[used++] = ' ';
-    }
-    while (used && check->text[used - 1] == ' ')
-        used--;
-    strcpy(check->text + used, open ? "..." : "");
-}
-
 /* The word in hand is `check`. */
 static void read_check(struct reading *r, const struct shader_test *test)
 {
@@ -111,7 +89,7 @@ static void read_check(struct reading *r, const struct shader_test *test)
         return;
     }
     check.at = (size_t)(r->scan.at - file_of(r)->text);
-    copy_text(r, &check);
+    scan_copy_brackets(r->scan.at, check.text, sizeof check.text);
     if (!ARRAY_PUSH(tests->checks, tests->check_count, tests->check_capacity, check))
         r->failed = true;
 }
@@ -265,34 +243,15 @@ static void put_numbers(const struct shader_tests *tests, uint32_t index,
 bool shader_tests_text(const struct shader_tests *tests, const struct shader_text *text,
                        bool numbered, struct shader_text *out)
 {
-    *out = (struct shader_text){.file_capacity = text->file_count};
-    out->files = array_alloc_zeroed(text->file_count, sizeof *out->files);
-    bool fine = out->files != NULL;
-    for (uint32_t i = 0; fine && i < text->file_count; ++i) {
-        const struct shader_file *source = &text->files[i];
-        struct shader_file *file = &out->files[i];
-        *file = *source;
-        file->text = malloc(source->bytes + 1 + (size_t)tests->check_count * NUMBER_BYTES);
-        fine = file->text != NULL;
-        out->file_count += fine;
-        if (fine)
-            memcpy(file->text, source->text, source->bytes + 1);
-        if (fine && numbered)
-            put_numbers(tests, i, source, file);
-        else if (fine)
-            blank_tests(tests, i, file);
+    if (!shader_text_copy(text, (size_t)tests->check_count * NUMBER_BYTES, out))
+        return false;
+    for (uint32_t i = 0; i < text->file_count; ++i) {
+        if (numbered)
+            put_numbers(tests, i, &text->files[i], &out->files[i]);
+        else
+            blank_tests(tests, i, &out->files[i]);
     }
-    if (!fine)
-        shader_tests_end_text(out);
-    return fine;
-}
-
-void shader_tests_end_text(struct shader_text *text)
-{
-    for (uint32_t i = 0; i < text->file_count; ++i)
-        free(text->files[i].text);
-    free(text->files);
-    *text = (struct shader_text){0};
+    return true;
 }
 
 char *shader_tests_call(const struct shader_tests *tests)

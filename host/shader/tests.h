@@ -41,11 +41,10 @@ void shader_tests_free(struct shader_tests *tests); /* accepts a zeroed one */
 uint32_t shader_tests_words(const struct shader_tests *tests);
 
 /* The text for stages, in which tests are blank, or with `numbered` for the kernel that runs them.
-   It borrows all but the texts of files; lines stay where they are. Freed by shader_tests_end_text.
+   Lines stay where they are, and without `numbered` bytes do too. Freed by shader_text_end_copy.
    False: no memory. */
 bool shader_tests_text(const struct shader_tests *tests, const struct shader_text *text,
                        bool numbered, struct shader_text *out);
-void shader_tests_end_text(struct shader_text *text);
 
 /* The GLSL that calls each test by its number; free() it. NULL: no memory. */
 char *shader_tests_call(const struct shader_tests *tests);

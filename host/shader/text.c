@@ -460,6 +460,34 @@ void shader_text_free(struct shader_text *text)
     *text = (struct shader_text){0};
 }
 
+bool shader_text_copy(const struct shader_text *text, size_t more, struct shader_text *out)
+{
+    *out = (struct shader_text){.file_capacity = text->file_count};
+    out->files = array_alloc_zeroed(text->file_count, sizeof *out->files);
+    bool fine = out->files != NULL;
+    for (uint32_t i = 0; fine && i < text->file_count; ++i) {
+        const struct shader_file *source = &text->files[i];
+        struct shader_file *file = &out->files[i];
+        *file = *source;
+        file->text = malloc(source->bytes + 1 + more);
+        fine = file->text != NULL;
+        out->file_count += fine;
+        if (fine)
+            memcpy(file->text, source->text, source->bytes + 1);
+    }
+    if (!fine)
+        shader_text_end_copy(out);
+    return fine;
+}
+
+void shader_text_end_copy(struct shader_text *copy)
+{
+    for (uint32_t i = 0; i < copy->file_count; ++i)
+        free(copy->files[i].text);
+    free(copy->files);
+    *copy = (struct shader_text){0};
+}
+
 bool shader_text_defines(const struct shader_text *text, const char *name, uint32_t *file,
                          uint32_t *line)
 {

@@ -61,6 +61,11 @@ WHIT_CHECK whit_result shader_text_from(const whit_log *log,
 /* Accepts a zeroed one. */
 void shader_text_free(struct shader_text *text);
 
+/* A text with files' texts of its own, which have room for `more` bytes; it borrows the rest.
+   Accepts no file. False: no memory, and *out is empty. */
+bool shader_text_copy(const struct shader_text *text, size_t more, struct shader_text *out);
+void shader_text_end_copy(struct shader_text *copy); /* accepts a zeroed one */
+
 /* Whether a function of this name has a body at the top level of the text, in any of the files;
    *file and *line, which may be NULL, say where the first is. Reads the text as it stands: what #if
    leaves out counts, what macros make does not. */

@@ -57,6 +57,37 @@ typedef struct whit_probe_ray {
     uint32_t light, light_sample; /* shadow rays; else WHIT_NONE */
 } whit_probe_ray;
 
+typedef enum whit_value_kind {
+    WHIT_VALUE_FLOAT = 0,
+    WHIT_VALUE_INT,
+    WHIT_VALUE_UINT,
+    WHIT_VALUE_BOOL,
+} whit_value_kind;
+
+/* What a dbg(x) of the shader was, once. */
+typedef struct whit_probe_value {
+    whit_value_kind kind;
+    uint32_t size;       /* 1: a number; 2 to 4: a vector */
+    double v[4];         /* of each component, exact; of a bool 0 or 1 */
+    uint32_t ray;        /* index of the ray that the function was called for, of post() the camera
+                            ray; WHIT_NONE: of one that was dropped */
+    uint32_t generation; /* of that */
+} whit_probe_value;
+/* "0.5", "(1, 2, 3)", "true": floats with `digits` digits, 9 of which tell all. At most `bytes` of
+   `text`, which end with a 0. */
+void whit_probe_value_text(const whit_probe_value *value, int digits, char *text, size_t bytes);
+
+#define WHIT_PROBE_VALUES 8
+/* A dbg(x) of the shader. */
+typedef struct whit_probe_call {
+    const char *text; /* x as the file has it, cut where it is long */
+    const char *file; /* as whit opened it */
+    uint32_t line;
+    uint32_t count;                             /* how often it was reached */
+    whit_probe_value values[WHIT_PROBE_VALUES]; /* the first ones, in the order of rays */
+    uint32_t value_count;
+} whit_probe_call;
+
 typedef struct whit_probe_report {
     uint32_t x, y;
     uint32_t samples; /* that `color` is of; of an adaptive picture the 4 of its first pass */
@@ -69,12 +100,18 @@ typedef struct whit_probe_report {
     uint32_t ray_count;
     uint32_t dropped;   /* rays that there was no room for */
     uint32_t differing; /* rays of which the twin says something else */
+    /* Each dbg(x) of the shader, in the order of files and lines: of the first sample, and of
+       post() that of all samples. */
+    whit_probe_call *calls;
+    uint32_t call_count;
 } whit_probe_report;
 
 /* Traces pixel (x, y), from the upper left, once more, and nothing else; the picture that was
    rendered stays. The first call compiles a kernel. `max_rays`: that are recorded; 0: 16383, which
-   is the limit. WHIT_ERROR_USAGE outside of the picture or without a device; WHIT_ERROR_DEVICE;
-   WHIT_ERROR_STATUS, WHIT_ERROR_TIME_LIMIT and WHIT_ERROR_CANCELLED as whit_renderer_render. */
+   is the limit. With a shader the tree is that of whit's rays: those that its functions trace
+   themselves are not in it. WHIT_ERROR_USAGE outside of the picture or without a device;
+   WHIT_ERROR_DEVICE; WHIT_ERROR_STATUS, WHIT_ERROR_TIME_LIMIT and WHIT_ERROR_CANCELLED as
+   whit_renderer_render. */
 WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y,
                                   uint32_t max_rays, whit_probe_report **out);
 void whit_probe_report_destroy(whit_probe_report *report);

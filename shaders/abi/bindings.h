@@ -50,6 +50,7 @@
 #define BIND_CUTS                35
 #define BIND_CUT_SUMS            36
 #define BIND_AOVS                37
-#define BIND_STAGES_COUNT        38
+#define BIND_DBG                 38
+#define BIND_STAGES_COUNT        39
 
 #endif

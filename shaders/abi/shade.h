@@ -273,4 +273,24 @@ GPU_ASSERT_SIZE(gpu_probe_ray, 128)
 GPU_ASSERT_AT(gpu_probe_ray, point, 64)
 GPU_ASSERT_AT(gpu_probe_ray, skip_primitive, 112)
 
+/* ---- What dbg(x) of a user's functions is, for that pixel ---- */
+
+#define DBG_CALLS  64u /* in a file */
+#define DBG_VALUES 64u /* that are kept of a call; it is counted how many there are */
+
+/* gpu_dbg.type: one of these, and 1, 2, 3 where it is a vector of two, three, four */
+#define DBG_FLOAT 0u
+#define DBG_INT   4u
+#define DBG_UINT  8u
+#define DBG_BOOL  12u
+
+struct gpu_dbg {
+    gpu_uvec4 bits; /* of each component; 0 or 1 of a bool */
+    gpu_uint id;    /* of the ray that the function is called for */
+    gpu_uint order; /* of what is called for one ray: the kernel above bit 24, below what was recorded before */
+    gpu_uint generation;
+    gpu_uint type;
+};
+GPU_ASSERT_SIZE(gpu_dbg, 32)
+
 #endif

@@ -90,6 +90,15 @@ void check(uint word, uint bit, bool holds) {}
 void run_test(uint test, uint seed);
 #endif
 
+// ---- Values that are looked at ----
+
+// dbg(x) is x, a number, a bool or a vector of these, and for a pixel that is looked at it is shown, with the
+// file, the line and what stands in its brackets. It may stand wherever x may, but for macros and tests.
+#ifdef HAS_DBG
+void whit_record(uint call, uint type, uvec4 bits) {}
+#include "dbg.glsl"
+#endif
+
 // ---- Whit's own functions in the place of which those of the file stand ----
 
 void whit_camera(vec2 at, inout vec3 origin, inout vec3 dir) {}

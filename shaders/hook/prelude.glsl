@@ -20,6 +20,8 @@ uint whit_fuel_loop = 0u; // number of the loop in which there were none left; 0
 uint hook_loop = 0u;      // the same, of any call
 uint hook_shape = 0u;     // what status_shape is to hold of the answers for a shape
 
+#include "record.glsl"
+
 void begin_hook()
 {
     whit_fuel = SPEC_FUEL;

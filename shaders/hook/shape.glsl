@@ -58,7 +58,9 @@ ShapeAnswer ask_shape(vec3 origin, vec3 dir, float far, bool alive)
     vec3 start = enters ? origin + dir * enter : origin;
     float reach = min(far, leave) - enter;
     ShapeAnswer boxed = ShapeAnswer(false, 0.0, vec3(0.0)), bare = boxed;
+    bool records = hook_records;
     do {
+        hook_records = records && !more;
         bool wanted = more || (enters && reach >= 0.0);
         ShapeAnswer answer = ShapeAnswer(false, 0.0, vec3(0.0));
         if (wanted) {
@@ -72,6 +74,7 @@ ShapeAnswer ask_shape(vec3 origin, vec3 dir, float far, bool alive)
             boxed = answer;
         more = checked && !more;
     } while (another_iteration(more));
+    hook_records = records;
     bool fine = is_number(boxed);
     boxed.met = boxed.met && (!fine || (boxed.t >= 0.0 && boxed.t <= reach));
     if (checked)

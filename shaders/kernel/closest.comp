@@ -41,6 +41,9 @@ void take_ray(uint r)
     id = alive ? id : 0u;
     alive = alive && (!primary || is_in_picture(slot_pixel(slot_of(id))));
     uint slot;
+#ifdef HOOKS
+    record_for(id, alive && primary); // by the camera's function
+#endif
     Ray ray = fetch_ray(id, slot);
     if (SPEC_COUNT != 0u && primary && alive)
         clear_costs(slot);

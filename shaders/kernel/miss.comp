@@ -27,6 +27,7 @@ void main()
     alive = alive && (!is_primary() || is_in_picture(slot_pixel(slot)));
     hook_pixel = slot_pixel(slot);
     hook_hit = make_hit(FLOAT_LARGEST);
+    record_for(id, alive);
     begin_hook();
     vec3 sky = miss(hook_ray.dir) * own.rgb;
     end_hook(alive);

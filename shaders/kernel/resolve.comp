@@ -116,6 +116,8 @@ void resolve_pixel(uint id)
 #ifdef HOOKS
     if ((SPEC_HOOKS & HOOK_POST) != 0u && last) {
         hook_pixel = at;
+        hook_records = true; // it is called for all samples together
+        hook_id = id;
         begin_hook();
         total.rgb = post(ivec2(at), total.rgb);
         end_hook(true);

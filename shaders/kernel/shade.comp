@@ -309,6 +309,7 @@ void main()
     hook_pixel = slot_pixel(slot);
     hook_hit = hit;
     hook_media = c.before;
+    record_for(id, alive);
 #endif
 #ifdef HOOKS
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)

@@ -264,14 +264,123 @@ TEST(kernels_have_tests_numbered_or_blank_in_the_same_lines)
     }
     assert_true(shader_tests_text(&tests, &text, false, &out));
     assert_string_equal(out.files[0].text, blank);
-    shader_tests_end_text(&out);
+    shader_text_end_copy(&out);
     assert_true(shader_tests_text(&tests, &text, true, &out));
     assert_int_equal(out.files[0].bytes, strlen(out.files[0].text));
     assert_non_null(strstr(out.files[0].text, "check(0u, 1u,  f(1.0)  <=\n        2.0);"));
     assert_non_null(strstr(out.files[0].text, "check(0u, 2u, true);"));
     assert_non_null(strstr(out.files[0].text, "{ check(0u, 1u, (n)==n); } float g()"));
-    shader_tests_end_text(&out);
+    shader_text_end_copy(&out);
     shader_tests_free(&tests);
+    shader_text_free(&text);
+}
+
+/* ---- dbg(x) ---- */
+
+static const char looked_at[] = "#if 0\n"
+                                "float f(float x) {\n"
+                                "#else\n"
+                                "float f(float dbg) {\n"
+                                "#endif\n"
+                                "    dbg += 1.0; /* dbg(0) */\n"
+                                "    return dbg( dbg  +\n"
+                                "        1.0) * dbg(g(dbg (vec2(2.0, dbg)))); }\n";
+
+static whit_result read_dbg(const char *content, struct shader_text *text, struct shader_dbg *dbg)
+{
+    const struct shader_text_source source = {"a.glsl", content, strlen(content)};
+    struct shader_tests tests;
+    errors = (struct shader_errors){0};
+    assert_int_equal(shader_text_from(NULL, &source, 1, text, &errors), WHIT_OK);
+    assert_int_equal(shader_tests_read(NULL, text, &tests, &errors), WHIT_OK);
+    whit_result result = shader_dbg_read(NULL, text, &tests, dbg, &errors);
+    shader_tests_free(&tests);
+    return result;
+}
+
+TEST(values_that_are_looked_at_are_found_in_any_expression)
+{
+    struct shader_text text;
+    struct shader_dbg dbg;
+    assert_int_equal(read_dbg(looked_at, &text, &dbg), WHIT_OK);
+    assert_int_equal(dbg.count, 3);
+    assert_string_equal(dbg.sites[0].text, "dbg + 1.0");
+    assert_int_equal(dbg.sites[0].line, 7);
+    assert_string_equal(dbg.sites[1].text, "g(dbg (vec2(2.0, dbg)))");
+    assert_string_equal(dbg.sites[2].text, "vec2(2.0, dbg)");
+    assert_int_equal(dbg.sites[2].line, 8);
+    shader_text_free(&text);
+}
+
+TEST(kernels_have_them_numbered_or_blank_in_the_same_lines)
+{
+    struct shader_text text, out;
+    struct shader_dbg dbg;
+    assert_int_equal(read_dbg(looked_at, &text, &dbg), WHIT_OK);
+    assert_true(shader_dbg_text(&dbg, &text, false, &out));
+    assert_int_equal(strlen(out.files[0].text), strlen(looked_at));
+    assert_non_null(strstr(out.files[0].text, "return    ( dbg  +\n        1.0) *    "
+                                              "(g(    (vec2(2.0, dbg)))); }\n"));
+    assert_non_null(strstr(out.files[0].text, "float f(float dbg) {\n"));
+    shader_text_end_copy(&out);
+    assert_true(shader_dbg_text(&dbg, &text, true, &out));
+    assert_int_equal(out.files[0].bytes, strlen(out.files[0].text));
+    assert_non_null(strstr(out.files[0].text, "return dbg(0u,  dbg  +\n        1.0) * "
+                                              "dbg(1u, g(dbg (2u, vec2(2.0, dbg)))); }\n"));
+    shader_text_end_copy(&out);
+    shader_text_free(&text);
+}
+
+TEST(a_function_of_that_name_is_the_users)
+{
+    struct shader_text text;
+    struct shader_dbg dbg;
+    assert_int_equal(
+        read_dbg("float dbg(float a, float b) { return a; } float c = dbg(1.0, 2.0);", &text, &dbg),
+        WHIT_OK);
+    assert_int_equal(dbg.count, 0);
+    shader_text_free(&text);
+}
+
+TEST(values_that_cannot_be_looked_at_are_refused_with_their_line)
+{
+    static const char one[] = "takes one value";
+    const struct {
+        const char *content, *why;
+        uint32_t line;
+    } cases[] = {
+        {"void f() {\n dbg(); }\n", one, 2},
+        {"void f() {\n dbg(1.0, 2.0); }\n", one, 2},
+        {"void f() {\n dbg(1.0; }\n", one, 2},
+        {"void f() {}\nfloat a =\ndbg(1.0);\n", "in the body of a function", 3},
+        {"void f() {}\n\n#define D dbg(1.0)\n", "in no macro", 3},
+        {"void f() {\n#if dbg(1)\n#endif\n}\n", "in no macro", 2},
+        {"//@ test\nvoid a(uint s) {\ncheck(dbg(true)); }\n", "a test has none", 3},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct shader_text text;
+        struct shader_dbg dbg;
+        assert_int_equal(read_dbg(cases[i].content, &text, &dbg), WHIT_ERROR_INPUT);
+        assert_int_equal(errors.count, 1);
+        assert_int_equal(errors.items[0].line, cases[i].line);
+        assert_non_null(strstr(errors.items[0].reason, cases[i].why));
+        shader_text_free(&text);
+    }
+}
+
+TEST(a_file_has_a_number_of_them_at_most)
+{
+    char content[16 + 8 * (SHADER_DBG_MAX + 1) + 4] = "void f() {";
+    struct shader_text text;
+    struct shader_dbg dbg;
+    for (uint32_t i = 0; i < SHADER_DBG_MAX; ++i)
+        strcat(content, "dbg(1);\n");
+    assert_int_equal(read_dbg(strcat(content, "}"), &text, &dbg), WHIT_OK);
+    assert_int_equal(dbg.count, SHADER_DBG_MAX);
+    shader_text_free(&text);
+    strcpy(content + strlen(content) - 1, "dbg(1);}");
+    assert_int_equal(read_dbg(content, &text, &dbg), WHIT_ERROR_INPUT);
+    assert_int_equal(errors.items[0].line, SHADER_DBG_MAX + 1);
     shader_text_free(&text);
 }
 

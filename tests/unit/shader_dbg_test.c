@@ -1,0 +1,214 @@
+/* dbg(x): what it is for a pixel that is looked at, from each function of a file, and that a
+   picture knows nothing of it. */
+#include <stdlib.h>
+
+#include "unit.h"
+#include "whit.h"
+
+enum { WIDTH = 64, HEIGHT = 48, X = 20, Y = 30, FLOOR_X = 5, FLOOR_Y = 40 };
+
+/* Line 1 to begin with. */
+static const char content[] =
+    "void camera(vec2 at, inout vec3 origin, inout vec3 dir) {\n"
+    "    whit_camera(at, origin, dir); dbg(pixel()); }\n"
+    "//@ aov kept\n"
+    "vec4 kept(Surface s) { return vec4(dbg(vec2(0.1, -0.0)), 0.0, 0.0); }\n"
+    "void scatter(Surface s, Optics o, inout Rays rays) {\n"
+    "    whit_scatter(s, o, rays); dbg(bounces()); }\n"
+    "vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
+    "    for (int i = 0; i < 12; i++) dbg(ivec3(i, -i, -2147483647));\n"
+    "    if (sample_number() > 99u) dbg(1.0);\n"
+    "    return vec3(0.25) * dbg(1.0 + float(dbg(bvec4(true, false, false, true)).w)); }\n"
+    "vec3 miss(vec3 dir) { return dbg(vec3(4.0)); }\n"
+    "vec3 post(ivec2 at, vec3 color) { return dbg(color); }\n";
+
+static void tell(void *user, whit_log_level level, const char *message)
+{
+    (void)user;
+    if (level == WHIT_LOG_ERROR)
+        print_error("%s\n", message);
+}
+
+static const whit_log told = {.fn = tell};
+static whit_device *device;
+static whit_shader_compiler *compiler;
+static whit_shader *shader, *plain;
+static whit_scene *scene;
+static whit_accel *accel;
+
+/* `blank`: without the name dbg. */
+static bool load(bool blank, whit_shader **out)
+{
+    char path[] = "/tmp/whit_dbg_XXXXXX", text[sizeof content];
+    int file = mkstemp(path);
+    FILE *stream = file >= 0 ? fdopen(file, "w") : NULL;
+    strcpy(text, content);
+    for (char *at = text; blank && (at = strstr(at, "dbg("));)
+        memcpy(at, "   ", 3);
+    bool fine = stream && fputs(text, stream) >= 0 && fclose(stream) == 0 &&
+                whit_shader_load(compiler, path, false, out) == WHIT_OK;
+    remove(path);
+    return fine;
+}
+
+static int begin(void **state)
+{
+    (void)state;
+    bool fine = whit_shader_compiler_create(NULL, &told, &compiler) == WHIT_OK &&
+                load(false, &shader) && load(true, &plain) &&
+                whit_device_create(NULL, &told, &device) == WHIT_OK &&
+                whit_scene_load(WHIT_SCENES_DIR "/whitted.json", NULL, &told, &scene) == WHIT_OK &&
+                whit_accel_create(scene, NULL, &accel) == WHIT_OK;
+    return fine ? 0 : -1;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    whit_device_destroy(device);
+    whit_shader_destroy(shader);
+    whit_shader_destroy(plain);
+    whit_shader_compiler_destroy(compiler);
+    return 0;
+}
+
+static whit_renderer *make(const whit_shader *with, uint32_t samples)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.sampling.count = samples;
+    params.shader = with;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    return renderer;
+}
+
+/* Value `at` of call `index`, as text. */
+static const char *text_of(const whit_probe_report *report, uint32_t index, uint32_t at)
+{
+    static char text[128];
+    assert_true(index < report->call_count && at < report->calls[index].value_count);
+    whit_probe_value_text(&report->calls[index].values[at], 9, text, sizeof text);
+    return text;
+}
+
+static void assert_call(const whit_probe_report *report, uint32_t index, uint32_t line,
+                        const char *text, uint32_t count, const char *value)
+{
+    const whit_probe_call *call = &report->calls[index];
+    assert_int_equal(call->line, line);
+    assert_string_equal(call->text, text);
+    assert_int_equal(call->count, count);
+    assert_int_equal(call->value_count, count < WHIT_PROBE_VALUES ? count : WHIT_PROBE_VALUES);
+    if (count)
+        assert_string_equal(text_of(report, index, 0), value);
+}
+
+static uint32_t count_of(const whit_probe_report *report, whit_probe_end end_a,
+                         whit_probe_end end_b)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < report->ray_count; ++i)
+        count += report->rays[i].end == end_a || report->rays[i].end == end_b;
+    return count;
+}
+
+TEST(values_are_those_of_the_first_sample_in_the_order_of_rays)
+{
+    whit_renderer *renderer = make(shader, 4);
+    whit_probe_report *report;
+    assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
+    uint32_t met = count_of(report, WHIT_PROBE_OPAQUE, WHIT_PROBE_DIVIDED);
+    uint32_t missed = count_of(report, WHIT_PROBE_MISSED, WHIT_PROBE_MISSED);
+    assert_true(met > 2 && missed > 0);
+    assert_int_equal(report->call_count, 9);
+    assert_call(report, 0, 2, "pixel()", 1, "(20, 30)");
+    assert_call(report, 1, 4, "vec2(0.1, -0.0)", 1, "(0.100000001, -0)");
+    assert_call(report, 2, 6, "bounces()", met, "0");
+    assert_call(report, 3, 8, "ivec3(i, -i, -2147483647)", 12 * met, "(0, 0, -2147483647)");
+    assert_string_equal(text_of(report, 3, 7), "(7, -7, -2147483647)");
+    assert_call(report, 4, 9, "1.0", 0, "");
+    assert_call(report, 5, 10, "1.0 + float(dbg(bvec4(true, false, false, true)).w)", met, "2");
+    assert_call(report, 6, 10, "bvec4(true, false, false, true)", met,
+                "(true, false, false, true)");
+    assert_call(report, 7, 11, "vec3(4.0)", missed, "(4, 4, 4)");
+    char color[128];
+    snprintf(color, sizeof color, "(%.9g, %.9g, %.9g)", (double)report->color[0],
+             (double)report->color[1], (double)report->color[2]);
+    assert_call(report, 8, 12, "color", 1, color);
+    const whit_probe_call *bounces = &report->calls[2];
+    for (uint32_t i = 0; i < bounces->value_count; ++i) {
+        const whit_probe_value *value = &bounces->values[i];
+        assert_true(value->v[0] == (double)report->rays[value->ray].generation);
+        assert_int_equal(value->generation, report->rays[value->ray].generation);
+        assert_true(i == 0 || value->ray > bounces->values[i - 1].ray);
+    }
+    whit_probe_report_destroy(report);
+    whit_renderer_destroy(renderer);
+}
+
+TEST(a_pixel_tells_of_itself_and_twice_the_same)
+{
+    whit_renderer *renderer = make(shader, 1);
+    whit_probe_report *first, *second;
+    assert_int_equal(whit_probe(renderer, X, Y, 0, &first), WHIT_OK);
+    assert_int_equal(whit_probe(renderer, FLOOR_X, FLOOR_Y, 0, &second), WHIT_OK);
+    assert_call(second, 0, 2, "pixel()", 1, "(5, 40)");
+    whit_probe_report_destroy(second);
+    assert_int_equal(whit_probe(renderer, X, Y, 0, &second), WHIT_OK);
+    for (uint32_t i = 0; i < first->call_count; ++i) {
+        assert_int_equal(second->calls[i].count, first->calls[i].count);
+        assert_memory_equal(second->calls[i].values, first->calls[i].values,
+                            sizeof first->calls[i].values);
+    }
+    whit_probe_report_destroy(first);
+    whit_probe_report_destroy(second);
+    whit_renderer_destroy(renderer);
+}
+
+TEST(a_picture_has_nothing_of_it)
+{
+    whit_shader_info with, without;
+    const uint32_t *words, *plain_words;
+    size_t bytes, plain_bytes;
+    whit_shader_get_info(shader, &with);
+    whit_shader_get_info(plain, &without);
+    assert_int_equal(with.kernel_count, 4);
+    assert_int_equal(with.instructions, without.instructions);
+    for (uint32_t i = 0; i < with.kernel_count; ++i) {
+        assert_non_null(whit_shader_kernel(shader, i, &words, &bytes));
+        assert_non_null(whit_shader_kernel(plain, i, &plain_words, &plain_bytes));
+        assert_int_equal(bytes, plain_bytes);
+        assert_memory_equal(words, plain_words, bytes);
+    }
+}
+
+/* The probe draws it by kernels that record. */
+TEST(a_value_that_is_recorded_is_the_value)
+{
+    whit_renderer *renderer = make(plain, 4);
+    whit_probe_report *report;
+    whit_image *image;
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
+    const float *pixel = whit_image_floats(image) + 4 * (Y * WIDTH + X);
+    whit_renderer *looked_at = make(shader, 4);
+    assert_int_equal(whit_probe(looked_at, X, Y, 0, &report), WHIT_OK);
+    assert_memory_equal(report->color, pixel, 3 * sizeof *pixel);
+    whit_probe_report_destroy(report);
+    assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
+    assert_int_equal(report->call_count, 0);
+    assert_memory_equal(report->color, pixel, 3 * sizeof *pixel);
+    whit_probe_report_destroy(report);
+    whit_image_destroy(image);
+    whit_renderer_destroy(looked_at);
+    whit_renderer_destroy(renderer);
+}
+
+int main(void)
+{
+    return unit_run(begin, end);
+}
