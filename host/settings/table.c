@@ -302,8 +302,8 @@ const struct setting settings_table[] = {
     {"shader", 0, "FILE",
      "GLSL functions in the place of whit's own: see\n"
      "docs/shaders.md and `whit shader`",
-     "", AT(TEXT, shader), .commands = IN_RENDER | IN_VIEW | IN_SCENE, .change = SETTING_LIGHT,
-     .need = SETTING_NEEDS_KERNEL},
+     "", AT(TEXT, shader), .commands = IN_RENDER | IN_VIEW | IN_PROBE | IN_SCENE,
+     .change = SETTING_LIGHT, .need = SETTING_NEEDS_KERNEL},
     {"stages", 0, "FOLDER",
      "whit's own stages out of FOLDER, the shaders/ of a checkout,\n"
      "in place of those that are built in",
@@ -312,10 +312,10 @@ const struct setting settings_table[] = {
     {"set", 0, "NAME=VALUE",
      "sliders of the shader; several by commas, or by several\n"
      "--set",
-     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW | IN_SHADER | IN_SCENE,
+     "", AT(PAIRS, sliders), .commands = IN_RENDER | IN_VIEW | IN_PROBE | IN_SHADER | IN_SCENE,
      .change = SETTING_LIGHT},
     {"trust", 0, NULL, "the shader's loops and indices are not bounded", AT(FLAG, trust),
-     .commands = IN_RENDER | IN_VIEW | IN_SHADER | IN_SCENE, .change = SETTING_LIGHT,
+     .commands = IN_RENDER | IN_VIEW | IN_PROBE | IN_SHADER | IN_SCENE, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_KERNEL, .trusted = true},
 
     {"aov", 0, "NAME",

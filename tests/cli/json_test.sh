@@ -44,6 +44,8 @@ saved() {
         jq -e '(.effects | length > 0) and ([.effects[] | keys] | unique | length == 1)' "$OUT/stdout"
     made kernels scene "$CUBE" --kernels --json --size 16x12 --quiet
     saved probe probe "$SCENES/glass-of-water.json" --pixel 8,6 $SMALL
+    echo 'vec3 miss(vec3 dir) { return dbg(dir); }' >dbg.glsl
+    saved probe probe "$CUBE" --pixel 0,0 $SMALL --shader dbg.glsl
     made bvh bvh "$CUBE" --json --runs 1 --rays 500 --build binned --threads 1 --quiet
     saved hard hard --case sphere --quick --quiet --numerics watertight
     saved compare compare p.png p.png

@@ -16,6 +16,34 @@ draw() { # WHAT OUTPUT SCENE OPTION...
 }
 said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
 
+# ---- What a pixel is ----
+
+mkdir looks
+cat >looks/at.glsl <<'END'
+//@ whit 1
+//@ slider scale 0 4 1
+
+#include "post.glsl"
+vec3 shade(Surface s, Optics o, vec3 to_eye) { return dbg(vec3(0.25, 1.5, 0.1) * scale); }
+END
+printf 'vec3 post(ivec2 at,\n vec3 color) { return dbg(\n  at.x == 24)\n  ? color : dbg(-color); }\n' >looks/post.glsl
+expect 0 "a pixel" probe "$CUBE" --size 48x32 --quiet --pixel 24,16 --shader looks/at.glsl --set scale=2 --json looks.json
+grep '^looks/' "$OUT/stdout" >told
+cat >want <<'END'
+looks/at.glsl:5: vec3(0.25, 1.5, 0.1) * scale = (0.5, 3, 0.200000003)
+looks/post.glsl:2: at.x == 24 = true
+looks/post.glsl:4: -color was not reached
+END
+check "says what each value is: $(tr '\n' ';' <told)" cmp told want
+check "says what rows have not" grep -q '^missing    .*post()' "$OUT/stdout"
+check "and where rays end is as the CPU says" \
+    test "$(grep -c '^\(twin\|exact\)  *differs in 0 of 1$' "$OUT/stdout")" = 2
+check "JSON has them" test "$(jq -c '[.dbg[] | [.line, .count, .values[0].value]]' looks.json)" = \
+    '[[5,1,[0.5,3,0.2]],[2,1,[true]],[4,0,null]]'
+printf 'struct A { float b; };\nvec3 miss(vec3 dir)\n{\n A a;\n dbg(a);\n return dir; }\n' >looks/struct.glsl
+expect 2 "a value of another kind, in pictures too" render "$CUBE" $SMALL --shader looks/struct.glsl -o no.png
+said "names the line, and what there is" "looks/struct.glsl:5: dbg(x) takes a float, int, uint, bool or a vector"
+
 # ---- What a file is ----
 
 for hook in camera surface shade scatter miss post aov intersect; do # the others are own.glsl, below
@@ -266,6 +294,5 @@ check "the same as trusted" cmp trusted.pfm fuel.pfm
     said "says why" "is not refined"
     expect 2 "--set alone" render "$CUBE" $SMALL --set x=1 -o no.png
     expect 2 "--trust alone" render "$CUBE" $SMALL --trust -o no.png
-    expect 2 "in a probe" probe "$CUBE" --pixel 1,1 --shader own.glsl
 }
 finish

@@ -35,10 +35,6 @@ static const struct setting options[] = {
     {"json", 0, "FILE", "also write all of it as JSON", SETTING_AT_NAME(struct probe, json_path)},
     {"rays", 0, "N", "most rays that are recorded, 1 to 16383 (16383)",
      SETTING_AT_COUNT(struct probe, max_rays), .min = 1, .max = RAYS_MAX},
-    {"shader", 0, NULL,
-     "is of render and view: two of probe's columns are of the CPU, which has no functions of "
-     "yours",
-     .kind = SETTING_GONE},
     {0},
 };
 
@@ -127,6 +123,10 @@ const struct cli_command command_probe = {
         "and what exact arithmetic says (`=`: the same primitive, and t to float; `-`: not "
         "known).\n"
         "A cut-out that let a ray pass is taken from the device.\n"
+        "With --shader both say where rays end that the device sent with these functions; rays "
+        "that\n"
+        "functions trace themselves are in no row. Each dbg(x) of theirs is told with what x "
+        "was.\n"
         "Exit code 1 when device and twin differ, but at --numerics fast.\n",
     .options = options,
     .settings = IN_PROBE,

@@ -99,7 +99,9 @@ static void print_head(const struct probe *probe)
     }
     printf("%u not traced, %u not recorded\n", report->ray_count - traced, report->dropped);
     printf("twin       differs in %u of %u\n", report->differing, traced);
-    printf("exact      differs in %u of %u\n\n", exact_other, exact);
+    printf("exact      differs in %u of %u\n", exact_other, exact);
+    probe_print_shader(probe);
+    putchar('\n');
 }
 
 static void ray_text(const struct probe *probe, const whit_probe_ray *ray, uint32_t count,
@@ -211,6 +213,7 @@ int probe_print(const struct probe *probe)
         return EXIT_USAGE;
     }
     print_head(probe);
+    probe_print_calls(probe->report);
     print_rows(probe, rows, count);
     whit_memory_destroy(rows);
     return cli_finish_stdout(EXIT_FINE);
@@ -319,6 +322,8 @@ whit_result probe_save_json(const struct probe *probe)
     settings_describe(&probe->job.settings, IN_PROBE, picture);
     document_put(out, "picture", picture);
     document_put(out, "pixel", pixel_document(probe));
+    document_put(out, "shader", probe_shader_document(probe));
+    document_put(out, "dbg", probe_calls_document(report));
     document_count(out, "differing", report->differing);
     document_count(out, "dropped", report->dropped);
     for (uint32_t i = 0; i < report->ray_count; ++i)
