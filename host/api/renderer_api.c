@@ -129,7 +129,8 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
 }
 
 /* Remembers the parameters of a picture. Rays on the CPU keep the cancel flag, traversal and
-   numerics that the renderer was made with. */
+   numerics that the renderer was made with; its shader is the one that whit_renderer_set_shader
+   gave it last. */
 static void take_params(whit_renderer *renderer, const whit_renderer_params *params)
 {
     const whit_renderer_params made = renderer->params;
@@ -137,6 +138,7 @@ static void take_params(whit_renderer *renderer, const whit_renderer_params *par
     renderer->params.cancel = made.cancel;
     renderer->params.traversal = made.traversal;
     renderer->params.numerics = made.numerics;
+    renderer->params.shader = made.shader;
 }
 
 whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *params)
@@ -158,8 +160,10 @@ whit_result whit_renderer_set_shader(whit_renderer *renderer, const whit_rendere
     }
     if (result == WHIT_OK)
         result = renderer_set_shader(renderer->renderer, params);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
         take_params(renderer, params);
+        renderer->params.shader = params->shader;
+    }
     return result;
 }
 

@@ -245,6 +245,7 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
                                .expectation_count = shader->expectation_count,
                                .aovs = shader->aov_names,
                                .aov_count = shader->aov_count,
+                               .dbg_count = shader->dbg.count,
                                .fuel = shader->trust ? 0 : shader->fuel,
                                .hash = shader_text_hash(&shader->text) ^
                                        (shader->stages ? shader->stages->hash : 0)};

@@ -10,11 +10,13 @@ static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
-enum { RAYS_SHOWN = 400, ROWS_AT_FIRST = 7 };
+enum { RAYS_SHOWN = 400, ROWS_AT_FIRST = 7, LINES_AT_FIRST = 9, VALUES_SHOWN = 3 };
 
 static void ask(struct view *view, double x, double y)
 {
     const whit_renderer_params *p = &view->settings.picture;
+    view->pick_x = x;
+    view->pick_y = y;
     if (x >= 0.0 && y >= 0.0 && x < p->width && y < p->height)
         engine_ask_probe(view->engine, (uint32_t)x, (uint32_t)y);
 }
@@ -61,8 +63,23 @@ static void let_go(struct view *view)
     view->probe = nothing;
 }
 
+/* What dbg(x) is follows the picture: of another one the same pixel is asked for once more. */
+static void follow(struct view *view)
+{
+    const struct engine_frame *frame = &view->frame;
+    const whit_probe_report *r = view->probe.report;
+    bool tells = (r && r->call_count) || (frame->shader && frame->shader->info.dbg_count);
+    if (!view->picked || !tells || !frame->whole || frame->settings.paint != PAINT_COLOR ||
+        view->probe.number == 0 || view->pick_frame == frame->number ||
+        settings_same_pixels(&frame->settings, &view->probe.settings))
+        return;
+    view->pick_frame = frame->number;
+    ask(view, view->pick_x, view->pick_y);
+}
+
 void pick_take(struct view *view)
 {
+    follow(view);
     if (!engine_take_probe(view->engine, &view->probe)) {
         let_go(view);
         return;
@@ -103,6 +120,52 @@ static void draw_place(const struct view *view)
             (double)first->point[2]);
     ui_text("normal   %.4f %.4f %.4f   depth %.6g", (double)first->normal[0],
             (double)first->normal[1], (double)first->normal[2], first->device.t);
+}
+
+/* Of a dbg(x); `whit probe` tells more of them. */
+static uint32_t values_shown(const whit_probe_call *call)
+{
+    return call->value_count < VALUES_SHOWN ? call->value_count : VALUES_SHOWN;
+}
+
+static uint32_t count_lines(const whit_probe_report *r)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < r->call_count; ++i) {
+        uint32_t shown = values_shown(&r->calls[i]);
+        count += shown + (r->calls[i].count > shown || shown == 0);
+    }
+    return count;
+}
+
+static void draw_call(const whit_probe_call *call)
+{
+    char text[4 * 24];
+    uint32_t shown = values_shown(call);
+    for (uint32_t i = 0; i < shown; ++i) {
+        whit_probe_value_text(&call->values[i], 6, text, sizeof text);
+        ui_text_color(COLOR_NAME, "%s:%u", path_name(call->file), call->line);
+        ui_same_line(0);
+        ui_text("%s = %s", call->text, text);
+        if (call->values[i].generation) {
+            ui_same_line(0);
+            ui_text_dim("bounce %u", call->values[i].generation);
+        }
+    }
+    if (call->count > shown)
+        ui_text_dim("%s:%u %s, %u times more", path_name(call->file), call->line, call->text,
+                    call->count - shown);
+    else if (!call->count)
+        ui_text_dim("%s:%u %s was not reached", path_name(call->file), call->line, call->text);
+}
+
+/* What dbg(x) of the user's functions was. */
+static void draw_calls(const whit_probe_report *r)
+{
+    for (uint32_t i = 0; i < r->call_count; ++i)
+        draw_call(&r->calls[i]);
+    if (r->call_count)
+        ui_separator();
 }
 
 static void draw_hit(const whit_probe_hit *hit)
@@ -184,7 +247,9 @@ static void draw_panel(struct view *view)
 {
     const whit_probe_report *r = view->probe.report;
     uint32_t count = view->probe.row_count;
-    float rows = count < ROWS_AT_FIRST ? (float)count : (float)ROWS_AT_FIRST;
+    uint32_t lines = count_lines(r);
+    float rows = (float)(count < ROWS_AT_FIRST ? count : ROWS_AT_FIRST) +
+                 (float)(lines < LINES_AT_FIRST ? lines : LINES_AT_FIRST);
     /* Never over the pixel, where there is room beside it. */
     float side = 2 * r->x < view->settings.picture.width ? 1.0f : 0.0f;
     bool moves = side != view->pick_side;
@@ -192,6 +257,7 @@ static void draw_panel(struct view *view)
     if (ui_window_begin("Pixel", side, 1.0f, 590.0f, 158.0f + 17.0f * rows, moves, &view->picked)) {
         draw_place(view);
         ui_separator();
+        draw_calls(r);
         ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME,
                       "%u rays, the twin differs at %u; %.0f ms", r->ray_count, r->differing,
                       view->probe.ms);

@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "base/clock.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/platform.h"
 #include "view/prices.h"
@@ -200,6 +201,23 @@ static json_t *keys_json(const struct view *view)
     return object;
 }
 
+/* "FILE:LINE: x = VALUE; ...", of each dbg(x) the first value; "": of none. */
+static void calls_text(const whit_probe_report *r, char *text, size_t bytes)
+{
+    char value[4 * 24];
+    size_t used = 0;
+    text[0] = '\0';
+    for (uint32_t i = 0; i < r->call_count && used < bytes; ++i) {
+        const whit_probe_call *call = &r->calls[i];
+        snprintf(value, sizeof value, "not reached");
+        if (call->value_count)
+            whit_probe_value_text(&call->values[0], 9, value, sizeof value);
+        int count = snprintf(text + used, bytes - used, "%s%s:%u: %s = %s", i ? "; " : "",
+                             path_name(call->file), call->line, call->text, value);
+        used += count > 0 ? (size_t)count : 0;
+    }
+}
+
 static json_t *probe_json(const struct engine_probe *probe)
 {
     json_t *object = json_object();
@@ -214,6 +232,9 @@ static json_t *probe_json(const struct engine_probe *probe)
     put_count(object, "instance", r->rays[0].device.instance);
     put_count(object, "primitive", r->rays[0].device.primitive);
     put_number(object, "t", r->rays[0].device.t);
+    char calls[2048];
+    calls_text(r, calls, sizeof calls);
+    put_text(object, "dbg", calls);
     return object;
 }
 

@@ -94,6 +94,8 @@ struct view {
     struct engine_probe probe; /* the picked pixel; number 0: none */
     float pick_side;           /* of the window, where the panel of the pixel is: 0 left, 1 right */
     bool picked;               /* its panel is open */
+    double pick_x, pick_y;     /* the pixel that was asked for last */
+    uint64_t pick_frame;       /* number of the picture that it was asked of by itself */
     bool focus;                /* look at it when it is there */
     struct scene_ref *scene;   /* of `frame` */
 

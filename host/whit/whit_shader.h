@@ -123,7 +123,8 @@ typedef struct whit_shader_info {
     uint32_t expectation_count;
     const char *const *aovs; /* names of its functions beside the colour: WHIT_AOV_SHADER */
     uint32_t aov_count;
-    uint32_t fuel; /* iterations of loops that a call may take; 0: trusted */
+    uint32_t dbg_count; /* dbg(x) in all files: whit_probe_report.calls */
+    uint32_t fuel;      /* iterations of loops that a call may take; 0: trusted */
     uint32_t kernel_count;
     uint32_t instructions; /* SPIR-V, of all kernels, with all that they may need */
     uint64_t hash;         /* of the texts of all files */

@@ -178,6 +178,41 @@ on_state() {
 }
 follow "stages" cube.json --size 96x64 --stages st
 
+# ---- What dbg(x) is, of the pixel that was clicked ----
+
+cat >looks.new <<'END'
+//@ toggle twice off
+vec3 miss(vec3 dir)
+{
+    return environment(dbg(dir)) * dbg(twice ? 2.0 : 1.0);
+}
+END
+sed 's/dbg//g' looks.new >plain.new
+for version in plain looks; do
+    cp $version.new live/d.glsl
+    "$WHIT" shader live/d.glsl --json >hash.json
+    eval "$version=$(jq -r .hash hash.json)"
+done
+cp plain.new live/d.glsl
+VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
+steps >"$OUT/replay" <<END
+plain: click 4 4 | picked = true | probe.dbg = | probe.number = 1
+slid: press X, press Tab, move 20 20, still, choose twice | probe.number = 1 | frame.pixels not as plain
+until shader.hash = $looks
+saved: | probe.dbg has $VALUE 2 | probe.dbg has d.glsl:4: dir = ( | frame.pixels as slid
+twice: choose twice | probe.dbg has $VALUE 1 | frame.pixels as plain
+moved: press Tab, move 380 12, still, button left down, move 392 40, button left up | probe.dbg has $VALUE 1 | probe.dbg not as twice
+until shader.hash = $plain
+without: | probe.dbg = | frame.pixels as moved
+END
+on_state() {
+    case $1 in
+    *'"at":"slid"'*) cp looks.new live/d.glsl ;;
+    *'"at":"moved"'*) cp plain.new live/d.glsl ;;
+    esac
+}
+follow "what values are" cube.json --size 400x300 --shader live/d.glsl
+
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
 expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet

@@ -170,6 +170,36 @@ TEST(a_pixel_tells_of_itself_and_twice_the_same)
     whit_renderer_destroy(renderer);
 }
 
+static void assert_calls(whit_renderer *renderer, uint32_t count)
+{
+    whit_probe_report *report;
+    assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
+    assert_int_equal(report->call_count, count);
+    if (count)
+        assert_call(report, 1, 4, "vec2(0.1, -0.0)", 1, "(0.100000001, -0)");
+    whit_probe_report_destroy(report);
+}
+
+TEST(another_view_and_another_version_are_followed)
+{
+    whit_renderer *renderer = make(plain, 1);
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    assert_calls(renderer, 0);
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+    assert_calls(renderer, 9);
+    params.shader = NULL;
+    params.depth = 2;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    assert_calls(renderer, 9);
+    params.shader = plain;
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+    assert_calls(renderer, 0);
+    whit_renderer_destroy(renderer);
+}
+
 TEST(a_picture_has_nothing_of_it)
 {
     whit_shader_info with, without;
