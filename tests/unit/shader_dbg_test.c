@@ -215,6 +215,17 @@ TEST(a_picture_has_nothing_of_it)
         assert_int_equal(bytes, plain_bytes);
         assert_memory_equal(words, plain_words, bytes);
     }
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_kernel kernels[2][WHIT_KERNELS_MAX];
+    uint32_t counts[2];
+    for (int i = 0; i < 2; ++i) {
+        params.shader = i ? plain : shader;
+        assert_int_equal(whit_kernels_count(device, accel, &params, kernels[i], &counts[i]),
+                         WHIT_OK);
+    }
+    assert_int_equal(counts[0], counts[1]);
+    for (uint32_t i = 0; i < counts[0]; ++i)
+        assert_int_equal(kernels[0][i].instructions, kernels[1][i].instructions);
 }
 
 /* The probe draws it by kernels that record. */

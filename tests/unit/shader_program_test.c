@@ -355,6 +355,8 @@ TEST(values_that_cannot_be_looked_at_are_refused_with_their_line)
         {"void f() {}\nfloat a =\ndbg(1.0);\n", "in the body of a function", 3},
         {"void f() {}\n\n#define D dbg(1.0)\n", "in no macro", 3},
         {"void f() {\n#if dbg(1)\n#endif\n}\n", "in no macro", 2},
+        {"#if 0\nvoid f() {\n#else\nvoid g() {\n#endif\n}\nfloat a = dbg(1.0);\n",
+         "in the body of a function", 7},
         {"//@ test\nvoid a(uint s) {\ncheck(dbg(true)); }\n", "a test has none", 3},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
