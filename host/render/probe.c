@@ -309,18 +309,23 @@ static int compare_values(const void *a, const void *b)
     return (x->traced.order > y->traced.order) - (x->traced.order < y->traced.order);
 }
 
-/* By rays of the tree, whose ids are others in every run. */
+/* By rays of the tree, whose ids are others in every run; those of other rays are left out. */
 static void order_values(const struct branch *branches, const uint32_t *places,
                          struct probe_report *report)
 {
+    uint32_t kept = 0;
     for (uint32_t i = 0; i < report->value_count; ++i) {
-        struct probe_value *value = &report->values[i];
-        uint32_t id = value->traced.id;
+        struct probe_value value = report->values[i];
+        uint32_t id = value.traced.id;
         uint32_t record = id < PROBE_RAYS_MAX ? places[id] : HIT_NONE;
-        value->ray = record < report->ray_count ? branches[record].place : HIT_NONE;
+        if (record >= report->ray_count)
+            continue;
+        value.ray = branches[record].place;
+        report->values[kept++] = value;
     }
-    if (report->value_count)
-        qsort(report->values, report->value_count, sizeof *report->values, compare_values);
+    report->value_count = kept;
+    if (kept)
+        qsort(report->values, kept, sizeof *report->values, compare_values);
 }
 
 static whit_result order_rays(const struct renderer *renderer, const struct record_list *list,

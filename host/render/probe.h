@@ -28,8 +28,7 @@ struct probe_ray {
 struct probe_value {
     struct gpu_dbg traced;
     uint32_t call; /* index in shader_dbg.sites */
-    uint32_t ray;  /* index in rays, of the ray that the function was called for; HIT_NONE: one that
-                      is not recorded */
+    uint32_t ray;  /* index in rays, of the ray that the function was called for */
 };
 
 struct probe_report {
@@ -44,7 +43,8 @@ struct probe_report {
     uint32_t dropped;   /* rays that had no room; what is recorded of their tree is its front */
     uint32_t differing; /* rays with equal == false */
     /* Of the first sample, and of post() that of all of them together: how often each dbg(x) was
-       reached, and the first DBG_VALUES values of each, in the order of calls, then of rays. */
+       reached, and the first DBG_VALUES values of each but for rays that were dropped, in the order
+       of calls, then of rays. */
     uint32_t call_counts[DBG_CALLS];
     struct probe_value *values;
     uint32_t value_count;

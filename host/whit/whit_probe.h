@@ -70,7 +70,7 @@ typedef struct whit_probe_value {
     uint32_t size;       /* 1: a number; 2 to 4: a vector */
     double v[4];         /* of each component, exact; of a bool 0 or 1 */
     uint32_t ray;        /* index of the ray that the function was called for, of post() the camera
-                            ray; WHIT_NONE: of one that was dropped */
+                            ray */
     uint32_t generation; /* of that */
 } whit_probe_value;
 /* "0.5", "(1, 2, 3)", "true": floats with `digits` digits, 9 of which tell all. At most `bytes` of
@@ -84,7 +84,8 @@ typedef struct whit_probe_call {
     const char *file; /* as whit opened it */
     uint32_t line;
     uint32_t count;                             /* how often it was reached */
-    whit_probe_value values[WHIT_PROBE_VALUES]; /* the first ones, in the order of rays */
+    whit_probe_value values[WHIT_PROBE_VALUES]; /* the first ones, in the order of rays, but for
+                                                   those of rays that were dropped */
     uint32_t value_count;
 } whit_probe_call;
 

@@ -151,6 +151,21 @@ TEST(values_are_those_of_the_first_sample_in_the_order_of_rays)
     whit_renderer_destroy(renderer);
 }
 
+TEST(rays_that_are_dropped_have_no_values)
+{
+    whit_renderer *renderer = make(shader, 1);
+    whit_probe_report *all, *some;
+    assert_int_equal(whit_probe(renderer, X, Y, 0, &all), WHIT_OK);
+    assert_int_equal(whit_probe(renderer, X, Y, 2, &some), WHIT_OK);
+    assert_true(some->dropped > 0);
+    assert_int_equal(some->calls[2].count, all->calls[2].count);
+    assert_int_equal(some->calls[2].value_count, 2);
+    assert_int_equal(some->calls[8].value_count, 1);
+    whit_probe_report_destroy(all);
+    whit_probe_report_destroy(some);
+    whit_renderer_destroy(renderer);
+}
+
 TEST(a_pixel_tells_of_itself_and_twice_the_same)
 {
     whit_renderer *renderer = make(shader, 1);

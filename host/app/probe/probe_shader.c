@@ -109,10 +109,7 @@ static json_t *value_document(const whit_probe_value *value)
     } else {
         document_put(out, "value", components);
     }
-    if (value->ray == WHIT_NONE)
-        document_text(out, "ray", NULL);
-    else
-        document_count(out, "ray", value->ray);
+    document_count(out, "ray", value->ray);
     document_count(out, "generation", value->generation);
     return out;
 }
