@@ -20,7 +20,6 @@ const struct kernel_code kernels[KERNEL_COUNT] = {
     [KERNEL_SHADE] = {"shade", kernel_shade, sizeof kernel_shade},
     [KERNEL_SHADOW] = {"shadow", kernel_shadow, sizeof kernel_shadow},
     [KERNEL_RESOLVE] = {"resolve", kernel_resolve, sizeof kernel_resolve},
-    [KERNEL_MISS] = {"miss", NULL, 0},
 };
 
 const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {

@@ -12,7 +12,6 @@ enum kernel {
     KERNEL_SHADE,
     KERNEL_SHADOW,
     KERNEL_RESOLVE,
-    KERNEL_MISS, /* there is none but of a user's functions */
     KERNEL_COUNT
 };
 
@@ -31,7 +30,7 @@ enum hook_kernel {
     HOOK_KERNEL_SHADE,
     HOOK_KERNEL_SHADOW,
     HOOK_KERNEL_RESOLVE,
-    HOOK_KERNEL_MISS,
+    HOOK_KERNEL_MISS, /* of a user's function alone */
     HOOK_KERNEL_TEST, /* runs tests of the user's file */
     HOOK_KERNEL_COUNT
 };

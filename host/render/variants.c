@@ -217,15 +217,16 @@ static struct bindings bind_trees(const struct target *target)
 }
 
 /* A kernel's code: with the functions of the renderer's shader in it where it has any there. */
-static struct pipeline_params pass_params(const struct target *target, enum kernel kernel,
+static struct pipeline_params pass_params(const struct target *target,
+                                          const struct kernel_code *own,
                                           const struct gpu_spec *spec,
                                           const struct bindings *bindings, uint32_t binding_count,
                                           uint32_t push_bytes, const char *name)
 {
-    const struct shader_code *code = hooks_code(target, kernels[kernel].name);
+    const struct shader_code *code = hooks_code(target, own->name);
     return (struct pipeline_params){
-        .spirv = code ? code->words : kernels[kernel].words,
-        .spirv_bytes = code ? code->bytes : kernels[kernel].bytes,
+        .spirv = code ? code->words : own->words,
+        .spirv_bytes = code ? code->bytes : own->bytes,
         .spec = (const uint32_t *)spec,
         .spec_count = GPU_SPEC_COUNT,
         .bindings = bindings->kinds,
@@ -445,20 +446,20 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
 {
     const struct renderer *renderer = target->renderer;
     static const struct {
-        enum kernel kernel;
+        const struct kernel_code *kernel;
         const char *name;
         bool deferred;
         uint32_t generations;
     } stages[STAGE_COUNT] = {
-        [STAGE_CAMERA] = {KERNEL_CLOSEST, "camera", true, 1},
-        [STAGE_CLOSEST] = {KERNEL_CLOSEST, "closest", true, 2},
-        [STAGE_SHADE] = {KERNEL_SHADE, "shade", true, 3},
-        [STAGE_SHADE_GLASS] = {KERNEL_SHADE, "shade glass", true, 3},
-        [STAGE_SHADOW] = {KERNEL_SHADOW, "shadow", true, 1},
-        [STAGE_SHADOW_LATER] = {KERNEL_SHADOW, "shadow later", true, 2},
-        [STAGE_RESOLVE] = {KERNEL_RESOLVE, "resolve", false, 1},
-        [STAGE_RESOLVE_LATER] = {KERNEL_RESOLVE, "resolve later", false, 2},
-        [STAGE_MISS] = {KERNEL_MISS, "miss", false, 3},
+        [STAGE_CAMERA] = {&kernels[KERNEL_CLOSEST], "camera", true, 1},
+        [STAGE_CLOSEST] = {&kernels[KERNEL_CLOSEST], "closest", true, 2},
+        [STAGE_SHADE] = {&kernels[KERNEL_SHADE], "shade", true, 3},
+        [STAGE_SHADE_GLASS] = {&kernels[KERNEL_SHADE], "shade glass", true, 3},
+        [STAGE_SHADOW] = {&kernels[KERNEL_SHADOW], "shadow", true, 1},
+        [STAGE_SHADOW_LATER] = {&kernels[KERNEL_SHADOW], "shadow later", true, 2},
+        [STAGE_RESOLVE] = {&kernels[KERNEL_RESOLVE], "resolve", false, 1},
+        [STAGE_RESOLVE_LATER] = {&kernels[KERNEL_RESOLVE], "resolve later", false, 2},
+        [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
     };
     struct bindings bindings = bind_stages(target);
     *job = (struct variant_job){.spec = *set_spec};
@@ -472,7 +473,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
                                                     : 1;
     spec->SPEC_GENERATIONS = renderer->has_secondary ? stages[stage].generations : 1;
     choose_packets(renderer, stage, spec);
-    if (classes > 1 && stages[stage].kernel == KERNEL_SHADE)
+    if (classes > 1 && stages[stage].kernel == &kernels[KERNEL_SHADE])
         narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN, spec);
     job->params = pass_params(target, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
                               sizeof(struct gpu_chunk), stages[stage].name);
@@ -539,7 +540,7 @@ whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams
     }
     pass->rays_each = spec.SPEC_PACKET_RAYS;
     const struct pipeline_params params =
-        pass_params(&renderer->picture, KERNEL_TRACE, &spec, &bindings, BIND_TRACE_COUNT,
+        pass_params(&renderer->picture, &kernels[KERNEL_TRACE], &spec, &bindings, BIND_TRACE_COUNT,
                     sizeof(struct gpu_batch),
                     beams ? any ? "trace any together" : "trace closest together"
                     : any ? "trace any"

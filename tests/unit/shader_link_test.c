@@ -46,11 +46,15 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
         {"float k = 3.0; float a[4] = float[4](1.0, 2.0, 3.0, 4.0); const vec2 c[2] = vec2[2]("
          "vec2(1.0), vec2(2.0));\n"
          "vec3 miss(vec3 d) { k += 1.0; return vec3(k, a[int(d.x * 4.0)], c[int(d.y)].x); }\n",
-         1},
+         16},
         {"struct Hit { vec3 a; float b[3]; }; struct Own { Hit h; mat3 m; };\n"
          "Own traverse(vec3 v) { Own o; o.h.a = v; o.m = mat3(v, v, v); return o; }\n"
          "vec3 miss(vec3 d) { Own o = traverse(d); return o.m * o.h.a; }\n",
-         1},
+         16},
+        {"//@ box 0 0 0 1 1 1 0.1\nbool intersect(vec3 o, vec3 d, float far, out float t, out vec3 "
+         "n) "
+         "{ t = 0.5; n = o; return far > t; }\n",
+         7},
         {"vec3 post(ivec2 at, vec3 c) { switch (at.x & 3) { case 0: c.r = 1.0; break; case 1: "
          "return c.bgr; default: c.g = 0.0; } return c; }\n",
          8},
