@@ -85,6 +85,13 @@ static bool is_device_hit(const struct gpu_probe_ray *traced, const struct gpu_h
            same_bits(traced->v, hit->v);
 }
 
+/* Whether the device met the shape of a user's function, which only the device knows. The ray then
+   ends there, and on its way there is to be nothing. */
+static bool is_on_shape(const struct gpu_probe_ray *traced)
+{
+    return traced->instance == HIT_SHAPE;
+}
+
 /* Hits from the front to the one that the device has, or for want of that to the end. */
 static void ask_twin(struct asking *a)
 {
@@ -113,7 +120,8 @@ static void ask_twin(struct asking *a)
         ray->equal = true;
     } else {
         ray->twin = first;
-        ray->equal = first.primitive == HIT_NONE && traced->primitive == HIT_NONE;
+        ray->equal =
+            first.primitive == HIT_NONE && (traced->primitive == HIT_NONE || is_on_shape(traced));
     }
     ray->equal &= status == 0;
 }
@@ -123,6 +131,8 @@ static bool exact_agrees(const struct asking *a)
     const struct probe_ray *ray = a->ray;
     const struct gpu_probe_ray *traced = &ray->traced;
     bool met = ray->exact_primitive != HIT_NONE;
+    if (is_on_shape(traced))
+        return !met;
     if (is_shadow(a))
         return met == (traced->end == PROBE_BLOCKED);
     bool exact_t = a->renderer->params.numerics == NUMERICS_EXACT;
@@ -164,7 +174,7 @@ whit_result probe_ask_twin(const struct renderer *renderer, struct probe_report 
         a.ray->equal = true;
         if (traced->end == PROBE_DEPTH || traced->end == PROBE_BAILOUT)
             continue;
-        a.line = (struct gpu_ray){.t_max = traced->t_max};
+        a.line = (struct gpu_ray){.t_max = is_on_shape(traced) ? traced->t : traced->t_max};
         memcpy(a.line.origin, traced->origin, sizeof a.line.origin);
         memcpy(a.line.dir, traced->dir, sizeof a.line.dir);
         ask_twin(&a);

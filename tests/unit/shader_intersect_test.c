@@ -153,6 +153,36 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
     whit_shader_destroy(shader);
 }
 
+/* A probe's twin and exact arithmetic, which know nothing of the shape, agree that the way to it is
+   free, and on all rays behind it. */
+TEST(probe_of_the_shape_differs_nowhere)
+{
+    char path[] = "/tmp/whit_room_XXXXXX.json";
+    whit_shader *shader;
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_scene *scene;
+    whit_accel *accel;
+    whit_renderer *renderer;
+    whit_probe_report *report;
+    write_text(path, 5, room, "");
+    assert_int_equal(whit_scene_load(path, NULL, &keeps, &scene), WHIT_OK);
+    remove(path);
+    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
+    assert_int_equal(load(SHAPE_TEXT, &shader), WHIT_OK);
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_probe(renderer, WIDTH / 2, HEIGHT / 2, 0, &report), WHIT_OK);
+    assert_int_equal(report->rays[0].device.instance, SHAPE);
+    assert_true(report->ray_count > 2 && report->differing == 0);
+    whit_probe_report_destroy(report);
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(shader);
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+}
+
 /* What the user's other functions trace meets the shape, and its loops have their own fuel. */
 TEST(functions_that_trace_meet_the_shape)
 {

@@ -5,6 +5,9 @@
 
 /* What rows have not with functions of the user's. */
 static const char own_rays[] = "rays that its functions trace, as by visible() and trace()";
+static const char shape[] =
+    "the shape of intersect() in twin and exact: of rays that meet it they say "
+    "whether something is before it";
 static const char before_post[] = "the share of post() in the colour";
 
 static whit_shader_info shader_of(const struct probe *probe)
@@ -24,6 +27,19 @@ static bool has_function(const whit_shader_info *info, const char *name)
     return false;
 }
 
+enum { MISSING_MAX = 3 };
+
+static uint32_t list_missing(const whit_shader_info *info, const char *missing[MISSING_MAX])
+{
+    uint32_t count = 0;
+    missing[count++] = own_rays;
+    if (has_function(info, "intersect"))
+        missing[count++] = shape;
+    if (has_function(info, "post"))
+        missing[count++] = before_post;
+    return count;
+}
+
 void probe_print_shader(const struct probe *probe)
 {
     const whit_shader_info info = shader_of(probe);
@@ -32,9 +48,11 @@ void probe_print_shader(const struct probe *probe)
     printf("shader     %s:", cli_shown(info.files[0]));
     for (uint32_t i = 0; i < info.hook_count; ++i)
         printf("%s %s", i ? "," : "", info.hooks[i]);
-    printf("\nmissing    %s\n", own_rays);
-    if (has_function(&info, "post"))
-        printf("missing    %s\n", before_post);
+    putchar('\n');
+    const char *missing[MISSING_MAX];
+    uint32_t count = list_missing(&info, missing);
+    for (uint32_t i = 0; i < count; ++i)
+        printf("missing    %s\n", missing[i]);
 }
 
 static void print_place(const whit_probe_call *call)
@@ -83,13 +101,13 @@ static json_t *names_document(const char *const *names, uint32_t count)
 json_t *probe_shader_document(const struct probe *probe)
 {
     const whit_shader_info info = shader_of(probe);
-    const char *missing[] = {own_rays, before_post};
+    const char *missing[MISSING_MAX];
     if (info.hook_count == 0)
         return json_null();
     json_t *out = document_object();
     document_text(out, "file", info.files[0]);
     document_put(out, "functions", names_document(info.hooks, info.hook_count));
-    document_put(out, "missing", names_document(missing, has_function(&info, "post") ? 2 : 1));
+    document_put(out, "missing", names_document(missing, list_missing(&info, missing)));
     return out;
 }
 
