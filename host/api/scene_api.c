@@ -261,7 +261,8 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
 
 void whit_scene_get_instance(const whit_scene *handle, uint32_t index, whit_instance_info *info)
 {
-    *info = (whit_instance_info){.name = "", .mesh = WHIT_NONE};
+    const char *name = index == WHIT_INSTANCE_SHAPE ? "shape of intersect()" : "";
+    *info = (whit_instance_info){.name = name, .mesh = WHIT_NONE};
     if (index >= handle->pose.instance_count)
         return;
     const struct scene_instance *instance = &handle->scene->instances[index];

@@ -6,6 +6,7 @@
 
 _Static_assert(DBG_CALLS == SHADER_DBG_MAX, "room for all of them");
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
+_Static_assert(HIT_SHAPE == WHIT_INSTANCE_SHAPE, "the same instance");
 _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SHADER_HOOK_SHADE &&
                    HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV &&
                    HOOK_INTERSECT == 1u << SHADER_HOOK_INTERSECT,

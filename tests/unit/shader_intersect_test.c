@@ -6,7 +6,7 @@
 #include "unit.h"
 #include "whit.h"
 
-enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT, SHAPE = 0x7fffffff };
+enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
 static whit_device *device;
 static whit_shader_compiler *compiler;
@@ -127,7 +127,7 @@ static void compare(const struct picture *shape, const struct picture *real)
 {
     uint32_t on_shape = 0, apart = 0;
     for (uint32_t i = 0; i < PIXELS; ++i) {
-        bool seen = shape->ids[2 * i] == SHAPE;
+        bool seen = shape->ids[2 * i] == WHIT_INSTANCE_SHAPE;
         on_shape += seen;
         bool same = seen == (real->ids[2 * i] == 2);
         for (uint32_t c = 0; c < 3; ++c)
@@ -174,7 +174,7 @@ TEST(probe_of_the_shape_differs_nowhere)
     params.shader = shader;
     assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
     assert_int_equal(whit_probe(renderer, WIDTH / 2, HEIGHT / 2, 0, &report), WHIT_OK);
-    assert_int_equal(report->rays[0].device.instance, SHAPE);
+    assert_int_equal(report->rays[0].device.instance, WHIT_INSTANCE_SHAPE);
     assert_true(report->ray_count > 2 && report->differing == 0);
     whit_probe_report_destroy(report);
     whit_renderer_destroy(renderer);
