@@ -177,6 +177,16 @@ static void pick_aov(const float *row, uint32_t all, uint32_t index, uint32_t wi
         memcpy(&to[4 * (size_t)x], &row[4 * ((size_t)x * all + index)], 4 * sizeof *to);
 }
 
+whit_result readback_aov_row(const struct renderer *renderer, uint32_t index, uint32_t y,
+                             float *row, float *to)
+{
+    uint32_t all = hooks_aov_count(&renderer->picture), width = renderer->params.width;
+    whit_result result = read_aovs(renderer, (size_t)width * y, width, row);
+    if (result == WHIT_OK)
+        pick_aov(row, all, index, width, to);
+    return result;
+}
+
 whit_result renderer_read_aov(struct renderer *renderer, uint32_t index, struct image *out)
 {
     uint32_t all = hooks_aov_count(&renderer->picture), width = renderer->params.width;
@@ -193,9 +203,9 @@ whit_result renderer_read_aov(struct renderer *renderer, uint32_t index, struct 
     for (uint32_t y = 0; result == WHIT_OK && y < out->height; ++y) {
         size_t at = (size_t)width * y;
         if (late)
-            result = read_aovs(renderer, at, width, row);
-        pick_aov(late ? row : &renderer->aovs.pixels[4 * at * all], all, index, width,
-                 &out->pixels[4 * at]);
+            result = readback_aov_row(renderer, index, y, row, &out->pixels[4 * at]);
+        else
+            pick_aov(&renderer->aovs.pixels[4 * at * all], all, index, width, &out->pixels[4 * at]);
     }
     free(row);
     if (result != WHIT_OK)

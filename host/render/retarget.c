@@ -11,6 +11,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.time_s = from->time_s;
     params.sampling = from->sampling;
     params.step_spacing = from->step_spacing;
+    params.step_aov = from->step_aov;
     params.light_samples = from->light_samples;
     params.bailout = from->bailout;
     params.depth = from->depth;

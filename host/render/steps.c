@@ -56,15 +56,24 @@ static uint32_t pixel_of(uint32_t at, uint32_t spacing, uint32_t end)
     return pixel < end ? pixel : pixel - spacing;
 }
 
-static whit_result read_step(const struct renderer *renderer, const whit_step *step, float *row,
-                             float *rgba)
+/* Row `y` of what steps show. `all`: room for all aovs of a row. */
+static whit_result read_row(const struct renderer *renderer, uint32_t y, float *all, float *row)
 {
     const whit_renderer_params *params = &renderer->params;
     uint64_t row_bytes = (uint64_t)params->width * 4 * sizeof *row;
+    uint32_t aov = params->step_aov;
+    if (aov && aov <= hooks_aov_count(&renderer->picture))
+        return readback_aov_row(renderer, aov - 1, y, all, row);
+    return buffer_read(renderer->picture.buffers.pixels, y * row_bytes, row, row_bytes);
+}
+
+static whit_result read_step(const struct renderer *renderer, const whit_step *step, float *all,
+                             float *row, float *rgba)
+{
+    const whit_renderer_params *params = &renderer->params;
     whit_result result = WHIT_OK;
     for (uint32_t y = 0; result == WHIT_OK && y < step->height; ++y) {
-        uint64_t at = pixel_of(y, step->spacing, params->height);
-        result = buffer_read(renderer->picture.buffers.pixels, at * row_bytes, row, row_bytes);
+        result = read_row(renderer, pixel_of(y, step->spacing, params->height), all, row);
         for (uint32_t x = 0; x < step->width; ++x, rgba += 4) {
             const float *pixel = &row[4 * (size_t)pixel_of(x, step->spacing, params->width)];
             for (int i = 0; i < 4; ++i)
@@ -84,13 +93,16 @@ static whit_result give_step(const struct renderer *renderer, uint32_t spacing)
     };
     float *rgba = array_alloc((size_t)step.width * step.height, 4 * sizeof *rgba);
     float *row = array_alloc(params->width, 4 * sizeof *row);
-    whit_result result =
-        rgba && row ? read_step(renderer, &step, row, rgba) : render_no_memory(renderer, "a step");
+    size_t aovs = hooks_aov_count(&renderer->picture);
+    float *all = array_alloc(params->width, (aovs ? aovs : 1) * 4 * sizeof *all);
+    whit_result result = rgba && row && all ? read_step(renderer, &step, all, row, rgba)
+                                            : render_no_memory(renderer, "a step");
     step.rgba = rgba;
     if (result == WHIT_OK)
         params->step(params->progress_user, &step);
     free(rgba);
     free(row);
+    free(all);
     return result;
 }
 

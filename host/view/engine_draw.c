@@ -44,8 +44,8 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
 static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t divisor)
 {
     uint32_t spacing = 8, finest = first ? divisor : lane->shown / 2;
-    if (lane->moving || lane->settings.paint != PAINT_COLOR || lane->settings.aov[0])
-        return 0; /* steps are of colours */
+    if (lane->moving || lane->settings.paint != PAINT_COLOR)
+        return 0; /* steps are of colours, or of values of the shader */
     if (first && lane->ms_per_sample <= 0.0)
         return spacing;
     while (spacing > 1 && spacing / 2 >= finest)
@@ -120,14 +120,18 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     return result;
 }
 
-uint32_t engine_find_aov(const struct engine_frame *frame)
+static uint32_t find_aov(const struct shader_ref *shader, const char *name)
 {
-    const struct shader_ref *shader = frame->shader;
     for (uint32_t i = 0; shader && i < shader->info.aov_count; ++i) {
-        if (strcmp(shader->info.aovs[i], frame->settings.aov) == 0)
+        if (strcmp(shader->info.aovs[i], name) == 0)
             return i;
     }
     return UINT32_MAX;
+}
+
+uint32_t engine_find_aov(const struct engine_frame *frame)
+{
+    return find_aov(frame->shader, frame->settings.aov);
 }
 
 /* Colours, or the function of the shader that is shown in their place. */
@@ -209,6 +213,8 @@ static whit_renderer_params task_params(const struct engine_task *task)
         params.sampling.kind = WHIT_SAMPLING_FIXED;
     }
     params.step_spacing = task->step_spacing;
+    params.step_aov =
+        find_aov(session->shader, session->settings.aov) + 1; /* 0: none of that name */
     return params;
 }
 
@@ -246,7 +252,8 @@ whit_result engine_draw_step(const struct engine_task *task, const whit_step *st
         return WHIT_ERROR_MEMORY;
     whit_result result = whit_image_create(step->width, step->height, 4, step->rgba, &frame->color);
     if (result == WHIT_OK) {
-        whit_image_display_as(frame->color, &params);
+        if (engine_find_aov(frame) == UINT32_MAX)
+            whit_image_display_as(frame->color, &params);
         whit_image_display_bytes(frame->color, frame->rgba);
         whit_renderer_get_stats(task->session->renderer, &frame->stats);
     }

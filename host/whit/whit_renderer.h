@@ -104,6 +104,7 @@ typedef struct whit_renderer_params {
        pixel is drawn once, and the picture is the same. It is called from the rendering thread with
        progress_user after each step but the last. */
     uint32_t step_spacing; /* 2, 4 or 8; 0: at once */
+    uint32_t step_aov;     /* 1 + the index of the aov of `shader` that steps show; 0: colours */
     void (*step)(void *user, const whit_step *step);
     double time_limit_s; /* from whit_renderer_create on; 0: none */
     whit_load_path load_path;

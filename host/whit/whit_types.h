@@ -17,7 +17,7 @@ extern "C" {
    functions take NULL. */
 void whit_memory_destroy(void *memory);
 
-#define WHIT_NONE UINT32_MAX /* no primitive, no instance: a miss */
+#define WHIT_NONE           UINT32_MAX /* no primitive, no instance: a miss */
 /* The instance of hits on the shape of a user's intersect(); their primitive is 0. */
 #define WHIT_INSTANCE_SHAPE UINT32_C(0x7fffffff)
 

@@ -49,8 +49,6 @@ refuse 2 "an error" "max-error is measured against the reference, which has no -
 refuse 2 "a budget" "budget-ms is measured against the reference, which has no --shader" \
     render "$CUBE" --shader own.glsl --budget-ms 10 -o no.png
 refuse 2 "prices" "--shader. is of render and view: .* the reference, which has no functions" cost "$CUBE" --shader own.glsl
-refuse 2 "a probe" "--shader. is of render and view: .* the CPU, which has no functions" \
-    probe "$CUBE" --pixel 1,1 --shader own.glsl
 refuse 2 "refining what post makes of it" "post" render "$CUBE" --shader post.glsl --refine 0.1 -o no.png
 check "no picture of any" test ! -e no.png
 finish

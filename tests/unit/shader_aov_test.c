@@ -3,8 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "unit.h"
-#include "whit.h"
+#include "hooks_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT, AOVS = 3 };
 
@@ -21,45 +20,21 @@ static const char content[] = "//@ aov place\n"
                               "//@ aov noise\n"
                               "vec4 noise(in Surface s) { return vec4(random(3u)); }\n";
 
-static void tell(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    if (level == WHIT_LOG_ERROR)
-        print_error("%s\n", message);
-}
-
-static const whit_log told = {.fn = tell};
-static whit_device *device;
-static whit_shader_compiler *compiler;
 static whit_shader *shader;
-static whit_scene *scene;
-static whit_accel *accel;
 
 static int begin(void **state)
 {
     (void)state;
-    char path[] = "/tmp/whit_aov_XXXXXX";
-    int file = mkstemp(path);
-    FILE *stream = file >= 0 ? fdopen(file, "w") : NULL;
-    if (!stream || fputs(content, stream) < 0 || fclose(stream) != 0)
-        return -1;
-    bool fine = whit_shader_compiler_create(NULL, &told, &compiler) == WHIT_OK &&
-                whit_shader_load(compiler, path, false, &shader) == WHIT_OK &&
-                whit_device_create(NULL, &told, &device) == WHIT_OK &&
-                whit_scene_load(WHIT_SCENES_DIR "/default.json", NULL, &told, &scene) == WHIT_OK &&
-                whit_accel_create(scene, NULL, &accel) == WHIT_OK;
-    remove(path);
+    bool fine =
+        hooks_begin(WHIT_SCENES_DIR "/default.json") && hooks_load(content, &shader) == WHIT_OK;
     return fine ? 0 : -1;
 }
 
 static int end(void **state)
 {
     (void)state;
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    whit_device_destroy(device);
     whit_shader_destroy(shader);
-    whit_shader_compiler_destroy(compiler);
+    hooks_end();
     return 0;
 }
 
@@ -122,6 +97,44 @@ static void assert_same(const whit_image *a, const whit_image *b)
 static bool is_miss(const struct drawn *drawn, uint32_t pixel)
 {
     return whit_image_words(drawn->ids)[2 * pixel] == UINT32_MAX;
+}
+
+/* Steps with something of the whole picture, by the pixel that stands for each square. */
+struct steps {
+    const float *whole;
+    uint32_t seen, wrong;
+};
+
+static void look_at_step(void *user, const whit_step *step)
+{
+    struct steps *steps = user;
+    uint32_t first = step->spacing == 8 ? 5 : 1;
+    ++steps->seen;
+    for (uint32_t y = 0; y < step->height; ++y) {
+        for (uint32_t x = 0; x < step->width; ++x) {
+            size_t pixel = (y * step->spacing + first) * WIDTH + x * step->spacing + first;
+            steps->wrong += memcmp(&step->rgba[4 * (y * step->width + x)], &steps->whole[4 * pixel],
+                                   4 * sizeof(float)) != 0;
+        }
+    }
+}
+
+TEST(steps_show_the_value_that_is_asked_for)
+{
+    whit_renderer_params params = usual(1);
+    struct drawn drawn = draw(&params);
+    for (uint32_t aov = 0; aov <= AOVS; ++aov) {
+        struct steps steps = {.whole = floats(aov ? drawn.aovs[aov - 1] : drawn.color)};
+        params.step_spacing = 8;
+        params.step_aov = aov;
+        params.step = look_at_step;
+        params.progress_user = &steps;
+        struct drawn again = draw(&params);
+        assert_int_equal(steps.seen, 3);
+        assert_int_equal(steps.wrong, 0);
+        drop(&again);
+    }
+    drop(&drawn);
 }
 
 TEST(a_sample_says_what_the_camera_meets)

@@ -1,45 +1,27 @@
 /* What a shading function of the user's asks for is compiled and traced, and nothing else. */
 #include <string.h>
 
-#include "unit.h"
-#include "whit.h"
+#include "hooks_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
-
-static whit_device *device;
-static whit_shader_compiler *compiler;
-static whit_scene *scene;
-static whit_accel *accel;
 
 static int begin(void **state)
 {
     (void)state;
-    bool fine = whit_shader_compiler_create(NULL, NULL, &compiler) == WHIT_OK &&
-                whit_device_create(NULL, NULL, &device) == WHIT_OK &&
-                whit_scene_load(WHIT_SCENES_DIR "/default.json", NULL, NULL, &scene) == WHIT_OK &&
-                whit_accel_create(scene, NULL, &accel) == WHIT_OK;
-    return fine ? 0 : -1;
+    return hooks_begin(WHIT_SCENES_DIR "/default.json") ? 0 : -1;
 }
 
 static int end(void **state)
 {
     (void)state;
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    whit_device_destroy(device);
-    whit_shader_compiler_destroy(compiler);
+    hooks_end();
     return 0;
 }
 
 static whit_shader *load(const char *content)
 {
-    char path[] = "/tmp/whit_called_XXXXXX";
     whit_shader *shader = NULL;
-    FILE *stream = fdopen(mkstemp(path), "w");
-    assert_non_null(stream);
-    assert_true(fputs(content, stream) >= 0 && fclose(stream) == 0);
-    assert_int_equal(whit_shader_load(compiler, path, false, &shader), WHIT_OK);
-    remove(path);
+    assert_int_equal(hooks_load(content, &shader), WHIT_OK);
     return shader;
 }
 

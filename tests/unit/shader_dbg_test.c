@@ -2,8 +2,7 @@
    picture knows nothing of it. */
 #include <stdlib.h>
 
-#include "unit.h"
-#include "whit.h"
+#include "hooks_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, X = 20, Y = 30, FLOOR_X = 5, FLOOR_Y = 40 };
 
@@ -22,55 +21,32 @@ static const char content[] =
     "vec3 miss(vec3 dir) { return dbg(vec3(4.0)); }\n"
     "vec3 post(ivec2 at, vec3 color) { return dbg(color); }\n";
 
-static void tell(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    if (level == WHIT_LOG_ERROR)
-        print_error("%s\n", message);
-}
-
-static const whit_log told = {.fn = tell};
-static whit_device *device;
-static whit_shader_compiler *compiler;
 static whit_shader *shader, *plain;
-static whit_scene *scene;
-static whit_accel *accel;
 
 /* `blank`: without the name dbg. */
 static bool load(bool blank, whit_shader **out)
 {
-    char path[] = "/tmp/whit_dbg_XXXXXX", text[sizeof content];
-    int file = mkstemp(path);
-    FILE *stream = file >= 0 ? fdopen(file, "w") : NULL;
+    char text[sizeof content];
     strcpy(text, content);
     for (char *at = text; blank && (at = strstr(at, "dbg("));)
         memcpy(at, "   ", 3);
-    bool fine = stream && fputs(text, stream) >= 0 && fclose(stream) == 0 &&
-                whit_shader_load(compiler, path, false, out) == WHIT_OK;
-    remove(path);
-    return fine;
+    return hooks_load(text, out) == WHIT_OK;
 }
 
 static int begin(void **state)
 {
     (void)state;
-    bool fine = whit_shader_compiler_create(NULL, &told, &compiler) == WHIT_OK &&
-                load(false, &shader) && load(true, &plain) &&
-                whit_device_create(NULL, &told, &device) == WHIT_OK &&
-                whit_scene_load(WHIT_SCENES_DIR "/whitted.json", NULL, &told, &scene) == WHIT_OK &&
-                whit_accel_create(scene, NULL, &accel) == WHIT_OK;
+    bool fine =
+        hooks_begin(WHIT_SCENES_DIR "/whitted.json") && load(false, &shader) && load(true, &plain);
     return fine ? 0 : -1;
 }
 
 static int end(void **state)
 {
     (void)state;
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    whit_device_destroy(device);
     whit_shader_destroy(shader);
     whit_shader_destroy(plain);
-    whit_shader_compiler_destroy(compiler);
+    hooks_end();
     return 0;
 }
 

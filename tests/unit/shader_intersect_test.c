@@ -3,37 +3,20 @@
 #include <math.h>
 #include <string.h>
 
-#include "unit.h"
-#include "whit.h"
+#include "hooks_fixture.h"
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
-
-static whit_device *device;
-static whit_shader_compiler *compiler;
-static char logged[4096];
-
-static void keep_message(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    snprintf(logged, sizeof logged, "%s", message);
-}
-
-static const whit_log keeps = {.fn = keep_message, .level = WHIT_LOG_ERROR};
 
 static int begin(void **state)
 {
     (void)state;
-    bool fine = whit_shader_compiler_create(NULL, &keeps, &compiler) == WHIT_OK &&
-                whit_device_create(NULL, &keeps, &device) == WHIT_OK;
-    return fine ? 0 : -1;
+    return hooks_begin(NULL) ? 0 : -1;
 }
 
 static int end(void **state)
 {
     (void)state;
-    whit_device_destroy(device);
-    whit_shader_compiler_destroy(compiler);
+    hooks_end();
     return 0;
 }
 
@@ -64,20 +47,25 @@ static const char real_ball[] = "{\"shape\":\"ball\",\"radius\":0.7,"
 #define GIVE       "    return dot(aside, aside) < 0.49 && t >= 0.0;\n}\n"
 #define SHAPE_TEXT BOX INTERSECT MEET GIVE
 
-static void write_text(char *path, int suffix, const char *format, const char *part)
+/* The room with `part` in it; destroyed by close_room(). */
+static void open_room(const char *part)
 {
-    FILE *stream = fdopen(mkstemps(path, suffix), "w");
+    char path[] = "/tmp/whit_room_XXXXXX.json";
+    FILE *stream = fdopen(mkstemps(path, 5), "w");
     assert_non_null(stream);
-    assert_true(fprintf(stream, format, part) >= 0 && fclose(stream) == 0);
+    assert_true(fprintf(stream, room, part) >= 0 && fclose(stream) == 0);
+    if (whit_scene_load(path, NULL, &keeps, &scene) != WHIT_OK)
+        fail_msg("%s", logged);
+    remove(path);
+    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
 }
 
-static whit_result load(const char *content, whit_shader **shader)
+static void close_room(void)
 {
-    char path[] = "/tmp/whit_shape_XXXXXX";
-    write_text(path, 0, "%s", content);
-    whit_result result = whit_shader_load(compiler, path, false, shader);
-    remove(path);
-    return result;
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    accel = NULL;
+    scene = NULL;
 }
 
 struct picture {
@@ -89,16 +77,9 @@ struct picture {
 static whit_result draw(const char *part, const whit_shader *shader, whit_numerics numerics,
                         struct picture *out)
 {
-    char path[] = "/tmp/whit_room_XXXXXX.json";
-    whit_scene *scene;
-    whit_accel *accel;
     whit_renderer *renderer = NULL;
     whit_renderer_params params = whit_renderer_defaults();
-    write_text(path, 5, room, part);
-    if (whit_scene_load(path, NULL, &keeps, &scene) != WHIT_OK)
-        fail_msg("%s", logged);
-    remove(path);
-    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
+    open_room(part);
     params.width = WIDTH;
     params.height = HEIGHT;
     params.shader = shader;
@@ -116,8 +97,7 @@ static whit_result draw(const char *part, const whit_shader *shader, whit_numeri
     whit_image_destroy(color);
     whit_image_destroy(ids);
     whit_renderer_destroy(renderer);
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
+    close_room();
     return result;
 }
 
@@ -143,7 +123,7 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
 {
     static struct picture shape, real;
     whit_shader *shader;
-    assert_int_equal(load(SHAPE_TEXT, &shader), WHIT_OK);
+    assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
     static const whit_numerics levels[] = {WHIT_NUMERICS_WATERTIGHT, WHIT_NUMERICS_EXACT};
     for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
         assert_int_equal(draw("", shader, levels[i], &shape), WHIT_OK);
@@ -157,18 +137,12 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
    free, and on all rays behind it. */
 TEST(probe_of_the_shape_differs_nowhere)
 {
-    char path[] = "/tmp/whit_room_XXXXXX.json";
     whit_shader *shader;
     whit_renderer_params params = whit_renderer_defaults();
-    whit_scene *scene;
-    whit_accel *accel;
     whit_renderer *renderer;
     whit_probe_report *report;
-    write_text(path, 5, room, "");
-    assert_int_equal(whit_scene_load(path, NULL, &keeps, &scene), WHIT_OK);
-    remove(path);
-    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
-    assert_int_equal(load(SHAPE_TEXT, &shader), WHIT_OK);
+    open_room("");
+    assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
     params.width = WIDTH;
     params.height = HEIGHT;
     params.shader = shader;
@@ -179,8 +153,7 @@ TEST(probe_of_the_shape_differs_nowhere)
     whit_probe_report_destroy(report);
     whit_renderer_destroy(renderer);
     whit_shader_destroy(shader);
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
+    close_room();
 }
 
 /* What the user's other functions trace meets the shape, and its loops have their own fuel. */
@@ -196,10 +169,10 @@ TEST(functions_that_trace_meet_the_shape)
     char text[4096];
     whit_shader *shader;
     snprintf(text, sizeof text, shade, "");
-    assert_int_equal(load(text, &shader), WHIT_OK);
+    assert_int_equal(hooks_load(text, &shader), WHIT_OK);
     assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, &shape), WHIT_OK);
     whit_shader_destroy(shader);
-    assert_int_equal(load(strstr(text, "vec3 shade"), &shader), WHIT_OK);
+    assert_int_equal(hooks_load(strstr(text, "vec3 shade"), &shader), WHIT_OK);
     assert_int_equal(draw(real_ball, shader, WHIT_NUMERICS_WATERTIGHT, &real), WHIT_OK);
     whit_shader_destroy(shader);
     compare(&shape, &real);
@@ -210,7 +183,7 @@ static void expect_error(const char *content, whit_result wanted, const char *pa
 {
     whit_shader *shader = NULL;
     logged[0] = 0;
-    whit_result result = load(content, &shader);
+    whit_result result = hooks_load(content, &shader);
     if (result == WHIT_OK)
         result = draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL);
     if (result != wanted || !strstr(logged, part))
