@@ -1,5 +1,6 @@
 #include "shader/compile.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -200,14 +201,65 @@ static bool find_open_brace(const struct shader_text *text, uint32_t *file, uint
     return false;
 }
 
+static bool is_of_word(char c)
+{
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+/* The first token of that text between `at` and `end` of a line that begins at `begin`. A word is
+   none within a longer one. */
+static const char *find_token(const char *begin, const char *at, const char *end, const char *token,
+                              size_t bytes)
+{
+    bool word = is_of_word(token[0]);
+    for (; at + bytes <= end; ++at) {
+        bool within = word && ((at > begin && is_of_word(at[-1])) ||
+                               (at + bytes < end && is_of_word(at[bytes])));
+        if (!within && memcmp(at, token, bytes) == 0)
+            return at;
+    }
+    return NULL;
+}
+
+/* Where the token that a reason quotes first, as 'token', stands on its line, if it stands there
+   once; else 0. */
+static uint32_t find_column(const struct shader_file *file, uint32_t line, const char *reason)
+{
+    const char *open = strchr(reason, '\''), *close = open ? strchr(open + 1, '\'') : NULL;
+    const char *at = file->text, *end = at + file->bytes;
+    for (uint32_t i = 1; at && i < line; ++i) {
+        at = memchr(at, '\n', (size_t)(end - at));
+        at = at ? at + 1 : NULL;
+    }
+    if (!at || !close || close == open + 1)
+        return 0;
+    const char *line_end = memchr(at, '\n', (size_t)(end - at));
+    size_t bytes = (size_t)(close - open - 1);
+    line_end = line_end ? line_end : end;
+    const char *found = find_token(at, at, line_end, open + 1, bytes);
+    bool once = found && !find_token(at, found + 1, line_end, open + 1, bytes);
+    return once ? (uint32_t)(found - at) + 1 : 0;
+}
+
+/* With the column of what the reason quotes. */
+static void add_error_at(const struct place *place, const struct shader_file *file, uint32_t line,
+                         const char *reason)
+{
+    uint32_t count = place->errors ? place->errors->count : 0;
+    shader_error_add(place->log, place->errors, file->name, line, "%s", reason);
+    if (place->errors && place->errors->count > count)
+        place->errors->items[count].column = find_column(file, line, reason);
+}
+
 static void add_own_error(const struct place *place, const struct glslang_error *error,
                           const char *reason)
 {
     char name[SHADER_FILE_BYTES];
     uint32_t file, line;
     if (place->text && find_open_brace(place->text, &file, &line)) {
-        shader_error_add(place->log, place->errors, place->text->files[file].name, line,
-                         "a brace without its other one: %s", reason);
+        char text[SHADER_REASON_BYTES + 64];
+        snprintf(text, sizeof text, "a brace without its other one: %s", reason);
+        add_error_at(place, &place->text->files[file], line, text);
         return;
     }
     const struct shader_stages *stages = place->request->stages;
@@ -235,44 +287,13 @@ static uint32_t count_lines(const struct shader_file *file)
     return count;
 }
 
-static const char *find_in(const char *at, const char *end, const char *token, size_t bytes)
-{
-    for (; at + bytes <= end; ++at) {
-        if (memcmp(at, token, bytes) == 0)
-            return at;
-    }
-    return NULL;
-}
-
-/* Where the token that a reason quotes first, as 'token', stands on its line, if it stands there
-   once; else 0. */
-static uint32_t find_column(const struct shader_file *file, uint32_t line, const char *reason)
-{
-    const char *open = strchr(reason, '\''), *close = open ? strchr(open + 1, '\'') : NULL;
-    const char *at = file->text, *end = at + file->bytes;
-    for (uint32_t i = 1; at && i < line; ++i) {
-        at = memchr(at, '\n', (size_t)(end - at));
-        at = at ? at + 1 : NULL;
-    }
-    if (!at || !close || close == open + 1)
-        return 0;
-    const char *line_end = memchr(at, '\n', (size_t)(end - at));
-    size_t bytes = (size_t)(close - open - 1);
-    line_end = line_end ? line_end : end;
-    const char *found = find_in(at, line_end, open + 1, bytes);
-    return found && !find_in(found + 1, line_end, open + 1, bytes) ? (uint32_t)(found - at) + 1 : 0;
-}
-
 /* What a file leaves open may be told behind its end. */
 static void add_user_error(const struct place *place, const struct glslang_error *error,
                            const char *reason)
 {
     const struct shader_file *file = &place->text->files[error->file];
     uint32_t last = count_lines(file), line = error->line < last ? error->line : last;
-    uint32_t count = place->errors ? place->errors->count : 0;
-    shader_error_add(place->log, place->errors, file->name, line, "%s", reason);
-    if (place->errors && place->errors->count > count)
-        place->errors->items[count].column = find_column(file, line, reason);
+    add_error_at(place, file, line, reason);
 }
 
 /* What a child tells is not to be believed. */

@@ -162,9 +162,39 @@ static const struct {
     {"#extension_of mine\n" FINE, 1, "directive"},
 };
 
+/* The line of a text, without its end. */
+static void copy_line(const char *text, uint32_t line, char *out, size_t bytes)
+{
+    for (; line > 1; --line)
+        text = strchr(text, '\n') + 1;
+    snprintf(out, bytes, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+/* Where the token that the reason quotes stands on the line; 0: it quotes none, or the token stands
+   there more than once. Takes the line apart, as a reader would. */
+static uint32_t column_of(const struct shader_error *error, const char *text)
+{
+    char line[256], token[64];
+    uint32_t column = 0, count = 0;
+    const char *open = strchr(error->reason, '\'');
+    if (!open || sscanf(open, "'%63[^']'", token) != 1)
+        return 0;
+    copy_line(text, error->line, line, sizeof line);
+    for (size_t at = 0, length; line[at]; at += length) {
+        length =
+            strspn(line + at, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+        bool same = length ? length == strlen(token) && strncmp(line + at, token, length) == 0
+                           : strncmp(line + at, token, strlen(token)) == 0;
+        length += !length;
+        column = same ? (uint32_t)at + 1 : column;
+        count += same;
+    }
+    return count == 1 ? column : 0;
+}
+
 TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
 {
-    uint32_t bad = 0;
+    uint32_t bad = 0, columns = 0;
     for (size_t i = 0; i < sizeof broken / sizeof *broken; ++i) {
         struct shader_code code;
         if (compile_files(broken[i].content, NULL, false, &code) != WHIT_ERROR_INPUT)
@@ -181,13 +211,18 @@ TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
                      strstr(error->reason, broken[i].reason) &&
                      strncmp(logged, place, strlen(place)) == 0 &&
                      !strstr(logged, "compilation terminated") && !strstr(logged, "No code");
+        uint32_t column = own ? 0 : column_of(error, broken[i].content);
+        columns += column != 0;
+        right = right && error->column == column;
         if (!right)
-            print_error("%s\nline %u, %s:\n%s\n", broken[i].content, broken[i].line,
-                        broken[i].reason, logged);
+            print_error("%s\nline %u, column %u, not %u, %s:\n%s\n", broken[i].content,
+                        broken[i].line, column, error->column, broken[i].reason, logged);
         bad += !right;
     }
     const uint32_t all = sizeof broken / sizeof *broken;
-    print_message("the line is right in %u of %u broken files\n", all - bad, all);
+    print_message("line and column are right in %u of %u broken files, a column in %u\n", all - bad,
+                  all, columns);
+    assert_true(columns > all / 3);
     assert_int_equal(bad, 0);
 }
 

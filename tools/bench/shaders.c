@@ -27,6 +27,15 @@ static const struct edited {
     {"shade, visible",
      "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.color * visible(s, s.ns, %.9g); }\n",
      NULL, true},
+    {"intersect",
+     "//@ box -3 -3 -3  3 3 3  0.01\n"
+     "bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)\n{\n"
+     "    t = 0.0;\n    normal = -dir;\n"
+     "    for (int i = 0; i < 64 && t <= far; ++i) {\n"
+     "        float d = length(origin + t * dir) - %.9g;\n"
+     "        if (d < 0.01) { normal = normalize(origin + t * dir); return true; }\n"
+     "        t += d;\n    }\n    return false;\n}\n",
+     NULL, true},
 };
 enum { EDITS = sizeof edits / sizeof *edits };
 
