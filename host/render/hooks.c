@@ -175,7 +175,7 @@ void hooks_describe_shape(const struct target *target, char *text, size_t text_b
     uint32_t pixel = SHAPE_PIXEL_MASK - (word & SHAPE_PIXEL_MASK), width = renderer->params.width;
     text[0] = 0;
     if (shader && reason && shader_text_defines(&shader->text, "intersect", &file, &line))
-        snprintf(text, text_bytes, ": %s:%u: intersect() %s, in pixel %u, %u",
-                 shader->text.files[file].name, line, reasons[reason], pixel % width,
-                 pixel / width);
+        snprintf(text, text_bytes, ": %s:%u: intersect() %s, in pixel %u, %u of %u x %u",
+                 shader->text.files[file].name, line, reasons[reason], pixel % width, pixel / width,
+                 width, renderer->params.height);
 }

@@ -267,7 +267,9 @@ static void put_own(struct expansion *e, const struct own_file *file)
             put_string(e, "#extension GL_GOOGLE_cpp_style_line_directive : require\n");
         if (line == head)
             put_defines(e);
-        if (length || line == version || line == head)
+        /* What is included under a condition that does not hold leaves no #line behind it. */
+        bool ends = is_directive(at, "endif") || is_directive(at, "else");
+        if (length || line == version || line == head || ends)
             put_line(e, line + 1, e->own, file->index);
     }
 }

@@ -30,6 +30,10 @@ broken() {
 }
 echo 'float x = nope;' | broken "a name" lib/optics.glsl 3 "'nope': undeclared identifier"
 printf '\nfloat x( { }\n' | broken "no syntax" bind/camera.glsl 4 "syntax error"
+echo 'float last = nope;' >>st/kernel/resolve.comp
+refuse 2 "behind conditions" "st/kernel/resolve.comp:$(wc -l <st/kernel/resolve.comp): 'nope'" \
+    render "$CUBE" --size 8x8 --stages st -o no.png
+cp "$SHADERS/kernel/resolve.comp" st/kernel/
 echo '#include "no.glsl"' | broken "no file" bind/hook.glsl 3 '#include "bind/no.glsl": there is no such file'
 cp half.glsl ..
 echo '#include "../../half.glsl"' | broken "a file above" lib/spawn.glsl 3 '#include .*: it lies outside'
