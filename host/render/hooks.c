@@ -138,16 +138,12 @@ whit_result hooks_clear_status(const struct target *target)
     return buffer_write(target->buffers.status, STATUS_LOOP_AT, none, sizeof none);
 }
 
-/* A word of the status buffer, which the next picture begins without; 0 where it cannot be read. */
-static uint32_t take_status(const struct target *target, uint64_t at)
+/* A word of the status buffer; 0 where it cannot be read. */
+static uint32_t read_status(const struct target *target, uint64_t at)
 {
     uint32_t number = 0;
-    if (buffer_read(target->buffers.status, at, &number, sizeof number) != WHIT_OK)
-        number = 0;
-    /* An error here is told by the next picture. */
-    whit_result result = hooks_clear_status(target);
-    (void)result;
-    return number;
+    bool fine = buffer_read(target->buffers.status, at, &number, sizeof number) == WHIT_OK;
+    return fine ? number : 0;
 }
 
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes)
@@ -156,7 +152,7 @@ void hooks_describe_fuel(const struct target *target, char *text, size_t text_by
     const char *file = "";
     const whit_shader *shader = target->renderer->params.shader;
     text[0] = 0;
-    if (shader && shader_find_loop(shader, take_status(target, STATUS_LOOP_AT), &file, &line))
+    if (shader && shader_find_loop(shader, read_status(target, STATUS_LOOP_AT), &file, &line))
         snprintf(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
                  line, shader->fuel, SHADER_FUEL_MAX);
 }
@@ -171,7 +167,7 @@ void hooks_describe_shape(const struct target *target, char *text, size_t text_b
     uint32_t file, line;
     const struct renderer *renderer = target->renderer;
     const whit_shader *shader = renderer->params.shader;
-    uint32_t word = take_status(target, STATUS_SHAPE_AT), reason = word >> SHAPE_REASON_SHIFT;
+    uint32_t word = read_status(target, STATUS_SHAPE_AT), reason = word >> SHAPE_REASON_SHIFT;
     uint32_t pixel = SHAPE_PIXEL_MASK - (word & SHAPE_PIXEL_MASK), width = renderer->params.width;
     text[0] = 0;
     if (shader && reason && shader_text_defines(&shader->text, "intersect", &file, &line))

@@ -24,7 +24,7 @@ struct probe_ray {
     bool exact_equal; /* ids (shadow rays: blocked or not); at NUMERICS_EXACT t as well */
 };
 
-/* What a dbg(x) of the user's functions was. */
+/* One value that a dbg(x) of the user's file had when it was reached. */
 struct probe_value {
     struct gpu_dbg traced;
     uint32_t call; /* index in shader_dbg.sites */

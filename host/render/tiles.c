@@ -55,6 +55,8 @@ whit_result status_check(struct target *target)
         hooks_describe_fuel(target, loop, sizeof loop);
     if (word & STATUS_SHAPE)
         hooks_describe_shape(target, shape, sizeof shape);
+    if (word & (STATUS_FUEL | STATUS_SHAPE))
+        result = hooks_clear_status(target); /* the next picture begins without these */
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         size_t used = strlen(text);
         if (word & reasons[i].bit)
@@ -65,7 +67,7 @@ whit_result status_check(struct target *target)
                                                          : "");
     }
     log_error(&target->renderer->log, "the result is not to be trusted: %s", text);
-    return WHIT_ERROR_STATUS;
+    return result == WHIT_OK ? WHIT_ERROR_STATUS : result;
 }
 
 /* Behind the bits, in the same buffer. */

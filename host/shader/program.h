@@ -101,7 +101,7 @@ static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
 }
 /* Its code of kernel "closest", "shade", "shadow" or "resolve"; NULL: whit's own serves. */
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
-/* The same for a pixel that is looked at: what dbg(x) is is recorded. */
+/* The code of that kernel for a probe, which records the value of each dbg(x); NULL: none. */
 const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel);
 /* Whether functions of the user's are part of it. */
 bool shader_is_hooked(const whit_shader *shader, const char *kernel);

@@ -64,7 +64,7 @@ typedef enum whit_value_kind {
     WHIT_VALUE_BOOL,
 } whit_value_kind;
 
-/* What a dbg(x) of the shader was, once. */
+/* One value that a dbg(x) of the user's file had when it was reached. */
 typedef struct whit_probe_value {
     whit_value_kind kind;
     uint32_t size;       /* 1: a number; 2 to 4: a vector */

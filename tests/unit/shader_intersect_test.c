@@ -196,6 +196,11 @@ TEST(answers_that_are_no_shape_s_are_told)
     static const struct {
         const char *content, *part;
     } cases[] = {
+        /* Beside a loop without end, both are told. */
+        {"//@ box -0.5 0.05 -0.7  0.9 0.8 0.7  0.000001 gold\n" INTERSECT MEET GIVE
+         "vec3 shade(Surface s, Optics o, vec3 to_eye) { float t = 1.0; while (t > 0.0) t += 1.0; "
+         "return vec3(t); }\n",
+         ":2: intersect() meets its shape outside of the box of `//@ box`, in pixel "},
         {"//@ box -0.5 0.05 -0.7  0.9 0.8 0.7  0.000001 gold\n" INTERSECT MEET GIVE,
          ":2: intersect() meets its shape outside of the box of `//@ box`, in pixel "},
         {BOX INTERSECT MEET "    t = min(t, far * 0.5);\n" GIVE,

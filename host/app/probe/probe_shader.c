@@ -1,9 +1,10 @@
-/* What a probe says of the user's functions: what they leave out, and what each dbg(x) was. */
+/* Prints what `whit probe --shader` adds to a report: which figures the report lacks, and the
+   values of each dbg(x) of the user's file; as text and as JSON. */
 #include <string.h>
 
 #include "app/probe/probe.h"
 
-/* What rows have not with functions of the user's. */
+/* What the report lacks when a user's file has taken the place of whit's functions. */
 static const char own_rays[] = "rays that its functions trace, as by visible() and trace()";
 static const char shape[] =
     "the shape of intersect() in twin and exact: of rays that meet it they say "
