@@ -9,6 +9,18 @@
 #include "view/engine_private.h"
 #include "whit/whit_program.h"
 
+/* Of a picture at rest before a session is made that only the next version of its shader needs. */
+static const double SPARE_MS = 1e3;
+
+/* For pthread_cond_timedwait of the engine's conditions. */
+static void after(double ms, struct timespec *until)
+{
+    clock_gettime(CLOCK_MONOTONIC, until);
+    int64_t ns = until->tv_nsec + (int64_t)(ms * 1e6);
+    until->tv_sec += (time_t)(ns / 1000000000);
+    until->tv_nsec = (long)(ns % 1000000000);
+}
+
 /* ---- The drawing thread ---- */
 
 void engine_wake(struct engine *engine)
@@ -40,7 +52,9 @@ static void stop_unwanted(struct engine *engine)
     bool wanted = false;
     for (int i = 0; job && i < ENGINE_LANES; ++i) {
         const struct engine_lane *lane = &engine->lanes[i];
-        wanted |= lane->wanted && settings_same_kernel(&lane->settings, &job->settings);
+        wanted |= lane->wanted &&
+                  (job->is_spare ? engine_same_but_version(&lane->settings, &job->settings)
+                                 : settings_same_kernel(&lane->settings, &job->settings));
     }
     if (job && !wanted)
         job->session->cancel = true;
@@ -187,6 +201,8 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
         engine_frame_finish(&lane->frame);
     engine_forget_error(engine);
     engine->lost = 0;
+    if (frame->whole && lane == engine->lanes && task->settings.shader[0])
+        engine->spare_ms = whit_clock_ms() + SPARE_MS;
 }
 
 /* On the drawing thread, in engine_draw. Who asks for something else waits for the first step, and
@@ -207,6 +223,23 @@ void engine_show_step(void *user, const whit_step *step)
         task->session->cancel = true;
     engine_wake(engine);
     pthread_mutex_unlock(&engine->lock);
+}
+
+void engine_show_preview(struct engine *engine, struct engine_job *job)
+{
+    struct engine_lane *lane = engine->lanes;
+    const struct engine_task task = {.engine = engine,
+                                     .lane = lane,
+                                     .session = job->session,
+                                     .settings = job->preview.settings,
+                                     .divisor = 1,
+                                     .brief = true,
+                                     .asked = lane->asked};
+    if (!job->preview.rgba || !lane->wanted || lane->asked == lane->drawn || lane->moving ||
+        lane->settings.paint != PAINT_COLOR || !settings_same(&lane->settings, &job->settings))
+        return;
+    take_picture(&task, ENGINE_QUICK, &job->preview);
+    job->preview = (struct engine_frame){0};
 }
 
 /* With the lock. Where memory ran out often nobody said a word. */
@@ -325,6 +358,18 @@ static void tidy_up(struct engine *engine)
     engine_wake(engine);
 }
 
+static void wait_for_work(struct engine *engine)
+{
+    struct timespec until;
+    double left_ms = engine->spare_ms - whit_clock_ms();
+    if (engine->spare_ms > 0.0 && !engine->job) {
+        after(left_ms, &until);
+        (void)pthread_cond_timedwait(&engine->work, &engine->lock, &until);
+    } else {
+        pthread_cond_wait(&engine->work, &engine->lock);
+    }
+}
+
 static void run_engine(void *context)
 {
     struct engine *engine = context;
@@ -333,6 +378,7 @@ static void run_engine(void *context)
         struct engine_task task;
         bool drew = false;
         engine_reap_job(engine);
+        engine_make_spare(engine);
         for (int i = 0; i < ENGINE_LANES && !engine->quit; ++i) {
             if (plan_lane(engine, &engine->lanes[i], &task)) {
                 draw_one(engine, &engine->lanes[i], &task);
@@ -352,7 +398,7 @@ static void run_engine(void *context)
         if (!drew && !engine->quit && engine->littered)
             tidy_up(engine);
         else if (!drew && !engine->quit && !(engine->job && engine->job->done))
-            pthread_cond_wait(&engine->work, &engine->lock);
+            wait_for_work(engine);
     }
     pthread_mutex_unlock(&engine->lock);
 }
@@ -379,7 +425,7 @@ whit_result engine_create(const struct engine_params *params, struct engine **ou
     pthread_condattr_init(&monotonic);
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_mutex_init(&engine->lock, NULL);
-    pthread_cond_init(&engine->work, NULL);
+    pthread_cond_init(&engine->work, &monotonic);
     pthread_cond_init(&engine->news, &monotonic);
     pthread_condattr_destroy(&monotonic);
     engine->thread = thread_start(run_engine, engine);
@@ -488,8 +534,10 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
     pthread_mutex_lock(&engine->lock);
     const struct engine_job *job = engine->job;
     *status = (struct engine_status){
-        .stage = job ? (enum session_stage)atomic_load(&job->progress.stage) : SESSION_DONE,
+        .stage = job && !job->is_spare ? (enum session_stage)atomic_load(&job->progress.stage)
+                                       : SESSION_DONE,
         .stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0,
+        .makes_spare = job && job->is_spare,
         .drawing = !engine_is_done(&engine->lanes[0]) || !engine_is_done(&engine->lanes[1]),
         .failed = engine->lanes[0].failed,
         .result = engine->result,
@@ -557,8 +605,8 @@ static bool is_still(const struct engine_lane *lane)
 bool engine_is_still(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    bool still = !engine->busy && !engine->job && !engine->littered && engine->probe.number == 0 &&
-                 (!engine->probe_wanted || engine->lanes[0].failed);
+    bool still = !engine->busy && !(engine->job && !engine->job->is_spare) && !engine->littered &&
+                 engine->probe.number == 0 && (!engine->probe_wanted || engine->lanes[0].failed);
     for (int i = 0; i < ENGINE_LANES; ++i)
         still = still && is_still(&engine->lanes[i]);
     pthread_mutex_unlock(&engine->lock);
@@ -568,10 +616,7 @@ bool engine_is_still(struct engine *engine)
 void engine_wait(struct engine *engine, double ms)
 {
     struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    int64_t ns = until.tv_nsec + (int64_t)(ms * 1e6);
-    until.tv_sec += (time_t)(ns / 1000000000);
-    until.tv_nsec = (long)(ns % 1000000000);
+    after(ms, &until);
     pthread_mutex_lock(&engine->lock);
     bool fresh = engine->lanes[0].frame.number > 0 || engine->lanes[1].frame.number > 0;
     if (!fresh)

@@ -112,6 +112,8 @@ struct engine_reload {
 struct engine_status {
     enum session_stage stage;         /* of the session in the making; SESSION_DONE: none is */
     double stage_ms;                  /* since it was asked for */
+    bool makes_spare;                 /* a session is in the making that the next version of the
+                                         shader will take; no `stage` tells of it */
     bool drawing;                     /* a better picture than the last one is on its way */
     double drawing_ms;                /* that the drawing thread is at one; 0: it is at none */
     float part;                       /* of it, 0..1 */

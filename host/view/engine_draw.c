@@ -120,18 +120,9 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     return result;
 }
 
-static uint32_t find_aov(const struct shader_ref *shader, const char *name)
-{
-    for (uint32_t i = 0; shader && i < shader->info.aov_count; ++i) {
-        if (strcmp(shader->info.aovs[i], name) == 0)
-            return i;
-    }
-    return UINT32_MAX;
-}
-
 uint32_t engine_find_aov(const struct engine_frame *frame)
 {
-    return find_aov(frame->shader, frame->settings.aov);
+    return shader_ref_find_aov(frame->shader, frame->settings.aov);
 }
 
 /* Colours, or the function of the shader that is shown in their place. */
@@ -214,7 +205,7 @@ static whit_renderer_params task_params(const struct engine_task *task)
     }
     params.step_spacing = task->step_spacing;
     params.step_aov =
-        find_aov(session->shader, session->settings.aov) + 1; /* 0: none of that name */
+        shader_ref_find_aov(session->shader, session->settings.aov) + 1; /* 0: none of that name */
     return params;
 }
 

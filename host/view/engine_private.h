@@ -15,7 +15,9 @@ struct engine_job {
     struct settings settings;
     struct scene_ref *scene;
     struct shader_ref *shader;
-    bool reloads; /* the session has drawn before, with another version of the shader */
+    bool reloads;  /* the session has drawn before, with another version of the shader */
+    bool is_spare; /* nobody waits for it */
+    struct engine_frame preview; /* the first step by the new version; without pixels: none */
     struct session_progress progress;
     struct thread *thread;
     struct engine *engine;
@@ -121,9 +123,11 @@ struct engine {
     bool brief; /* it is done soon: who moves on waits for it, or sees nothing at all */
     struct shader_ref *versions[2]; /* of the shader in the window's pictures: the last, and the one
                                        before; NULL: none */
-    uint32_t validation;            /* messages, of sessions that are gone */
-    bool busy;                      /* something is being drawn, or memory given back */
-    bool littered; /* a session was made or dropped: its memory lies about in the heaps */
+    double spare_ms; /* by whit_clock_ms: when a session for the next version of the shader is to be
+                        made; 0: there is none to make */
+    uint32_t validation; /* messages, of sessions that are gone */
+    bool busy;           /* something is being drawn, or memory given back */
+    bool littered;       /* a session was made or dropped: its memory lies about in the heaps */
     uint64_t uses;
     uint32_t lost; /* devices lost one after the other */
     char error[ENGINE_MESSAGE];
@@ -159,7 +163,15 @@ struct engine_task {
 void engine_wake(struct engine *engine);
 bool engine_is_done(const struct engine_lane *lane);
 
+/* Shows the first step of a picture that a job has drawn, where that is what is asked for. */
+void engine_show_preview(struct engine *engine, struct engine_job *job);
+
 /* engine_sessions.c, of the drawing thread, with the lock but for drop and destroy. */
+/* Whether both differ in the version of their shader alone, or in nothing that kernels know. */
+bool engine_same_but_version(const struct settings *a, const struct settings *b);
+/* Starts a session for the next version of the window's shader, once its picture has been there for
+   a while, so that the first save does not wait for one. */
+void engine_make_spare(struct engine *engine);
 WHIT_CHECK bool engine_start_job(struct engine *engine, const struct settings *settings);
 /* Takes what a finished job made. */
 void engine_reap_job(struct engine *engine);

@@ -44,6 +44,28 @@ static void scene_message(void *user, whit_log_level level, const char *message)
     pthread_mutex_unlock(&engine->lock);
 }
 
+/* On the job's thread: its picture ends with the first step, as who asks for it draws the rest. */
+static void keep_preview(void *user, const whit_step *step)
+{
+    struct engine_job *job = user;
+    struct engine_task task = {
+        .session = job->session, .settings = job->session->settings, .asked_ms = job->start_ms};
+    settings_expose(&task.settings, &job->session->scene->info);
+    if (engine_draw_step(&task, step, &job->preview) != WHIT_OK)
+        engine_frame_finish(&job->preview);
+    job->session->cancel = true;
+}
+
+static whit_result reload(struct engine_job *job, const struct session_parts *parts)
+{
+    struct session *session = job->session;
+    session->step = keep_preview;
+    session->step_user = job;
+    whit_result result = session_reload(session, &job->settings, parts, &job->progress);
+    session->step = NULL;
+    return result;
+}
+
 static void run_job(void *context)
 {
     struct engine_job *job = context;
@@ -51,10 +73,9 @@ static void run_job(void *context)
     const struct session_parts parts = {job->scene, job->shader, engine->params.compiler};
     const whit_log log = {session_message, job->session, WHIT_LOG_WARNING};
     const whit_log scene_log = {scene_message, engine, WHIT_LOG_WARNING};
-    whit_result result =
-        job->reloads
-            ? session_reload(job->session, &job->settings, &parts, &job->progress)
-            : session_open(job->session, &job->settings, &parts, &log, &scene_log, &job->progress);
+    whit_result result = job->reloads ? reload(job, &parts)
+                                      : session_open(job->session, &job->settings, &parts, &log,
+                                                     &scene_log, &job->progress);
     pthread_mutex_lock(&engine->lock);
     job->result = result;
     job->done = true;
@@ -78,6 +99,7 @@ void engine_job_destroy(struct engine_job *job)
     if (!job)
         return;
     thread_join(job->thread);
+    engine_frame_finish(&job->preview);
     if (job->session)
         engine_drop_session(job->engine, job->session);
     scene_ref_drop(job->scene);
@@ -118,6 +140,13 @@ static bool is_shown(const struct engine *engine, const struct session *session)
     return engine->lanes[0].session == session || (other->wanted && other->session == session);
 }
 
+bool engine_same_but_version(const struct settings *a, const struct settings *b)
+{
+    struct settings same = *a;
+    same.shader_reload = b->shader_reload;
+    return settings_same_kernel(&same, b);
+}
+
 /* A session that differs from what is asked for by the version of its shader alone, and that nobody
    looks at: its device, trees and buffers serve the next version. NULL: none. */
 static struct session *find_version(const struct engine *engine, const struct settings *settings)
@@ -125,11 +154,9 @@ static struct session *find_version(const struct engine *engine, const struct se
     uint32_t oldest = ENGINE_SESSIONS_MAX;
     for (uint32_t i = 0; settings->shader[0] && i < ENGINE_SESSIONS_MAX; ++i) {
         const struct session *session = engine->sessions[i];
-        struct settings same = *settings;
         if (!session || is_shown(engine, session))
             continue;
-        same.shader_reload = session->settings.shader_reload;
-        if (settings_same_kernel(&session->settings, &same) &&
+        if (engine_same_but_version(settings, &session->settings) &&
             (oldest == ENGINE_SESSIONS_MAX ||
              session->last_use < engine->sessions[oldest]->last_use))
             oldest = i;
@@ -183,6 +210,18 @@ bool engine_start_job(struct engine *engine, const struct settings *settings)
     snprintf(engine->error, sizeof engine->error, "out of memory");
     engine->result = WHIT_ERROR_MEMORY;
     return false;
+}
+
+void engine_make_spare(struct engine *engine)
+{
+    const struct engine_lane *lane = &engine->lanes[0];
+    if (engine->spare_ms <= 0.0 || whit_clock_ms() < engine->spare_ms || engine->job)
+        return;
+    engine->spare_ms = 0.0;
+    if (lane->session && engine_is_done(lane) && !find_version(engine, &lane->settings) &&
+        lane->session->scene->info.triangle_count <= LARGE_SCENE &&
+        engine_start_job(engine, &lane->settings))
+        engine->job->is_spare = true;
 }
 
 /* ---- The sessions that there are ---- */
@@ -275,7 +314,7 @@ void engine_reap_job(struct engine *engine)
         memcpy(engine->refused, job->session->refused, sizeof engine->refused);
     if (job->result == WHIT_OK) {
         engine_forget_error(engine);
-    } else if (job->result != WHIT_ERROR_CANCELLED) {
+    } else if (job->result != WHIT_ERROR_CANCELLED && !job->is_spare) {
         memcpy(engine->error, job->session->error, sizeof engine->error);
         memcpy(engine->errors, job->session->errors, sizeof engine->errors);
         engine->result = job->result;
@@ -291,6 +330,7 @@ void engine_reap_job(struct engine *engine)
     if (job->result == WHIT_OK || (job->reloads && job->session->renderer)) {
         job->session->ready = true;
         keep_session(engine, job->session);
+        engine_show_preview(engine, job);
         job->session = NULL;
     }
     engine_wake(engine);

@@ -39,6 +39,15 @@ void shader_ref_drop(struct shader_ref *ref)
     free(ref);
 }
 
+uint32_t shader_ref_find_aov(const struct shader_ref *ref, const char *name)
+{
+    for (uint32_t i = 0; ref && i < ref->info.aov_count; ++i) {
+        if (strcmp(ref->info.aovs[i], name) == 0)
+            return i;
+    }
+    return UINT32_MAX;
+}
+
 const char *session_stage_name(enum session_stage stage)
 {
     static const char *const names[] = {"compiling the shader", "loading the scene",
@@ -226,15 +235,8 @@ whit_result session_open(struct session *session, const struct settings *setting
     return result;
 }
 
-/* Who asks for the whole picture draws it anew: this one ends with its first step. */
-static void end_at_step(void *user, const whit_step *step)
-{
-    struct session *session = user;
-    (void)step;
-    session->cancel = true;
-}
-
-/* What the driver has to compile, it compiles for the first step. */
+/* What the driver has to compile, it compiles for the first step: where session->step cancels
+   there, no more is drawn. */
 static whit_result draw_step(struct session *session, const whit_renderer_params *params)
 {
     bool takes = whit_renderer_takes_shader(session->renderer, params->shader);
@@ -249,10 +251,7 @@ static whit_result draw_step(struct session *session, const whit_renderer_params
         session->renderer = NULL;
         return result;
     }
-    session->step = end_at_step;
-    session->step_user = session;
     result = whit_renderer_render(session->renderer);
-    session->step = NULL;
     return result == WHIT_ERROR_CANCELLED ? WHIT_OK : result;
 }
 
@@ -281,6 +280,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
         params.shader = session->shader->shader;
         params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
         params.step_spacing = FIRST_STEP;
+        params.step_aov = shader_ref_find_aov(session->shader, session->settings.aov) + 1;
         result = draw_step(session, &params);
     }
     session->compile_ms = whit_clock_ms() - start_ms;

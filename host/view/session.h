@@ -28,6 +28,8 @@ struct shader_ref {
 };
 struct shader_ref *shader_ref_take(struct shader_ref *ref); /* NULL is fine */
 void shader_ref_drop(struct shader_ref *ref);               /* likewise */
+/* The index of the function that shows `name` in place of colours; UINT32_MAX: there is none. */
+uint32_t shader_ref_find_aov(const struct shader_ref *ref, const char *name);
 
 enum session_stage {
     SESSION_SHADER,
@@ -88,8 +90,9 @@ WHIT_CHECK whit_result session_open(struct session *session, const struct settin
                                     const whit_log *scene_log, struct session_progress *progress);
 /* A session that has drawn with another version of the shader: compiles the one of `settings`,
    which differ from the session's in what its renderer can change, and draws the first step of
-   their picture, for which the driver compiles. Where the shader is wrong the session stays as it
-   was; where its kernels cannot be made it has no renderer, and is to be closed. */
+   their picture, for which the driver compiles; session->step is given it. Where the shader is
+   wrong the session stays as it was; where its kernels cannot be made it has no renderer, and is to
+   be closed. */
 WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
                                       const struct session_parts *parts,
                                       struct session_progress *progress);

@@ -118,6 +118,33 @@ TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
     engine_frame_finish(&before);
 }
 
+static void wait_for_spare(bool makes)
+{
+    double start_ms = clock_ms();
+    while (status_now().makes_spare != makes) {
+        engine_wait(engine, 1.0);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS);
+    }
+}
+
+/* Its scene is loaded, its trees are built and its device is open before the first save. */
+TEST_IN(the_first_save_finds_a_session, begin, end)
+{
+    uint64_t number = frame.number;
+    wait_for_spare(true);
+    wait_for_spare(false);
+    ask("vec3 post(ivec2 at, vec3 color) { return color.grb; }\n");
+    while (frame.number == number) {
+        enum session_stage stage = status_now().stage;
+        assert_true(stage == SESSION_SHADER || stage == SESSION_COMPILING || stage == SESSION_DONE);
+        engine_wait(engine, 1.0);
+        (void)engine_take(engine, false, &frame);
+    }
+    assert_int_equal(frame.settings.shader_reload, settings.shader_reload);
+    take_all(false);
+    assert_int_equal(status_now().reload.number, 1);
+}
+
 /* What is asked for comes first: nothing is guessed of what was not measured. */
 TEST_IN(measuring_gives_way, begin, end)
 {
