@@ -3,7 +3,6 @@
 #include "kernel_closest.h"
 #include "kernel_closest_hooks.h"
 #include "kernel_miss_hooks.h"
-#include "kernel_present.h"
 #include "kernel_resolve.h"
 #include "kernel_resolve_hooks.h"
 #include "kernel_shade.h"
@@ -15,7 +14,6 @@
 
 const struct kernel_code kernels[KERNEL_COUNT] = {
     [KERNEL_TRACE] = {"trace", kernel_trace, sizeof kernel_trace},
-    [KERNEL_PRESENT] = {"present", kernel_present, sizeof kernel_present},
     [KERNEL_CLOSEST] = {"closest", kernel_closest, sizeof kernel_closest},
     [KERNEL_SHADE] = {"shade", kernel_shade, sizeof kernel_shade},
     [KERNEL_SHADOW] = {"shadow", kernel_shadow, sizeof kernel_shadow},

@@ -7,7 +7,6 @@
 
 enum kernel {
     KERNEL_TRACE,
-    KERNEL_PRESENT,
     KERNEL_CLOSEST,
     KERNEL_SHADE,
     KERNEL_SHADOW,

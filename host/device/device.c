@@ -205,9 +205,6 @@ static whit_result logical_create(struct device *device)
         extensions[extension_count++] = executables;
     if (device->surface)
         extensions[extension_count++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-    VkPhysicalDeviceFeatures can;
-    vkGetPhysicalDeviceFeatures(device->physical, &can);
-    device->writes_any_format = device->surface && can.shaderStorageImageWriteWithoutFormat;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queue = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -219,7 +216,6 @@ static whit_result logical_create(struct device *device)
         .robustBufferAccess = device->validation,
         .shaderFloat64 = device->info.float64,
         .shaderInt64 = device->info.int64,
-        .shaderStorageImageWriteWithoutFormat = device->writes_any_format,
     };
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR telling = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,

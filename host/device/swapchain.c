@@ -8,25 +8,17 @@
 static const struct known_format {
     VkFormat format;
     const char *name;
+    bool swaps;
 } known_formats[] = {
-    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8"},
-    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8"},
-    {VK_FORMAT_A8B8G8R8_UNORM_PACK32, "A8B8G8R8"},
+    {VK_FORMAT_B8G8R8A8_UNORM, "B8G8R8A8", true},
+    {VK_FORMAT_R8G8B8A8_UNORM, "R8G8B8A8", false},
+    {VK_FORMAT_A8B8G8R8_UNORM_PACK32, "A8B8G8R8", false},
 };
 enum { KNOWN_FORMATS = sizeof known_formats / sizeof *known_formats };
 
 /* ---- What does not depend on the size ---- */
 
-static bool can_store(const struct swapchain *swapchain, VkImageUsageFlags usage)
-{
-    VkFormatProperties properties;
-    vkGetPhysicalDeviceFormatProperties(swapchain->device->physical, swapchain->format.format,
-                                        &properties);
-    return (usage & VK_IMAGE_USAGE_STORAGE_BIT) && swapchain->device->writes_any_format &&
-           (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
-}
-
-static whit_result choose_format(struct swapchain *swapchain, bool blit)
+static whit_result choose_format(struct swapchain *swapchain)
 {
     struct device *device = swapchain->device;
     VkSurfaceFormatKHR formats[64];
@@ -44,16 +36,16 @@ static whit_result choose_format(struct swapchain *swapchain, bool blit)
                 continue;
             swapchain->format = formats[i];
             swapchain->info.format = known_formats[known].name;
+            swapchain->swaps = known_formats[known].swaps;
         }
     }
     if (!swapchain->info.format) {
         log_error(&device->log, "the window takes no 8-bit format that whit knows");
         return WHIT_ERROR_NO_DEVICE;
     }
-    swapchain->direct = !blit && can_store(swapchain, can.supportedUsageFlags);
     swapchain->captures = (can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT) != 0;
-    if (!swapchain->direct && !(can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
-        log_error(&device->log, "the window's images can be neither written nor copied to");
+    if (!(can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
+        log_error(&device->log, "the window's images cannot be copied to");
         result = WHIT_ERROR_NO_DEVICE;
     }
 fail:
@@ -137,74 +129,6 @@ fail:
     return result;
 }
 
-static whit_result make_layouts(struct swapchain *swapchain)
-{
-    struct device *device = swapchain->device;
-    whit_result result = WHIT_OK;
-    const VkDescriptorSetLayoutBinding bindings[] = {
-        {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL},
-        {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL},
-    };
-    VkDescriptorSetLayoutCreateInfo set_layout = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 2,
-        .pBindings = bindings,
-    };
-    VkPushConstantRange range = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(struct present_push)};
-    VkPipelineLayoutCreateInfo layout = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = 1,
-        .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &range,
-    };
-    const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, IMAGES_MAX},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, IMAGES_MAX},
-    };
-    VkDescriptorPoolCreateInfo pool = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = IMAGES_MAX,
-        .poolSizeCount = 2,
-        .pPoolSizes = sizes,
-    };
-    VK_TRY(device,
-           vkCreateDescriptorSetLayout(device->vk, &set_layout, NULL, &swapchain->set_layout));
-    layout.pSetLayouts = &swapchain->set_layout;
-    VK_TRY(device, vkCreatePipelineLayout(device->vk, &layout, NULL, &swapchain->layout));
-    VK_TRY(device, vkCreateDescriptorPool(device->vk, &pool, NULL, &swapchain->descriptors));
-fail:
-    return result;
-}
-
-static whit_result make_pipeline(struct swapchain *swapchain, const struct swapchain_params *params)
-{
-    struct device *device = swapchain->device;
-    VkShaderModule module = VK_NULL_HANDLE;
-    whit_result result = make_layouts(swapchain);
-    if (result != WHIT_OK)
-        return result;
-    VkShaderModuleCreateInfo code = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = params->spirv_bytes,
-        .pCode = params->spirv,
-    };
-    VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .pName = "main"},
-        .layout = swapchain->layout,
-    };
-    VK_TRY(device, vkCreateShaderModule(device->vk, &code, NULL, &module));
-    info.stage.module = module;
-    VK_TRY(device, vkCreateComputePipelines(device->vk, device->cache, 1, &info, NULL,
-                                            &swapchain->pipeline));
-    device_name_object(device, VK_OBJECT_TYPE_PIPELINE, (uint64_t)swapchain->pipeline, "present");
-fail:
-    vkDestroyShaderModule(device->vk, module, NULL);
-    return result;
-}
-
 whit_result swapchain_create(struct device *device, const struct swapchain_params *params,
                              struct swapchain **out)
 {
@@ -217,13 +141,11 @@ whit_result swapchain_create(struct device *device, const struct swapchain_param
     swapchain->device = device;
     swapchain->vsync = params->vsync;
     swapchain->info.draw_ms = -1.0;
-    whit_result result = choose_format(swapchain, params->blit);
+    whit_result result = choose_format(swapchain);
     if (result == WHIT_OK)
         result = make_commands(swapchain);
     if (result == WHIT_OK)
         result = make_pass(swapchain);
-    if (result == WHIT_OK && swapchain->direct)
-        result = make_pipeline(swapchain, params);
     if (result != WHIT_OK) {
         swapchain_destroy(swapchain);
         return result;
@@ -245,8 +167,6 @@ static void drop_views(struct swapchain *swapchain)
         *image = (struct window_image){0};
     }
     swapchain->image_count = 0;
-    if (swapchain->descriptors)
-        (void)vkResetDescriptorPool(vk, swapchain->descriptors, 0); /* always succeeds */
 }
 
 void swapchain_destroy(struct swapchain *swapchain)
@@ -260,10 +180,6 @@ void swapchain_destroy(struct swapchain *swapchain)
     buffer_destroy(swapchain->picture);
     buffer_destroy(swapchain->capture);
     vkDestroySwapchainKHR(vk, swapchain->vk, NULL);
-    vkDestroyPipeline(vk, swapchain->pipeline, NULL);
-    vkDestroyPipelineLayout(vk, swapchain->layout, NULL);
-    vkDestroyDescriptorPool(vk, swapchain->descriptors, NULL);
-    vkDestroyDescriptorSetLayout(vk, swapchain->set_layout, NULL);
     vkDestroyRenderPass(vk, swapchain->pass, NULL);
     vkDestroySemaphore(vk, swapchain->acquired, NULL);
     vkDestroyQueryPool(vk, swapchain->queries, NULL);
@@ -321,10 +237,8 @@ static whit_result make_chain(struct swapchain *swapchain, uint32_t width, uint3
         .imageColorSpace = swapchain->format.colorSpace,
         .imageExtent = extent,
         .imageArrayLayers = 1,
-        .imageUsage =
-            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-            (swapchain->direct ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT) |
-            (swapchain->captures ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0u),
+        .imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                      (swapchain->captures ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : 0u),
         .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
         .preTransform = can.currentTransform,
         .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
@@ -363,17 +277,9 @@ static whit_result make_view(struct swapchain *swapchain, struct window_image *i
         .height = swapchain->extent.height,
         .layers = 1,
     };
-    VkDescriptorSetAllocateInfo set = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool = swapchain->descriptors,
-        .descriptorSetCount = 1,
-        .pSetLayouts = &swapchain->set_layout,
-    };
     device_name_object(device, VK_OBJECT_TYPE_IMAGE, (uint64_t)image->image, "window image");
     VK_TRY(device, vkCreateImageView(device->vk, &view, NULL, &image->view));
     VK_TRY(device, vkCreateFramebuffer(device->vk, &framebuffer, NULL, &image->framebuffer));
-    if (swapchain->direct)
-        VK_TRY(device, vkAllocateDescriptorSets(device->vk, &set, &image->set));
     result = make_semaphore(device, "picture drawn", &image->drawn);
 fail:
     return result;
@@ -426,7 +332,6 @@ void swapchain_get_info(const struct swapchain *swapchain, struct swapchain_info
     info->width = swapchain->extent.width;
     info->height = swapchain->extent.height;
     info->image_count = swapchain->image_count;
-    info->direct = swapchain->direct;
     info->stale = swapchain->stale;
 }
 

@@ -8,10 +8,7 @@
 struct swapchain;
 
 struct swapchain_params {
-    const uint32_t *spirv; /* shaders/kernel/present.comp; borrowed */
-    size_t spirv_bytes;
     bool vsync; /* a picture waits for the screen; else it is shown as soon as the device can */
-    bool blit;  /* never write into the window's images directly: for tests of the other way */
 };
 
 /* Chooses a format without sRGB conversion, as pictures are already in sRGB. WHIT_ERROR_NO_DEVICE,
@@ -34,7 +31,6 @@ WHIT_CHECK whit_result swapchain_set_picture(struct swapchain *swapchain, const 
 struct swapchain_info {
     uint32_t width, height; /* of its images; 0: nothing is shown */
     uint32_t image_count;
-    bool direct;                /* kernels write the window's images, no copy between */
     bool stale;                 /* the window changed: nothing is shown before swapchain_resize */
     const char *format;         /* "B8G8R8A8" */
     double wait_ms, present_ms; /* of the last swapchain_show, on the host: until the image and the

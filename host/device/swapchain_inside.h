@@ -12,12 +12,12 @@ struct window_image {
     VkImageView view;
     VkFramebuffer framebuffer;
     VkSemaphore drawn;
-    VkDescriptorSet set; /* direct only */
 };
 
 struct swapchain {
     struct device *device;
-    bool direct, vsync, captures, captured, in_flight, stale;
+    bool swaps; /* the format has blue lowest */
+    bool vsync, captures, captured, in_flight, stale;
     VkSurfaceFormatKHR format;
     VkExtent2D extent; /* 0 x 0: no images */
     VkSwapchainKHR vk;
@@ -31,22 +31,13 @@ struct swapchain {
     VkQueryPool queries; /* null without timestamps */
     VkRenderPass pass;
 
-    VkDescriptorSetLayout set_layout; /* these four: direct only */
-    VkPipelineLayout layout;
-    VkPipeline pipeline;
-    VkDescriptorPool descriptors;
-
-    struct buffer *picture; /* RGBA bytes, of the host */
+    struct buffer *picture; /* bytes in the window's order, of the host */
     uint32_t picture_width, picture_height;
-    VkImage canvas; /* the picture, where it is blitted: not direct */
+    VkImage canvas; /* the picture, where it is stretched to the window */
     VkDeviceMemory canvas_memory;
     VkExtent2D canvas_extent;
     struct buffer *capture;
     struct swapchain_info info;
-};
-
-struct present_push {
-    uint32_t picture_width, picture_height, window_width, window_height;
 };
 
 /* swapchain_show.c: until the last picture is drawn; afterwards no image of it is in use. */

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "device/swapchain_inside.h"
 
-enum { PRESENT_GROUP = 8 }; /* as in shaders/kernel/present.comp */
+enum { COPY_PIXELS = 4096 }; /* that are put in the window's order at a time */
 
 /* ---- The picture ---- */
 
@@ -34,7 +34,7 @@ static whit_result make_canvas(struct swapchain *swapchain, uint32_t width, uint
     VkImageCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
         .imageType = VK_IMAGE_TYPE_2D,
-        .format = VK_FORMAT_R8G8B8A8_UNORM,
+        .format = swapchain->format.format,
         .extent = {width, height, 1},
         .mipLevels = 1,
         .arrayLayers = 1,
@@ -65,6 +65,35 @@ fail:
     return result;
 }
 
+/* Pixels whose bytes are R, G, B, A, as the window has them: without a conversion on the device,
+   which takes lavapipe ten times as long. */
+static whit_result write_pixels(const struct swapchain *swapchain, const uint8_t *rgba,
+                                uint64_t count)
+{
+    whit_result result = WHIT_OK;
+    uint8_t pixels[4 * COPY_PIXELS];
+    if (!swapchain->swaps)
+        return buffer_write(swapchain->picture, 0, rgba, 4 * count);
+    for (uint64_t at = 0; result == WHIT_OK && at < count; at += COPY_PIXELS) {
+        uint64_t part = count - at < COPY_PIXELS ? count - at : COPY_PIXELS;
+        const uint8_t *from = rgba + 4 * at;
+        for (uint64_t i = 0; i < 4 * part; i += 4) {
+            pixels[i] = from[i + 2];
+            pixels[i + 1] = from[i + 1];
+            pixels[i + 2] = from[i];
+            pixels[i + 3] = from[i + 3];
+        }
+        result = buffer_write(swapchain->picture, 4 * at, pixels, 4 * part);
+    }
+    return result;
+}
+
+static bool fits(const struct swapchain *swapchain)
+{
+    return swapchain->picture_width == swapchain->extent.width &&
+           swapchain->picture_height == swapchain->extent.height;
+}
+
 whit_result swapchain_set_picture(struct swapchain *swapchain, const uint8_t *rgba, uint32_t width,
                                   uint32_t height)
 {
@@ -77,11 +106,8 @@ whit_result swapchain_set_picture(struct swapchain *swapchain, const uint8_t *rg
         result = buffer_create(swapchain->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
                                "window picture", &swapchain->picture);
     }
-    if (result == WHIT_OK && !swapchain->direct &&
-        (swapchain->canvas_extent.width != width || swapchain->canvas_extent.height != height))
-        result = make_canvas(swapchain, width, height);
     if (result == WHIT_OK)
-        result = buffer_write(swapchain->picture, 0, rgba, bytes);
+        result = write_pixels(swapchain, rgba, bytes / 4);
     if (result != WHIT_OK)
         return result;
     swapchain->picture_width = width;
@@ -109,83 +135,58 @@ static void change_layout(const struct swapchain *swapchain, VkImage image, VkIm
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-/* Leaves the image in layout GENERAL. */
-static void record_direct(struct swapchain *swapchain, const struct window_image *image)
+static void copy_picture(const struct swapchain *swapchain, VkImage image)
 {
-    VkCommandBuffer commands = swapchain->commands;
-    VkExtent2D window = swapchain->extent;
-    VkDescriptorBufferInfo buffer = {.buffer = swapchain->picture->vk, .range = VK_WHOLE_SIZE};
-    VkDescriptorImageInfo target = {.imageView = image->view,
-                                    .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
-    const VkWriteDescriptorSet writes[] = {
-        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-         .dstSet = image->set,
-         .dstBinding = 0,
-         .descriptorCount = 1,
-         .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-         .pBufferInfo = &buffer},
-        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-         .dstSet = image->set,
-         .dstBinding = 1,
-         .descriptorCount = 1,
-         .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-         .pImageInfo = &target},
-    };
-    const struct present_push push = {swapchain->picture_width, swapchain->picture_height,
-                                      window.width, window.height};
-    vkUpdateDescriptorSets(swapchain->device->vk, 2, writes, 0, NULL);
-    change_layout(swapchain, image->image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, swapchain->pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, swapchain->layout, 0, 1,
-                            &image->set, 0, NULL);
-    vkCmdPushConstants(commands, swapchain->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push,
-                       &push);
-    vkCmdDispatch(commands, (window.width + PRESENT_GROUP - 1) / PRESENT_GROUP,
-                  (window.height + PRESENT_GROUP - 1) / PRESENT_GROUP, 1);
+    VkBufferImageCopy copy = {
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+        .imageExtent = {swapchain->picture_width, swapchain->picture_height, 1}};
+    change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED,
+                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    vkCmdCopyBufferToImage(swapchain->commands, swapchain->picture->vk, image,
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
 }
 
-/* Leaves the image in layout TRANSFER_DST_OPTIMAL. */
-static void record_blit(struct swapchain *swapchain, const struct window_image *image)
+/* Between the four nearest pixels. */
+static whit_result stretch_picture(struct swapchain *swapchain, VkImage image)
 {
-    VkCommandBuffer commands = swapchain->commands;
-    VkExtent2D from = swapchain->canvas_extent, to = swapchain->extent;
-    bool same = from.width == to.width && from.height == to.height;
+    VkExtent2D from = {swapchain->picture_width, swapchain->picture_height}, to = swapchain->extent,
+               has = swapchain->canvas_extent;
     const VkImageSubresourceLayers layers = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    VkBufferImageCopy copy = {.imageSubresource = layers,
-                              .imageExtent = {from.width, from.height, 1}};
     VkImageBlit blit = {
         .srcSubresource = layers,
         .srcOffsets = {{0, 0, 0}, {(int32_t)from.width, (int32_t)from.height, 1}},
         .dstSubresource = layers,
         .dstOffsets = {{0, 0, 0}, {(int32_t)to.width, (int32_t)to.height, 1}},
     };
-    change_layout(swapchain, swapchain->canvas, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdCopyBufferToImage(commands, swapchain->picture->vk, swapchain->canvas,
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    if (has.width != from.width || has.height != from.height) {
+        whit_result result = make_canvas(swapchain, from.width, from.height);
+        if (result != WHIT_OK)
+            return result;
+    }
+    copy_picture(swapchain, swapchain->canvas);
     change_layout(swapchain, swapchain->canvas, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    change_layout(swapchain, image->image, VK_IMAGE_LAYOUT_UNDEFINED,
+    change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdBlitImage(commands, swapchain->canvas, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image->image,
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
-                   same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+    vkCmdBlitImage(swapchain->commands, swapchain->canvas, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
+    return WHIT_OK;
 }
 
-/* Where there is no picture yet. Leaves the image in layout TRANSFER_DST_OPTIMAL or GENERAL. */
-static VkImageLayout record_picture(struct swapchain *swapchain, const struct window_image *image)
+/* Leaves the image in layout COLOR_ATTACHMENT_OPTIMAL. */
+static whit_result record_picture(struct swapchain *swapchain, VkImage image)
 {
-    if (swapchain->picture_width == 0) {
-        /* No clear: it would want a usage more. What is drawn over it fills the window. */
-        change_layout(swapchain, image->image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-        return VK_IMAGE_LAYOUT_GENERAL;
-    }
-    if (swapchain->direct) {
-        record_direct(swapchain, image);
-        return VK_IMAGE_LAYOUT_GENERAL;
-    }
-    record_blit(swapchain, image);
-    return VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    whit_result result = WHIT_OK;
+    if (swapchain->picture_width == 0)
+        layout = VK_IMAGE_LAYOUT_UNDEFINED; /* what is drawn over it fills the window */
+    else if (fits(swapchain))
+        copy_picture(swapchain, image);
+    else
+        result = stretch_picture(swapchain, image);
+    if (result == WHIT_OK)
+        change_layout(swapchain, image, layout, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    return result;
 }
 
 static void record_overlay(struct swapchain *swapchain, const struct window_image *image,
@@ -255,17 +256,17 @@ static whit_result record(struct swapchain *swapchain, uint32_t index, swapchain
 {
     struct device *device = swapchain->device;
     const struct window_image *image = &swapchain->images[index];
-    VkImageLayout layout;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     whit_result result = begin_commands(swapchain);
     if (result != WHIT_OK)
         return result;
     if (swapchain->queries)
         vkCmdResetQueryPool(swapchain->commands, swapchain->queries, 0, 2);
     stamp(swapchain, 0);
-    layout = record_picture(swapchain, image);
-    change_layout(swapchain, image->image, layout, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    result = record_picture(swapchain, image->image);
+    if (result != WHIT_OK)
+        return result;
     record_overlay(swapchain, image, draw, user);
-    layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     if (capture)
         result = record_capture(swapchain, image, &layout);
     change_layout(swapchain, image->image, layout, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);

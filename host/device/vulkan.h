@@ -44,7 +44,6 @@ struct device {
     VkInstance instance;
     const struct device_surface *surface_source; /* during device_create alone */
     VkSurfaceKHR surface;                        /* null: shows nothing */
-    bool writes_any_format;                      /* storage images without a format */
     VkDebugUtilsMessengerEXT messenger;
     bool debug_utils; /* the instance extension is on */
 

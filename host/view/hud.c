@@ -135,8 +135,8 @@ static void draw_more(const struct view *view)
     struct swapchain_info chain;
     swapchain_get_info(view->swapchain, &chain);
     ui_separator();
-    ui_text("%u x %u of %u x %u, %s %s", frame->width, frame->height, chain.width, chain.height,
-            chain.format, chain.direct ? "written directly" : "copied");
+    ui_text("%u x %u of %u x %u, %s", frame->width, frame->height, chain.width, chain.height,
+            chain.format);
     draw_estimates(frame);
     ui_separator();
     ui_text("%llu triangles, %llu balls, %u instances, %u lights",

@@ -329,7 +329,6 @@ static json_t *state_json(struct view *view, const char *name)
     put_number(root, "time_s", view->settings.picture.time_s);
     put_count(root, "window_width", chain.width);
     put_count(root, "window_height", chain.height);
-    put_bool(root, "direct", chain.direct);
     put_number(root, "ui_scale", (double)ui_scale(view->ui));
     put_text(root, "hud", huds[view->hud]);
     put_bool(root, "help", view->help);

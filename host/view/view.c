@@ -408,10 +408,7 @@ static whit_result open_device(struct view *view)
         .surface = window_surface(view->window),
     };
     const struct swapchain_params chain = {
-        .spirv = kernels[KERNEL_PRESENT].words,
-        .spirv_bytes = kernels[KERNEL_PRESENT].bytes,
         .vsync = !view->params->no_vsync,
-        .blit = view->params->blit,
     };
     whit_result result = device_create(&view->log, &params, &view->device);
     if (result == WHIT_OK)

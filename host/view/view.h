@@ -17,7 +17,7 @@ struct view_shot {
 struct view_params {
     struct settings settings;       /* to begin with; settings.picture's size is the window's */
     whit_shader_compiler *compiler; /* of settings.shader, whose log is silent; NULL: none */
-    bool fullscreen, no_vsync, blit;
+    bool fullscreen, no_vsync;
     double spend_s;     /* on measuring costs, more or less; 0: as it suits */
     uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */
     const char *record; /* where events go, or NULL */

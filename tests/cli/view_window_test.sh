@@ -83,19 +83,17 @@ END
 # ---- Ways to the screen ----
 
 # What the window shows, without figures over it, is the picture.
-for way in direct blit "no-vsync"; do
+for way in vsync no-vsync; do
     option=
-    [ "$way" = direct ] || option=--$way
+    [ "$way" = vsync ] || option=--$way
     play "$way" "$CUBE" --size 200x100 $option <<END
 shown! press F2 x2, still, shot $way.png
 END
     is shown hud off
     is shown frame.whole true
 done
-is shown direct true
-check "--blit copies" test "$(grep -c '"direct":false' "$OUT/states")" -eq 0
 expect 0 "the same picture" render "$CUBE" --size 200x100 -o render.png --quiet
-for way in direct blit no-vsync; do
+for way in vsync no-vsync; do
     expect 0 "$way and \`whit render\`" compare $way.png render.png --tolerance 0 --metric largest
 done
 

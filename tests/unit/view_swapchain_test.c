@@ -1,8 +1,7 @@
-/* A window's pictures: ways to show them, windows that change, and every checked Vulkan call of it
-   made to fail in turn. */
+/* A window's pictures: as they are and stretched, windows that change, and every checked Vulkan
+   call of it made to fail in turn. */
 #include "device/swapchain.h"
 #include "device_fixture.h"
-#include "kernels.h"
 #include "unit.h"
 #include "view/font.h"
 #include "view/ui.h"
@@ -30,14 +29,11 @@ static whit_result open_ui(struct shop *shop)
     return result;
 }
 
-static whit_result shop_open(struct shop *shop, bool validation, bool blit)
+static whit_result shop_open(struct shop *shop, bool validation)
 {
     whit_log log = messages_log(&shop->messages);
     const struct window_params window = {.title = "test", .width = WIDTH, .height = HEIGHT};
-    const struct swapchain_params chain = {.spirv = kernels[KERNEL_PRESENT].words,
-                                           .spirv_bytes = kernels[KERNEL_PRESENT].bytes,
-                                           .vsync = true,
-                                           .blit = blit};
+    const struct swapchain_params chain = {.vsync = true};
     shop->device = NULL;
     shop->swapchain = NULL;
     shop->ui = NULL;
@@ -104,6 +100,30 @@ static whit_result check_picture(struct shop *shop)
     return WHIT_OK;
 }
 
+/* Two columns, black and white, over the whole window: each is what a quarter of it shows, and
+   between them it becomes lighter from pixel to pixel. */
+static whit_result check_stretched(struct shop *shop)
+{
+    const uint8_t columns[] = {0, 0, 0, 255, 200, 150, 250, 255};
+    uint8_t rgba[WIDTH * HEIGHT * 4];
+    bool shown = false;
+    whit_result result = swapchain_set_picture(shop->swapchain, columns, 2, 1);
+    if (result == WHIT_OK)
+        result = swapchain_show_and_keep(shop->swapchain, NULL, NULL, &shown);
+    if (result == WHIT_OK)
+        result = swapchain_read(shop->swapchain, rgba, sizeof rgba);
+    if (result != WHIT_OK)
+        return result;
+    for (int x = 0; x < WIDTH; ++x) {
+        const uint8_t *pixel = rgba + 4 * (WIDTH * (HEIGHT / 2) + x);
+        double part = (2.0 * x + 1.0) / WIDTH - 0.5;
+        part = part < 0.0 ? 0.0 : part > 1.0 ? 1.0 : part;
+        for (int i = 0; i < 3; ++i)
+            assert_in_range(pixel[i] + 2, columns[4 + i] * part, columns[4 + i] * part + 4.0);
+    }
+    return WHIT_OK;
+}
+
 static whit_result shop_work(struct shop *shop)
 {
     bool shown = false;
@@ -127,12 +147,13 @@ static whit_result shop_work(struct shop *shop)
     if (result != WHIT_OK)
         return result;
     assert_int_equal(info.width, WIDTH);
-    return check_picture(shop);
+    result = check_picture(shop);
+    return result == WHIT_OK ? check_stretched(shop) : result;
 }
 
-static whit_result shop_run(struct shop *shop, bool validation, bool blit)
+static whit_result shop_run(struct shop *shop, bool validation)
 {
-    whit_result result = shop_open(shop, validation, blit);
+    whit_result result = shop_open(shop, validation);
     if (result == WHIT_OK)
         result = shop_work(shop);
     return result;
@@ -140,17 +161,14 @@ static whit_result shop_run(struct shop *shop, bool validation, bool blit)
 
 TEST(pictures_come_whole)
 {
-    for (int blit = 0; blit < 2; ++blit) {
-        struct shop shop;
-        struct swapchain_info info;
-        assert_int_equal(shop_run(&shop, true, blit), WHIT_OK);
-        swapchain_get_info(shop.swapchain, &info);
-        assert_int_equal(info.direct, !blit);
-        assert_int_equal(info.recreated, 2);
-        assert_true(info.image_count >= 2);
-        shop_close(&shop);
-        assert_int_equal(shop.messages.lines, 0);
-    }
+    struct shop shop;
+    struct swapchain_info info;
+    assert_int_equal(shop_run(&shop, true), WHIT_OK);
+    swapchain_get_info(shop.swapchain, &info);
+    assert_int_equal(info.recreated, 2);
+    assert_true(info.image_count >= 2);
+    shop_close(&shop);
+    assert_int_equal(shop.messages.lines, 0);
 }
 
 static unsigned number_of(const char *variable, unsigned otherwise)
@@ -161,7 +179,7 @@ static unsigned number_of(const char *variable, unsigned otherwise)
 
 /* Every `step`-th call; WHIT_TEST_OFFSET says from which on, WHIT_TEST_EVERY=1 takes them all. A
    few of them with the validation layers, which are slow: these see what is left behind. */
-static void fail_each_call(bool blit, bool validation, unsigned step)
+static void fail_each_call(bool validation, unsigned step)
 {
     whit_result result = WHIT_ERROR_FAILED;
     step = number_of("WHIT_TEST_EVERY", step);
@@ -171,7 +189,7 @@ static void fail_each_call(bool blit, bool validation, unsigned step)
         char fault[32];
         snprintf(fault, sizeof fault, "*:%u", call);
         setenv("WHIT_FAULT", fault, 1);
-        result = shop_run(&shop, validation, blit);
+        result = shop_run(&shop, validation);
         if (result != WHIT_OK) {
             assert_true(result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_DEVICE);
             if (shop.messages.errors - shop.messages.validation != 1)
@@ -182,21 +200,19 @@ static void fail_each_call(bool blit, bool validation, unsigned step)
     }
     unsetenv("WHIT_FAULT");
     assert_int_equal(result, WHIT_OK);
-    print_message("%u of some %u checked calls failed, %s%s\n", runs - 1, call - step,
-                  blit ? "by blit" : "direct", validation ? ", validated" : "");
+    print_message("%u of some %u checked calls failed%s\n", runs - 1, call - step,
+                  validation ? ", validated" : "");
     assert_true(call > 60); /* that it failed all along */
 }
 
 TEST(each_call_may_fail)
 {
-    fail_each_call(false, false, 4);
-    fail_each_call(true, false, 8); /* few calls are only by blit */
+    fail_each_call(false, 3);
 }
 
 TEST(nothing_is_left_behind)
 {
-    fail_each_call(false, true, 9);
-    fail_each_call(true, true, 18);
+    fail_each_call(true, 8);
 }
 
 /* What is asked of who shows pictures: that the window changed is told, and the next size mends it.
@@ -209,7 +225,7 @@ static void change_at(const char *call, int result, bool shown_then)
     bool shown = false;
     snprintf(fault, sizeof fault, "%s:2:%d", call, result);
     setenv("WHIT_FAULT", fault, 1);
-    assert_int_equal(shop_open(&shop, true, false), WHIT_OK);
+    assert_int_equal(shop_open(&shop, true), WHIT_OK);
     assert_int_equal(set_picture(&shop), WHIT_OK);
     assert_int_equal(show_text(&shop, &shown), WHIT_OK);
     assert_true(shown);
@@ -244,7 +260,7 @@ TEST(a_lost_device_is_said_once)
         struct shop shop;
         bool shown = false;
         setenv("WHIT_FAULT", calls[i], 1);
-        assert_int_equal(shop_run(&shop, true, false), WHIT_ERROR_DEVICE);
+        assert_int_equal(shop_run(&shop, true), WHIT_ERROR_DEVICE);
         assert_int_equal(shop.messages.errors, 1);
         assert_non_null(strstr(shop.messages.text, "VK_ERROR_DEVICE_LOST"));
         assert_int_equal(show_text(&shop, &shown), WHIT_ERROR_DEVICE);
@@ -260,7 +276,7 @@ TEST(no_surface)
 {
     struct shop shop;
     setenv("WHIT_FAULT", "vkCreateSurface:1", 1);
-    assert_int_equal(shop_open(&shop, true, false), WHIT_ERROR_MEMORY);
+    assert_int_equal(shop_open(&shop, true), WHIT_ERROR_MEMORY);
     unsetenv("WHIT_FAULT");
     assert_non_null(strstr(shop.messages.text, "the window's surface"));
     assert_int_equal(shop.messages.lines, 1);

@@ -31,8 +31,6 @@ static const struct setting options[] = {
      SETTING_AT_FLAG(struct view_request, view.fullscreen)},
     {"no-vsync", 0, NULL, "show pictures as they come, not as the screen does",
      SETTING_AT_FLAG(struct view_request, view.no_vsync)},
-    {"blit", 0, NULL, "copy pictures to the window, in place of writing them there",
-     SETTING_AT_FLAG(struct view_request, view.blit)},
     {"frames", 0, "N", "end after N pictures were shown",
      SETTING_AT_COUNT(struct view_request, view.frames), .min = 1, .max = 1e9},
     {"record", 0, "FILE", "write down what the user does",
