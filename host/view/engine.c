@@ -9,6 +9,8 @@
 #include "view/engine_private.h"
 #include "whit/whit_program.h"
 
+/* Most that drawing waits for the first picture of a new version to be on the screen. */
+static const double YIELD_MS = 40.0;
 /* Of a picture at rest before a session is made that only the next version of its shader needs. */
 static const double SPARE_MS = 1e3;
 
@@ -239,6 +241,8 @@ void engine_show_preview(struct engine *engine, struct engine_job *job)
         lane->settings.paint != PAINT_COLOR || !settings_same(&lane->settings, &job->settings))
         return;
     take_picture(&task, ENGINE_QUICK, &job->preview);
+    engine->yields = lane->frames;
+    engine->yields_ms = whit_clock_ms() + YIELD_MS;
     job->preview = (struct engine_frame){0};
 }
 
@@ -370,6 +374,18 @@ static void wait_for_work(struct engine *engine)
     }
 }
 
+/* Whether it has waited a while for the screen. */
+static bool yield(struct engine *engine)
+{
+    struct timespec until;
+    double left_ms = engine->yields_ms - whit_clock_ms();
+    if (engine->shown >= engine->yields || left_ms <= 0.0)
+        return false;
+    after(left_ms, &until);
+    (void)pthread_cond_timedwait(&engine->work, &engine->lock, &until);
+    return true;
+}
+
 static void run_engine(void *context)
 {
     struct engine *engine = context;
@@ -379,6 +395,8 @@ static void run_engine(void *context)
         bool drew = false;
         engine_reap_job(engine);
         engine_make_spare(engine);
+        if (yield(engine))
+            continue;
         for (int i = 0; i < ENGINE_LANES && !engine->quit; ++i) {
             if (plan_lane(engine, &engine->lanes[i], &task)) {
                 draw_one(engine, &engine->lanes[i], &task);
@@ -569,6 +587,15 @@ bool engine_take(struct engine *engine, bool other, struct engine_frame *frame)
     }
     pthread_mutex_unlock(&engine->lock);
     return newer;
+}
+
+void engine_note_shown(struct engine *engine, uint64_t number)
+{
+    pthread_mutex_lock(&engine->lock);
+    engine->shown = number;
+    if (engine->yields == number)
+        pthread_cond_signal(&engine->work);
+    pthread_mutex_unlock(&engine->lock);
 }
 
 void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y)

@@ -132,6 +132,9 @@ void engine_get_status(struct engine *engine, struct engine_status *status);
    than frame->number. `other`: that of engine_ask_other. */
 bool engine_take(struct engine *engine, bool other, struct engine_frame *frame);
 
+/* The window's picture of this number is on the screen: what is drawn next may take all cores. */
+void engine_note_shown(struct engine *engine, uint64_t number);
+
 /* The ray tree of a pixel of the window's whole picture. */
 struct engine_probe {
     uint64_t number;           /* counts up; 0: none yet */

@@ -123,6 +123,10 @@ struct engine {
     bool brief; /* it is done soon: who moves on waits for it, or sees nothing at all */
     struct shader_ref *versions[2]; /* of the shader in the window's pictures: the last, and the one
                                        before; NULL: none */
+    uint64_t shown;  /* number of the window's picture on the screen: engine_note_shown */
+    uint64_t yields; /* number of one that the screen is waited for, as drawing on two cores holds
+                        it up; until yields_ms */
+    double yields_ms;
     double spare_ms; /* by whit_clock_ms: when a session for the next version of the shader is to be
                         made; 0: there is none to make */
     uint32_t validation; /* messages, of sessions that are gone */

@@ -282,6 +282,7 @@ static whit_result draw_window(struct view *view)
         ++view->shown;
         measure_shown(view);
         shaders_shown(view);
+        engine_note_shown(view->engine, view->frame.number);
     }
     return result == WHIT_OK && shown && keep ? keep_shot(view) : result;
 }
