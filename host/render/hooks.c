@@ -1,7 +1,10 @@
 /* Functions of a user in the place of whit's own: what they change of how a picture is made. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+#include "base/text.h"
 #include "render/renderer.h"
 
 _Static_assert(DBG_CALLS == SHADER_DBG_MAX, "room for all of them");
@@ -109,6 +112,25 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
     return result == WHIT_OK ? renderer_set_view(renderer, params) : result;
 }
 
+/* Warns of a material that nothing wears, with the name that comes nearest. */
+static void warn_of_material(const struct renderer *renderer, const struct shader_box *box)
+{
+    const struct scene *scene = renderer->scene;
+    const char **names = array_alloc_zeroed(scene->material_count, sizeof *names);
+    const char *nearest = NULL;
+    uint32_t count = 0;
+    for (uint32_t i = 0; names && i < scene->material_count; ++i) {
+        const char *name = scene->materials[i].name;
+        if (name && name[0] && scene_find_worn(scene, name) != SCENE_NONE)
+            names[count++] = name;
+    }
+    nearest = count > 0 ? text_nearest(box->material, names, count) : NULL;
+    log_warning(&renderer->log, "%s:%u: nothing in the scene wears a material `%s`%s%s%s",
+                renderer->params.shader->text.files[box->file].name, box->line, box->material,
+                nearest ? "; did you mean `" : "", nearest ? nearest : "", nearest ? "`?" : "");
+    free(names);
+}
+
 whit_result hooks_find_material(struct renderer *renderer)
 {
     const whit_shader *shader = renderer->params.shader;
@@ -117,8 +139,7 @@ whit_result hooks_find_material(struct renderer *renderer)
     const struct shader_box *box = &shader->box;
     uint32_t index = scene_find_worn(renderer->scene, box->material);
     if (index == SCENE_NONE) {
-        log_warning(&renderer->log, "%s:%u: nothing in the scene wears a material `%s`",
-                    shader->text.files[box->file].name, box->line, box->material);
+        warn_of_material(renderer, box);
         index = scene_find_worn(renderer->scene, "");
     }
     if (index == SCENE_NONE) {
@@ -144,6 +165,15 @@ static uint32_t read_status(const struct target *target, uint64_t at)
     uint32_t number = 0;
     bool fine = buffer_read(target->buffers.status, at, &number, sizeof number) == WHIT_OK;
     return fine ? number : 0;
+}
+
+void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes)
+{
+    const whit_shader *shader = renderer->params.shader;
+    size_t used = strlen(text);
+    if (shader && shader->text.file_count > 0)
+        snprintf(text + used, text_bytes - used, "; %s has functions of this picture",
+                 shader->text.files[0].name);
 }
 
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes)

@@ -425,6 +425,8 @@ WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char 
 WHIT_CHECK whit_result hooks_find_material(struct renderer *renderer);
 /* Forgets loops that had no fuel left, and answers for a shape that were wrong. */
 WHIT_CHECK whit_result hooks_clear_status(const struct target *target);
+/* Adds to the text which file has functions in the place of whit's; nothing where there is none. */
+void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes);
 /* What ran out of iterations, as the status buffer names it. */
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
 /* Which answer for a shape was wrong, likewise. */

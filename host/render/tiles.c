@@ -26,6 +26,7 @@ static void describe_non_finite(const struct target *target, char *text, size_t 
     if (readback_non_finite(target, &x, &y, &count) == WHIT_OK && count > 0)
         snprintf(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u", count,
                  count == 1 ? "" : "s", x, y);
+    hooks_describe_file(target->renderer, text, text_bytes);
 }
 
 whit_result status_check(struct target *target)
@@ -48,7 +49,7 @@ whit_result status_check(struct target *target)
         {STATUS_FUEL, "a loop of the shader took more iterations than it may"},
         {STATUS_SHAPE, "the answer for the shader's shape is wrong"},
     };
-    char text[2048] = "", where[96] = "", loop[768] = "", shape[768] = "";
+    char text[2048] = "", where[768] = "", loop[768] = "", shape[768] = "";
     if (word & STATUS_NON_FINITE)
         describe_non_finite(target, where, sizeof where);
     if (word & STATUS_FUEL)

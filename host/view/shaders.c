@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/path.h"
+#include "base/text.h"
 #include "base/watch.h"
 #include "view/view_private.h"
 
@@ -55,6 +57,19 @@ void shaders_watch(struct view *view)
     view->dirty = true;
 }
 
+/* Colours are shown in the place of a function that the file does not have. */
+static void say_no_aov(struct view *view)
+{
+    const struct shader_ref *shown = view->shaders.shown;
+    const char *aov = view->settings.aov;
+    if (!shown || !aov[0] || shader_ref_find_aov(shown, aov) != UINT32_MAX)
+        return;
+    const char *nearest = text_nearest(aov, shown->info.aovs, shown->info.aov_count);
+    view_say(view, "%s has no `//@ aov %s`%s%s%s", path_name(view->settings.shader), aov,
+             nearest ? "; did you mean `" : "", nearest ? nearest : "", nearest ? "`?" : "");
+    log_warning(&view->log, "%s", view->toast);
+}
+
 void shaders_take(struct view *view)
 {
     struct shaders *shaders = &view->shaders;
@@ -67,6 +82,7 @@ void shaders_take(struct view *view)
     shader_ref_drop(shaders->shown);
     shaders->shown = shader_ref_take(view->frame.shader);
     watch_files(view);
+    say_no_aov(view);
 }
 
 bool shaders_set_before(const struct view *view, struct settings *settings)

@@ -34,7 +34,7 @@ printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z =
 mkfifo "$OUT/pipe"
 NONE=
 steps >"$OUT/replay" <<END
-start: | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
+start: | toast has did you mean \`height\`? | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
 until shader.hash = $red
 red: | frame.ids as start | frame.pixels not as start | error =
 until error
@@ -56,7 +56,7 @@ on: choose stepped | render has --set stepped=on | frame.pixels as twice
 height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
 colour: press F3 | frame.pixels as on | frame.ids as on
 END
-timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 400x300 --shader live/a.glsl \
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 400x300 --shader live/a.glsl --aov heigth \
     --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
 viewer=$!
 while read -r state; do

@@ -9,16 +9,18 @@ static whit_device *device;
 static whit_shader_compiler *compiler;
 static whit_scene *scene;
 static whit_accel *accel;
-static char logged[4096]; /* the last error */
+static char logged[4096], warned[4096]; /* the last error, the last warning */
 
-static inline void keep_error(void *user, whit_log_level level, const char *message)
+static inline void keep_message(void *user, whit_log_level level, const char *message)
 {
     (void)user;
     if (level == WHIT_LOG_ERROR)
         snprintf(logged, sizeof logged, "%s", message);
+    else
+        snprintf(warned, sizeof warned, "%s", message);
 }
 
-static const whit_log keeps = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+static const whit_log keeps = {.fn = keep_message, .level = WHIT_LOG_WARNING};
 
 /* `path`: of the scene; NULL: none. */
 static inline bool hooks_begin(const char *path)

@@ -324,7 +324,7 @@ TEST_IN(what_is_no_number_has_no_picture, begin, end)
         for (int k = 0; k < 2; ++k) {
             char sliders[64];
             snprintf(sliders, sizeof sliders, "where=%s,what=%s", hooks[i], k ? "inf" : "nan");
-            fail_to_draw(shader, sliders, NULL, "not finite: in ");
+            fail_to_draw(shader, sliders, NULL, "a.glsl has functions of this picture");
         }
     }
     fail_to_draw(shader, "where=division", NULL, "not finite: in ");

@@ -178,6 +178,19 @@ TEST(functions_that_trace_meet_the_shape)
     compare(&shape, &real);
 }
 
+TEST(material_that_nothing_wears_has_a_nearest_one)
+{
+    whit_shader *shader;
+    assert_int_equal(hooks_load("//@ box -1 0 -1  1 1 1  0.01 gald\n"
+                                "bool intersect(vec3 origin, vec3 dir, float far, out float t, "
+                                "out vec3 normal)\n{ t = 0.0; normal = -dir; return false; }\n",
+                                &shader),
+                     WHIT_OK);
+    assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL), WHIT_OK);
+    assert_non_null(strstr(warned, "wears a material `gald`; did you mean `gold`?"));
+    whit_shader_destroy(shader);
+}
+
 /* `part` is in the message. */
 static void expect_error(const char *content, whit_result wanted, const char *part)
 {
