@@ -69,6 +69,8 @@ static void print_call(const whit_probe_call *call)
         whit_probe_value_text(value, 9, text, sizeof text);
         print_place(call);
         printf(" = %s", text);
+        if (call->value_count > 1)
+            printf("   call %u", i + 1);
         if (value->generation)
             printf("   after %u bounce%s", value->generation, value->generation == 1 ? "" : "s");
         putchar('\n');
