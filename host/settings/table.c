@@ -321,7 +321,7 @@ const struct setting settings_table[] = {
     {"aov", 0, "NAME",
      "what the shader's function below `//@ aov NAME` gives, in place\n"
      "of the colour",
-     "", AT(TEXT, aov), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT, .trusted = true},
+     "", AT(TEXT, aov), .commands = IN_RENDER | IN_VIEW, .change = SETTING_LIGHT},
 
     {"budget-ms", 0, "T",
      "choose the best of these settings that take at most T ms, by\n"
