@@ -22,6 +22,7 @@ void whit_stats_add(const whit_stats *from, whit_stats *to)
     to->rays_shadow += from->rays_shadow;
     to->rays_reflected += from->rays_reflected;
     to->rays_refracted += from->rays_refracted;
+    to->rays_by_functions += from->rays_by_functions;
     to->rays_cut_depth += from->rays_cut_depth;
     to->rays_cut_bailout += from->rays_cut_bailout;
     to->weight_cut_depth = fmax(to->weight_cut_depth, from->weight_cut_depth);
@@ -39,6 +40,6 @@ void whit_stats_add(const whit_stats *from, whit_stats *to)
         cost_merge(&to->costs[kind], &from->costs[kind]);
     for (int i = 0; i < WHIT_STAGES; ++i)
         add_stage(&from->stages[i], &to->stages[i]);
-    uint64_t rays = to->rays_primary + to->rays_shadow + to->rays_reflected + to->rays_refracted;
-    to->mrays_per_s = to->render_ms > 0.0 ? (double)rays / to->render_ms * 1e-3 : 0.0;
+    to->mrays_per_s =
+        to->render_ms > 0.0 ? (double)whit_stats_rays(to) / to->render_ms * 1e-3 : 0.0;
 }

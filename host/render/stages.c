@@ -455,6 +455,7 @@ static whit_result take_tally(struct target *target)
         fmax(stats->weight_cut_bailout, (double)float_of_bits(tally.cut_bailout_weight));
     stats->rays_reflected += tally.reflected;
     stats->rays_refracted += tally.refracted;
+    stats->rays_by_functions += tally.by_functions;
     stats->rays_cut_depth += tally.cut_depth;
     stats->rays_cut_bailout += tally.cut_bailout;
     return WHIT_OK;

@@ -22,8 +22,6 @@ void renderer_get_stats(const struct renderer *renderer, whit_stats *stats)
     stage_times_scale(renderer, stats);
     material_shares_get(&renderer->picture, stats);
     stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
-    uint64_t rays =
-        stats->rays_primary + stats->rays_shadow + stats->rays_reflected + stats->rays_refracted;
     if (stats->render_ms > 0.0)
-        stats->mrays_per_s = (double)rays / stats->render_ms * 1e-3;
+        stats->mrays_per_s = (double)whit_stats_rays(stats) / stats->render_ms * 1e-3;
 }

@@ -10,12 +10,6 @@ static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
                       COLOR_GOOD = 0xFFD0E090u, COLOR_TEXT = 0xFFFFFFFFu;
 static const float ROOM_FOR_BOTH = 400.0f; /* pixels, of figures and a panel below them */
 
-static double traced_rays(const whit_stats *s)
-{
-    return (double)s->rays_primary + (double)s->rays_shadow + (double)s->rays_reflected +
-           (double)s->rays_refracted;
-}
-
 /* "full size, 4 samples" */
 static void draw_quality(const struct view *view)
 {
@@ -50,7 +44,8 @@ static void draw_figures(const struct view *view)
     if (view->rate.fps > 0.0 && view_is_moving(view))
         snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
     ui_text("%9s  render %.2f ms", fps, ms);
-    ui_text_beside(COLOR_TEXT, " %.2f Mray/s", ms > 0.0 ? traced_rays(s) / ms * 1e-3 : 0.0);
+    ui_text_beside(COLOR_TEXT, " %.2f Mray/s",
+                   ms > 0.0 ? (double)whit_stats_rays(s) / ms * 1e-3 : 0.0);
 }
 
 static void draw_names(const struct view *view)
@@ -145,6 +140,8 @@ static void draw_more(const struct view *view)
     ui_text("rays: %llu camera, %llu shadow, %llu reflected, %llu refracted",
             (unsigned long long)s->rays_primary, (unsigned long long)s->rays_shadow,
             (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
+    if (s->rays_by_functions)
+        ui_text("%llu by functions of the shader", (unsigned long long)s->rays_by_functions);
     ui_text("cut: %llu by depth, %llu by bail-out", (unsigned long long)s->rays_cut_depth,
             (unsigned long long)s->rays_cut_bailout);
     draw_stages(frame);

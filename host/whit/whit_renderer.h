@@ -278,7 +278,8 @@ enum { WHIT_SAMPLE_LEVELS = 7 };
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
-    double mrays_per_s; /* all rays over render_ms */
+    uint64_t rays_by_functions; /* that functions of params.shader traced, of all kinds */
+    double mrays_per_s;         /* all rays over render_ms */
     uint64_t device_bytes;
     /* Rays that were not traced, and the largest sum of their weights in one pixel: depth, for
        params.depth; bailout, for params.bailout. */
@@ -298,6 +299,13 @@ typedef struct whit_stats {
     whit_share shares[WHIT_SHARES];  /* largest first; the rest is left out */
     uint32_t share_count;
 } whit_stats;
+
+/* All rays of a picture. */
+static inline uint64_t whit_stats_rays(const whit_stats *stats)
+{
+    return stats->rays_primary + stats->rays_shadow + stats->rays_reflected +
+           stats->rays_refracted + stats->rays_by_functions;
+}
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
 /* Adds what one more picture took to what others took: sums, of weights and bounds the largest; of
    tiles and memory those of the last. Shares of materials, upload and compilation stay as they

@@ -69,7 +69,8 @@ struct gpu_tally {
     gpu_uint reflected, refracted;
     gpu_uint cut_depth, cut_bailout;
     gpu_uint cut_depth_weight, cut_bailout_weight; /* bits of floats: the largest sum of a pixel */
-    gpu_uint pad0, pad1;
+    gpu_uint by_functions; /* traced by functions of a user's file */
+    gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_tally, 32)
 

@@ -467,6 +467,13 @@ uint max_of_lanes(uint value)
     return max(value, subgroupShuffleXor(value, 4u));
 }
 
+// Few files trace: of others `rays` is known to be 0, and nothing of this is in the kernel.
+void tally_traced(uint rays)
+{
+    if (rays != 0u)
+        atomicAdd(tally.by_functions, rays);
+}
+
 // The sum over the subgroup, for the tally. `value` may hold two counters whose sums are below 2^16.
 uint add_up_lanes(uint value)
 {

@@ -84,6 +84,8 @@ void begin_user()
 
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir)
 {
+    if (!is_in_picture(pixel)) // of a tile's edge: nothing of it counts
+        return;
     hook_pixel = pixel;
     hook_ray.dir = dir;
     hook_ray.steps = 0u;

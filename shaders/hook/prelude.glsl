@@ -14,6 +14,7 @@ uvec2 hook_pixel;
 Hit hook_hit;            // of the surface
 uvec4 hook_media;        // around it
 uint hook_status = 0u;   // of the rays that hooks have traced
+uint hook_traced = 0u;   // how many these are
 bool hook_lost = false;  // a hook gave no number
 uint whit_fuel = 0u;     // iterations of loops that the call may still take
 uint whit_fuel_loop = 0u; // number of the loop in which there were none left; 0: none
@@ -166,6 +167,7 @@ vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorp
         return vec3(1.0);
     Hit blocker = traverse(TRAVERSE_SHADOW, origin, dir, 0.0, distance, frame.root, skip.x, skip.y);
     hook_status |= blocker.status;
+    hook_traced++;
     return passing_share(blocker, absorption, distance);
 }
 
@@ -181,6 +183,7 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
 {
     Hit hit = traverse(TRAVERSE_CLOSEST, origin, dir, 0.0, FLOAT_LARGEST, frame.root, HIT_NONE, HIT_NONE);
     hook_status |= hit.status;
+    hook_traced++;
     bool some = hit.primitive != HIT_NONE;
     distance = hit.t;
     if (some) {

@@ -130,5 +130,6 @@ void main()
     report_status(status);
 #ifdef HOOKS
     report_hooks();
+    tally_traced(hook_traced);
 #endif
 }

@@ -35,7 +35,9 @@ void main()
         store_sum(id, sky, 0u);
     if (SPEC_PROBE != 0u && alive)
         probe_added(id, sky, false);
-    if (alive)
+    if (alive) {
         report_status(hook_status);
+        tally_traced(hook_traced);
+    }
     report_hooks();
 }

@@ -143,5 +143,6 @@ void main()
         resolve_hit(item);
 #ifdef HOOKS
     report_hooks();
+    tally_traced(hook_traced);
 #endif
 }

@@ -336,8 +336,10 @@ void main()
     if (alive && must_wait(hook_status))
         list_deferred(id);
     alive = alive && !must_wait(hook_status);
-    if (alive)
+    if (alive) {
         report_hooks();
+        tally_traced(hook_traced);
+    }
 #endif
     if (CALLS_RAYS)
         tally_cuts(alive ? calls.cuts : 0u);

@@ -154,7 +154,7 @@ static void look_at_step(void *user, const whit_step *step)
 
 static uint64_t all_rays(const whit_stats *s)
 {
-    return s->rays_primary + s->rays_shadow + s->rays_reflected + s->rays_refracted;
+    return whit_stats_rays(s);
 }
 
 static void check_steps(uint32_t spacing, uint32_t samples, uint32_t ray_capacity)

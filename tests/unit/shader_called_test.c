@@ -215,6 +215,70 @@ TEST(expectations_are_held_against_all_effects)
     whit_shader_destroy(shader);
 }
 
+/* Rays of one picture that functions have traced; *hits: pixels that hit something. */
+static uint64_t traced_by_functions(const char *content, whit_numerics numerics, uint64_t *hits)
+{
+    enum { ODD_WIDTH = 51, ODD_HEIGHT = 37 }; /* of no tile */
+    whit_shader *shader = load(content);
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    whit_image *ids;
+    whit_stats stats;
+    params.width = ODD_WIDTH;
+    params.height = ODD_HEIGHT;
+    params.depth = 0;
+    params.numerics = numerics;
+    params.shader = shader;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &ids), WHIT_OK);
+    whit_renderer_get_stats(renderer, &stats);
+    *hits = 0;
+    for (uint32_t i = 0; i < ODD_WIDTH * ODD_HEIGHT; ++i)
+        *hits += whit_image_words(ids)[2 * i] != WHIT_NONE;
+    assert_int_equal(stats.rays_primary, ODD_WIDTH * ODD_HEIGHT);
+    assert_int_equal(whit_stats_rays(&stats),
+                     stats.rays_primary + stats.rays_shadow + stats.rays_by_functions);
+    whit_image_destroy(ids);
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(shader);
+    return stats.rays_by_functions;
+}
+
+#define TRACE "Surface met; float t; bool some = trace("
+TEST(rays_of_functions_are_counted)
+{
+    static const struct {
+        const char *content;
+        uint64_t of_hits, of_misses;
+    } cases[] = {
+        {"vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n", 0, 0},
+        {"vec3 shade(Surface s, Optics o, vec3 to_eye)\n{ " TRACE
+         "off_surface(s, s.ng), s.ng, met, t);\n"
+         "return some ? visible(s, s.ng, t) : visible(s, to_eye, 1.0); }\n",
+         2, 0},
+        {"vec3 miss(vec3 dir) { " TRACE "ray_origin(), -dir, met, t); return vec3(some ? t : 0.0); "
+         "}\n",
+         0, 1},
+        /* Camera rays are not kept: the stage that shades makes them again, as does what settles at
+           `exact` which primitive they hit. */
+        {"void camera(vec2 at, inout vec3 origin, inout vec3 dir) { " TRACE
+         "origin, dir, met, t); if (some) origin += 0.001 * t * dir; }\n",
+         2, 1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        bool by_camera = cases[i].of_hits && cases[i].of_misses;
+        for (int exact = 0; exact < 2 - by_camera; ++exact) {
+            uint64_t hits, counted = traced_by_functions(
+                               cases[i].content,
+                               exact ? WHIT_NUMERICS_EXACT : WHIT_NUMERICS_WATERTIGHT, &hits);
+            assert_in_range(hits, 1, 51 * 37 - 1);
+            assert_int_equal(counted,
+                             hits * cases[i].of_hits + (51 * 37 - hits) * cases[i].of_misses);
+        }
+    }
+}
+
 int main(void)
 {
     return unit_run(begin, end);

@@ -33,6 +33,8 @@ static char *counters_line(const whit_stats *stats)
     document_count(rays, "shadow", stats->rays_shadow);
     document_count(rays, "reflected", stats->rays_reflected);
     document_count(rays, "refracted", stats->rays_refracted);
+    if (stats->rays_by_functions)
+        document_count(rays, "by_functions", stats->rays_by_functions);
     document_count(rays, "cut_by_depth", stats->rays_cut_depth);
     document_count(rays, "cut_by_bailout", stats->rays_cut_bailout);
     json_t *counters = document_object();

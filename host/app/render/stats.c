@@ -23,8 +23,7 @@ static void collect(const struct job *job, const whit_renderer *renderer, const 
     whit_scene_get_info(job->scene, &out->scene);
     whit_accel_get_info(job->accel, &out->tree);
     whit_device_get_info(job->device, &out->device);
-    out->rays =
-        stats->rays_primary + stats->rays_shadow + stats->rays_reflected + stats->rays_refracted;
+    out->rays = whit_stats_rays(stats);
     out->total_ms = whit_clock_ms() - job->start_ms;
     if (whit_renderer_get_kernel(renderer, &out->kernel) != WHIT_OK)
         out->kernel = (whit_kernel_info){0};
@@ -78,13 +77,15 @@ static json_t *cut_document(uint64_t count, double weight)
     return cut;
 }
 
-static json_t *rays_document(const struct figures *figures)
+static json_t *rays_document(const struct job *job, const struct figures *figures)
 {
     json_t *rays = document_object();
     document_count(rays, "primary", figures->render->rays_primary);
     document_count(rays, "shadow", figures->render->rays_shadow);
     document_count(rays, "reflected", figures->render->rays_reflected);
     document_count(rays, "refracted", figures->render->rays_refracted);
+    if (job->shader)
+        document_count(rays, "by_functions", figures->render->rays_by_functions);
     document_count(rays, "total", figures->rays);
     document_number(rays, "mrays_per_s", figures->render->mrays_per_s);
     document_put(rays, "cut_by_depth",
@@ -233,7 +234,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_text(device, "kind", figures->device.kind);
     document_put(root, "device", device);
     document_put(root, "times", times_document(job, figures));
-    document_put(root, "rays", rays_document(figures));
+    document_put(root, "rays", rays_document(job, figures));
     document_put(root, "stages", stages_document(job, figures));
     document_put(root, "kernel", kernel_document(figures));
     if (job->settings.picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
@@ -296,6 +297,9 @@ static void print_rays(const struct figures *figures)
     printf("  %-18s %10llu\n", "shadow", (unsigned long long)figures->render->rays_shadow);
     printf("  %-18s %10llu\n", "reflected", (unsigned long long)figures->render->rays_reflected);
     printf("  %-18s %10llu\n", "refracted", (unsigned long long)figures->render->rays_refracted);
+    if (figures->render->rays_by_functions)
+        printf("  %-18s %10llu\n", "by functions",
+               (unsigned long long)figures->render->rays_by_functions);
     printf("  %-18s %10llu   %.2f Mray/s\n", "total", (unsigned long long)figures->rays,
            figures->render->mrays_per_s);
     print_cut("cut by --depth", figures->render->rays_cut_depth, figures->render->weight_cut_depth);
