@@ -34,6 +34,14 @@ void end_hook(bool alive)
     hook_loop = alive ? max(hook_loop, whit_fuel_loop) : hook_loop;
 }
 
+// A camera ray is made, and the user's function called, whether it is of use or not: its rays count where it
+// is. `before`: hook_traced without them.
+void count_camera(uint before, bool of_use)
+{
+    if ((SPEC_HOOKS & HOOK_CAMERA) != 0u && !of_use)
+        hook_traced = before;
+}
+
 void report_hooks()
 {
     if (hook_loop != 0u) {

@@ -44,7 +44,13 @@ void take_ray(uint r)
 #ifdef HOOKS
     record_for(id, alive && primary); // by the camera's function
 #endif
+#ifdef HOOKS
+    uint traced = hook_traced;
+#endif
     Ray ray = fetch_ray(id, slot);
+#ifdef HOOKS
+    count_camera(traced, alive && primary);
+#endif
     if (SPEC_COUNT != 0u && primary && alive)
         clear_costs(slot);
     ray_slot[r] = slot;

@@ -24,6 +24,7 @@ void main()
     bool alive = traced_item(0u) != ITEM_NONE && floatBitsToUint(own.w) == SUM_MISSED;
     uint slot;
     hook_ray = fetch_ray(id, slot);
+    count_camera(0u, is_primary());
     alive = alive && (!is_primary() || is_in_picture(slot_pixel(slot)));
     hook_pixel = slot_pixel(slot);
     hook_hit = make_hit(FLOAT_LARGEST);

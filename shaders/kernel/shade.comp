@@ -286,6 +286,9 @@ void main()
     id = alive ? id : 0u;
     uint slot;
     Ray ray = fetch_ray(id, slot);
+#ifdef HOOKS
+    count_camera(0u, is_primary());
+#endif
     Hit hit = fetch_hit(id);
     uint status = 0u;
     ray.weight *= medium_transmittance(ray.media, hit.t);
