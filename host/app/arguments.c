@@ -256,7 +256,8 @@ static void take(struct cli_reader *reader, const struct setting *option, void *
             snprintf(reader->left + used, reader->left_bytes - used, " --%s", option->name);
         return;
     }
-    if (reader->where && !reader->left && (!is_setting || option->trusted)) {
+    bool is_barred = !is_setting || (option->trusted && !reader->takes_files);
+    if (reader->where && !reader->left && is_barred) {
         /* No file of settings may widen what files may be read. */
         cli_misuse(reader, "--%s is nothing to be saved", option->name);
         return;
@@ -300,11 +301,11 @@ static char *read_bytes(char **from, char *to)
 char *cli_next_word(char **at, bool *whole)
 {
     char *from = *at + strspn(*at, " \t\r\n"), *to = from, *word = from;
-    bool quoted = false;
+    char quote = '\0';
     if (!*from)
         return NULL;
-    for (; *from && (quoted || !strchr(" \t\r\n", *from)); ++from) {
-        if (*from == '$' && from[1] == '\'' && !quoted) {
+    for (; *from && (quote || !strchr(" \t\r\n", *from)); ++from) {
+        if (*from == '$' && from[1] == '\'' && !quote) {
             from += 2;
             to = read_bytes(&from, to);
             *whole = *from == '\'';
@@ -312,15 +313,16 @@ char *cli_next_word(char **at, bool *whole)
                 return word;
             continue;
         }
-        if (*from == '\'') {
-            quoted = !quoted;
+        if (*from == quote || (!quote && (*from == '\'' || *from == '"'))) {
+            quote = quote ? '\0' : *from;
             continue;
         }
-        if (*from == '\\' && !quoted && from[1])
+        bool keeps = quote == '"' ? from[1] && strchr("\"\\$`", from[1]) : !quote && from[1];
+        if (*from == '\\' && keeps)
             ++from;
         *to++ = *from;
     }
-    *whole = !quoted;
+    *whole = !quote;
     *at = *from ? from + 1 : from;
     *to = '\0';
     return word;

@@ -55,7 +55,9 @@ struct cli_reader {
     const char *where; /* "FILE:LINE" of options that are not of the command line, or NULL */
     char *left; /* gets " --NAME" of each option that no recipe may say, of a recipe; or NULL */
     size_t left_bytes;
-    char *said; /* gets what is wrong, in place of standard error; or NULL */
+    bool takes_files; /* with `where`: options that name files are taken, and whoever reads them
+                         looks after where these lie */
+    char *said;       /* gets what is wrong, in place of standard error; or NULL */
     size_t said_bytes;
 };
 
@@ -65,9 +67,9 @@ void cli_reader_init(struct cli_reader *reader, const struct cli_command *comman
    where the command has none. False: exit with `status`. Of a file of settings (`where`) only
    settings. */
 bool cli_read(struct cli_reader *reader, void *own, struct settings *settings);
-/* The next word of a line, in its place; what stands in single quotes is taken as it is, and a
-   backslash keeps the next letter, as a shell does it; in $'' only what quote_word writes. NULL at
-   the end; *whole: false where a quote has no end. */
+/* The next word of a line, in its place; what stands in quotes is taken as it is, but for a
+   backslash in double ones, and a backslash keeps the next letter, as a shell does it; in $'' only
+   what quote_word writes. NULL at the end; *whole: false where a quote has no end. */
 char *cli_next_word(char **at, bool *whole);
 /* Says what is wrong with the usage and how to get help; false, so that parsers can return it.
    Sets `status`. */

@@ -1,0 +1,140 @@
+/* A case's scene and options: those of `whit render` that say what is seen, by its table. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/suite.h"
+#include "base/array.h"
+#include "base/input.h"
+
+enum { OPTIONS_BYTES = 16384 };
+
+#define REFUSED(option, text)                                                                      \
+    {                                                                                              \
+        .name = option, .help = text, .kind = SETTING_GONE                                         \
+    }
+static const char writes[] = "writes a file, which no case may",
+                  loosens[] = "loosens a limit, which no case may",
+                  of_command[] = "is for `whit check` itself, not for a case",
+                  by_time[] = "goes by measured time: no two runs need to agree";
+
+/* What no case may say, with the reason; the other rows are those of `whit render`. */
+static const struct setting refused[] = {
+    {.name = "output", .letter = 'o', .help = writes, .kind = SETTING_GONE},
+    REFUSED("ids", writes),
+    REFUSED("thumbnail", writes),
+    REFUSED("stats", writes),
+    REFUSED("counters", writes),
+    REFUSED("frames", "makes several pictures: a case is one, with --frame"),
+    REFUSED("refine", by_time),
+    REFUSED("fresh", by_time),
+    REFUSED("budget-ms", by_time),
+    REFUSED("max-error", by_time),
+    REFUSED("recipe", "takes options from a picture: write them out"),
+    REFUSED("yes", "takes options from a picture: write them out"),
+    REFUSED("allow-path", loosens),
+    REFUSED("trust", loosens),
+    REFUSED("stages", loosens),
+    REFUSED("memory-limit", loosens),
+    REFUSED("import-limit", loosens),
+    REFUSED("portable", "is always on"),
+    REFUSED("require-sandbox", of_command),
+    REFUSED("device", of_command),
+    REFUSED("no-cache", of_command),
+    REFUSED("time-limit", of_command),
+    REFUSED("validation", of_command),
+    REFUSED("quiet", of_command),
+    {0},
+};
+
+/* Named as the command whose help lists them. */
+static const struct cli_command case_command = {
+    .name = "render", .arguments = "", .summary = "", .options = refused, .settings = IN_RENDER};
+
+/* Pictures are the same on every device: the setting that sees to it, where there is one. */
+static bool make_portable(struct settings *settings, char why[SETTING_WHY_BYTES])
+{
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (strcmp(row->name, "portable") == 0)
+            return settings_read(row, "on", settings, why);
+    }
+    return true;
+}
+
+/* Makes of a name in the suite a path from where whit was started; false, with the reason. */
+static bool find_file(const struct suite *suite, const char *option, char *name, size_t name_bytes,
+                      struct cli_reader *reader)
+{
+    char *path = roots_join(suite->roots.named, name);
+    errno = 0;
+    enum reach reach = path ? roots_reach(&suite->roots, path) : REACH_MISSING;
+    bool fits = path && strlen(path) < name_bytes;
+    bool good = false;
+    if (!path)
+        cli_misuse(reader, "out of memory");
+    else if (is_input(name))
+        cli_misuse(reader, "%s`-`: standard input is not the suite's", option);
+    else if (reach == REACH_OUTSIDE)
+        cli_misuse(reader, "%s`%s`: it lies outside of the suite's folder", option, name);
+    else if (reach != REACH_FILE)
+        cli_misuse(reader, "%s`%s`: %s", option, name, reach_words(reach));
+    else if (!fits)
+        cli_misuse(reader, "%s`%s`: its path is too long", option, name);
+    else
+        good = true;
+    if (good)
+        strcpy(name, path);
+    free(path);
+    return good;
+}
+
+static bool take_files(struct check_case *item, const struct suite *suite,
+                       struct cli_reader *reader)
+{
+    struct settings *settings = item->settings;
+    return find_file(suite, "the scene ", settings->scene, sizeof settings->scene, reader) &&
+           (!settings->environment[0] || find_file(suite, "--environment ", settings->environment,
+                                                   sizeof settings->environment, reader)) &&
+           (!settings->shader[0] ||
+            find_file(suite, "--shader ", settings->shader, sizeof settings->shader, reader));
+}
+
+static bool read_words(struct check_case *item, struct cli_reader *reader)
+{
+    char why[SETTING_WHY_BYTES];
+    struct settings *settings = item->settings;
+    *settings = settings_usual();
+    if (!make_portable(settings, why))
+        return cli_misuse(reader, "--portable%s", why);
+    if (!cli_read(reader, NULL, settings))
+        return false;
+    const char *scene = reader->positional ? reader->positional : "";
+    if (!scene[0])
+        return cli_misuse(reader, "a scene is missing");
+    if (strlen(scene) >= sizeof settings->scene)
+        return cli_misuse(reader, "the scene's path is too long");
+    strcpy(settings->scene, scene);
+    return settings_check(settings, why) || cli_misuse(reader, "%s", why);
+}
+
+bool case_options_read(struct check_case *item, const struct suite *suite, const char *where,
+                       int argc, char **argv, char *said, size_t said_bytes)
+{
+    struct cli_reader reader;
+    item->settings = array_alloc_zeroed(1, sizeof *item->settings);
+    item->options = array_alloc(OPTIONS_BYTES, 1);
+    cli_reader_init(&reader, &case_command, argc, argv);
+    reader.where = where;
+    reader.takes_files = true;
+    reader.said = said;
+    reader.said_bytes = said_bytes;
+    if (!item->settings || !item->options)
+        return cli_misuse(&reader, "out of memory");
+    if (!read_words(item, &reader))
+        return false;
+    item->scene = string_copy(item->settings->scene);
+    size_t used = settings_write(item->settings, SETTINGS_LINE, " ", item->options, OPTIONS_BYTES);
+    if (!item->scene || used >= OPTIONS_BYTES)
+        return cli_misuse(&reader, "more options than there is room for");
+    return take_files(item, suite, &reader);
+}

@@ -1,0 +1,53 @@
+/* A suite: pictures with names, and what is expected of them (docs/check.md). */
+#ifndef APP_CHECK_SUITE_H
+#define APP_CHECK_SUITE_H
+
+#include "app/cli.h"
+#include "base/roots.h"
+
+enum { CHECK_NAME_MAX = 64, CHECK_CASES_MAX = 4096 };
+
+struct check_expectation {
+    char *text; /* "leaks == 0" */
+    uint32_t line;
+};
+
+/* One picture. All of it is the suite's. */
+struct check_case {
+    char *name;
+    uint32_t line;
+    struct settings *settings; /* its files by paths from where whit was started */
+    char *scene;               /* as the suite names it */
+    char *options; /* those that are not at their default, with names of files likewise */
+    struct check_expectation *expectations;
+    uint32_t expectation_count, expectation_capacity;
+};
+
+struct suite {
+    const char *path;
+    struct roots roots;       /* where its files may lie */
+    struct check_case *cases; /* in the order of the file */
+    uint32_t count, capacity;
+    uint32_t wrong; /* lines */
+    /* Gets "FILE:LINE: reason" for each wrong line. */
+    void (*say)(void *user, const char *text);
+    void *user;
+};
+
+/* Reads all lines. `root`: the folder that files lie below and are named from; NULL: the suite's
+   own. Nothing but names of files is looked up on the disk. False, with something said, where a
+   line is wrong or the file cannot be read. suite_finish() it either way. */
+bool suite_read(struct suite *suite, const char *path, const char *root,
+                void (*say)(void *user, const char *text), void *user);
+void suite_finish(struct suite *suite);
+/* NULL: there is none. */
+struct check_case *suite_find(const struct suite *suite, const char *name);
+/* Whether a name is `pattern`, in which * stands for any letters and ? for one. */
+bool suite_matches(const char *pattern, const char *name);
+
+/* case_options.c: reads the words behind a case's name, which are a scene and options of
+   `whit render`. `where`: "FILE:LINE". False, with the reason in `said`. */
+bool case_options_read(struct check_case *item, const struct suite *suite, const char *where,
+                       int argc, char **argv, char *said, size_t said_bytes);
+
+#endif

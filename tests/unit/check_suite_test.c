@@ -1,0 +1,189 @@
+/* Suites: cases, alternatives, quotes, and every wrong line told by its number. */
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "app/check/suite.h"
+#include "folder_fixture.h"
+
+static char said[8192];
+
+static void say(void *user, const char *text)
+{
+    size_t used = strlen(said);
+    (void)user;
+    snprintf(said + used, sizeof said - used, "%s\n", text + strlen(folder) + 1);
+}
+
+static const char *path_of(const char *name)
+{
+    static char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static bool read_text(struct suite *suite, const char *text, const char *root)
+{
+    static char path[512];
+    snprintf(path, sizeof path, "%s", path_of("s.whit"));
+    said[0] = '\0';
+    put_file(path, text, strlen(text));
+    put_file(path_of("a.json"), "", 0);
+    put_file(path_of("my scene.json"), "", 0);
+    put_file(path_of("sky.hdr"), "", 0);
+    (void)mkdir(path_of("sub"), 0777);
+    put_file(path_of("sub/b.json"), "", 0);
+    return suite_read(suite, path, root, say, NULL);
+}
+
+TEST_IN(lines_become_cases, folder_begin, folder_end)
+{
+    struct suite suite;
+    bool read = read_text(&suite,
+                          "# a comment\n"
+                          "one a.json\n"
+                          "\t two 'my scene.json' --size 64x48 # and a comment\r\n"
+                          "\n"
+                          "three \"my scene.json\" --background '#102030'\n"
+                          "four my\\ scene.json --environment sky.hdr\n"
+                          "level-{fast,exact} sub/b.json --numerics {}\n"
+                          "l{1,2}.x a.json --depth {} --camera '{}'",
+                          NULL);
+    if (!read)
+        fail_msg("%s", said);
+    assert_int_equal(suite.count, 8);
+    assert_string_equal(suite.cases[0].name, "one");
+    assert_int_equal(suite.cases[0].line, 2);
+    assert_string_equal(suite.cases[1].scene, "my scene.json");
+    assert_string_equal(suite.cases[1].options, "--size 64x48");
+    assert_string_equal(suite.cases[1].settings->scene, path_of("my scene.json"));
+    assert_string_equal(suite.cases[2].scene, "my scene.json");
+    assert_int_equal(suite.cases[2].settings->load.background[1], 0x20);
+    assert_string_equal(suite.cases[3].scene, "my scene.json");
+    assert_string_equal(suite.cases[3].settings->environment, path_of("sky.hdr"));
+    assert_string_equal(suite.cases[3].options, "--environment sky.hdr");
+    assert_string_equal(suite.cases[4].name, "level-fast");
+    assert_int_equal(suite.cases[4].settings->picture.numerics, WHIT_NUMERICS_FAST);
+    assert_int_equal(suite.cases[5].settings->picture.numerics, WHIT_NUMERICS_EXACT);
+    assert_string_equal(suite.cases[7].name, "l2.x");
+    assert_int_equal(suite.cases[7].line, 8);
+    assert_int_equal(suite.cases[7].settings->picture.depth, 2);
+    assert_string_equal(suite.cases[7].settings->camera, "2");
+    suite_finish(&suite);
+}
+
+TEST_IN(names_are_from_the_root, folder_begin, folder_end)
+{
+    struct suite suite;
+    char root[512];
+    snprintf(root, sizeof root, "%s", path_of("sub"));
+    assert_true(read_text(&suite, "one b.json", root));
+    assert_string_equal(suite.cases[0].settings->scene, path_of("sub/b.json"));
+    suite_finish(&suite);
+    assert_false(read_text(&suite, "one ../a.json", root));
+    assert_non_null(strstr(said, "s.whit:1: the scene `../a.json`: it lies outside"));
+    suite_finish(&suite);
+}
+
+TEST_IN(expectations_go_to_their_cases, folder_begin, folder_end)
+{
+    struct suite suite;
+    bool read = read_text(&suite,
+                          "a-{x,y} a.json\nb a.json\n"
+                          "a-{x,y} expect rays == 1, pixel(1,2).instance == \"{}, #, 2\" # why\n"
+                          "* expect nonfinite == 0\n",
+                          NULL);
+    if (!read)
+        fail_msg("%s", said);
+    assert_int_equal(suite.cases[0].expectation_count, 3);
+    assert_string_equal(suite.cases[0].expectations[0].text, "rays == 1");
+    assert_string_equal(suite.cases[1].expectations[1].text, "pixel(1,2).instance == \"y, #, 2\"");
+    assert_int_equal(suite.cases[1].expectations[1].line, 3);
+    assert_int_equal(suite.cases[2].expectation_count, 1);
+    suite_finish(&suite);
+}
+
+/* Each wrong line is told, whatever else is wrong. */
+TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
+{
+    static const struct {
+        const char *line, *told;
+    } wrong[] = {
+        {"alone", "`alone` alone"},
+        {"bad/name a.json", "the name `bad/name`"},
+        {"all a.json", "the name `all`"},
+        {"-q a.json", "the name `-q`"},
+        {".. a.json", "the name `..`"},
+        {"x-{a,b a.json", "one {a,b} with a }"},
+        {"x-{a,b}{c} a.json", "one {a,b} with a }"},
+        {"x-{a,a} a.json", "the name `x-a` is that of line"},
+        {"brace a.json --depth {}", "{} stands for"},
+        {"quote 'a.json", "a quote has no end"},
+        {"quote \"a.json", "a quote has no end"},
+        {"none --depth 3", "a scene is missing"},
+        {"many a.json a.json", "one argument too many"},
+        {"misspelt a.json --dpeth 3", "did you mean `--depth`"},
+        {"value a.json --depth many", "--depth `many`"},
+        {"both a.json --time 1 --frame 2", "two ways"},
+        {"gone a.json --no-bvh", "is `--build none` now"},
+        {"lost b.json", "the scene `b.json`: there is no such file"},
+        {"folder sub", "the scene `sub`: it is a folder"},
+        {"input -", "`-`: standard input"},
+        {"above ../up.json", "the scene `../up.json`: it lies outside"},
+        {"root /etc/passwd", "the scene `/etc/passwd`: it lies outside"},
+        {"link away.json", "the scene `away.json`: it lies outside"},
+        {"sky a.json --environment away.json", "--environment `away.json`: it lies outside"},
+        {"hook a.json --shader ../x.glsl", "--shader `../x.glsl`: it lies outside"},
+        {"w1 a.json -o x.png", "option `--output` writes a file"},
+        {"w2 a.json --output x.png", "option `--output` writes a file"},
+        {"w3 a.json --ids x.exr", "option `--ids` writes a file"},
+        {"w4 a.json --stats json", "option `--stats` writes"},
+        {"l1 a.json --allow-path /", "option `--allow-path` loosens a limit"},
+        {"l2 a.json --shader a.json --trust", "option `--trust` loosens a limit"},
+        {"l3 a.json --memory-limit 9G", "option `--memory-limit` loosens a limit"},
+        {"l4 a.json --import-limit 99", "option `--import-limit` loosens a limit"},
+        {"l5 a.json --stages sub", "option `--stages` loosens a limit"},
+        {"c1 a.json --device 1", "option `--device` is for `whit check` itself"},
+        {"c2 a.json --budget-ms 3", "option `--budget-ms` goes by measured time"},
+        {"c3 a.json --portable", "option `--portable` is always on"},
+        {"c4 a.json --help", "--help is for the command line"},
+        {"nobody expect leaks == 0", "there is no case `nobody` above"},
+        {"fine expect", "an expectation is missing"},
+        {"fine expect leaks == 0,", "an expectation is missing"},
+    };
+    enum { COUNT = sizeof wrong / sizeof *wrong };
+    struct suite suite;
+    char text[8192] = "fine a.json\n";
+    assert_int_equal(symlink("/etc/passwd", path_of("away.json")), 0);
+    for (size_t i = 0; i < COUNT; ++i)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s\n", wrong[i].line);
+    assert_false(read_text(&suite, text, NULL));
+    assert_int_equal(suite.wrong, COUNT);
+    char *at = said;
+    for (size_t i = 0; i < COUNT; ++i) {
+        char where[32], *end = strchr(at, '\n');
+        assert_non_null(end);
+        *end = '\0';
+        snprintf(where, sizeof where, "s.whit:%zu: ", i + 2);
+        if (strncmp(at, where, strlen(where)) != 0 || !strstr(at, wrong[i].told))
+            fail_msg("`%s` says `%s`", wrong[i].line, at);
+        at = end + 1;
+    }
+    assert_string_equal(at, "");
+    suite_finish(&suite);
+}
+
+TEST_IN(no_suite_is_told, folder_begin, folder_end)
+{
+    static const char zero[] = "one a.json\0two a.json";
+    struct suite suite;
+    assert_false(read_text(&suite, "# nothing\n", NULL));
+    assert_string_equal(said, "s.whit: there is no case in it\n");
+    suite_finish(&suite);
+    put_file(path_of("z.whit"), zero, sizeof zero);
+    char path[512];
+    snprintf(path, sizeof path, "%s", path_of("z.whit"));
+    said[0] = '\0';
+    assert_false(suite_read(&suite, path, NULL, say, NULL));
+    assert_string_equal(said, "z.whit: not a suite: it has bytes that are 0\n");
+    suite_finish(&suite);
+}
