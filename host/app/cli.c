@@ -24,6 +24,8 @@ static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
 static volatile sig_atomic_t error_said;
 static bool hushed;
+static const char *errors_of;
+static char first_error[1024];
 static volatile sig_atomic_t grace_ms = GRACE_MS;
 /* Read in signal handlers: the one of two that is not being written. */
 static char written_texts[2][64] = {"nothing was written", ""};
@@ -56,11 +58,40 @@ static void unlock_reason(const sigset_t *before)
     pthread_sigmask(SIG_SETMASK, before, NULL);
 }
 
-static void say(const char *kind, const char *format, va_list args)
+void cli_errors_of(const char *where)
 {
-    char text[8192], shown[2 * sizeof text];
-    vsnprintf(text, sizeof text, format, args);
+    errors_of = where;
+    first_error[0] = '\0';
+}
+
+const char *cli_said(void)
+{
+    return first_error;
+}
+
+static void say(const char *kind, const char *text)
+{
+    char shown[16384];
     fprintf(stderr, "whit: %s: %s\n", kind, whit_text_show(text, shown, sizeof shown));
+}
+
+static void vsay(const char *kind, const char *format, va_list args)
+{
+    char text[8192];
+    vsnprintf(text, sizeof text, format, args);
+    say(kind, text);
+}
+
+/* Of several threads one at a time. */
+static void say_error(const char *format, va_list args)
+{
+    char text[8192], kind[512] = "error";
+    vsnprintf(text, sizeof text, format, args);
+    if (errors_of && !first_error[0])
+        whit_text_show(text, first_error, sizeof first_error);
+    if (errors_of)
+        snprintf(kind, sizeof kind, "error: %.480s", cli_shown(errors_of));
+    say(kind, text);
 }
 
 void cli_error(const char *format, ...)
@@ -69,7 +100,7 @@ void cli_error(const char *format, ...)
     va_list args;
     va_start(args, format);
     lock_reason(&before);
-    say("error", format, args);
+    say_error(format, args);
     error_said = 1;
     unlock_reason(&before);
     va_end(args);
@@ -79,7 +110,7 @@ void cli_warning(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    say("warning", format, args);
+    vsay("warning", format, args);
     va_end(args);
 }
 
@@ -87,7 +118,7 @@ void cli_note(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    say("note", format, args);
+    vsay("note", format, args);
     va_end(args);
 }
 

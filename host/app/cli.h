@@ -14,6 +14,7 @@ enum cli_exit {
     EXIT_DIFFERS = 1, /* a result differs, or a promise was not kept */
     EXIT_USAGE = 2,   /* bad usage, bad input, output that cannot be written */
     EXIT_DEVICE = 3,
+    EXIT_MISSING = 4, /* there is nothing to compare with */
     EXIT_TIME = 5,
     EXIT_INTERRUPTED = 130,
 };
@@ -92,6 +93,12 @@ void cli_print_help(const struct cli_command *command, bool all, FILE *to);
 void cli_error(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_warning(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
+
+/* From here on errors begin with `where`, as "FILE:LINE: NAME"; NULL: with nothing. `where` is
+   borrowed. */
+void cli_errors_of(const char *where);
+/* The first error since then, without that; "" where there was none. */
+const char *cli_said(void);
 
 /* The log of libwhit's calls: errors and warnings to stderr. While a scene loads only errors, for
    the scene keeps its notes. */

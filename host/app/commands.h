@@ -11,7 +11,7 @@
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench, command_hard, command_compare, command_cost, command_view,
-    command_probe, command_shader;
+    command_probe, command_shader, command_check;
 
 /* The options of `whit render` itself; those of the picture are in the job's settings. */
 struct render_request {
@@ -35,6 +35,10 @@ void settings_describe(const struct settings *settings, enum settings_command co
 /* From the scene to a renderer on a device; failures were said (render_command.c). */
 WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
+
+/* Whether the job's scene has its camera, before trees are built; else says what there is
+   (render_command.c). */
+WHIT_CHECK whit_result render_check_camera(const struct job *job);
 
 /* A renderer of what `request` says (render_command.c). */
 WHIT_CHECK whit_result render_create(const struct job *job, const struct render_request *request,

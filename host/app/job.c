@@ -72,12 +72,24 @@ whit_result job_load_shader(struct job *job)
     const struct settings *settings = &job->settings;
     if (!settings_compiles(settings))
         return WHIT_OK;
-    whit_result result = job_begin_compiler(job, &cli_log);
+    whit_result result = job->compiler ? WHIT_OK : job_begin_compiler(job, &cli_log);
     if (result == WHIT_OK)
         result =
             whit_shader_load_stages(job->compiler, text_or_null(settings->shader),
                                     text_or_null(settings->stages), settings->trust, &job->shader);
     return result == WHIT_OK ? job_still_wanted() : result;
+}
+
+whit_result job_take_scene(struct job *job)
+{
+    whit_scene_info info;
+    whit_scene_get_info(job->scene, &info);
+    if (job->recipe_hash && job->recipe_hash != info.hash)
+        cli_warning("%s is not as it was when the picture was made, and so may be what is drawn",
+                    job->settings.scene);
+    settings_expose(&job->settings, &info);
+    whit_result result = settings_choose_camera(&job->settings, job->scene);
+    return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 
 whit_result job_load(struct job *job)
@@ -94,17 +106,7 @@ whit_result job_load(struct job *job)
     whit_result result =
         whit_scene_load(job->settings.scene, &params, &cli_log_errors, &job->scene);
     job->load_ms = whit_clock_ms() - start_ms;
-    if (result == WHIT_OK) {
-        whit_scene_info info;
-        whit_scene_get_info(job->scene, &info);
-        if (job->recipe_hash && job->recipe_hash != info.hash)
-            cli_warning(
-                "%s is not as it was when the picture was made, and so may be what is drawn",
-                job->settings.scene);
-        settings_expose(&job->settings, &info);
-        result = settings_choose_camera(&job->settings, job->scene);
-    }
-    return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
+    return result == WHIT_OK ? job_take_scene(job) : result;
 }
 
 void job_print_notes(const struct job *job, bool all)

@@ -31,11 +31,14 @@ void job_start(const struct job *job);
 void job_begin_device(struct job *job);
 /* The process that compiles shaders, which logs to `log`; NULL: nothing. */
 WHIT_CHECK whit_result job_begin_compiler(struct job *job, const whit_log *log);
-/* Compiles the file of --shader and the stages of --stages, where there are any. Before anything
-   else is loaded: the compiler's process has the memory that the program has then. */
+/* Compiles the file of --shader and the stages of --stages, where there are any, by the job's
+   compiler, which begins unless it has. Before anything else is loaded: the compiler's process has
+   the memory that the program has then. */
 WHIT_CHECK whit_result job_load_shader(struct job *job);
 /* Each step before the next one. Failures were said. */
 whit_result job_load(struct job *job);
+/* Fits the settings to the job's scene, which was loaded before: what job_load does behind it. */
+WHIT_CHECK whit_result job_take_scene(struct job *job);
 whit_result job_build(struct job *job);
 whit_result job_open_device(struct job *job);
 /* Whether nobody has stopped the program, and its time limit has not passed. */

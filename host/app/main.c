@@ -13,7 +13,7 @@
 static const struct cli_command *const commands[] = {
     &command_render, &command_scene,   &command_trace,  &command_probe,
     &command_bvh,    &command_bench,   &command_hard,   &command_compare,
-    &command_cost,   &command_devices, &command_shader,
+    &command_cost,   &command_devices, &command_shader, &command_check,
 #ifdef WHIT_VIEWER
     &command_view,
 #endif

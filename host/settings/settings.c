@@ -176,6 +176,11 @@ static bool is_of_scene(const struct setting *row)
     return row->need == SETTING_NEEDS_SCENE;
 }
 
+static bool is_of_trees(const struct setting *row)
+{
+    return row->need == SETTING_NEEDS_TREES;
+}
+
 static bool is_of_kernel(const struct setting *row)
 {
     return row->need == SETTING_NEEDS_KERNEL || row->need == SETTING_NEEDS_TREES;
@@ -205,6 +210,11 @@ bool settings_same_scene(const struct settings *a, const struct settings *b)
 {
     return strcmp(a->scene, b->scene) == 0 && a->reload == b->reload &&
            same_rows(a, b, is_of_scene);
+}
+
+bool settings_same_trees(const struct settings *a, const struct settings *b)
+{
+    return settings_same_scene(a, b) && same_rows(a, b, is_of_trees);
 }
 
 bool settings_same_shader(const struct settings *a, const struct settings *b)

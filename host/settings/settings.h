@@ -75,6 +75,7 @@ enum settings_command {
     IN_COMPARE = 1 << 8,
     IN_BENCH = 1 << 9,
     IN_SHADER = 1 << 10,
+    IN_CHECK = 1 << 11,
 };
 
 /* The table; it ends with a row that has no name. */
@@ -109,6 +110,8 @@ whit_load_params settings_load(const struct settings *settings,
 bool settings_same_kernel(const struct settings *a, const struct settings *b);
 /* Whether the scene of `a` is that of `b`. */
 bool settings_same_scene(const struct settings *a, const struct settings *b);
+/* Whether the trees of `a` are those of `b`. */
+bool settings_same_trees(const struct settings *a, const struct settings *b);
 /* Camera, time and size alone, of whatever scenes. */
 bool settings_same_camera(const struct settings *a, const struct settings *b);
 /* Takes them over. */

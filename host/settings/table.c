@@ -420,13 +420,14 @@ const struct setting settings_table[] = {
     {"require-sandbox", 0, NULL,
      "fail where such code cannot be locked in, in place of a\n"
      "warning",
-     AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE, .trusted = true},
+     AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE | IN_CHECK,
+     .trusted = true},
 
     {"device", 0, "auto|N|NAME", "Vulkan device; see `whit devices`", "auto", AT(TEXT, device),
-     .commands = IN_SCENES | IN_BENCH | IN_SHADER, .change = SETTING_COST,
+     .commands = IN_SCENES | IN_BENCH | IN_SHADER | IN_CHECK, .change = SETTING_COST,
      .need = SETTING_NEEDS_KERNEL, .of_machine = true},
     {"no-cache", 0, NULL, "keep nothing for the next run, and use nothing that was kept",
-     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH | IN_SHADER},
+     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH | IN_SHADER | IN_CHECK},
     {"fps-goal", 0, "F",
      "pictures a second to hold while something moves, by\n"
      "smaller ones",
@@ -439,11 +440,11 @@ const struct setting settings_table[] = {
     {"stats", 0, NULL, "print times, rays and figures of the trees", "", AT(CHOICE, stats),
      .values = values_stats, .commands = IN_RENDER},
     {"time-limit", 0, "S", "give up after S seconds, with exit code 5", "",
-     AT(NUMBER, time_limit_s), .min = 1e-3, .max = 1e6, .commands = IN_LIMITED},
+     AT(NUMBER, time_limit_s), .min = 1e-3, .max = 1e6, .commands = IN_LIMITED | IN_CHECK},
     {"validation", 0, NULL, "run with the Vulkan validation layers", AT(FLAG, validation),
-     .commands = (IN_SCENES & ~IN_SCENE) | IN_SHADER},
+     .commands = (IN_SCENES & ~IN_SCENE) | IN_SHADER | IN_CHECK},
     {"quiet", 'q', NULL, "no notes, no progress, only errors", AT(FLAG, quiet),
-     .commands = IN_SCENES | IN_COMPARE | IN_BENCH},
+     .commands = IN_SCENES | IN_COMPARE | IN_BENCH | IN_CHECK},
 
     {"tile-size", 0, "N", "pixels on a tile's side, 16 to 512", "by measured time",
      AT(COUNT, picture.tile_size), .min = 16, .max = 512, .developer = true, .commands = IN_RENDER},

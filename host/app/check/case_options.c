@@ -6,6 +6,7 @@
 #include "app/check/suite.h"
 #include "base/array.h"
 #include "base/input.h"
+#include "settings/quote.h"
 
 enum { OPTIONS_BYTES = 16384 };
 
@@ -99,6 +100,30 @@ static bool take_files(struct check_case *item, const struct suite *suite,
             find_file(suite, "--shader ", settings->shader, sizeof settings->shader, reader));
 }
 
+static void put_text(void *user, const char *part)
+{
+    fputs(part, user);
+}
+
+/* The scene as the suite names it, with its options that say how it is loaded. */
+static char *loaded_text(const struct settings *settings)
+{
+    struct settings loaded = settings_usual();
+    char options[OPTIONS_BYTES], *text = NULL;
+    size_t size;
+    FILE *to = open_memstream(&text, &size);
+    if (!to)
+        return NULL;
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (row->need == SETTING_NEEDS_SCENE)
+            setting_copy(row, settings, &loaded);
+    }
+    settings_write(&loaded, SETTINGS_LINE, " ", options, sizeof options);
+    quote_word(settings->scene, put_text, to);
+    fprintf(to, "%s%s", options[0] ? " " : "", options);
+    return fclose(to) == 0 ? text : NULL;
+}
+
 static bool read_words(struct check_case *item, struct cli_reader *reader)
 {
     char why[SETTING_WHY_BYTES];
@@ -134,7 +159,8 @@ bool case_options_read(struct check_case *item, const struct suite *suite, const
         return false;
     item->scene = string_copy(item->settings->scene);
     size_t used = settings_write(item->settings, SETTINGS_LINE, " ", item->options, OPTIONS_BYTES);
-    if (!item->scene || used >= OPTIONS_BYTES)
+    item->loaded = loaded_text(item->settings);
+    if (!item->scene || !item->loaded || used >= OPTIONS_BYTES)
         return cli_misuse(&reader, "more options than there is room for");
     return take_files(item, suite, &reader);
 }

@@ -95,6 +95,7 @@ static void case_finish(struct check_case *item)
     free(item->settings);
     free(item->scene);
     free(item->options);
+    free(item->loaded);
 }
 
 static bool add_case(const struct line *line, const char *name, char *text)

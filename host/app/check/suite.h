@@ -19,6 +19,7 @@ struct check_case {
     struct settings *settings; /* its files by paths from where whit was started */
     char *scene;               /* as the suite names it */
     char *options; /* those that are not at their default, with names of files likewise */
+    char *loaded;  /* the scene with those that say how it is loaded: `room.json --light none` */
     struct check_expectation *expectations;
     uint32_t expectation_count, expectation_capacity;
 };

@@ -110,9 +110,9 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
     return WHIT_ERROR_USAGE;
 }
 
-/* Before trees are built. */
-static whit_result check_camera(const struct job *job, const char *wanted)
+whit_result render_check_camera(const struct job *job)
 {
+    const char *wanted = job->settings.camera;
     const whit_camera camera = camera_of_text(wanted);
     whit_scene_info scene;
     whit_scene_get_info(job->scene, &scene);
@@ -272,7 +272,7 @@ whit_result render_prepare(struct job *job, const struct render_request *request
         result = job_load(job);
     }
     if (result == WHIT_OK)
-        result = check_camera(job, job->settings.camera);
+        result = render_check_camera(job);
     if (result == WHIT_OK) {
         job_print_notes(job, true);
         result = job_build(job);

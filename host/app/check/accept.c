@@ -1,0 +1,77 @@
+/* Takes what was drawn into the golden. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/check.h"
+#include "base/array.h"
+
+static bool can_accept(const struct check_result *result)
+{
+    return result->verdict == CHECK_OK || result->verdict == CHECK_SAME ||
+           result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW;
+}
+
+/* The reason for which a case that is in the golden is to be another is kept in it. */
+static bool check_reason(const struct check *check)
+{
+    uint32_t other = 0;
+    for (uint32_t i = 0; i < check->suite.count; ++i)
+        other += check->results[i].verdict == CHECK_DIFFERS;
+    if (!other || check->reason)
+        return true;
+    cli_error("%u case%s other than the golden: say why they are to be so: --reason TEXT", other,
+              other == 1 ? " is" : "s are");
+    return false;
+}
+
+static bool put_parts(struct golden *golden, const struct golden *found)
+{
+    for (uint32_t i = 0; i < found->part_count; ++i) {
+        if (!golden_put_part(golden, found->parts[i].key, found->parts[i].hash))
+            return false;
+    }
+    return true;
+}
+
+/* What is as it was keeps the reason for which it was accepted. */
+static bool put_case(struct check *check, const struct check_result *result)
+{
+    struct golden_case item = result->found.cases[0];
+    const struct golden_case *old = golden_find(&check->golden, item.name);
+    char shown[4 * GOLDEN_REASON_MAX + 1];
+    bool is_new = result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW;
+    item.reason = old ? old->reason : NULL;
+    if (is_new)
+        item.reason = check->reason ? whit_text_show(check->reason, shown, sizeof shown) : NULL;
+    item.reason = string_copy(item.reason); /* the case that has it goes */
+    bool put = golden_put(&check->golden, &item) && put_parts(&check->golden, &result->found);
+    free(item.reason);
+    return put;
+}
+
+static bool take(struct check *check, struct check_result *result)
+{
+    bool is_new = result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW ||
+                  result->verdict == CHECK_SAME;
+    if (!put_case(check, result)) {
+        cli_error("out of memory");
+        return false;
+    }
+    if (is_new)
+        verdict_set(result, CHECK_ACCEPTED, string_format("accepted: %s", result->text));
+    return true;
+}
+
+int check_accept(struct check *check)
+{
+    if (!check_reason(check))
+        return EXIT_USAGE;
+    for (uint32_t i = 0; i < check->suite.count; ++i) {
+        struct check_result *result = &check->results[i];
+        if (can_accept(result) && check_names_match(&check->accept, result->item->name) &&
+            !take(check, result))
+            return EXIT_USAGE;
+    }
+    whit_result result = golden_save(&check->golden, check->golden_path);
+    return result == WHIT_OK ? EXIT_FINE : cli_exit_of(result);
+}

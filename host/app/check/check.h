@@ -1,0 +1,37 @@
+/* One run of `whit check`. */
+#ifndef APP_CHECK_CHECK_H
+#define APP_CHECK_CHECK_H
+
+#include "app/check/draw.h"
+#include "app/check/verdict.h"
+
+enum { CHECK_PATTERNS_MAX = CLI_OTHERS_MAX };
+
+/* Names of cases, or patterns of them. */
+struct check_names {
+    const char *patterns[CHECK_PATTERNS_MAX];
+    uint32_t count;
+};
+
+struct check {
+    struct settings settings; /* of the command line, for all cases */
+    const char *root, *reason;
+    struct check_names accept, only;
+    bool list;
+
+    struct suite suite;
+    char *golden_path;
+    struct golden golden;
+    bool *wanted; /* of each case of the suite */
+    struct check_result *results;
+    whit_device_info device; /* once something was drawn */
+};
+
+/* Whether one of the patterns is `name`; "all" stands for every name. */
+bool check_names_match(const struct check_names *names, const char *name);
+
+/* accept.c: takes into the golden what was found of the cases that --accept names, and saves it.
+   What cannot be accepted was said. Gives the exit code. */
+int check_accept(struct check *check);
+
+#endif

@@ -1,0 +1,287 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/check.h"
+#include "app/commands.h"
+#include "base/array.h"
+
+/* ---- Options ---- */
+
+static bool add_names(const char *value, struct check_names *names, char *why)
+{
+    if (!value[0] || names->count == CHECK_PATTERNS_MAX)
+        return setting_refuse(why, " `%s`: names of up to %d cases are needed", value,
+                              CHECK_PATTERNS_MAX);
+    names->patterns[names->count++] = value;
+    return true;
+}
+
+static bool read_accept(const struct setting *setting, const char *value, void *record, char *why)
+{
+    (void)setting;
+    return add_names(value, &((struct check *)record)->accept, why);
+}
+
+static bool read_only(const struct setting *setting, const char *value, void *record, char *why)
+{
+    (void)setting;
+    return add_names(value, &((struct check *)record)->only, why);
+}
+
+static const struct setting options[] = {
+    {"only", 0, "NAME", "those cases alone; * and ? stand for letters; may be given again",
+     .kind = SETTING_OWN, .read = read_only},
+    {"list", 0, NULL, "print the names of the cases, and draw nothing",
+     SETTING_AT_FLAG(struct check, list)},
+    {"accept", 0, "NAME|all",
+     "take what these cases show now into the golden; further\n"
+     "names may follow behind SUITE",
+     .kind = SETTING_OWN, .read = read_accept},
+    {"reason", 0, "TEXT", "with --accept: why they are to be other; kept in the golden",
+     SETTING_AT_NAME(struct check, reason)},
+    {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
+     "the suite's own folder", SETTING_AT_NAME(struct check, root)},
+    {0},
+};
+
+bool check_names_match(const struct check_names *names, const char *name)
+{
+    for (uint32_t i = 0; i < names->count; ++i) {
+        if (strcmp(names->patterns[i], "all") == 0 || suite_matches(names->patterns[i], name))
+            return true;
+    }
+    return false;
+}
+
+static bool check_request(struct cli_reader *reader, struct check *check)
+{
+    char why[SETTING_WHY_BYTES];
+    if (!reader->positional)
+        return cli_misuse(reader, "a suite is missing");
+    if (reader->other_count && !check->accept.count)
+        return cli_misuse(reader, "`%s` is one argument too many", reader->others[0]);
+    for (uint32_t i = 0; i < reader->other_count; ++i) {
+        if (!add_names(reader->others[i], &check->accept, why))
+            return cli_misuse(reader, "--accept%s", why);
+    }
+    if (check->reason && !check->accept.count)
+        return cli_misuse(reader, "--reason is why something is accepted, and --accept is missing");
+    if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
+        return cli_misuse(reader, "--reason: 1 to %d bytes are needed", GOLDEN_REASON_MAX);
+    return true;
+}
+
+/* ---- Which cases ---- */
+
+/* Each pattern is to stand for a case. */
+static bool check_patterns(const struct check *check, const struct check_names *names,
+                           const char *option)
+{
+    for (uint32_t i = 0; i < names->count; ++i) {
+        const struct check_names one = {{names->patterns[i]}, 1};
+        uint32_t at = 0;
+        while (at < check->suite.count && !check_names_match(&one, check->suite.cases[at].name))
+            ++at;
+        if (at == check->suite.count) {
+            cli_error("%s `%s`: %s has no such case", option, names->patterns[i],
+                      check->suite.path);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool choose(struct check *check)
+{
+    uint32_t count = check->suite.count;
+    check->wanted = array_alloc_zeroed(count, sizeof *check->wanted);
+    check->results = array_alloc_zeroed(count, sizeof *check->results);
+    if (!check->wanted || !check->results) {
+        cli_error("out of memory");
+        return false;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        const char *name = check->suite.cases[i].name;
+        check->results[i].item = &check->suite.cases[i];
+        check->wanted[i] = (!check->only.count || check_names_match(&check->only, name)) &&
+                           (!check->accept.count || check_names_match(&check->accept, name));
+    }
+    return check_patterns(check, &check->only, "--only") &&
+           check_patterns(check, &check->accept, "--accept");
+}
+
+/* ---- Cases ---- */
+
+static bool find_verdict(struct check *check, const struct drawing *drawing,
+                         struct check_result *result)
+{
+    return drawing_describe(drawing, result->item, &result->found) == WHIT_OK &&
+           verdict_find(result, &check->golden);
+}
+
+/* Whether no other case can be drawn either. */
+static bool ends_all(whit_result result)
+{
+    return result == WHIT_ERROR_NO_DEVICE || result == WHIT_ERROR_DEVICE ||
+           result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_TIME_LIMIT ||
+           result == WHIT_ERROR_CANCELLED;
+}
+
+static whit_result run_case(struct check *check, struct studio *studio, uint32_t index)
+{
+    struct check_result *result = &check->results[index];
+    struct drawing drawing;
+    char where[1024];
+    double start_ms = whit_clock_ms();
+    snprintf(where, sizeof where, "%.500s:%u: %s", check->suite.path, result->item->line,
+             result->item->name);
+    cli_errors_of(where);
+    whit_result drawn = studio_draw(studio, index, false, &drawing);
+    if (drawn == WHIT_OK && !find_verdict(check, &drawing, result))
+        drawn = WHIT_ERROR_MEMORY;
+    drawing_finish(&drawing);
+    result->time_ms = whit_clock_ms() - start_ms;
+    result->error = drawn;
+    if (drawn != WHIT_OK && !ends_all(drawn)) {
+        const char *why = cli_said()[0] ? cli_said() : whit_result_name(drawn);
+        verdict_set(result, CHECK_BROKEN, string_format("cannot be drawn: %s", why));
+    }
+    cli_errors_of(NULL);
+    return ends_all(drawn) ? drawn : WHIT_OK;
+}
+
+static void print_result(const struct check *check, const struct check_result *result)
+{
+    if (check->settings.quiet && (result->verdict == CHECK_OK || result->verdict == CHECK_SAME))
+        return;
+    printf("%s: %s\n", result->item->name, cli_shown(result->text));
+    fflush(stdout);
+}
+
+static whit_result run_cases(struct check *check)
+{
+    struct studio studio;
+    whit_result result = studio_open(&studio, &check->settings, &check->suite, check->wanted);
+    for (uint32_t i = 0; result == WHIT_OK && i < check->suite.count; ++i) {
+        if (!check->wanted[i])
+            continue;
+        result = run_case(check, &studio, i);
+        if (result == WHIT_OK)
+            print_result(check, &check->results[i]);
+    }
+    if (studio.job.device)
+        whit_device_get_info(studio.job.device, &check->device);
+    if (result == WHIT_OK && job_check_validation(&studio.job) != EXIT_FINE)
+        result = WHIT_ERROR_FAILED;
+    studio_close(&studio);
+    return result;
+}
+
+/* ---- All of it ---- */
+
+static void print_counts(const struct check *check)
+{
+    uint32_t counts[CHECK_VERDICTS] = {0}, drawn = 0;
+    for (uint32_t i = 0; i < check->suite.count; ++i)
+        ++counts[check->results[i].verdict];
+    drawn = check->suite.count - counts[CHECK_NOT_RUN];
+    printf("%u case%s", drawn, drawn == 1 ? "" : "s");
+    for (uint32_t verdict = CHECK_OK; verdict < CHECK_VERDICTS; ++verdict) {
+        if (counts[verdict])
+            printf(", %u %s", counts[verdict], verdict_word((enum check_verdict)verdict));
+    }
+    putchar('\n');
+}
+
+static uint32_t count_gone(const struct check *check)
+{
+    uint32_t gone = 0;
+    for (uint32_t i = 0; i < check->golden.count; ++i)
+        gone += suite_find(&check->suite, check->golden.cases[i].name) == NULL;
+    return gone;
+}
+
+static int sum_up(struct check *check)
+{
+    int status = EXIT_FINE;
+    for (uint32_t i = 0; i < check->suite.count; ++i)
+        status = verdict_exit(&check->results[i], status);
+    if (status == EXIT_MISSING && !check->settings.quiet)
+        cli_note("%s: `--accept all` takes what is new into it", check->golden_path);
+    uint32_t gone = count_gone(check);
+    if (gone && !check->settings.quiet)
+        cli_note("%s has %u case%s that the suite has not", check->golden_path, gone,
+                 gone == 1 ? "" : "s");
+    return status;
+}
+
+static int list(const struct check *check)
+{
+    for (uint32_t i = 0; i < check->suite.count; ++i) {
+        if (check->wanted[i])
+            puts(check->suite.cases[i].name);
+    }
+    return cli_finish_stdout(EXIT_FINE);
+}
+
+static int work(struct check *check)
+{
+    whit_result result = run_cases(check);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    if (check->accept.count) {
+        int status = check_accept(check);
+        if (status != EXIT_FINE)
+            return status;
+    }
+    print_counts(check);
+    return cli_finish_stdout(sum_up(check));
+}
+
+static void say_wrong(void *user, const char *text)
+{
+    (void)user;
+    cli_error("%s", text);
+}
+
+static int run(const struct cli_command *command, int argc, char **argv)
+{
+    struct cli_reader reader;
+    struct check check = {.settings = settings_usual()};
+    struct job common = {.start_ms = whit_clock_ms()};
+    cli_reader_init(&reader, command, argc, argv);
+    if (!cli_read(&reader, &check, &check.settings) || !check_request(&reader, &check))
+        return reader.status;
+    check.golden_path = golden_path(reader.positional);
+    int status = EXIT_USAGE;
+    common.settings = check.settings;
+    if (suite_read(&check.suite, reader.positional, check.root, say_wrong, NULL) &&
+        check.golden_path && golden_read(&check.golden, check.golden_path) && choose(&check)) {
+        job_start(&common);
+        status = check.list ? list(&check) : work(&check);
+    }
+    for (uint32_t i = 0; check.results && i < check.suite.count; ++i)
+        verdict_finish(&check.results[i]);
+    free(check.results);
+    free(check.wanted);
+    golden_finish(&check.golden);
+    suite_finish(&check.suite);
+    free(check.golden_path);
+    return status;
+}
+
+const struct cli_command command_check = {
+    .name = "check",
+    .arguments = "SUITE [options]",
+    .summary = "Draws a suite of pictures and says which are other than its golden.",
+    .details =
+        "A line of SUITE is NAME SCENE OPTIONS, with options of `whit render`, or NAME expect A, "
+        "B.\n"
+        "SUITE.golden beside it has hashes of what was accepted. See docs/check.md.\n"
+        "Exit codes: 0 all as it was, 1 something differs or is refused, 2 a bad suite, 3 no\n"
+        "device, 4 no golden, 5 time limit, 130 interrupted.\n",
+    .options = options,
+    .settings = IN_CHECK,
+    .takes_many = true,
+    .run = run,
+};

@@ -1,0 +1,143 @@
+/* What a golden keeps of a drawing. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/draw.h"
+#include "base/array.h"
+#include "base/hash.h"
+#include "settings/quote.h"
+
+enum { KEY_BYTES = 2048 };
+
+/* Devices give NaN any sign and any bits: it counts as one value. */
+static uint64_t hash_floats(const whit_image *image)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    size_t count = (size_t)info.width * info.height * info.channels;
+    const float *floats = whit_image_floats(image);
+    uint64_t hash = hash_bytes(HASH_START, &info.channels, sizeof info.channels);
+    float row[1024];
+    for (size_t at = 0; at < count; at += sizeof row / sizeof *row) {
+        size_t some = count - at < sizeof row / sizeof *row ? count - at : sizeof row / sizeof *row;
+        for (size_t i = 0; i < some; ++i)
+            row[i] = isnan(floats[at + i]) ? NAN : floats[at + i];
+        hash = hash_bytes(hash, row, some * sizeof *row);
+    }
+    return hash;
+}
+
+static uint64_t hash_ids(const whit_image *image)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    size_t count = (size_t)info.width * info.height * info.channels;
+    return hash_bytes(HASH_START, whit_image_words(image), count * sizeof(uint32_t));
+}
+
+/* Of pixels that are finite; of one channel three times that. */
+static void find_mean(const whit_image *image, double mean[3])
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    const float *at = whit_image_floats(image);
+    size_t count = 0;
+    double sum[3] = {0.0};
+    for (size_t i = 0; i < (size_t)info.width * info.height; ++i, at += info.channels) {
+        bool grey = info.channels < 3;
+        const float rgb[3] = {at[0], grey ? at[0] : at[1], grey ? at[0] : at[2]};
+        if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+            continue;
+        for (int k = 0; k < 3; ++k)
+            sum[k] += (double)rgb[k];
+        ++count;
+    }
+    for (int k = 0; k < 3; ++k)
+        mean[k] = count ? sum[k] / (double)count : 0.0;
+}
+
+static void put_text(void *user, const char *part)
+{
+    fputs(part, user);
+}
+
+/* "room.json --depth 4" */
+static char *made_by(const struct check_case *item)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *to = open_memstream(&text, &size);
+    if (!to)
+        return NULL;
+    quote_word(item->scene, put_text, to);
+    fprintf(to, "%s%s", item->options[0] ? " " : "", item->options);
+    return fclose(to) == 0 ? text : NULL;
+}
+
+/* ---- Parts ---- */
+
+/* Puts one thing of which the picture was made: `kind` "mesh", `name` that is the same from run to
+   run, and a hash of all that the picture depends on. */
+static bool put_part(struct golden *found, const struct check_case *item, const char *kind,
+                     const char *name, uint64_t content)
+{
+    char text[KEY_BYTES], key[KEY_BYTES];
+    snprintf(text, sizeof text, "%s%s%s of %s", kind, name[0] ? " " : "", name, item->loaded);
+    whit_text_show(text, key, sizeof key);
+    uint32_t hash = golden_part_hash(key, content);
+    return golden_put_part(found, key, hash) && golden_case_add_part(&found->cases[0], hash);
+}
+
+/* The one place that knows what a scene is made of: all of it as one part. */
+static bool put_scene_parts(struct golden *found, const struct check_case *item,
+                            const whit_scene *scene)
+{
+    whit_scene_info info;
+    whit_scene_get_info(scene, &info);
+    return put_part(found, item, "all", "", info.hash);
+}
+
+static bool put_shader_part(struct golden *found, const struct check_case *item,
+                            const whit_shader *shader)
+{
+    whit_shader_info info;
+    if (!shader)
+        return true;
+    whit_shader_get_info(shader, &info);
+    return put_part(found, item, "functions", "", info.hash);
+}
+
+/* ---- All of it ---- */
+
+static bool fill(const struct drawing *drawing, const struct check_case *item, struct golden *found)
+{
+    const whit_stats *stats = &drawing->stats;
+    const uint64_t rays[WHIT_RAY_KINDS] = {stats->rays_primary, stats->rays_shadow,
+                                           stats->rays_reflected, stats->rays_refracted};
+    whit_image_info info;
+    whit_image_get_info(drawing->ids, &info);
+    struct golden_case one = {.name = string_copy(item->name),
+                              .ids = hash_ids(drawing->ids),
+                              .colors = hash_floats(drawing->color),
+                              .width = info.width,
+                              .height = info.height,
+                              .made_by = made_by(item)};
+    memcpy(one.rays, rays, sizeof rays);
+    find_mean(drawing->color, one.mean);
+    bool put = one.name && one.made_by && golden_put(found, &one);
+    golden_case_finish(&one);
+    return put && put_scene_parts(found, item, drawing->job.scene) &&
+           put_shader_part(found, item, drawing->job.shader);
+}
+
+whit_result drawing_describe(const struct drawing *drawing, const struct check_case *item,
+                             struct golden *found)
+{
+    *found = (struct golden){.exists = true};
+    if (fill(drawing, item, found))
+        return WHIT_OK;
+    cli_error("out of memory");
+    golden_finish(found);
+    return WHIT_ERROR_MEMORY;
+}

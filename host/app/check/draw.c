@@ -1,0 +1,261 @@
+#include "app/check/draw.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+#include "base/array.h"
+
+struct studio_tree {
+    struct settings settings;
+    whit_accel *accel;
+};
+struct studio_scene {
+    struct settings settings;
+    whit_scene *scene;
+    struct studio_tree *trees;
+    uint32_t tree_count, tree_capacity;
+};
+
+/* ---- The device ---- */
+
+static bool any_compiles(const struct studio *studio)
+{
+    for (uint32_t i = 0; i < studio->suite->count; ++i) {
+        if (studio->wanted[i] && settings_compiles(studio->suite->cases[i].settings))
+            return true;
+    }
+    return false;
+}
+
+whit_result studio_open(struct studio *studio, const struct settings *common,
+                        const struct suite *suite, const bool *wanted)
+{
+    *studio = (struct studio){.suite = suite, .wanted = wanted, .job = {.settings = *common}};
+    whit_result result = WHIT_OK;
+    /* The compiler's process has the memory that this one has now. */
+    if (any_compiles(studio))
+        result = job_begin_compiler(&studio->job, &cli_log);
+    return result == WHIT_OK ? job_open_device(&studio->job) : result;
+}
+
+/* ---- What cases share ---- */
+
+static void finish_scene(struct studio_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->tree_count; ++i)
+        whit_accel_destroy(scene->trees[i].accel);
+    free(scene->trees);
+    whit_scene_destroy(scene->scene);
+}
+
+static void drop_renderer(struct studio *studio)
+{
+    whit_renderer_destroy(studio->renderer);
+    studio->renderer = NULL;
+}
+
+static bool is_needed(const struct studio *studio, const struct settings *settings, uint32_t from)
+{
+    for (uint32_t i = from; i < studio->suite->count; ++i) {
+        if (studio->wanted[i] && settings_same_scene(settings, studio->suite->cases[i].settings))
+            return true;
+    }
+    return false;
+}
+
+/* Frees scenes that no case from `from` on has. */
+static void drop_scenes(struct studio *studio, uint32_t from)
+{
+    for (uint32_t i = studio->scene_count; i-- > 0;) {
+        struct studio_scene *scene = &studio->scenes[i];
+        if (is_needed(studio, &scene->settings, from))
+            continue;
+        if (studio->renderer && settings_same_scene(&scene->settings, &studio->drawn_as))
+            drop_renderer(studio);
+        finish_scene(scene);
+        *scene = studio->scenes[--studio->scene_count];
+    }
+}
+
+static whit_result out_of_memory(void)
+{
+    cli_error("out of memory");
+    return WHIT_ERROR_MEMORY;
+}
+
+/* The job's scene, loaded where no case before has done so. */
+static whit_result take_scene(struct studio *studio, struct job *job, struct studio_scene **out)
+{
+    for (uint32_t i = 0; i < studio->scene_count; ++i) {
+        *out = &studio->scenes[i];
+        job->scene = (*out)->scene;
+        if (settings_same_scene(&(*out)->settings, &job->settings))
+            return job_take_scene(job);
+    }
+    struct studio_scene scene = {.settings = job->settings};
+    job->scene = NULL;
+    whit_result result = job_load(job);
+    scene.scene = job->scene;
+    if (scene.scene &&
+        !ARRAY_PUSH(studio->scenes, studio->scene_count, studio->scene_capacity, scene)) {
+        finish_scene(&scene);
+        return out_of_memory();
+    }
+    *out = studio->scenes + studio->scene_count - 1;
+    return result;
+}
+
+/* The trees that the job asks for over its scene. */
+static whit_result take_trees(struct job *job, struct studio_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->tree_count; ++i) {
+        job->accel = scene->trees[i].accel;
+        if (settings_same_trees(&scene->trees[i].settings, &job->settings))
+            return WHIT_OK;
+    }
+    job->accel = NULL;
+    whit_result result = job_build(job);
+    struct studio_tree tree = {job->settings, job->accel};
+    if (!tree.accel || ARRAY_PUSH(scene->trees, scene->tree_count, scene->tree_capacity, tree))
+        return result;
+    whit_accel_destroy(tree.accel);
+    return out_of_memory();
+}
+
+/* Compiles the case's functions, unless those of the case before are the same. */
+static whit_result take_shader(struct studio *studio, struct job *job)
+{
+    bool same = studio->job.shader && settings_same_shader(&studio->drawn_as, &job->settings);
+    if (!same) {
+        drop_renderer(studio);
+        whit_shader_destroy(studio->job.shader);
+        studio->job.shader = NULL;
+        job->compiler = studio->job.compiler;
+        job->shader = NULL;
+        whit_result result = job_load_shader(job);
+        studio->job.shader = job->shader;
+        if (result != WHIT_OK)
+            return result;
+    }
+    job->shader = studio->job.shader;
+    return layers_check(job) ? WHIT_OK : WHIT_ERROR_USAGE;
+}
+
+/* ---- A picture ---- */
+
+static whit_result make_renderer(struct studio *studio, struct drawing *drawing, bool counts)
+{
+    const struct job *job = &drawing->job;
+    drawing->params = job_picture(job);
+    drawing->params.count |= counts;
+    bool same = studio->renderer && studio->counted == drawing->params.count &&
+                settings_same_kernel(&studio->drawn_as, &job->settings);
+    whit_result result;
+    if (same) {
+        result = whit_renderer_set_view(studio->renderer, &drawing->params);
+    } else {
+        drop_renderer(studio);
+        result = whit_renderer_create(job->device, job->accel, &drawing->params, &studio->renderer);
+    }
+    studio->counted = drawing->params.count;
+    studio->drawn_as = job->settings;
+    drawing->renderer = studio->renderer;
+    return result;
+}
+
+/* Costs as numbers, a function of the shader's, or colours with what is drawn over them. */
+static whit_result read_color(struct drawing *drawing)
+{
+    const struct settings *settings = &drawing->job.settings;
+    whit_shader_info info = {.aov_count = 0};
+    whit_aov aov = WHIT_AOV_COLOR;
+    if (settings->paint != PAINT_COLOR)
+        return whit_renderer_cost_image(drawing->renderer,
+                                        (whit_view)(settings->paint - PAINT_DEPTH),
+                                        (whit_ray_kind)settings->paint_rays, &drawing->color);
+    if (settings->aov[0])
+        whit_shader_get_info(drawing->job.shader, &info);
+    for (uint32_t i = 0; i < info.aov_count; ++i) {
+        if (strcmp(info.aovs[i], settings->aov) == 0)
+            aov = (whit_aov)(WHIT_AOV_SHADER + i);
+    }
+    whit_result result = whit_renderer_image(drawing->renderer, aov, &drawing->color);
+    const whit_overlay overlay = settings_overlay(settings);
+    return result == WHIT_OK && aov == WHIT_AOV_COLOR
+               ? whit_renderer_draw_over(drawing->renderer, &overlay, drawing->color)
+               : result;
+}
+
+static whit_result check_expected(struct drawing *drawing)
+{
+    bool held;
+    whit_result result = whit_renderer_check_expectations(drawing->renderer, &held);
+    return result == WHIT_OK && !held ? WHIT_ERROR_FAILED : result;
+}
+
+static whit_result render(struct drawing *drawing)
+{
+    whit_result result = whit_renderer_render(drawing->renderer);
+    if (result == WHIT_OK)
+        result = check_expected(drawing);
+    if (result != WHIT_OK)
+        return result;
+    whit_renderer_get_stats(drawing->renderer, &drawing->stats);
+    result = read_color(drawing);
+    return result == WHIT_OK ? whit_renderer_image(drawing->renderer, WHIT_AOV_IDS, &drawing->ids)
+                             : result;
+}
+
+/* The case's own settings, with what the command line says for all cases. */
+static struct settings settings_of(const struct studio *studio, uint32_t index)
+{
+    const struct settings *common = &studio->job.settings;
+    struct settings settings = *studio->suite->cases[index].settings;
+    memcpy(settings.device, common->device, sizeof settings.device);
+    settings.load.require_sandbox = common->load.require_sandbox;
+    settings.validation = common->validation;
+    settings.no_cache = common->no_cache;
+    settings.time_limit_s = common->time_limit_s;
+    settings.quiet = true;
+    return settings;
+}
+
+whit_result studio_draw(struct studio *studio, uint32_t index, bool counts, struct drawing *drawing)
+{
+    struct studio_scene *scene;
+    *drawing = (struct drawing){.job = {.settings = settings_of(studio, index)}};
+    struct job *job = &drawing->job;
+    drop_scenes(studio, index);
+    whit_result result = take_shader(studio, job);
+    if (result == WHIT_OK)
+        result = take_scene(studio, job, &scene);
+    if (result == WHIT_OK)
+        result = render_check_camera(job);
+    if (result == WHIT_OK)
+        result = take_trees(job, scene);
+    job->device = studio->job.device;
+    if (result == WHIT_OK)
+        result = make_renderer(studio, drawing, counts);
+    if (result == WHIT_OK)
+        result = render(drawing);
+    if (result != WHIT_OK)
+        drop_renderer(studio);
+    return result == WHIT_OK ? job_still_wanted() : result;
+}
+
+void drawing_finish(struct drawing *drawing)
+{
+    whit_image_destroy(drawing->color);
+    whit_image_destroy(drawing->ids);
+    *drawing = (struct drawing){.renderer = NULL};
+}
+
+void studio_close(struct studio *studio)
+{
+    drop_renderer(studio);
+    for (uint32_t i = 0; i < studio->scene_count; ++i)
+        finish_scene(&studio->scenes[i]);
+    free(studio->scenes);
+    job_finish(&studio->job);
+}

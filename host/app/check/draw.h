@@ -1,0 +1,49 @@
+/* The pictures of a suite, drawn one after the other in one process: one device, each scene, tree
+   and shader loaded once for all cases that share it. */
+#ifndef APP_CHECK_DRAW_H
+#define APP_CHECK_DRAW_H
+
+#include "app/check/golden.h"
+#include "app/check/suite.h"
+#include "app/job.h"
+
+/* A scene and the trees over it that cases have asked for. */
+struct studio_scene;
+
+struct studio {
+    const struct suite *suite;
+    const bool *wanted; /* of each case of the suite: it will be drawn */
+    struct job job;     /* with the settings of the command line; its device and compiler */
+    struct studio_scene *scenes;
+    uint32_t scene_count, scene_capacity;
+    whit_renderer *renderer; /* of the case before, with its settings: the next may take it over */
+    struct settings drawn_as;
+    bool counted;
+};
+
+/* What one case came to. */
+struct drawing {
+    struct job job;          /* with scene, accel and device, which are the studio's */
+    whit_renderer *renderer; /* likewise, up to the next case */
+    whit_renderer_params params;
+    whit_stats stats;
+    whit_image *color, *ids; /* linear floats, as they are hashed; instance and primitive */
+};
+
+/* Opens the device. `common`: the settings of the command line, whose device and limits stand for
+   all cases. What fails was said. studio_close() it either way. */
+WHIT_CHECK whit_result studio_open(struct studio *studio, const struct settings *common,
+                                   const struct suite *suite, const bool *wanted);
+/* Draws case `index`; `counts`: with what traversals cost. What fails was said.
+   drawing_finish() it either way, before the next. */
+WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool counts,
+                                   struct drawing *drawing);
+void drawing_finish(struct drawing *drawing);
+void studio_close(struct studio *studio);
+
+/* What a golden keeps of a drawing; its name is the case's. *found gets the keys of parts too, as
+   the parts of a golden with that one case. WHIT_ERROR_MEMORY, said. */
+WHIT_CHECK whit_result drawing_describe(const struct drawing *drawing,
+                                        const struct check_case *item, struct golden *found);
+
+#endif

@@ -1,0 +1,211 @@
+#include "app/check/verdict.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "settings/values.h"
+
+/* Parts that a line names; the rest is counted. */
+enum { PARTS_NAMED = 4 };
+
+const char *verdict_word(enum check_verdict verdict)
+{
+    static const char *const words[CHECK_VERDICTS] = {
+        [CHECK_NOT_RUN] = "not run",   [CHECK_OK] = "ok",           [CHECK_SAME] = "same",
+        [CHECK_ACCEPTED] = "accepted", [CHECK_DIFFERS] = "differs", [CHECK_UNMET] = "unmet",
+        [CHECK_VACUOUS] = "refused",   [CHECK_NEW] = "new",         [CHECK_BROKEN] = "broken",
+    };
+    return words[verdict];
+}
+
+void verdict_set(struct check_result *result, enum check_verdict verdict, char *text)
+{
+    free(result->text);
+    result->verdict = verdict;
+    result->text = text;
+}
+
+void verdict_finish(struct check_result *result)
+{
+    free(result->text);
+    free(result->changed);
+    golden_finish(&result->found);
+}
+
+/* ---- What it is made of ---- */
+
+static bool has_part(const struct golden_case *item, uint32_t hash)
+{
+    for (uint32_t i = 0; i < item->part_count; ++i) {
+        if (item->parts[i] == hash)
+            return true;
+    }
+    return false;
+}
+
+static void put_part(FILE *to, uint32_t *count, const char *key, const char *what)
+{
+    if (++*count <= PARTS_NAMED)
+        fprintf(to, "%s%s%s", *count > 1 ? ", " : "", key, what);
+}
+
+/* Whether the old case has a part of that key, whatever is in it. */
+static bool knows_key(const struct golden *golden, const struct golden_case *old, const char *key)
+{
+    for (uint32_t i = 0; i < old->part_count; ++i) {
+        const char *known = golden_part_key(golden, old->parts[i]);
+        if (known && strcmp(known, key) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Parts that are other, new or gone. */
+static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
+                                  const struct golden_case *old, const struct golden *found)
+{
+    const struct golden_case *now = &found->cases[0];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < found->part_count; ++i) {
+        const struct golden_part *part = &found->parts[i];
+        if (!has_part(old, part->hash))
+            put_part(to, &count, part->key, knows_key(golden, old, part->key) ? "" : " (new)");
+    }
+    for (uint32_t i = 0; i < old->part_count; ++i) {
+        const char *key = golden_part_key(golden, old->parts[i]);
+        if (!has_part(now, old->parts[i]) && key && !knows_key(found, now, key))
+            put_part(to, &count, key, " (gone)");
+    }
+    if (count > PARTS_NAMED)
+        fprintf(to, " and %u more", count - PARTS_NAMED);
+    return count;
+}
+
+/* NULL in *text: nothing is other. False: out of memory. */
+static bool find_changed(const struct golden *golden, const struct golden_case *old,
+                         const struct golden *found, char **text)
+{
+    const struct golden_case *now = &found->cases[0];
+    size_t size;
+    *text = NULL;
+    FILE *to = open_memstream(text, &size);
+    if (!to)
+        return false;
+    bool options = strcmp(old->made_by, now->made_by) != 0;
+    uint32_t count = put_changed_parts(to, golden, old, found);
+    if (options)
+        fprintf(to, "%s`%s`, was `%s`", count ? ", " : "", now->made_by, old->made_by);
+    if (fclose(to) != 0)
+        return false;
+    if (!options && !count) {
+        free(*text);
+        *text = NULL;
+    }
+    return true;
+}
+
+/* ---- What is seen ---- */
+
+static void put_rays(FILE *to, const struct golden_case *old, const struct golden_case *now)
+{
+    const char *before = "; rays: ";
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
+        if (old->rays[kind] == now->rays[kind])
+            continue;
+        fprintf(to, "%s%" PRIu64 " %s, were %" PRIu64, before, now->rays[kind],
+                value_word(values_rays, kind), old->rays[kind]);
+        before = ", ";
+    }
+}
+
+static void put_mean(FILE *to, const struct golden_case *old, const struct golden_case *now)
+{
+    char was[80], is[80];
+    snprintf(was, sizeof was, "%.6g %.6g %.6g", old->mean[0], old->mean[1], old->mean[2]);
+    snprintf(is, sizeof is, "%.6g %.6g %.6g", now->mean[0], now->mean[1], now->mean[2]);
+    if (strcmp(was, is) != 0)
+        fprintf(to, "; mean colour %s, was %s", is, was);
+}
+
+static bool differs(const struct golden_case *old, const struct golden_case *now)
+{
+    return old->ids != now->ids || old->colors != now->colors || old->width != now->width ||
+           old->height != now->height;
+}
+
+static void put_difference(FILE *to, const struct golden_case *old, const struct golden_case *now)
+{
+    bool ids = old->ids != now->ids, colors = old->colors != now->colors;
+    if (old->width != now->width || old->height != now->height)
+        fprintf(to, "%u x %u pixels, were %u x %u", now->width, now->height, old->width,
+                old->height);
+    else
+        fputs(ids && colors ? "colours other, and what pixels hit"
+              : ids         ? "what pixels hit is other, with the same colours"
+                            : "colours other, of the same hits",
+              to);
+    put_rays(to, old, now);
+    put_mean(to, old, now);
+}
+
+/* ---- The verdict ---- */
+
+static char *text_of(enum check_verdict verdict, const struct golden_case *old,
+                     const struct golden_case *now, const char *changed)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *to = open_memstream(&text, &size);
+    if (!to)
+        return NULL;
+    if (verdict == CHECK_OK)
+        fputs("ok", to);
+    else if (verdict == CHECK_NEW)
+        fputs("no golden", to);
+    else if (verdict == CHECK_SAME)
+        fputs("input changed, picture same", to);
+    else
+        fputs("differs: ", to);
+    if (verdict == CHECK_DIFFERS)
+        put_difference(to, old, now);
+    else if (old)
+        put_rays(to, old, now);
+    if (changed)
+        fprintf(to, "%s%s", verdict == CHECK_DIFFERS ? "; input changed: " : ": ", changed);
+    return fclose(to) == 0 ? text : NULL;
+}
+
+bool verdict_find(struct check_result *result, const struct golden *golden)
+{
+    const struct golden_case *now = &result->found.cases[0];
+    const struct golden_case *old = golden_find(golden, now->name);
+    if (old && !find_changed(golden, old, &result->found, &result->changed))
+        return false;
+    enum check_verdict verdict = !old                ? CHECK_NEW
+                                 : differs(old, now) ? CHECK_DIFFERS
+                                 : result->changed   ? CHECK_SAME
+                                                     : CHECK_OK;
+    verdict_set(result, verdict, text_of(verdict, old, now, result->changed));
+    return result->text != NULL;
+}
+
+/* Wrong input is worse than a difference, and that is worse than a golden that is missing. */
+int verdict_exit(const struct check_result *result, int worst)
+{
+    static const int order[] = {EXIT_FINE, EXIT_MISSING, EXIT_DIFFERS, EXIT_USAGE};
+    int code = EXIT_FINE, a = 0, b = 0;
+    if (result->verdict == CHECK_NEW)
+        code = EXIT_MISSING;
+    else if (result->verdict == CHECK_BROKEN)
+        code = result->error == WHIT_ERROR_FAILED || result->error == WHIT_ERROR_STATUS
+                   ? EXIT_DIFFERS
+                   : EXIT_USAGE;
+    else if (result->verdict >= CHECK_DIFFERS)
+        code = EXIT_DIFFERS;
+    while (order[a] != code)
+        ++a;
+    while (order[b] != worst)
+        ++b;
+    return a > b ? code : worst;
+}

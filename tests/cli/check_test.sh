@@ -1,0 +1,81 @@
+#!/bin/sh
+# whit check: verdicts and exit codes, what is accepted and why, bad suites and goldens.
+. "$(dirname "$0")/common.sh"
+cd "$OUT" || exit 1
+cp "$SCENES/cube.json" "$SCENES/balls.json" .
+
+cat >looks.whit <<'END'
+# two scenes
+cube cube.json --size 64x48
+balls-{fast,exact} balls.json --size 64x48 --numerics {}
+END
+expect 4 "without a golden" check looks.whit
+check "each case is named" grep -qx "balls-exact: no golden" stdout
+check "they are counted" grep -qx "3 cases, 3 new" stdout
+check "nothing is written" test ! -e looks.golden
+expect 0 "accept one" check looks.whit --accept cube
+check "only that is drawn" grep -qx "1 case, 1 accepted" stdout
+check "a line a case" test "$(grep -c '^case' looks.golden)" -eq 1
+expect 4 "the rest is missing" check looks.whit
+check "one is fine" grep -qx "cube: ok" stdout
+expect 0 "accept the rest" check looks.whit --accept balls-fast balls-exact
+expect 0 "all as it was" check looks.whit
+check "three are fine" grep -qx "3 cases, 3 ok" stdout
+expect 0 "again, by one and in another order" check looks.whit --only balls-exact --only cube
+check "two of them" grep -qx "2 cases, 2 ok" stdout
+expect 0 "quiet" check looks.whit -q
+check "quiet: the counts alone" test "$(wc -l <stdout)" -eq 1
+shows "list" "^balls-fast$" check looks.whit --list
+sed -i '1s/.*/whit check golden 1, whit 99.9/' looks.golden
+expect 0 "a golden of another whit" check looks.whit
+
+# What is seen decides; what it was made of is told.
+cp looks.golden before
+sed -i 's/{"name": "/{ "name": "/' cube.json
+printf '\n' >>cube.json
+expect 0 "white space in a scene" check looks.whit
+sed -i 's/--size 64x48$/--size 64x48 --leaf 2/' looks.whit
+expect 0 "another tree" check looks.whit
+check "the picture is the same" grep -q "^cube: input changed, picture same: .cube.json --size 64x48 --leaf 2" stdout
+expect 0 "it is accepted without a reason" check looks.whit --accept cube
+check "the golden has it" grep -q "of cube.json --size 64x48 --leaf 2" looks.golden
+sed -i 's/--numerics {}/--numerics {} --depth 1/' looks.whit
+expect 1 "fewer bounces" check looks.whit
+check "differs" grep -q "^balls-fast: differs: colours other, of the same hits; rays: .* reflected, were" stdout
+check "the counts" grep -qx "3 cases, 1 ok, 2 differs" stdout
+cp looks.golden before
+refuse 2 "without a reason" "2 cases are other than the golden: .*--reason TEXT" check looks.whit --accept all
+check "nothing is written" cmp before looks.golden
+expect 0 "with a reason" check looks.whit --accept 'balls-*' --reason "two bounces less"
+check "it is shown first" grep -q "^balls-exact: differs: " stdout
+check "it is kept" test "$(grep -c '^ why two bounces less$' looks.golden)" -eq 2
+expect 0 "as it is now" check looks.whit
+expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
+check "what is as it was keeps its reason" test "$(grep -c '^ why two bounces less$' looks.golden)" -eq 2
+
+# Bad input.
+printf 'a cube.json\nb nowhere.json\nc cube.json -o x.png\n' >bad.whit
+expect 2 "two wrong lines" check bad.whit
+check "both are told" test "$(grep -c '^whit: error: bad.whit:[23]: ' stderr)" -eq 2
+check "nothing is drawn" test ! -s stdout
+refuse 2 "no suite" "a suite is missing" check
+refuse 2 "no such suite" "nowhere.whit: there is no such file" check nowhere.whit
+refuse 2 "no such case" "looks.whit has no such case" check looks.whit --accept cube nothing
+refuse 2 "no such pattern" "only .nothing" check looks.whit --only nothing
+refuse 2 "a reason alone" "accept is missing" check looks.whit --reason x
+refuse 2 "two suites" "one argument too many" check looks.whit looks.whit
+echo damaged >>looks.golden
+refuse 2 "a damaged golden" "looks.golden:[0-9]*: .damaged.: .case NAME. or" check looks.whit
+cp before looks.golden
+printf '{ "objects": [\n  oops ] }\n' >broken.json
+printf 'fine cube.json --size 64x48 --leaf 2\nbroken broken.json\nlost cube.json --camera nobody\n' >looks.whit
+expect 2 "scenes that cannot be drawn" check looks.whit
+check "with suite, case, file and line" grep -q "^whit: error: looks.whit:2: broken: .*broken.json:2" stderr
+check "a camera that is not there" grep -q "^whit: error: looks.whit:3: lost: .*no camera .nobody" stderr
+check "all are counted" grep -qx "3 cases, 1 new, 2 broken" stdout
+expect 2 "nor accepted" check looks.whit --accept all
+check "the others are" grep -q "^case fine$" looks.golden
+expect 5 "a time limit" check looks.whit --time-limit 0.001
+export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
+refuse 3 "no device" "no Vulkan driver" check looks.whit
+finish

@@ -1,0 +1,141 @@
+/* Goldens: what is written is read again, and what is damaged is told by its line. */
+#include "app/check/golden.h"
+#include "folder_fixture.h"
+
+#include "app/cli.h"
+
+static const struct golden_case room = {.name = (char[]){"room"},
+                                        .ids = 0x123456789abcdef0,
+                                        .colors = 0xfedcba9876543210,
+                                        .width = 256,
+                                        .height = 192,
+                                        .rays = {49152, 686760, 14486, 12725},
+                                        .mean = {0.251965, 1e-7, -3.5},
+                                        .made_by = (char[]){"room.json --size 256x192"},
+                                        .reason = (char[]){"a redder ball"}};
+
+static void fill(struct golden *golden)
+{
+    struct golden_case cube = room;
+    *golden = (struct golden){.exists = true};
+    assert_true(golden_put(golden, &room));
+    assert_true(golden_case_add_part(golden_find(golden, "room"), 0xdeadbeef));
+    assert_true(golden_case_add_part(golden_find(golden, "room"), 0x00000007));
+    cube.name = (char[]){"cube"};
+    cube.reason = NULL;
+    assert_true(golden_put(golden, &cube));
+    assert_true(golden_put_part(golden, "mesh ball of room.json", 0xdeadbeef));
+    assert_true(golden_put_part(golden, "light 0 of room.json", 0x00000007));
+    assert_true(golden_put_part(golden, "light 0 of room.json", 0x00000009)); /* nobody has it */
+}
+
+static const char text[] = "whit check golden 1, whit " WHIT_VERSION "\n"
+                           "\n"
+                           "case cube\n"
+                           " ids 123456789abcdef0 colors fedcba9876543210 size 256x192 rays 49152 "
+                           "686760 14486 12725 mean 0.251965 1e-07 -3.5\n"
+                           " of room.json --size 256x192\n"
+                           "\n"
+                           "case room\n"
+                           " ids 123456789abcdef0 colors fedcba9876543210 size 256x192 rays 49152 "
+                           "686760 14486 12725 mean 0.251965 1e-07 -3.5\n"
+                           " of room.json --size 256x192\n"
+                           " parts 00000007 deadbeef\n"
+                           " why a redder ball\n"
+                           "\n"
+                           "part light 0 of room.json\n"
+                           " 00000007\n"
+                           "\n"
+                           "part mesh ball of room.json\n"
+                           " deadbeef\n";
+
+TEST(text_is_read_again)
+{
+    struct golden golden, again;
+    char copy[sizeof text];
+    fill(&golden);
+    char *written = golden_text(&golden);
+    assert_string_equal(written, text);
+    golden_finish(&golden);
+    memcpy(copy, text, sizeof text);
+    assert_true(golden_read_text(&again, "x.golden", copy));
+    free(written);
+    written = golden_text(&again);
+    assert_string_equal(written, text);
+    assert_string_equal(again.by, WHIT_VERSION);
+    assert_string_equal(golden_part_key(&again, 0xdeadbeef), "mesh ball of room.json");
+    assert_null(golden_part_key(&again, 1));
+    assert_null(golden_find(&again, "roo"));
+    assert_string_equal(golden_find(&again, "room")->reason, "a redder ball");
+    free(written);
+    golden_remove(&again, 1);
+    written = golden_text(&again);
+    assert_null(strstr(written, "room\n"));
+    assert_null(strstr(written, "part"));
+    free(written);
+    golden_finish(&again);
+}
+
+/* Of another whit, or with another version's number: the numbers count. */
+TEST(another_whit_is_no_reason_to_refuse)
+{
+    struct golden golden;
+    char other[] = "whit check golden 1, whit 99.0.1-rc2\r\n";
+    assert_true(golden_read_text(&golden, "x.golden", other));
+    assert_string_equal(golden.by, "99.0.1-rc2");
+    golden_finish(&golden);
+}
+
+TEST(a_part_is_its_place_and_its_content)
+{
+    assert_int_not_equal(golden_part_hash("mesh a", 1), golden_part_hash("mesh a", 2));
+    assert_int_not_equal(golden_part_hash("mesh a", 1), golden_part_hash("mesh b", 1));
+}
+
+TEST(paths_are_beside_the_suite)
+{
+    static const char *const pairs[][2] = {{"looks.whit", "looks.golden"},
+                                           {"a.b/looks.whit", "a.b/looks.golden"},
+                                           {"a.whit/looks", "a.whit/looks.golden"},
+                                           {".whit", ".whit.golden"}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
+        char *path = golden_path(pairs[i][0]);
+        assert_string_equal(path, pairs[i][1]);
+        free(path);
+    }
+}
+
+#define HEAD "whit check golden 1, whit 0\n"
+#define IDS  " ids 1 colors 2 size 3x4 rays 5 6 7 8 mean 1 2 3\n"
+TEST(damage_is_told_by_its_line)
+{
+    static const struct {
+        const char *text, *told;
+    } damaged[] = {
+        {"", "x.golden:1: `whit check golden 1, whit VERSION` is needed"},
+        {"whit check golden 2, whit 9\n", "x.golden:1: a golden of format 2"},
+        {HEAD "case a\n" IDS, "x.golden:4: the case `a` above lacks a line"},
+        {HEAD "case a\n of b\ncase c\n", "x.golden:4: the case `a` above lacks a line"},
+        {HEAD "case a\n" IDS " of b\ncase a\n" IDS " of b\n", "x.golden:8: the case `a` above is "
+                                                              "there twice"},
+        {HEAD "case a\n" IDS IDS, "x.golden:4: `ids HASH"},
+        {HEAD "case a\n ids 1 colors 2\n", "x.golden:3: `ids HASH"},
+        {HEAD "case a\n parts 1 x\n", "x.golden:3: ` x` is no hash"},
+        {HEAD "case a\n of b\n of b\n", "x.golden:4: this stands there twice"},
+        {HEAD "case a\n off b\n", "x.golden:3: `off b` belongs to no case"},
+        {HEAD " of b\n", "x.golden:2: `of b` belongs to no case"},
+        {HEAD "part a\n x\n", "x.golden:3: the hash of a part is needed"},
+        {HEAD "<<<<<<< HEAD\n", "x.golden:2: a conflict of a merge is left in it"},
+        {HEAD "casea\n", "x.golden:2: `casea`: `case NAME` or `part NAME` is needed"},
+    };
+    for (size_t i = 0; i < sizeof damaged / sizeof *damaged; ++i) {
+        struct golden golden;
+        char copy[1024];
+        snprintf(copy, sizeof copy, "%s", damaged[i].text);
+        cli_errors_of("test");
+        assert_false(golden_read_text(&golden, "x.golden", copy));
+        if (strncmp(cli_said(), damaged[i].told, strlen(damaged[i].told)) != 0)
+            fail_msg("`%s` says `%s`", damaged[i].told, cli_said());
+        golden_finish(&golden);
+    }
+}
