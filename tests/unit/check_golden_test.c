@@ -47,7 +47,8 @@ static const char text[] = "whit check golden 1, whit " WHIT_VERSION "\n"
                            " 00000007\n"
                            "\n"
                            "part mesh ball of room.json\n"
-                           " deadbeef\n";
+                           " deadbeef\n"
+                           "\n";
 
 TEST(text_is_read_again)
 {

@@ -72,6 +72,17 @@ int check_accept(struct check *check)
             !take(check, result))
             return EXIT_USAGE;
     }
+    return check_prune(check);
+}
+
+int check_prune(struct check *check)
+{
+    for (uint32_t i = check->prune ? check->golden.count : 0; i-- > 0;) {
+        if (suite_find(&check->suite, check->golden.cases[i].name))
+            continue;
+        printf("%s: dropped\n", check->golden.cases[i].name);
+        golden_remove(&check->golden, i);
+    }
     whit_result result = golden_save(&check->golden, check->golden_path);
-    return result == WHIT_OK ? EXIT_FINE : cli_exit_of(result);
+    return result == WHIT_OK ? cli_finish_stdout(EXIT_FINE) : cli_exit_of(result);
 }

@@ -17,7 +17,7 @@ struct check {
     struct settings settings; /* of the command line, for all cases */
     const char *root, *reason;
     struct check_names accept, only;
-    bool list;
+    bool list, prune;
 
     struct suite suite;
     char *golden_path;
@@ -33,5 +33,8 @@ bool check_names_match(const struct check_names *names, const char *name);
 /* accept.c: takes into the golden what was found of the cases that --accept names, and saves it.
    What cannot be accepted was said. Gives the exit code. */
 int check_accept(struct check *check);
+/* accept.c: takes out of the golden those cases that the suite has not, and saves it. Gives the
+   exit code. */
+int check_prune(struct check *check);
 
 #endif

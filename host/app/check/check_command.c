@@ -39,6 +39,8 @@ static const struct setting options[] = {
      .kind = SETTING_OWN, .read = read_accept},
     {"reason", 0, "TEXT", "with --accept: why they are to be other; kept in the golden",
      SETTING_AT_NAME(struct check, reason)},
+    {"prune", 0, NULL, "drop what the golden has of cases that the suite has not",
+     SETTING_AT_FLAG(struct check, prune)},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
      "the suite's own folder", SETTING_AT_NAME(struct check, root)},
     {0},
@@ -210,8 +212,8 @@ static int sum_up(struct check *check)
         cli_note("%s: `--accept all` takes what is new into it", check->golden_path);
     uint32_t gone = count_gone(check);
     if (gone && !check->settings.quiet)
-        cli_note("%s has %u case%s that the suite has not", check->golden_path, gone,
-                 gone == 1 ? "" : "s");
+        cli_note("%s has %u case%s that the suite has not: `--prune` drops %s", check->golden_path,
+                 gone, gone == 1 ? "" : "s", gone == 1 ? "it" : "them");
     return status;
 }
 
@@ -226,6 +228,8 @@ static int list(const struct check *check)
 
 static int work(struct check *check)
 {
+    if (check->prune && !check->accept.count)
+        return check_prune(check);
     whit_result result = run_cases(check);
     if (result != WHIT_OK)
         return cli_exit_of(result);

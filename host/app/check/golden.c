@@ -340,7 +340,7 @@ char *golden_path(const char *suite)
 
 static void put_case(FILE *to, const struct golden_case *item)
 {
-    fprintf(to, "\ncase %s\n ids %016" PRIx64 " colors %016" PRIx64 " size %ux%u rays", item->name,
+    fprintf(to, "case %s\n ids %016" PRIx64 " colors %016" PRIx64 " size %ux%u rays", item->name,
             item->ids, item->colors, item->width, item->height);
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
         fprintf(to, " %" PRIu64, item->rays[kind]);
@@ -354,6 +354,7 @@ static void put_case(FILE *to, const struct golden_case *item)
         fputc('\n', to);
     if (item->reason)
         fprintf(to, " why %s\n", item->reason);
+    fputc('\n', to);
 }
 
 static bool names_part(const struct golden_case *item, uint32_t hash)
@@ -364,11 +365,12 @@ static bool names_part(const struct golden_case *item, uint32_t hash)
     return i < item->part_count;
 }
 
-/* Those that one of the `count` cases names. */
+/* Those that one of the `count` cases names. Behind each stands a line that never changes, behind
+   the last one too: git merges changes that have such a line between them. */
 static void put_parts(FILE *to, const struct golden *golden, const struct golden_case *cases,
                       uint32_t count)
 {
-    const char *before = "";
+    const char *before = NULL;
     for (uint32_t i = 0; i < golden->part_count; ++i) {
         const struct golden_part *part = &golden->parts[i];
         uint32_t c = 0;
@@ -376,11 +378,14 @@ static void put_parts(FILE *to, const struct golden *golden, const struct golden
             ++c;
         if (c == count)
             continue;
-        if (strcmp(before, part->key) != 0)
-            fprintf(to, "\npart %s\n", part->key);
+        bool same = before && strcmp(before, part->key) == 0;
+        if (!same)
+            fprintf(to, "%spart %s\n", before ? "\n" : "", part->key);
         fprintf(to, " %08" PRIx32 "\n", part->hash);
         before = part->key;
     }
+    if (before)
+        fputc('\n', to);
 }
 
 static char *text_of(const struct golden *golden, const struct golden_case *cases, uint32_t count,
@@ -392,7 +397,7 @@ static char *text_of(const struct golden *golden, const struct golden_case *case
     if (!to)
         return NULL;
     if (whole)
-        fprintf(to, "%s %d, whit %s\n", head, FORMAT, WHIT_VERSION);
+        fprintf(to, "%s %d, whit %s\n\n", head, FORMAT, WHIT_VERSION);
     for (uint32_t i = 0; i < count; ++i)
         put_case(to, &cases[i]);
     put_parts(to, golden, cases, count);

@@ -1,0 +1,59 @@
+#!/bin/sh
+# Goldens of whit check under git: what two people accept of different cases merges by itself.
+. "$(dirname "$0")/common.sh"
+needs git
+cd "$OUT" || exit 1
+export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_SYSTEM=/dev/null
+git init -q -b main . && git config user.name t && git config user.email t@t
+
+# scene NAME ANGLE: a scene of that name, another picture for each angle.
+scene() {
+    echo "{ \"objects\": [ { \"name\": \"$1\", \"shape\": \"box\", \"rotation\": [0, $2, 0] } ] }" >"$1.json"
+}
+# suite NAME...: a suite of these cases. Some of its lines never change, as of a suite that people write.
+suite() {
+    for name in "$@"; do
+        printf '# %s\n%s %s.json --size 16x12\n\n' "$name" "$name" "$name"
+    done >looks.whit
+}
+# accept NAME [REASON]: takes the case into the golden, as it is now.
+accept() {
+    "$WHIT" check looks.whit --accept "$1" ${2:+--reason "$2"} >accepted 2>&1 || { cat accepted; FAILED=1; }
+}
+commit() {
+    git add ./*.json looks.* && git commit -qm "$1"
+}
+# merges WHAT OURS THEIRS: shell functions that change something and accept it.
+merges() {
+    git checkout -q -B ours base && "$2" && commit ours
+    git checkout -q -B theirs base && "$3" && commit theirs
+    git checkout -q -B merged ours
+    check "$1: no conflict" git merge -q --no-edit theirs
+    expect 0 "$1: all as it was accepted" check looks.whit
+    check "$1: nothing but that" test ! -s stderr
+    cp looks.golden merged
+    expect 0 "$1: accepted as it is" check looks.whit --accept all
+    check "$1: the merged golden is what whit writes" cmp merged looks.golden
+    git checkout -q -f merged
+}
+
+suite a b c
+for name in a b c; do scene $name 20; done
+accept all
+commit base
+git branch base
+
+a_is_other() { scene a 30; accept a "turned"; }
+b_is_other() { scene b 40; accept b "turned too"; }
+c_is_other() { scene c 40; accept c "turned"; }
+new_behind_a() { suite a aa b c; scene aa 10; accept aa; }
+new_behind_b() { suite a b bb c; scene bb 15; accept bb "it is new"; }
+new_last() { suite a b c d; scene d 15; accept d "it is last"; }
+b_goes() { suite a c; git rm -q b.json; "$WHIT" check looks.whit --prune >pruned 2>&1 || FAILED=1; }
+
+merges "neighbours" a_is_other b_is_other
+merges "two new ones at different places" new_behind_a new_behind_b
+merges "a new one behind one that is other" a_is_other new_behind_a
+merges "the last one, and a new last one" c_is_other new_last
+merges "one that goes beside one that is other" b_goes c_is_other
+finish
