@@ -53,6 +53,32 @@ expect 0 "as it is now" check looks.whit
 expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
 check "what is as it was keeps its reason" test "$(grep -c '^ why two bounces less$' looks.golden)" -eq 2
 
+# What is expected.
+cat >hopes.whit <<'END'
+cube cube.json --size 64x48
+* expect nonfinite == 0, leaks == 0, max_stack > 0, max_stack <= 24, hits > 100, hits < 3072, rays.primary == 3072
+cube expect pixel(32,24).instance == "cube", pixel(0,0).instance == none, pixel(32,24).t > 1, pixel(0,0).primitive != 0
+cube expect rays > 3072, rays.cut_by_depth == 0, min >= 0, max < 1, pixel(32,24).material == "cube"
+END
+expect 1 "a number that there is none of" check hopes.whit
+check "is none" grep -qx "cube: no golden; line 3 expects pixel(0,0).primitive != 0, it is none" stdout
+sed -i 's/, pixel(0,0).primitive != 0//' hopes.whit
+expect 0 "all as expected" check hopes.whit --accept all
+expect 0 "still" check hopes.whit
+mean=$(sed -n 's/.* mean \([^ ]* [^ ]* [^ ]*\)$/\1/p' hopes.golden)
+cat >>hopes.whit <<END
+cube expect mean within 1e-5 of $mean
+cube expect nonfinite > 0, leaks != 0, max_stack > 24, hits == 3072, rays.shadow == 0, max < 0.1 0.1 0.1
+cube expect mean within 1e-5 of 0.5, pixel(32,24).instance == none, pixel(0,0).instance == "cube", pixel(32,24) == 0
+cube expect pixel(32,24).t < 1, pixel(32,24).material != "cube", rays.refracted > 0
+END
+expect 1 "nothing as expected" check hopes.whit
+check "each is told" test "$(tr ';' '\n' <stdout | grep -c ' expects ')" -eq 13
+check "with what is" grep -q "line 7 expects pixel(0,0).instance == \"cube\", it is none" stdout
+check "they are no difference" grep -qx "1 case, 1 unmet" stdout
+expect 1 "what is not as expected" check hopes.whit --accept all
+check "is not accepted" grep -qx "1 case, 1 unmet" stdout
+
 # Bad input.
 printf 'a cube.json\nb nowhere.json\nc cube.json -o x.png\n' >bad.whit
 expect 2 "two wrong lines" check bad.whit

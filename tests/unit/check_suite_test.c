@@ -187,3 +187,69 @@ TEST_IN(no_suite_is_told, folder_begin, folder_end)
     assert_string_equal(said, "z.whit: not a suite: it has bytes that are 0\n");
     suite_finish(&suite);
 }
+
+TEST_IN(expectations_are_read, folder_begin, folder_end)
+{
+    struct suite suite;
+    bool read = read_text(&suite,
+                          "a a.json --size 64x48\n"
+                          "a expect leaks==0, max_stack <= 24 , mean within 1e-3 of 0.4 0.5 0.6\n"
+                          "a expect pixel(63, 47).instance != none, pixel( 0,0 ) > 0.5\n"
+                          "a expect pixel(1,2).material == \"a == b\"\n",
+                          NULL);
+    if (!read)
+        fail_msg("%s", said);
+    const struct check_expectation *all = suite.cases[0].expectations;
+    assert_int_equal(suite.cases[0].expectation_count, 6);
+    assert_string_equal(expect_fields[all[0].field].name, "leaks");
+    assert_int_equal(all[0].op, EXPECT_EQUAL);
+    assert_false(expectation_counts(&all[0]));
+    assert_true(expectation_counts(&all[1]));
+    assert_int_equal(all[1].op, EXPECT_AT_MOST);
+    assert_true(all[1].numbers[0] == 24.0);
+    assert_int_equal(all[2].op, EXPECT_WITHIN);
+    assert_true(all[2].tolerance == 1e-3 && all[2].numbers[2] == 0.6);
+    assert_int_equal(all[3].op, EXPECT_OTHER);
+    assert_true(all[3].x == 63 && all[3].y == 47);
+    assert_null(all[3].word);
+    assert_string_equal(expect_fields[all[4].field].name, "pixel");
+    assert_int_equal(all[4].count, 1);
+    assert_string_equal(all[5].word, "a == b");
+    suite_finish(&suite);
+}
+
+TEST_IN(wrong_expectations_are_told, folder_begin, folder_end)
+{
+    static const char *const wrong[][2] = {
+        {"leeks == 0", "`leeks`: there is no such field; did you mean `leaks`; docs/check.md"},
+        {"instance == 0", "`instance`: there is no such field"},
+        {"pixel.instance == none", "`pixel.instance`: there is no such field"},
+        {"pixel == 1", "pixel(X,Y) with two whole numbers is needed"},
+        {"pixel(1).t == 1", "pixel(X,Y) with two whole numbers is needed"},
+        {"pixel(64,0).t == 1", "pixel(64,0) lies outside of 64 x 48 pixels"},
+        {"pixel(0,48) == 1", "pixel(0,48) lies outside of 64 x 48 pixels"},
+        {"leaks = 0", "`= 0`: == != <= >= < > or `within X of` is needed"},
+        {"leaks", "``: == != <="},
+        {"leaks == ", "one number is needed"},
+        {"leaks == few", "`few`: a number is needed"},
+        {"leaks == nan", "`nan`: a number is needed"},
+        {"leaks == 0 1", "one number is needed"},
+        {"mean == 0 1", "one number, or three"},
+        {"mean == 0 1 2 3", "`3` is too much"},
+        {"mean within -1 of 0", "`within -1 of 0`: == !="},
+        {"mean within 0.1 0.5", "`within 0.1 0.5`: == !="},
+        {"pixel(1,1).instance < \"a\"", "names are compared by == and !="},
+        {"pixel(1,1).instance == a", "`a`: a name in \"quotes\" or none is needed"},
+        {"pixel(1,1).instance == \"a\" b", "`\"a\" b`: a name in"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        struct suite suite;
+        char text[256];
+        snprintf(text, sizeof text, "a a.json --size 64x48\na expect %s\n", wrong[i][0]);
+        assert_false(read_text(&suite, text, NULL));
+        assert_int_equal(suite.wrong, 1);
+        if (!strstr(said, "s.whit:2: ") || !strstr(said, wrong[i][1]))
+            fail_msg("`%s` says `%s`", wrong[i][0], said);
+        suite_finish(&suite);
+    }
+}

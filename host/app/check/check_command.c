@@ -114,11 +114,41 @@ static bool choose(struct check *check)
 
 /* ---- Cases ---- */
 
-static bool find_verdict(struct check *check, const struct drawing *drawing,
-                         struct check_result *result)
+static bool counts(const struct check_case *item)
 {
-    return drawing_describe(drawing, result->item, &result->found) == WHIT_OK &&
-           verdict_find(result, &check->golden);
+    for (uint32_t i = 0; i < item->expectation_count; ++i) {
+        if (expectation_counts(&item->expectations[i]))
+            return true;
+    }
+    return false;
+}
+
+/* Puts what is not as it is expected to be behind the result's text. */
+static whit_result check_expectations(const struct drawing *drawing, struct check_result *result)
+{
+    const struct check_case *item = result->item;
+    for (uint32_t i = 0; i < item->expectation_count; ++i) {
+        char *is;
+        whit_result held = expectation_check(&item->expectations[i], drawing, &is);
+        if (held == WHIT_ERROR_FAILED)
+            verdict_add(result, CHECK_UNMET,
+                        string_format("line %u expects %s, it is %s", item->expectations[i].line,
+                                      item->expectations[i].text, is));
+        free(is);
+        if (held != WHIT_OK && held != WHIT_ERROR_FAILED)
+            return held;
+    }
+    return WHIT_OK;
+}
+
+static whit_result find_verdict(struct check *check, const struct drawing *drawing,
+                                struct check_result *result)
+{
+    whit_result described = drawing_describe(drawing, result->item, &result->found);
+    if (described != WHIT_OK)
+        return described;
+    return verdict_find(result, &check->golden) ? check_expectations(drawing, result)
+                                                : WHIT_ERROR_MEMORY;
 }
 
 /* Whether no other case can be drawn either. */
@@ -138,9 +168,9 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
     snprintf(where, sizeof where, "%.500s:%u: %s", check->suite.path, result->item->line,
              result->item->name);
     cli_errors_of(where);
-    whit_result drawn = studio_draw(studio, index, false, &drawing);
-    if (drawn == WHIT_OK && !find_verdict(check, &drawing, result))
-        drawn = WHIT_ERROR_MEMORY;
+    whit_result drawn = studio_draw(studio, index, counts(result->item), &drawing);
+    if (drawn == WHIT_OK)
+        drawn = find_verdict(check, &drawing, result);
     drawing_finish(&drawing);
     result->time_ms = whit_clock_ms() - start_ms;
     result->error = drawn;

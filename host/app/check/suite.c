@@ -89,7 +89,7 @@ static bool split(const struct line *line, char *text, char *argv[WORDS_MAX + 1]
 static void case_finish(struct check_case *item)
 {
     for (uint32_t i = 0; i < item->expectation_count; ++i)
-        free(item->expectations[i].text);
+        expectation_finish(&item->expectations[i]);
     free(item->expectations);
     free(item->name);
     free(item->settings);
@@ -128,12 +128,14 @@ static bool add_case(const struct line *line, const char *name, char *text)
 static bool expect_one(const struct line *line, struct check_case *item, const char *text,
                        size_t length)
 {
-    struct check_expectation one = {string_format("%.*s", (int)length, text), line->number};
-    if (one.text &&
+    char why[SETTING_WHY_BYTES];
+    struct check_expectation one = {.line = line->number};
+    bool read = expectation_read(&one, text, length, item->settings, why);
+    if (read &&
         ARRAY_PUSH(item->expectations, item->expectation_count, item->expectation_capacity, one))
         return true;
-    free(one.text);
-    return refuse(line, "out of memory");
+    expectation_finish(&one);
+    return refuse(line, "%s", read ? "out of memory" : why);
 }
 
 /* Up to the next comma that is in neither quotes nor brackets, a comment, or the end. */

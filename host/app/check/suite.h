@@ -2,15 +2,11 @@
 #ifndef APP_CHECK_SUITE_H
 #define APP_CHECK_SUITE_H
 
+#include "app/check/expect.h"
 #include "app/cli.h"
 #include "base/roots.h"
 
 enum { CHECK_NAME_MAX = 64, CHECK_CASES_MAX = 4096 };
-
-struct check_expectation {
-    char *text; /* "leaks == 0" */
-    uint32_t line;
-};
 
 /* One picture. All of it is the suite's. */
 struct check_case {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "settings/values.h"
 
 /* Parts that a line names; the rest is counted. */
@@ -24,6 +25,16 @@ void verdict_set(struct check_result *result, enum check_verdict verdict, char *
     free(result->text);
     result->verdict = verdict;
     result->text = text;
+}
+
+void verdict_add(struct check_result *result, enum check_verdict verdict, char *text)
+{
+    bool said = result->verdict >= CHECK_NEW;
+    char *both = said ? string_format("%s; %s", result->text, text) : NULL;
+    if (both)
+        free(text);
+    verdict_set(result, verdict > result->verdict || !said ? verdict : result->verdict,
+                both ? both : text);
 }
 
 void verdict_finish(struct check_result *result)

@@ -10,10 +10,10 @@ enum check_verdict {
     CHECK_OK,
     CHECK_SAME,     /* something that it was made of is other, the picture is not */
     CHECK_ACCEPTED, /* it was other, or new, and the golden has it now */
+    CHECK_NEW,      /* the golden does not have it */
     CHECK_DIFFERS,
     CHECK_UNMET,   /* an expectation fails */
     CHECK_VACUOUS, /* a picture that could not fail */
-    CHECK_NEW,     /* the golden does not have it */
     CHECK_BROKEN,  /* it cannot be drawn */
     CHECK_VERDICTS
 };
@@ -35,6 +35,8 @@ struct check_result {
 bool verdict_find(struct check_result *result, const struct golden *golden);
 /* Takes over `text`. */
 void verdict_set(struct check_result *result, enum check_verdict verdict, char *text);
+/* The same, with the text behind that of verdicts that are no better, which it had. */
+void verdict_add(struct check_result *result, enum check_verdict verdict, char *text);
 /* What the case makes of an exit code: the worst of all counts (docs/check.md). */
 int verdict_exit(const struct check_result *result, int worst);
 void verdict_finish(struct check_result *result);

@@ -1,0 +1,327 @@
+/* The fields that suites may expect something of, and whether it is so. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/draw.h"
+#include "base/array.h"
+#include "whit/whit_hard.h"
+
+/* ---- Of the whole picture ---- */
+
+typedef const struct drawing drawing_t;
+typedef const struct check_expectation expectation_t;
+
+static const float *pixels_of(drawing_t *drawing, size_t *count, uint32_t *channels)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->color, &info);
+    *count = (size_t)info.width * info.height;
+    *channels = info.channels;
+    return whit_image_floats(drawing->color);
+}
+
+/* Red, green and blue; of one channel three times that. */
+static void get_color(const float *pixel, uint32_t channels, double rgb[3])
+{
+    for (int k = 0; k < 3; ++k)
+        rgb[k] = (double)pixel[channels < 3 ? 0 : k];
+}
+
+static bool is_finite(const double rgb[3])
+{
+    return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
+}
+
+static whit_result read_nonfinite(drawing_t *drawing, expectation_t *one,
+                                  struct expect_value *value)
+{
+    size_t count;
+    uint32_t channels;
+    const float *at = pixels_of(drawing, &count, &channels);
+    (void)one;
+    for (size_t i = 0; i < count; ++i, at += channels) {
+        double rgb[3];
+        get_color(at, channels, rgb);
+        value->numbers[0] += !is_finite(rgb);
+    }
+    return WHIT_OK;
+}
+
+/* `pick`: below 0 the smallest of each channel, above 0 the largest, 0 the mean. */
+static whit_result read_colors(drawing_t *drawing, int pick, struct expect_value *value)
+{
+    size_t count, used = 0;
+    uint32_t channels;
+    const float *at = pixels_of(drawing, &count, &channels);
+    for (size_t i = 0; i < count; ++i, at += channels) {
+        double rgb[3], *out = value->numbers;
+        get_color(at, channels, rgb);
+        if (!is_finite(rgb))
+            continue;
+        for (int k = 0; k < 3; ++k)
+            out[k] = pick == 0   ? out[k] + rgb[k]
+                     : used == 0 ? rgb[k]
+                     : pick < 0  ? fmin(out[k], rgb[k])
+                                 : fmax(out[k], rgb[k]);
+        ++used;
+    }
+    for (int k = 0; k < 3 && pick == 0 && used; ++k)
+        value->numbers[k] /= (double)used;
+    return WHIT_OK;
+}
+
+static whit_result read_mean(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    (void)one;
+    return read_colors(drawing, 0, value);
+}
+
+static whit_result read_min(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    (void)one;
+    return read_colors(drawing, -1, value);
+}
+
+static whit_result read_max(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    (void)one;
+    return read_colors(drawing, 1, value);
+}
+
+static whit_result read_hits(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->ids, &info);
+    const uint32_t *ids = whit_image_words(drawing->ids);
+    (void)one;
+    for (size_t i = 0; i < (size_t)info.width * info.height; ++i)
+        value->numbers[0] += ids[2 * i] != WHIT_NONE;
+    return WHIT_OK;
+}
+
+/* ---- Rays ---- */
+
+static whit_result read_rays(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    static const char prefix[] = "rays.";
+    const whit_stats *stats = &drawing->stats;
+    const uint64_t rays[WHIT_RAY_KINDS] = {stats->rays_primary, stats->rays_shadow,
+                                           stats->rays_reflected, stats->rays_refracted};
+    const char *name = expect_fields[one->field].name + strlen(prefix);
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
+        if (strcmp(value_word(values_rays, kind), name) == 0)
+            value->numbers[0] = (double)rays[kind];
+    }
+    return WHIT_OK;
+}
+
+static whit_result read_all_rays(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    const whit_stats *stats = &drawing->stats;
+    (void)one;
+    value->numbers[0] = (double)(stats->rays_primary + stats->rays_shadow + stats->rays_reflected +
+                                 stats->rays_refracted);
+    return WHIT_OK;
+}
+
+static whit_result read_cut_depth(drawing_t *drawing, expectation_t *one,
+                                  struct expect_value *value)
+{
+    (void)one;
+    value->numbers[0] = (double)drawing->stats.rays_cut_depth;
+    return WHIT_OK;
+}
+
+static whit_result read_cut_bailout(drawing_t *drawing, expectation_t *one,
+                                    struct expect_value *value)
+{
+    (void)one;
+    value->numbers[0] = (double)drawing->stats.rays_cut_bailout;
+    return WHIT_OK;
+}
+
+static whit_result read_max_stack(drawing_t *drawing, expectation_t *one,
+                                  struct expect_value *value)
+{
+    (void)one;
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
+        value->numbers[0] = fmax(value->numbers[0], (double)drawing->stats.costs[kind].stack);
+    return WHIT_OK;
+}
+
+static whit_result read_leaks(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    const whit_renderer_params *picture = &drawing->params;
+    const whit_hard_view_params params = {.width = picture->width,
+                                          .height = picture->height,
+                                          .camera = picture->camera,
+                                          .time_s = picture->time_s,
+                                          .numerics = picture->numerics,
+                                          .instances = drawing->job.settings.trees.instances};
+    uint64_t wrong = 0, other = 0;
+    whit_image *image = NULL;
+    (void)one;
+    whit_result result = whit_hard_view(drawing->job.device, drawing->job.scene, &params, &cli_log,
+                                        &wrong, &other, &image);
+    whit_image_destroy(image);
+    value->numbers[0] = (double)wrong;
+    return result;
+}
+
+/* ---- Of a pixel ---- */
+
+static whit_result read_pixel(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->color, &info);
+    const float *pixel =
+        whit_image_floats(drawing->color) + ((size_t)one->y * info.width + one->x) * info.channels;
+    get_color(pixel, info.channels, value->numbers);
+    return WHIT_OK;
+}
+
+static const uint32_t *ids_of(drawing_t *drawing, expectation_t *one)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->ids, &info);
+    return whit_image_words(drawing->ids) + 2 * ((size_t)one->y * info.width + one->x);
+}
+
+static whit_result read_instance(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    uint32_t instance = ids_of(drawing, one)[0];
+    whit_instance_info info = {.name = NULL};
+    if (instance != WHIT_NONE)
+        whit_scene_get_instance(drawing->job.scene, instance, &info);
+    value->word = instance == WHIT_INSTANCE_SHAPE ? "intersect()" : info.name;
+    return WHIT_OK;
+}
+
+static whit_result read_primitive(drawing_t *drawing, expectation_t *one,
+                                  struct expect_value *value)
+{
+    uint32_t primitive = ids_of(drawing, one)[1];
+    value->numbers[0] = (double)primitive;
+    return primitive == WHIT_NONE ? WHIT_ERROR_FAILED : WHIT_OK;
+}
+
+static whit_result probe(drawing_t *drawing, expectation_t *one, whit_probe_ray *ray)
+{
+    whit_probe_report *report;
+    whit_result result = whit_probe(drawing->renderer, one->x, one->y, 1, &report);
+    if (result != WHIT_OK)
+        return result;
+    if (report->ray_count)
+        *ray = report->rays[0];
+    whit_probe_report_destroy(report);
+    return WHIT_OK;
+}
+
+static whit_result read_t(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    whit_probe_ray ray = {.device = {.t = (double)INFINITY}};
+    whit_result result = probe(drawing, one, &ray);
+    value->numbers[0] = ray.device.t;
+    return result == WHIT_OK && !isfinite(ray.device.t) ? WHIT_ERROR_FAILED : result;
+}
+
+static whit_result read_material(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    whit_probe_ray ray = {.material = WHIT_NONE};
+    whit_material_info info = {.name = NULL};
+    whit_result result = probe(drawing, one, &ray);
+    if (result == WHIT_OK && ray.material != WHIT_NONE)
+        whit_scene_get_material(drawing->job.scene, ray.material, &info);
+    value->word = info.name;
+    return result;
+}
+
+const struct expect_field expect_fields[] = {
+    {"nonfinite", EXPECT_NUMBER, false, false, read_nonfinite},
+    {"hits", EXPECT_NUMBER, false, false, read_hits},
+    {"leaks", EXPECT_NUMBER, false, false, read_leaks},
+    {"rays", EXPECT_NUMBER, false, false, read_all_rays},
+    {"rays.primary", EXPECT_NUMBER, false, false, read_rays},
+    {"rays.shadow", EXPECT_NUMBER, false, false, read_rays},
+    {"rays.reflected", EXPECT_NUMBER, false, false, read_rays},
+    {"rays.refracted", EXPECT_NUMBER, false, false, read_rays},
+    {"rays.cut_by_depth", EXPECT_NUMBER, false, false, read_cut_depth},
+    {"rays.cut_by_bailout", EXPECT_NUMBER, false, false, read_cut_bailout},
+    {"max_stack", EXPECT_NUMBER, false, true, read_max_stack},
+    {"mean", EXPECT_COLOR, false, false, read_mean},
+    {"min", EXPECT_COLOR, false, false, read_min},
+    {"max", EXPECT_COLOR, false, false, read_max},
+    {"pixel", EXPECT_COLOR, true, false, read_pixel},
+    {"pixel.instance", EXPECT_NAME, true, false, read_instance},
+    {"pixel.primitive", EXPECT_NUMBER, true, false, read_primitive},
+    {"pixel.material", EXPECT_NAME, true, false, read_material},
+    {"pixel.t", EXPECT_NUMBER, true, false, read_t},
+    {0},
+};
+
+/* ---- Comparing ---- */
+
+static bool holds(enum expect_op op, double a, double b, double tolerance)
+{
+    switch (op) {
+    case EXPECT_EQUAL:
+        return a == b;
+    case EXPECT_OTHER:
+        return a != b;
+    case EXPECT_AT_MOST:
+        return a <= b;
+    case EXPECT_AT_LEAST:
+        return a >= b;
+    case EXPECT_BELOW:
+        return a < b;
+    case EXPECT_ABOVE:
+        return a > b;
+    default:
+        return fabs(a - b) <= tolerance;
+    }
+}
+
+/* Each channel of a colour is to hold; to be other one of them is enough. */
+static bool compare_numbers(expectation_t *one, const struct expect_value *value)
+{
+    uint32_t count = expect_fields[one->field].kind == EXPECT_COLOR ? 3 : 1, held = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        held += holds(one->op, value->numbers[i], one->numbers[one->count == 3 ? i : 0],
+                      one->tolerance);
+    return one->op == EXPECT_OTHER ? held > 0 : held == count;
+}
+
+static bool compare_words(expectation_t *one, const struct expect_value *value)
+{
+    bool same =
+        one->word && value->word ? strcmp(one->word, value->word) == 0 : !one->word && !value->word;
+    return same == (one->op == EXPECT_EQUAL);
+}
+
+static char *value_text(enum expect_kind kind, const struct expect_value *value)
+{
+    const double *numbers = value->numbers;
+    if (kind == EXPECT_COLOR)
+        return string_format("%.9g %.9g %.9g", numbers[0], numbers[1], numbers[2]);
+    if (kind == EXPECT_NUMBER)
+        return string_format("%.9g", numbers[0]);
+    return value->word ? string_format("\"%s\"", value->word) : string_copy("none");
+}
+
+whit_result expectation_check(const struct check_expectation *one, const struct drawing *drawing,
+                              char **is)
+{
+    const struct expect_field *field = &expect_fields[one->field];
+    struct expect_value value = {.word = NULL};
+    *is = NULL;
+    whit_result result = field->read(drawing, one, &value);
+    if (result != WHIT_OK && result != WHIT_ERROR_FAILED)
+        return result;
+    *is = result == WHIT_OK ? value_text(field->kind, &value) : string_copy("none");
+    if (!*is)
+        return WHIT_ERROR_MEMORY;
+    bool held = field->kind == EXPECT_NAME ? compare_words(one, &value)
+                                           : result == WHIT_OK && compare_numbers(one, &value);
+    return held ? WHIT_OK : WHIT_ERROR_FAILED;
+}
