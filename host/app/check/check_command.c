@@ -147,8 +147,15 @@ static whit_result find_verdict(struct check *check, const struct drawing *drawi
     whit_result described = drawing_describe(drawing, result->item, &result->found);
     if (described != WHIT_OK)
         return described;
-    return verdict_find(result, &check->golden) ? check_expectations(drawing, result)
-                                                : WHIT_ERROR_MEMORY;
+    const char *refused;
+    if (!verdict_find(result, &check->golden))
+        return WHIT_ERROR_MEMORY;
+    whit_result found = check_expectations(drawing, result);
+    if (found == WHIT_OK)
+        found = drawing_refuse(drawing, &refused);
+    if (found == WHIT_OK && refused)
+        verdict_add(result, CHECK_VACUOUS, string_format("refused as a golden: %s", refused));
+    return found;
 }
 
 /* Whether no other case can be drawn either. */

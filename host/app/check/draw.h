@@ -46,4 +46,8 @@ void studio_close(struct studio *studio);
 WHIT_CHECK whit_result drawing_describe(const struct drawing *drawing,
                                         const struct check_case *item, struct golden *found);
 
+/* Whether the picture is one that could not fail (vacuous.c): *why says it, else it is NULL.
+   WHIT_ERROR_MEMORY, said. */
+WHIT_CHECK whit_result drawing_refuse(const struct drawing *drawing, const char **why);
+
 #endif

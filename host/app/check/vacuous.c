@@ -1,0 +1,107 @@
+/* Pictures that would be the same whatever goes wrong: no golden is made of them. */
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/draw.h"
+#include "base/array.h"
+
+/* As displayed: what only floats tell apart is one colour to who looks at it. Of counts and of a
+   shader's values the numbers themselves. */
+static bool has_one_color(const struct drawing *drawing, bool *one)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->color, &info);
+    size_t count = (size_t)info.width * info.height;
+    const struct settings *settings = &drawing->job.settings;
+    bool shown = info.channels == 4 && !settings->aov[0];
+    uint8_t *bytes = shown ? array_alloc(count, 4) : NULL;
+    if (shown && !bytes)
+        return false;
+    if (shown)
+        whit_image_display_bytes(drawing->color, bytes);
+    const uint8_t *first = shown ? bytes : (const uint8_t *)whit_image_floats(drawing->color);
+    size_t pixel_bytes = shown ? 4 : info.channels * sizeof(float);
+    *one = memcmp(first, first + pixel_bytes, (count - 1) * pixel_bytes) == 0;
+    free(bytes);
+    return true;
+}
+
+static bool hits_nothing(const struct drawing *drawing)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->ids, &info);
+    const uint32_t *ids = whit_image_words(drawing->ids);
+    for (size_t i = 0; i < (size_t)info.width * info.height; ++i) {
+        if (ids[2 * i] != WHIT_NONE)
+            return false;
+    }
+    return true;
+}
+
+/* The camera of the picture, as the scene has it at time 0. False: it looks to all sides. */
+static bool find_camera(const struct drawing *drawing, double eye[3], double target[3])
+{
+    const whit_camera *camera = &drawing->params.camera;
+    whit_scene_info scene;
+    whit_camera_info info = {.kind = ""};
+    whit_scene_get_info(drawing->job.scene, &scene);
+    if (camera->own) {
+        memcpy(eye, camera->eye, sizeof info.eye);
+        memcpy(target, camera->target, sizeof info.target);
+        return true;
+    }
+    uint32_t index = 0;
+    for (uint32_t i = 0; camera->name && i < scene.camera_count; ++i) {
+        whit_scene_get_camera(drawing->job.scene, i, &info);
+        if (strcmp(info.name, camera->name) == 0) {
+            index = i;
+            break;
+        }
+        if (isdigit((unsigned char)camera->name[0]))
+            index = (uint32_t)strtoul(camera->name, NULL, 10);
+    }
+    whit_scene_get_camera(drawing->job.scene, index, &info);
+    memcpy(eye, info.eye, sizeof info.eye);
+    memcpy(target, info.target, sizeof info.target);
+    return info.kind && strcmp(info.kind, "panorama") != 0;
+}
+
+/* Whether all that stands on the floor, where there is one, lies behind the camera's plane. At
+   other times than 0 of what moves it is not known. */
+static bool is_behind(const struct drawing *drawing)
+{
+    double eye[3], target[3];
+    whit_scene_info scene;
+    whit_scene_get_info(drawing->job.scene, &scene);
+    bool moves = scene.time_end_s > 0.0 && drawing->params.time_s != 0.0;
+    if (moves || scene.objects_lo[0] > scene.objects_hi[0] || !find_camera(drawing, eye, target))
+        return false;
+    for (int corner = 0; corner < 8; ++corner) {
+        double along = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            double at = corner >> k & 1 ? scene.objects_hi[k] : scene.objects_lo[k];
+            along += (at - eye[k]) * (target[k] - eye[k]);
+        }
+        if (along > 0.0)
+            return false;
+    }
+    return true;
+}
+
+whit_result drawing_refuse(const struct drawing *drawing, const char **why)
+{
+    bool one_color;
+    *why = NULL;
+    if (!has_one_color(drawing, &one_color)) {
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    if (is_behind(drawing))
+        *why = "the model is behind the camera";
+    else if (hits_nothing(drawing))
+        *why = "no pixel hits anything";
+    else if (one_color)
+        *why = "every pixel has the same colour";
+    return WHIT_OK;
+}
