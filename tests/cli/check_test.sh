@@ -1,6 +1,7 @@
 #!/bin/sh
 # whit check: verdicts and exit codes, what is accepted and why, bad suites and goldens.
 . "$(dirname "$0")/common.sh"
+needs jq
 cd "$OUT" || exit 1
 cp "$SCENES/cube.json" "$SCENES/balls.json" .
 
@@ -40,10 +41,37 @@ check "the picture is the same" grep -q "^cube: input changed, picture same: .cu
 expect 0 "it is accepted without a reason" check looks.whit --accept cube
 check "the golden has it" grep -q "of cube.json --size 64x48 --leaf 2" looks.golden
 sed -i 's/--numerics {}/--numerics {} --depth 1/' looks.whit
-expect 1 "fewer bounces" check looks.whit
+mkdir ci
+expect 1 "fewer bounces" check looks.whit --json ci/report.json --junit ci/junit.xml
 check "differs" grep -q "^balls-fast: differs: colours other, of the same hits; rays: .* reflected, were" stdout
 check "the counts" grep -qx "3 cases, 1 ok, 2 differs" stdout
 cp looks.golden before
+check "JSON: what is, and what was" jq -e '.exit_code == 1 and (.cases | length) == 3 and (.cases[1] | .verdict ==
+    "differs" and .is.rays.reflected < .was.rays.reflected and .is.ids == .was.ids and .line == 3 and
+    (.command | startswith("whit render balls.json --size 64x48 --depth 1 --numerics fast -o")))' ci/report.json >jq.out
+check "JUnit: three cases, two failures" grep -q 'tests="3" failures="2" errors="0"' ci/junit.xml
+check "JUnit: why" grep -q 'failure type="differs" message="differs: colours other' ci/junit.xml
+cp looks.golden before
+sed 's/--depth 1/--depth 2/' looks.whit >others.whit && cp looks.golden others.golden
+refuse 2 "a report of another suite" "report.json: balls-fast: it was drawn with other options" \
+    check others.whit --accept-from ci --reason x
+sed 's/ rays 3072/ rays 9999/' ci/report.json >ci/second.json
+refuse 2 "two reports that differ" "second.json: cube: another report says something else" \
+    check looks.whit --accept-from ci --reason x
+echo '{' >ci/second.json
+refuse 2 "a damaged report" "second.json:[0-9]*: " check looks.whit --accept-from ci --reason x
+echo '{}' >ci/second.json
+refuse 2 "another file" "second.json: no report of" check looks.whit --accept-from ci --reason x
+refuse 2 "no report" "nowhere.json: there is no such file" check looks.whit --accept-from nowhere.json
+cp ci/report.json ci/second.json
+check "nothing was written" cmp before looks.golden
+expect 0 "a report's lines" check looks.whit --accept-from ci --accept balls-exact --reason "CI has it so"
+check "one of them" grep -qx "1 case, 1 accepted" stdout
+check "with its reason" grep -q "^ why CI has it so" looks.golden
+check "the other one stays" test "$(diff before looks.golden | grep -c '^<')" -eq 2
+expect 1 "that one is fine" check looks.whit
+check "the other is not" grep -qx "3 cases, 2 ok, 1 differs" stdout
+cp before looks.golden
 refuse 2 "without a reason" "2 cases are other than the golden: .*--reason TEXT" check looks.whit --accept all
 check "nothing is written" cmp before looks.golden
 expect 0 "with a reason" check looks.whit --accept 'balls-*' --reason "two bounces less"

@@ -50,6 +50,9 @@ saved() {
     saved hard hard --case sphere --quick --quiet --numerics watertight
     saved compare compare p.png p.png
     saved cost cost "$CUBE" $SMALL --spend 0.2 --rays 100 --knobs traversal --within 1e6
+    cp "$CUBE" cube.json && echo "cube cube.json --size 16x12" >looks.whit
+    expect 0 "a golden" check looks.whit --accept all
+    saved check check looks.whit
     made devices devices --json
 }
 # Names that are not whit's own: kernels' figures by the driver, effects of a scene.

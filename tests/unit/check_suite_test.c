@@ -53,14 +53,13 @@ TEST_IN(lines_become_cases, folder_begin, folder_end)
     assert_int_equal(suite.count, 8);
     assert_string_equal(suite.cases[0].name, "one");
     assert_int_equal(suite.cases[0].line, 2);
-    assert_string_equal(suite.cases[1].scene, "my scene.json");
-    assert_string_equal(suite.cases[1].options, "--size 64x48");
+    assert_string_equal(suite.cases[1].made_by, "'my scene.json' --size 64x48");
+    assert_string_equal(suite.cases[1].loaded, "'my scene.json'");
     assert_string_equal(suite.cases[1].settings->scene, path_of("my scene.json"));
-    assert_string_equal(suite.cases[2].scene, "my scene.json");
+    assert_string_equal(suite.cases[2].settings->scene, path_of("my scene.json"));
     assert_int_equal(suite.cases[2].settings->load.background[1], 0x20);
-    assert_string_equal(suite.cases[3].scene, "my scene.json");
     assert_string_equal(suite.cases[3].settings->environment, path_of("sky.hdr"));
-    assert_string_equal(suite.cases[3].options, "--environment sky.hdr");
+    assert_string_equal(suite.cases[3].loaded, "'my scene.json' --environment sky.hdr");
     assert_string_equal(suite.cases[4].name, "level-fast");
     assert_int_equal(suite.cases[4].settings->picture.numerics, WHIT_NUMERICS_FAST);
     assert_int_equal(suite.cases[5].settings->picture.numerics, WHIT_NUMERICS_EXACT);

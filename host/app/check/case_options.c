@@ -105,23 +105,28 @@ static void put_text(void *user, const char *part)
     fputs(part, user);
 }
 
-/* The scene as the suite names it, with its options that say how it is loaded. */
-static char *loaded_text(const struct settings *settings)
+/* The scene and options of these settings. NULL: out of memory, or they are too long. */
+static char *words_of(const struct settings *settings)
 {
-    struct settings loaded = settings_usual();
     char options[OPTIONS_BYTES], *text = NULL;
-    size_t size;
-    FILE *to = open_memstream(&text, &size);
+    size_t size, used = settings_write(settings, SETTINGS_LINE, " ", options, sizeof options);
+    FILE *to = used < sizeof options ? open_memstream(&text, &size) : NULL;
     if (!to)
         return NULL;
+    quote_word(settings->scene, put_text, to);
+    fprintf(to, "%s%s", options[0] ? " " : "", options);
+    return fclose(to) == 0 ? text : NULL;
+}
+
+static char *loading_words_of(const struct settings *settings)
+{
+    struct settings loaded = settings_usual();
+    memcpy(loaded.scene, settings->scene, sizeof loaded.scene);
     for (const struct setting *row = settings_table; row->name; ++row) {
         if (row->need == SETTING_NEEDS_SCENE)
             setting_copy(row, settings, &loaded);
     }
-    settings_write(&loaded, SETTINGS_LINE, " ", options, sizeof options);
-    quote_word(settings->scene, put_text, to);
-    fprintf(to, "%s%s", options[0] ? " " : "", options);
-    return fclose(to) == 0 ? text : NULL;
+    return words_of(&loaded);
 }
 
 static bool read_words(struct check_case *item, struct cli_reader *reader)
@@ -147,20 +152,18 @@ bool case_options_read(struct check_case *item, const struct suite *suite, const
 {
     struct cli_reader reader;
     item->settings = array_alloc_zeroed(1, sizeof *item->settings);
-    item->options = array_alloc(OPTIONS_BYTES, 1);
     cli_reader_init(&reader, &case_command, argc, argv);
     reader.where = where;
     reader.takes_files = true;
     reader.said = said;
     reader.said_bytes = said_bytes;
-    if (!item->settings || !item->options)
+    if (!item->settings)
         return cli_misuse(&reader, "out of memory");
     if (!read_words(item, &reader))
         return false;
-    item->scene = string_copy(item->settings->scene);
-    size_t used = settings_write(item->settings, SETTINGS_LINE, " ", item->options, OPTIONS_BYTES);
-    item->loaded = loaded_text(item->settings);
-    if (!item->scene || !item->loaded || used >= OPTIONS_BYTES)
+    item->made_by = words_of(item->settings);
+    item->loaded = loading_words_of(item->settings);
+    if (!item->made_by || !item->loaded)
         return cli_misuse(&reader, "more options than there is room for");
     return take_files(item, suite, &reader);
 }

@@ -15,14 +15,15 @@ struct check_names {
 
 struct check {
     struct settings settings; /* of the command line, for all cases */
-    const char *root, *reason;
+    const char *root, *reason, *accept_from;
+    const char *json, *junit; /* reports; or NULL */
     struct check_names accept, only;
     bool list, prune;
 
     struct suite suite;
     char *golden_path;
-    struct golden golden;
-    bool *wanted; /* of each case of the suite */
+    struct golden old, golden; /* as it was read; and as it is to be saved */
+    bool *wanted;              /* of each case of the suite */
     struct check_result *results;
     whit_device_info device; /* once something was drawn */
 };
@@ -33,6 +34,15 @@ bool check_names_match(const struct check_names *names, const char *name);
 /* accept.c: takes into the golden what was found of the cases that --accept names, and saves it.
    What cannot be accepted was said. Gives the exit code. */
 int check_accept(struct check *check);
+/* accept_from.c: fills the results of cases that --accept names with what the reports of
+   --accept-from say. False, with an error, where one is damaged, or does not fit the suite. */
+bool check_read_reports(struct check *check);
+
+/* report.c, junit.c: what came of all cases that were run. */
+struct json_t;
+struct json_t *check_document(const struct check *check, int status);
+WHIT_CHECK whit_result check_save_junit(const struct check *check);
+
 /* accept.c: takes out of the golden those cases that the suite has not, and saves it. Gives the
    exit code. */
 int check_prune(struct check *check);

@@ -39,6 +39,14 @@ static const struct setting options[] = {
      .kind = SETTING_OWN, .read = read_accept},
     {"reason", 0, "TEXT", "with --accept: why they are to be other; kept in the golden",
      SETTING_AT_NAME(struct check, reason)},
+    {"accept-from", 0, "FOLDER|FILE",
+     "the same with what a report of --json, or all in a folder,\n"
+     "say that they show; nothing is drawn",
+     SETTING_AT_NAME(struct check, accept_from)},
+    {"json", 0, "FILE", "also write what came of each case as JSON",
+     SETTING_AT_NAME(struct check, json)},
+    {"junit", 0, "FILE", "the same as JUnit XML, which CI services show",
+     SETTING_AT_NAME(struct check, junit)},
     {"prune", 0, NULL, "drop what the golden has of cases that the suite has not",
      SETTING_AT_FLAG(struct check, prune)},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
@@ -55,11 +63,28 @@ bool check_names_match(const struct check_names *names, const char *name)
     return false;
 }
 
+static bool check_outputs(struct cli_reader *reader, const struct check *check)
+{
+    static const char *const names[] = {"--json", "--junit"};
+    const char *const outputs[] = {check->json, check->junit};
+    for (uint32_t i = 0; i < sizeof outputs / sizeof outputs[0]; ++i) {
+        if (!cli_no_dash(reader, names[i], outputs[i], "for a pipe give /dev/stdout"))
+            return false;
+        if (outputs[i] && !cli_can_write(outputs[i])) {
+            reader->status = EXIT_USAGE;
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool check_request(struct cli_reader *reader, struct check *check)
 {
     char why[SETTING_WHY_BYTES];
     if (!reader->positional)
         return cli_misuse(reader, "a suite is missing");
+    if (check->accept_from && !check->accept.count)
+        check->accept = (struct check_names){{"all"}, 1};
     if (reader->other_count && !check->accept.count)
         return cli_misuse(reader, "`%s` is one argument too many", reader->others[0]);
     for (uint32_t i = 0; i < reader->other_count; ++i) {
@@ -68,6 +93,8 @@ static bool check_request(struct cli_reader *reader, struct check *check)
     }
     if (check->reason && !check->accept.count)
         return cli_misuse(reader, "--reason is why something is accepted, and --accept is missing");
+    if (!check_outputs(reader, check))
+        return false;
     if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
         return cli_misuse(reader, "--reason: 1 to %d bytes are needed", GOLDEN_REASON_MAX);
     return true;
@@ -148,7 +175,7 @@ static whit_result find_verdict(struct check *check, const struct drawing *drawi
     if (described != WHIT_OK)
         return described;
     const char *refused;
-    if (!verdict_find(result, &check->golden))
+    if (!verdict_find(result, &check->old))
         return WHIT_ERROR_MEMORY;
     whit_result found = check_expectations(drawing, result);
     if (found == WHIT_OK)
@@ -263,20 +290,40 @@ static int list(const struct check *check)
     return cli_finish_stdout(EXIT_FINE);
 }
 
+static bool take_reports(struct check *check)
+{
+    bool read = check_read_reports(check);
+    for (uint32_t i = 0; read && i < check->suite.count; ++i) {
+        if (check->results[i].verdict != CHECK_NOT_RUN)
+            print_result(check, &check->results[i]);
+    }
+    return read;
+}
+
+static whit_result save_reports(const struct check *check, int status)
+{
+    whit_result result = WHIT_OK;
+    if (check->json)
+        result = document_save(check_document(check, status), check->json);
+    if (result == WHIT_OK && check->junit)
+        result = check_save_junit(check);
+    return result;
+}
+
 static int work(struct check *check)
 {
     if (check->prune && !check->accept.count)
         return check_prune(check);
-    whit_result result = run_cases(check);
+    if (check->accept_from && !take_reports(check))
+        return EXIT_USAGE;
+    whit_result result = check->accept_from ? WHIT_OK : run_cases(check);
     if (result != WHIT_OK)
         return cli_exit_of(result);
-    if (check->accept.count) {
-        int status = check_accept(check);
-        if (status != EXIT_FINE)
-            return status;
-    }
+    int accepted = check->accept.count ? check_accept(check) : EXIT_FINE;
     print_counts(check);
-    return cli_finish_stdout(sum_up(check));
+    int status = cli_finish_stdout(accepted == EXIT_FINE ? sum_up(check) : accepted);
+    result = save_reports(check, status);
+    return result == WHIT_OK ? status : cli_exit_of(result);
 }
 
 static void say_wrong(void *user, const char *text)
@@ -297,7 +344,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     int status = EXIT_USAGE;
     common.settings = check.settings;
     if (suite_read(&check.suite, reader.positional, check.root, say_wrong, NULL) &&
-        check.golden_path && golden_read(&check.golden, check.golden_path) && choose(&check)) {
+        check.golden_path && golden_read(&check.golden, check.golden_path) &&
+        golden_read(&check.old, check.golden_path) && choose(&check)) {
         job_start(&common);
         status = check.list ? list(&check) : work(&check);
     }
@@ -306,6 +354,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     free(check.results);
     free(check.wanted);
     golden_finish(&check.golden);
+    golden_finish(&check.old);
     suite_finish(&check.suite);
     free(check.golden_path);
     return status;

@@ -6,7 +6,6 @@
 #include "app/check/draw.h"
 #include "base/array.h"
 #include "base/hash.h"
-#include "settings/quote.h"
 
 enum { KEY_BYTES = 2048 };
 
@@ -57,24 +56,6 @@ static void find_mean(const whit_image *image, double mean[3])
         mean[k] = count ? sum[k] / (double)count : 0.0;
 }
 
-static void put_text(void *user, const char *part)
-{
-    fputs(part, user);
-}
-
-/* "room.json --depth 4" */
-static char *made_by(const struct check_case *item)
-{
-    char *text = NULL;
-    size_t size;
-    FILE *to = open_memstream(&text, &size);
-    if (!to)
-        return NULL;
-    quote_word(item->scene, put_text, to);
-    fprintf(to, "%s%s", item->options[0] ? " " : "", item->options);
-    return fclose(to) == 0 ? text : NULL;
-}
-
 /* ---- Parts ---- */
 
 /* Puts one thing of which the picture was made: `kind` "mesh", `name` that is the same from run to
@@ -122,7 +103,7 @@ static bool fill(const struct drawing *drawing, const struct check_case *item, s
                               .colors = hash_floats(drawing->color),
                               .width = info.width,
                               .height = info.height,
-                              .made_by = made_by(item)};
+                              .made_by = string_copy(item->made_by)};
     memcpy(one.rays, rays, sizeof rays);
     find_mean(drawing->color, one.mean);
     bool put = one.name && one.made_by && golden_put(found, &one);

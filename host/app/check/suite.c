@@ -93,8 +93,7 @@ static void case_finish(struct check_case *item)
     free(item->expectations);
     free(item->name);
     free(item->settings);
-    free(item->scene);
-    free(item->options);
+    free(item->made_by);
     free(item->loaded);
 }
 

@@ -13,9 +13,8 @@ struct check_case {
     char *name;
     uint32_t line;
     struct settings *settings; /* its files by paths from where whit was started */
-    char *scene;               /* as the suite names it */
-    char *options; /* those that are not at their default, with names of files likewise */
-    char *loaded;  /* the scene with those that say how it is loaded: `room.json --light none` */
+    char *made_by; /* scene and options as the suite names them: `room.json --depth 4` */
+    char *loaded;  /* the same with those options alone that say how the scene is loaded */
     struct check_expectation *expectations;
     uint32_t expectation_count, expectation_capacity;
 };

@@ -1,0 +1,174 @@
+/* What reports of other runs, as of CI, say that cases show. */
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/check/check.h"
+#include "app/document.h"
+#include "base/array.h"
+#include "base/file.h"
+
+enum { REPORT_BYTES_MAX = 256 << 20 };
+
+/* What document_text made of a backslash before an x becomes one again. */
+static void restore_text(char *text)
+{
+    char *to = text;
+    for (const char *from = text; *from;) {
+        bool escaped = strncmp(from, "\\x5c", 4) == 0;
+        *to++ = escaped ? '\\' : *from;
+        from += escaped ? 4 : 1;
+    }
+    *to = '\0';
+}
+
+/* The golden of one case, as its lines in a report say. */
+static bool read_lines(struct golden *found, const char *where, const char *lines)
+{
+    char *text = string_format("whit check golden 1, whit " WHIT_VERSION "\n\n%s", lines);
+    if (!text) {
+        cli_error("out of memory");
+        return false;
+    }
+    restore_text(text);
+    bool read = golden_read_text(found, where, text);
+    if (read && found->count != 1)
+        cli_error("%s: its lines of a golden are not those of one case", where);
+    read = read && found->count == 1;
+    free(text);
+    return read;
+}
+
+static struct check_result *find_result(struct check *check, const char *name)
+{
+    for (uint32_t i = 0; i < check->suite.count; ++i) {
+        if (strcmp(check->suite.cases[i].name, name) == 0)
+            return &check->results[i];
+    }
+    return NULL;
+}
+
+/* Whether two reports say the same of a case. */
+static bool agrees(const struct check_result *result, const struct golden *found)
+{
+    char *one = golden_text(&result->found), *other = golden_text(found);
+    bool same = one && other && strcmp(one, other) == 0;
+    free(one);
+    free(other);
+    return same;
+}
+
+/* NULL, or why what a report says is not taken. */
+static const char *why_not(const struct check_result *result, const struct golden *found)
+{
+    if (strcmp(result->item->made_by, found->cases[0].made_by) != 0)
+        return "it was drawn with other options than the suite has now";
+    if (result->found.count && !agrees(result, found))
+        return "another report says something else of it";
+    return NULL;
+}
+
+static bool take_lines(struct check *check, struct check_result *result, const char *lines,
+                       const char *where)
+{
+    struct golden found = {.exists = false};
+    bool read = read_lines(&found, where, lines);
+    const char *why = read ? why_not(result, &found) : NULL;
+    if (why)
+        cli_error("%s: %s", where, why);
+    if (!read || why || result->found.count) {
+        golden_finish(&found);
+        return read && !why;
+    }
+    result->found = found;
+    return verdict_find(result, &check->old);
+}
+
+/* Cases that were refused, or not drawn, stay what they are. */
+static bool take_case(struct check *check, const char *path, const json_t *item)
+{
+    const char *name = json_string_value(json_object_get(item, "name"));
+    const char *verdict = json_string_value(json_object_get(item, "verdict"));
+    const char *text = json_string_value(json_object_get(item, "text"));
+    const char *lines = json_string_value(json_object_get(item, "golden"));
+    char where[1024];
+    if (!name || !verdict || !text) {
+        cli_error("%s: a case of it has no name, verdict or text", path);
+        return false;
+    }
+    struct check_result *result = find_result(check, name);
+    snprintf(where, sizeof where, "%.800s: %.100s", path, name);
+    if (!result || !check_names_match(&check->accept, name))
+        return true;
+    for (uint32_t bad = CHECK_UNMET; bad <= CHECK_BROKEN; ++bad) {
+        if (strcmp(verdict, verdict_word((enum check_verdict)bad)) == 0)
+            verdict_set(result, (enum check_verdict)bad, string_copy(text));
+    }
+    if (result->verdict >= CHECK_UNMET)
+        return true;
+    if (lines)
+        return take_lines(check, result, lines, where);
+    cli_error("%s: the report has no lines of a golden", where);
+    return false;
+}
+
+/* ---- Files ---- */
+
+static bool read_report(struct check *check, const char *path)
+{
+    uint8_t *data = NULL;
+    size_t size_bytes = 0, index;
+    json_error_t error;
+    json_t *item;
+    if (file_read(&cli_log, NULL, path, REPORT_BYTES_MAX, &data, &size_bytes) != WHIT_OK)
+        return false;
+    json_t *root = json_loadb((const char *)data, size_bytes, 0, &error);
+    const json_t *cases = json_object_get(root, "cases");
+    bool read = json_is_array(cases);
+    free(data);
+    if (!root)
+        cli_error("%s:%d: %s", path, error.line, error.text);
+    else if (!read)
+        cli_error("%s: no report of `whit check --json`", path);
+    json_array_foreach(cases, index, item)
+    {
+        if (!read)
+            break;
+        read = take_case(check, path, item);
+    }
+    json_decref(root);
+    return read;
+}
+
+static int is_report(const struct dirent *entry)
+{
+    char extension[8];
+    path_extension(entry->d_name, extension, sizeof extension);
+    return entry->d_name[0] != '.' && strcmp(extension, "json") == 0;
+}
+
+/* All .json files in a folder, by name. */
+static bool read_folder(struct check *check, const char *folder)
+{
+    struct dirent **entries = NULL;
+    int count = scandir(folder, &entries, is_report, alphasort);
+    bool read = count > 0;
+    if (!read)
+        cli_error("%s: there is no .json in it", folder);
+    for (int i = 0; i < count; ++i) {
+        char *path = read ? string_format("%s/%s", folder, entries[i]->d_name) : NULL;
+        read = path && read_report(check, path);
+        free(path);
+        free(entries[i]);
+    }
+    free(entries);
+    return read;
+}
+
+bool check_read_reports(struct check *check)
+{
+    struct stat info;
+    bool folder = stat(check->accept_from, &info) == 0 && S_ISDIR(info.st_mode);
+    return folder ? read_folder(check, check->accept_from) : read_report(check, check->accept_from);
+}

@@ -1,0 +1,82 @@
+/* A run of `whit check` as JSON, which --accept-from reads. */
+#include <stdlib.h>
+
+#include "app/check/check.h"
+#include "app/commands.h"
+#include "app/document.h"
+
+enum { COMMAND_BYTES = 16384 };
+
+static json_t *rays_document(const uint64_t rays[WHIT_RAY_KINDS])
+{
+    json_t *out = document_object();
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
+        document_count(out, value_word(values_rays, kind), rays[kind]);
+    return out;
+}
+
+/* null where there is none. */
+static json_t *picture_document(const struct golden_case *item)
+{
+    if (!item)
+        return json_null();
+    json_t *out = document_object();
+    document_hash(out, "ids", item->ids);
+    document_hash(out, "colors", item->colors);
+    document_count(out, "width", item->width);
+    document_count(out, "height", item->height);
+    document_put(out, "rays", rays_document(item->rays));
+    document_numbers(out, "mean", item->mean, 3);
+    document_text(out, "made_by", item->made_by);
+    document_text(out, "reason", item->reason);
+    return out;
+}
+
+/* What draws the picture again. */
+static void put_command(json_t *object, const struct check_case *item)
+{
+    char *text = malloc(COMMAND_BYTES), output[CHECK_NAME_MAX + 8];
+    snprintf(output, sizeof output, "%s.png", item->name);
+    if (text)
+        settings_write_render(item->settings, SETTINGS_LINE, output, text, COMMAND_BYTES);
+    document_text(object, "command", text);
+    free(text);
+}
+
+static json_t *case_document(const struct check *check, uint32_t index)
+{
+    const struct check_result *result = &check->results[index];
+    const struct golden_case *found = result->found.count ? result->found.cases : NULL;
+    char *lines = found ? golden_case_text(&result->found, found->name) : NULL;
+    json_t *out = document_object();
+    document_text(out, "name", result->item->name);
+    document_count(out, "line", result->item->line);
+    document_text(out, "verdict", verdict_word(result->verdict));
+    document_text(out, "text", result->text);
+    document_text(out, "changed", result->changed);
+    document_put(out, "cause", json_null());
+    document_ms(out, "time_ms", result->time_ms);
+    put_command(out, result->item);
+    document_put(out, "is", picture_document(found));
+    document_put(out, "was", picture_document(golden_find(&check->old, result->item->name)));
+    document_text(out, "golden", lines);
+    free(lines);
+    return out;
+}
+
+json_t *check_document(const struct check *check, int status)
+{
+    json_t *root = document_root(), *cases = document_array();
+    document_text(root, "suite", check->suite.path);
+    document_text(root, "golden", check->golden_path);
+    document_text(root, "golden_by", check->old.exists ? check->old.by : NULL);
+    document_text(root, "device", check->device.name);
+    document_text(root, "driver", check->device.driver);
+    document_count(root, "exit_code", (uint64_t)status);
+    for (uint32_t i = 0; i < check->suite.count; ++i) {
+        if (check->results[i].verdict != CHECK_NOT_RUN)
+            document_append(cases, case_document(check, i));
+    }
+    document_put(root, "cases", cases);
+    return root;
+}
