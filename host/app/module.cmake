@@ -1,23 +1,26 @@
-# The page of `whit cost` as an array: no file is searched for at run time.
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
-  ${CMAKE_CURRENT_SOURCE_DIR}/app/cost/page.html)
-file(READ app/cost/page.html page_html HEX)
-string(REGEX REPLACE "(..)" "0x\\1," page_html "${page_html}")
-set(page_source ${PROJECT_BINARY_DIR}/cost_page_html.c)
-file(CONFIGURE OUTPUT ${page_source} @ONLY CONTENT
-  "extern const char cost_page_html[];\nconst char cost_page_html[] = {@page_html@0};\n")
+# Pages of reports as arrays: no file is searched for at run time.
+foreach(command check cost)
+  set(page ${CMAKE_CURRENT_SOURCE_DIR}/app/${command}/page.html)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
+  file(READ ${page} page_html HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," page_html "${page_html}")
+  set(page_source ${PROJECT_BINARY_DIR}/${command}_page_html.c)
+  file(CONFIGURE OUTPUT ${page_source} @ONLY CONTENT
+    "extern const char ${command}_page_html[];\nconst char ${command}_page_html[] = {@page_html@0};\n")
+  list(APPEND page_sources ${page_source})
+endforeach()
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
   app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/ends.c app/job.c app/main.c
-  app/settings_json.c
+  app/page.c app/settings_json.c ${page_sources}
   app/bench/bench_command.c app/bench/request.c
   app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
   app/bvh/study_trace.c
   app/check/accept.c app/check/accept_from.c app/check/case_options.c app/check/check_command.c app/check/describe.c
-  app/check/draw.c app/check/expect.c app/check/expect_check.c app/check/golden.c app/check/junit.c app/check/report.c app/check/suite.c app/check/vacuous.c app/check/verdict.c
+  app/check/draw.c app/check/expect.c app/check/expect_check.c app/check/golden.c app/check/junit.c app/check/page.c app/check/pictures.c app/check/report.c app/check/suite.c app/check/thumbnails.c app/check/vacuous.c app/check/verdict.c
   app/compare/compare_command.c
   app/cost/cost_choice.c app/cost/cost_command.c app/cost/cost_compare.c app/cost/cost_json.c
-  app/cost/cost_kept.c app/cost/cost_page.c app/cost/cost_table.c ${page_source}
+  app/cost/cost_kept.c app/cost/cost_page.c app/cost/cost_table.c
   app/devices/device_hints.c app/devices/devices_command.c
   app/hard/hard_command.c app/hard/hard_output.c
   app/probe/probe_command.c app/probe/probe_output.c app/probe/probe_shader.c

@@ -3,39 +3,17 @@
 # where there is no Chromium.
 . "$(dirname "$0")/common.sh"
 needs jq
-browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || browser=
-if [ -z "$browser" ]; then
-    echo "SKIPPED: no Chromium"
-    exit 77
-fi
+. "$(dirname "$0")/browser.sh"
 XDG_CACHE_HOME=$OUT/cache
 export XDG_CACHE_HOME
 mkdir "$OUT/cache"
-
-# look PAGE: leaves $OUT/console, $OUT/requests. The browser's own wishes lead nowhere and do not count.
-look() {
-    timeout 50 "$browser" --headless --no-sandbox --disable-gpu --no-first-run \
-        --disable-background-networking --host-resolver-rules='MAP * ~NOTFOUND' \
-        --user-data-dir="$OUT/browser" --enable-logging=stderr --log-net-log="$OUT/net.json" \
-        --window-size=1100,3000 --screenshot="$OUT/page.png" "file://$1" >"$OUT/log" 2>&1 ||
-        echo "FAILED  the browser: $(tail -n 1 "$OUT/log")"
-    grep CONSOLE "$OUT/log" >"$OUT/console"
-    jq -r '(.constants.logSourceType | to_entries | map({(.value | tostring): .key}) | add) as $kinds |
-        .events[] | select($kinds[.source.type | tostring] == "URL_REQUEST") | .params |
-        select(.url and (.initiator // "not an origin") != "not an origin") | .url' \
-        "$OUT/net.json" >"$OUT/requests"
-}
 
 page=$OUT/cost.html
 expect 0 "a page" cost "$CUBE" --size 48x36 --quick --rays 0 --spend 1 --reference-samples 4 --knobs aa,shadows \
     --quiet --html "$page"
 look "$page"
 check "it is drawn" test -s "$OUT/page.png"
-timeout 50 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$OUT/browser" --dump-dom \
-    "file://$page" >"$OUT/dom" 2>/dev/null
-count() {
-    grep -o "$1" "$OUT/dom" | wc -l
-}
+dom "$page"
 check "by its script: four crops" test "$(count '<div class="crop"')" -eq 4
 check "a point for each setting that the reference can judge" test "$(count '<circle ')" -ge 2
 check "a table of the usual settings and for each knob" test "$(count '<table>')" -ge 3

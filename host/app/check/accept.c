@@ -57,6 +57,8 @@ static bool take(struct check *check, struct check_result *result)
         cli_error("out of memory");
         return false;
     }
+    if (check->thumbnails && check_save_thumbnail(check, result) != WHIT_OK)
+        return false;
     if (is_new)
         verdict_set(result, CHECK_ACCEPTED, string_format("accepted: %s", result->text));
     return true;
@@ -81,6 +83,7 @@ int check_prune(struct check *check)
         if (suite_find(&check->suite, check->golden.cases[i].name))
             continue;
         printf("%s: dropped\n", check->golden.cases[i].name);
+        check_drop_thumbnail(check, check->golden.cases[i].name);
         golden_remove(&check->golden, i);
     }
     whit_result result = golden_save(&check->golden, check->golden_path);

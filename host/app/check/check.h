@@ -16,9 +16,9 @@ struct check_names {
 struct check {
     struct settings settings; /* of the command line, for all cases */
     const char *root, *reason, *accept_from;
-    const char *json, *junit; /* reports; or NULL */
+    const char *json, *junit, *report; /* or NULL */
     struct check_names accept, only;
-    bool list, prune;
+    bool list, prune, thumbnails;
 
     struct suite suite;
     char *golden_path;
@@ -38,10 +38,22 @@ int check_accept(struct check *check);
    --accept-from say. False, with an error, where one is damaged, or does not fit the suite. */
 bool check_read_reports(struct check *check);
 
-/* report.c, junit.c: what came of all cases that were run. */
+/* report.c, junit.c, page.c: what came of all cases that were run. */
 struct json_t;
 struct json_t *check_document(const struct check *check, int status);
 WHIT_CHECK whit_result check_save_junit(const struct check *check);
+WHIT_CHECK whit_result check_save_page(const struct check *check, int status);
+extern const char check_page_html[]; /* page.html, ended by 0; CMake makes it */
+
+/* thumbnails.c: reads what the case was, where thumbnails were kept, and compares. What cannot be
+   read is left out with a warning. WHIT_ERROR_MEMORY, said. */
+WHIT_CHECK whit_result check_compare_thumbnail(const struct check *check,
+                                               const struct drawing *drawing,
+                                               struct check_result *result);
+/* Writes that of a case into the folder, which is made where it is not there; removes it. */
+WHIT_CHECK whit_result check_save_thumbnail(const struct check *check,
+                                            const struct check_result *result);
+void check_drop_thumbnail(const struct check *check, const char *name);
 
 /* accept.c: takes out of the golden those cases that the suite has not, and saves it. Gives the
    exit code. */

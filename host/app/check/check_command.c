@@ -47,6 +47,12 @@ static const struct setting options[] = {
      SETTING_AT_NAME(struct check, json)},
     {"junit", 0, "FILE", "the same as JUnit XML, which CI services show",
      SETTING_AT_NAME(struct check, junit)},
+    {"report", 0, "FILE.html", "the same as one page with pictures, which opens offline",
+     SETTING_AT_NAME(struct check, report)},
+    {"thumbnails", 0, NULL,
+     "with --accept: also keep small pictures beside the golden,\n"
+     "for people: SUITE.thumbnails/NAME.png",
+     SETTING_AT_FLAG(struct check, thumbnails)},
     {"prune", 0, NULL, "drop what the golden has of cases that the suite has not",
      SETTING_AT_FLAG(struct check, prune)},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
@@ -65,8 +71,8 @@ bool check_names_match(const struct check_names *names, const char *name)
 
 static bool check_outputs(struct cli_reader *reader, const struct check *check)
 {
-    static const char *const names[] = {"--json", "--junit"};
-    const char *const outputs[] = {check->json, check->junit};
+    static const char *const names[] = {"--json", "--junit", "--report"};
+    const char *const outputs[] = {check->json, check->junit, check->report};
     for (uint32_t i = 0; i < sizeof outputs / sizeof outputs[0]; ++i) {
         if (!cli_no_dash(reader, names[i], outputs[i], "for a pipe give /dev/stdout"))
             return false;
@@ -93,6 +99,8 @@ static bool check_request(struct cli_reader *reader, struct check *check)
     }
     if (check->reason && !check->accept.count)
         return cli_misuse(reader, "--reason is why something is accepted, and --accept is missing");
+    if (check->thumbnails && (!check->accept.count || check->accept_from))
+        return cli_misuse(reader, "--thumbnails are of pictures that are drawn for --accept");
     if (!check_outputs(reader, check))
         return false;
     if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
@@ -185,6 +193,18 @@ static whit_result find_verdict(struct check *check, const struct drawing *drawi
     return found;
 }
 
+/* Small pictures, where somebody is to see them; with what was, where that is not what is. */
+static whit_result make_pictures(const struct check *check, const struct drawing *drawing,
+                                 struct check_result *result)
+{
+    if (!check->report && !check->thumbnails)
+        return WHIT_OK;
+    whit_result made = check_pictures_make(&result->pictures, drawing);
+    return made == WHIT_OK && check->report && result->verdict >= CHECK_DIFFERS
+               ? check_compare_thumbnail(check, drawing, result)
+               : made;
+}
+
 /* Whether no other case can be drawn either. */
 static bool ends_all(whit_result result)
 {
@@ -205,6 +225,8 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
     whit_result drawn = studio_draw(studio, index, counts(result->item), &drawing);
     if (drawn == WHIT_OK)
         drawn = find_verdict(check, &drawing, result);
+    if (drawn == WHIT_OK)
+        drawn = make_pictures(check, &drawing, result);
     drawing_finish(&drawing);
     result->time_ms = whit_clock_ms() - start_ms;
     result->error = drawn;
@@ -307,6 +329,8 @@ static whit_result save_reports(const struct check *check, int status)
         result = document_save(check_document(check, status), check->json);
     if (result == WHIT_OK && check->junit)
         result = check_save_junit(check);
+    if (result == WHIT_OK && check->report)
+        result = check_save_page(check, status);
     return result;
 }
 

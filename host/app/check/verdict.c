@@ -42,6 +42,7 @@ void verdict_finish(struct check_result *result)
     free(result->text);
     free(result->changed);
     golden_finish(&result->found);
+    check_pictures_finish(&result->pictures);
 }
 
 /* ---- What it is made of ---- */

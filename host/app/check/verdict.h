@@ -3,6 +3,7 @@
 #define APP_CHECK_VERDICT_H
 
 #include "app/check/golden.h"
+#include "app/check/pictures.h"
 #include "app/check/suite.h"
 
 enum check_verdict {
@@ -27,6 +28,7 @@ struct check_result {
     char *changed;       /* parts and options that are other, as text; NULL: none */
     whit_result error;   /* CHECK_BROKEN */
     struct golden found; /* with this case alone, unless it could not be drawn */
+    struct check_pictures pictures; /* where a report or thumbnails are asked for */
     double time_ms;
 };
 

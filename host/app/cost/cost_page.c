@@ -1,45 +1,18 @@
 /* The report of `whit cost` as one page: page.html, which draws itself from the JSON that stands in
    it. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "app/cost/cost.h"
-#include "whit/whit_program.h"
+#include "app/page.h"
 
 /* ---- Pictures ---- */
-
-/* RFC 4648, behind what `to` has. */
-static void put_base64(FILE *to, const uint8_t *data, size_t size_bytes)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size_bytes; i += 3) {
-        size_t left = size_bytes - i;
-        uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
-                        (left > 2 ? data[i + 2] : 0);
-        fputc(digits[bits >> 18], to);
-        fputc(digits[bits >> 12 & 63], to);
-        fputc(left > 1 ? digits[bits >> 6 & 63] : '=', to);
-        fputc(left > 2 ? digits[bits & 63] : '=', to);
-    }
-}
 
 /* The image as a PNG in a URI of data; null where it cannot be made. */
 static void put_image(json_t *object, const char *key, const whit_image *image)
 {
     uint8_t *data = NULL;
-    size_t size_bytes, length;
-    char *uri = NULL;
-    FILE *to = NULL;
-    if (whit_image_encode_png(image, NULL, 0, NULL, &data, &size_bytes) == WHIT_OK)
-        to = open_memstream(&uri, &length);
-    if (to) {
-        fputs("data:image/png;base64,", to);
-        put_base64(to, data, size_bytes);
-        fclose(to);
-    }
-    document_text(object, key, uri);
-    free(uri);
+    size_t size_bytes = 0;
+    if (whit_image_encode_png(image, NULL, 0, NULL, &data, &size_bytes) != WHIT_OK)
+        data = NULL;
+    page_put_png(object, key, data, size_bytes);
     whit_memory_destroy(data);
 }
 
@@ -130,37 +103,9 @@ static json_t *page_document(const struct cost_report *report)
     return out;
 }
 
-/* JSON inside of HTML: no `<` of a text may end the element. */
-static void put_report(FILE *to, const char *line)
-{
-    for (; *line; ++line)
-        if (*line == '<')
-            fputs("\\u003c", to);
-        else
-            fputc(*line, to);
-}
-
 whit_result cost_save_page(const struct cost *cost)
 {
-    static const char mark[] = "@REPORT@";
-    const char *template = cost_page_html, *at = strstr(template, mark);
     json_t *document = cost_document(cost);
-    char *text = NULL;
-    size_t bytes = 0;
     document_put(document, "page", page_document(cost->report));
-    char *line = document_line(document);
-    FILE *to = line ? open_memstream(&text, &bytes) : NULL;
-    if (to) {
-        fwrite(template, 1, (size_t)(at - template), to);
-        put_report(to, line);
-        fputs(at + strlen(mark), to);
-    }
-    whit_result result = WHIT_ERROR_MEMORY;
-    if (to && fclose(to) == 0)
-        result = whit_file_write(cost->html, text, bytes, &cli_log);
-    else
-        cli_error("out of memory");
-    free(text);
-    free(line);
-    return result;
+    return page_save(cost_page_html, document, cost->html);
 }

@@ -1,0 +1,186 @@
+#include "app/check/pictures.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/draw.h"
+#include "base/array.h"
+
+enum { THUMBNAIL_SIDE = 96, SIDE_MIN = 8, DIFFERENCE_TIMES = 8 };
+
+static whit_result out_of_memory(void)
+{
+    cli_error("out of memory for small pictures");
+    return WHIT_ERROR_MEMORY;
+}
+
+/* ---- Smaller pictures ---- */
+
+/* The mean of a square of pixels, of as many channels as `out` has room for. */
+static void average(const whit_image *image, const whit_image_info *info, uint32_t x, uint32_t y,
+                    uint32_t by, uint32_t channels, float *out)
+{
+    const float *floats = whit_image_floats(image);
+    double sum[3] = {0.0};
+    for (uint32_t row = y * by; row < (y + 1) * by; ++row) {
+        for (uint32_t column = x * by; column < (x + 1) * by; ++column) {
+            const float *pixel = floats + ((size_t)row * info->width + column) * info->channels;
+            for (uint32_t k = 0; k < channels; ++k)
+                sum[k] += (double)pixel[k];
+        }
+    }
+    for (uint32_t k = 0; k < channels; ++k)
+        out[k] = (float)(sum[k] / ((double)by * (double)by));
+}
+
+/* Squares of `by` pixels as one, without alpha; what is left at right and below is cut. */
+static whit_result shrink(const whit_image *image, uint32_t by, const whit_renderer_params *params,
+                          whit_image **out)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    uint32_t width = info.width / by, height = info.height / by,
+             channels = info.channels < 3 ? 1 : 3;
+    float *pixels = array_alloc((size_t)width * height * channels, sizeof *pixels);
+    for (uint32_t y = 0; pixels && y < height; ++y) {
+        for (uint32_t x = 0; x < width; ++x)
+            average(image, &info, x, y, by, channels, pixels + ((size_t)y * width + x) * channels);
+    }
+    whit_result result =
+        pixels ? whit_image_create(width, height, channels, pixels, out) : WHIT_ERROR_MEMORY;
+    free(pixels);
+    if (result != WHIT_OK)
+        return out_of_memory();
+    if (params)
+        whit_image_display_as(*out, params);
+    return WHIT_OK;
+}
+
+static void png_finish(struct check_png *png)
+{
+    whit_memory_destroy(png->data);
+    *png = (struct check_png){.data = NULL};
+}
+
+/* The largest PNG of the image, in whole parts of its size from 1/`by` on, of at most so many
+   bytes; that of SIDE_MIN pixels where even that has more. */
+static whit_result encode(const whit_image *image, uint32_t by, const whit_renderer_params *params,
+                          size_t bytes_max, struct check_png *png)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    whit_result result = WHIT_OK;
+    for (;; ++by) {
+        whit_image *small;
+        bool last = info.width / (by + 1) < SIDE_MIN || info.height / (by + 1) < SIDE_MIN;
+        result = shrink(image, by, params, &small);
+        if (result == WHIT_OK)
+            result = whit_image_encode_png(small, NULL, 0, &cli_log, &png->data, &png->size_bytes);
+        if (result == WHIT_OK)
+            whit_image_destroy(small);
+        if (result != WHIT_OK || png->size_bytes <= bytes_max || last)
+            return result;
+        png_finish(png);
+    }
+}
+
+/* ---- Of a drawing ---- */
+
+whit_result check_pictures_make(struct check_pictures *pictures, const struct drawing *drawing)
+{
+    whit_image_info info;
+    whit_image *heat = NULL;
+    const whit_heat_params heat_params = {.title = "costs"};
+    const whit_image *image = drawing->color;
+    whit_image_get_info(image, &info);
+    whit_result result = info.channels == 1 ? whit_image_heat(image, &heat_params, &heat) : WHIT_OK;
+    image = heat ? heat : image;
+    const whit_renderer_params *params = heat ? NULL : &drawing->params;
+    if (result == WHIT_OK)
+        result = encode(image, 1, params, PICTURE_BYTES_MAX, &pictures->after);
+    uint32_t larger = info.width > info.height ? info.width : info.height;
+    uint32_t by = (larger + THUMBNAIL_SIDE - 1) / THUMBNAIL_SIDE;
+    if (result == WHIT_OK)
+        result = encode(image, by, params, THUMBNAIL_BYTES_MAX, &pictures->thumbnail);
+    whit_image_destroy(heat);
+    return result;
+}
+
+/* What PNGs of both hold; free() it. NULL: out of memory. */
+static uint8_t *display(const whit_image *image, const whit_image_info *info)
+{
+    uint8_t *bytes = array_alloc((size_t)info->width * info->height, 4);
+    if (bytes)
+        whit_image_display_bytes(image, bytes);
+    return bytes;
+}
+
+/* The picture whose PNG would be that of `after`, and what of it is other than in `before`. */
+static whit_result show_both(const whit_image *before, const whit_image *after,
+                             const whit_image_info *info, whit_image **shown,
+                             whit_image **difference)
+{
+    uint8_t *a = display(before, info), *b = display(after, info);
+    whit_result result = a && b ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = whit_image_create_display(info->width, info->height, b, shown);
+    for (size_t i = 0; result == WHIT_OK && i < 4 * (size_t)info->width * info->height; ++i) {
+        int other = DIFFERENCE_TIMES * abs(a[i] - b[i]);
+        b[i] = (uint8_t)(other < 255 ? other : 255);
+    }
+    if (result == WHIT_OK)
+        result = whit_image_create_display(info->width, info->height, b, difference);
+    free(a);
+    free(b);
+    return result == WHIT_OK ? result : out_of_memory();
+}
+
+/* Both in the size that `info` says. */
+static whit_result compare(struct check_pictures *pictures, const whit_image *before,
+                           const whit_image *after, const whit_image_info *info)
+{
+    whit_difference found;
+    whit_image *shown = NULL, *difference = NULL, *map = NULL;
+    whit_result result = show_both(before, after, info, &shown, &difference);
+    if (result == WHIT_OK)
+        result = whit_image_compare(before, shown, NULL, &cli_log, &found, &map);
+    if (result == WHIT_OK)
+        result = encode(before, 1, NULL, PICTURE_BYTES_MAX, &pictures->before);
+    if (result == WHIT_OK)
+        result = encode(difference, 1, NULL, PICTURE_BYTES_MAX, &pictures->difference);
+    if (result == WHIT_OK)
+        result = encode(map, 1, NULL, PICTURE_BYTES_MAX, &pictures->flip);
+    if (result == WHIT_OK)
+        pictures->flip_mean = found.flip_mean;
+    whit_image_destroy(shown);
+    whit_image_destroy(difference);
+    whit_image_destroy(map);
+    return result;
+}
+
+whit_result check_pictures_compare(struct check_pictures *pictures, const struct drawing *drawing,
+                                   const whit_image *before)
+{
+    whit_image_info now, then;
+    whit_image *small;
+    whit_image_get_info(drawing->color, &now);
+    whit_image_get_info(before, &then);
+    uint32_t by = then.width ? now.width / then.width : 0;
+    if (!by || now.width / by != then.width || now.height / by != then.height || now.channels < 3)
+        return WHIT_OK;
+    whit_result result = shrink(drawing->color, by, &drawing->params, &small);
+    if (result != WHIT_OK)
+        return result;
+    result = compare(pictures, before, small, &then);
+    whit_image_destroy(small);
+    return result;
+}
+
+void check_pictures_finish(struct check_pictures *pictures)
+{
+    png_finish(&pictures->thumbnail);
+    png_finish(&pictures->after);
+    png_finish(&pictures->before);
+    png_finish(&pictures->difference);
+    png_finish(&pictures->flip);
+}

@@ -1,0 +1,68 @@
+#include "app/page.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cli.h"
+
+/* RFC 4648, behind what `to` has. */
+static void put_base64(FILE *to, const uint8_t *data, size_t size_bytes)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size_bytes; i += 3) {
+        size_t left = size_bytes - i;
+        uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
+                        (left > 2 ? data[i + 2] : 0);
+        fputc(digits[bits >> 18], to);
+        fputc(digits[bits >> 12 & 63], to);
+        fputc(left > 1 ? digits[bits >> 6 & 63] : '=', to);
+        fputc(left > 2 ? digits[bits & 63] : '=', to);
+    }
+}
+
+void page_put_png(json_t *object, const char *key, const uint8_t *data, size_t size_bytes)
+{
+    size_t length;
+    char *uri = NULL;
+    FILE *to = data ? open_memstream(&uri, &length) : NULL;
+    if (to) {
+        fputs("data:image/png;base64,", to);
+        put_base64(to, data, size_bytes);
+        fclose(to);
+    }
+    document_text(object, key, uri);
+    free(uri);
+}
+
+/* JSON inside of HTML: no `<` of a text may end the element. */
+static void put_report(FILE *to, const char *line)
+{
+    for (; *line; ++line)
+        if (*line == '<')
+            fputs("\\u003c", to);
+        else
+            fputc(*line, to);
+}
+
+whit_result page_save(const char *html, json_t *document, const char *path)
+{
+    static const char mark[] = "@REPORT@";
+    const char *at = strstr(html, mark);
+    char *text = NULL;
+    size_t bytes = 0;
+    char *line = document_line(document);
+    FILE *to = line ? open_memstream(&text, &bytes) : NULL;
+    if (to) {
+        fwrite(html, 1, (size_t)(at - html), to);
+        put_report(to, line);
+        fputs(at + strlen(mark), to);
+    }
+    whit_result result = WHIT_ERROR_MEMORY;
+    if (to && fclose(to) == 0)
+        result = whit_file_write(path, text, bytes, &cli_log);
+    else
+        cli_error("out of memory");
+    free(text);
+    free(line);
+    return result;
+}

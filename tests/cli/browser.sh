@@ -1,0 +1,30 @@
+# Sourced by tests of pages behind common.sh: a browser without a window. Skips where there is no Chromium.
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || browser=
+if [ -z "$browser" ]; then
+    echo "SKIPPED: no Chromium"
+    exit 77
+fi
+
+# look PAGE: leaves $OUT/console, $OUT/requests. The browser's own wishes lead nowhere and do not count.
+look() {
+    timeout 50 "$browser" --headless --no-sandbox --disable-gpu --no-first-run \
+        --disable-background-networking --host-resolver-rules='MAP * ~NOTFOUND' \
+        --user-data-dir="$OUT/browser" --enable-logging=stderr --log-net-log="$OUT/net.json" \
+        --window-size=1100,3000 --screenshot="$OUT/page.png" "file://$1" >"$OUT/log" 2>&1 ||
+        echo "FAILED  the browser: $(tail -n 1 "$OUT/log")"
+    grep CONSOLE "$OUT/log" >"$OUT/console"
+    jq -r '(.constants.logSourceType | to_entries | map({(.value | tostring): .key}) | add) as $kinds |
+        .events[] | select($kinds[.source.type | tostring] == "URL_REQUEST") | .params |
+        select(.url and (.initiator // "not an origin") != "not an origin") | .url' \
+        "$OUT/net.json" >"$OUT/requests"
+}
+
+# dom PAGE: what its script makes of it, into $OUT/dom.
+dom() {
+    timeout 50 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$OUT/browser" --dump-dom \
+        "file://$1" >"$OUT/dom" 2>/dev/null
+}
+# count PATTERN: how often it is there.
+count() {
+    grep -o "$1" "$OUT/dom" | wc -l
+}

@@ -1,0 +1,57 @@
+#!/bin/sh
+# The page of whit check, and thumbnails: what is in them, and how large they are. What the page's script
+# makes of it is looked at by Chromium, where there is one.
+. "$(dirname "$0")/common.sh"
+needs jq
+HERE=$(cd "$(dirname "$0")" && pwd)
+cd "$OUT" || exit 1
+cp "$SCENES/cube.json" .
+printf 'kept cube.json --size 128x96\nlost cube.json --size 64x48\nfine cube.json --size 64x48 --view visits\n' >looks.whit
+
+# report FILE: the JSON that stands in a page.
+report() {
+    sed -n 's|.*<script id="report" type="application/json">\(.*\)</script>.*|\1|p' "$1"
+}
+
+refuse 2 "thumbnails alone" "are of pictures that are drawn for --accept" check looks.whit --thumbnails
+refuse 2 "a page that cannot be written" "nowhere/p.html" check looks.whit --report nowhere/p.html
+expect 0 "accept" check looks.whit --accept all --thumbnails
+check "a thumbnail of each case" test "$(echo looks.thumbnails/*.png)" = \
+    "looks.thumbnails/fine.png looks.thumbnails/kept.png looks.thumbnails/lost.png"
+for file in looks.thumbnails/*; do
+    check "$file: at most 4096 bytes" test "$(wc -c <"$file")" -le 4096
+done
+expect 0 "all as it was" check looks.whit --report fine.html
+check "nothing to compare" test "$(report fine.html | jq '[.cases[] | select(.before)] | length')" -eq 0
+check "three pictures" test "$(report fine.html | jq '[.cases[] | select(.after)] | length')" -eq 3
+
+rm looks.thumbnails/lost.png
+sed -i 's/"intensity": 24/"intensity": 12/; s/"name": "cube"/"name": "<\/script>"/' cube.json
+expect 1 "a dimmer light" check looks.whit --report page.html
+report page.html >page.json
+cp page.html seen.html
+check "what was, what is, and what differs" jq -e '.cases[0] | .verdict == "differs" and .flip_mean > 0.01 and
+    .flip_mean < 1 and ([.before, .after, .difference, .flip] | all(startswith("data:image/png;base64,")))' page.json
+check "without a thumbnail what is alone" jq -e '.cases[1] | .verdict == "differs" and .before == null and .after' page.json
+check "costs are as they were" jq -e '.cases[2].verdict == "same" and .cases[2].after' page.json
+check "less than 1 MB" test "$(wc -c <page.html)" -lt 200000
+check "no request" test "$(grep -c 'https*://' page.html)" -eq 0
+echo damaged >looks.thumbnails/kept.png
+expect 1 "a damaged thumbnail" check looks.whit --report page.html
+check "is a warning" grep -q "^whit: warning: looks.thumbnails/kept.png: cannot be read" stderr
+printf 'lost cube.json --size 64x48\n' >looks.whit
+expect 0 "prune" check looks.whit --prune
+check "drops thumbnails" test "$(echo looks.thumbnails/*)" = "looks.thumbnails/*"
+
+if command -v chromium >/dev/null || command -v chromium-browser >/dev/null; then
+    . "$HERE/browser.sh"
+    dom "$OUT/seen.html"
+    check "by its script: two articles" test "$(count '<article>')" -eq 2
+    check "and six pictures" test "$(count '<img ')" -eq 6
+    look "$OUT/seen.html"
+    check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
+    check "nothing asked for" test "$(wc -l <"$OUT/requests")" -eq 0
+else
+    echo "SKIPPED part: no Chromium"
+fi
+finish
