@@ -24,6 +24,10 @@ static inline bool api_one_tree(const struct whit_scene *scene, whit_instances i
     return instances == WHIT_INSTANCES_OFF || (instances == WHIT_INSTANCES_AUTO && scene->one_tree);
 }
 
+/* scene_api.c: derives the pose and the choice of trees of a scene that was made. After a failure
+   the scene is destroyed. */
+WHIT_CHECK whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out);
+
 struct whit_accel {
     struct accel *accel;
     whit_log log;

@@ -19,9 +19,7 @@ static whit_result begin(const whit_log *log, whit_scene **out)
     return WHIT_OK;
 }
 
-/* Derives the pose and the choice of trees of a scene that was read. After a failure the scene is
-   destroyed. */
-static whit_result complete(whit_scene *scene, whit_result result, whit_scene **out)
+whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out)
 {
     if (result == WHIT_OK)
         result = scene_pose_init(scene->scene, 0.0, &scene->pose);
@@ -45,7 +43,7 @@ whit_result whit_scene_load(const char *path, const whit_load_params *params, co
     if (result != WHIT_OK)
         return result;
     result = load_scene(&scene->log, path, params, &scene->scene);
-    return complete(scene, result, out);
+    return api_complete_scene(scene, result, out);
 }
 
 whit_result whit_scene_small(const whit_log *log, whit_scene **out)
@@ -56,7 +54,7 @@ whit_result whit_scene_small(const whit_log *log, whit_scene **out)
     if (result != WHIT_OK)
         return result;
     scene->scene = scene_small(&scene->log);
-    return complete(scene, scene->scene ? WHIT_OK : WHIT_ERROR_MEMORY, out);
+    return api_complete_scene(scene, scene->scene ? WHIT_OK : WHIT_ERROR_MEMORY, out);
 }
 
 void whit_scene_drop_pictures(whit_scene *scene)

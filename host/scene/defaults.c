@@ -254,7 +254,6 @@ static void add_ambient(struct scene *scene, const struct light_kinds *lights)
     /* Emission that was scaled stands for a bright picture, one that was stated for itself. */
     float level = lights->key || lights->exposed ? 0.1f : lights->emitters ? 0.03f : 0.0f;
     set_color(scene->ambient, level, level, level);
-    scene->has_ambient = true;
     if (level > 0.0f)
         scene_note(scene, SCENE_NOTE_INFO, "no ambient light in the file: %g was added",
                    (double)level);
@@ -281,7 +280,6 @@ whit_result freeze_add_defaults(struct scene *scene)
             add_sky(scene);
         else
             add_darkness(scene);
-        scene->has_environment = true;
         scene_note(scene, SCENE_NOTE_INFO, "no environment in the file: %s",
                    lights.key ? "a sky was added" : "the background is black");
     }

@@ -48,8 +48,7 @@ static bool usable_channel(const struct scene *scene, const struct scene_channel
     if (channel->node >= scene->node_count || !channel->key_count || !channel->times_s ||
         !channel->values)
         return false;
-    size_t values = channel->key_count * (channel->path == SCENE_PATH_ROTATION ? 4u : 3u) *
-                    (channel->interpolation == SCENE_CUBIC ? (size_t)3 : 1);
+    size_t values = (size_t)channel->key_count * scene_channel_width(channel);
     for (uint32_t i = 0; i < channel->key_count; ++i) {
         if (!isfinite(channel->times_s[i]) ||
             (i && !(channel->times_s[i] > channel->times_s[i - 1])))
@@ -494,8 +493,14 @@ whit_result scene_freeze(struct scene *scene)
     if (scene->frozen)
         return WHIT_OK;
     whit_result result = check_all(scene);
-    if (result == WHIT_OK)
-        result = freeze_add_defaults(scene);
+    return result == WHIT_OK ? freeze_complete(scene) : no_memory(scene, result);
+}
+
+whit_result freeze_complete(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->light_count; ++i)
+        memcpy(scene->lights[i].stated, scene->lights[i].color, sizeof scene->lights[i].stated);
+    whit_result result = freeze_add_defaults(scene);
     if (result == WHIT_OK)
         result = freeze_choose_exposure(scene);
     if (result != WHIT_OK)

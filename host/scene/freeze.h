@@ -4,6 +4,10 @@
 
 #include "scene/scene.h"
 
+/* freeze.c: what scene_freeze does once all that is stated was checked: adds what is derived from
+   it, and ends the writing. */
+WHIT_CHECK whit_result freeze_complete(struct scene *scene);
+
 /* clean.c: drops triangles that cannot be traced, mends attributes, sets bounds. */
 WHIT_CHECK whit_result freeze_clean_mesh(struct scene *scene, uint32_t mesh);
 
@@ -45,5 +49,10 @@ WHIT_CHECK whit_result freeze_add_defaults(struct scene *scene);
 
 /* hash.c: over all that pictures depend on. */
 uint64_t freeze_hash(const struct scene *scene);
+/* The same of one record: a struct scene_mesh, scene_material and so on, by its kind;
+   WHIT_PART_OBJECTS has none. */
+uint64_t freeze_hash_record(enum whit_part_kind kind, const void *record);
+/* Of nodes and instances. */
+uint64_t freeze_hash_objects(const struct scene *scene);
 
 #endif

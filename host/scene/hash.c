@@ -1,4 +1,5 @@
-/* The scene's hash: everything that a picture depends on, names and notes left out. */
+/* The scene's hash: everything that a picture depends on, names and notes left out; and that of one
+   of its records. */
 #include "base/hash.h"
 #include "scene/freeze.h"
 
@@ -76,11 +77,9 @@ static void hash_instance(struct hash *hash, const struct scene_instance *instan
 static void hash_channel(struct hash *hash, const struct scene_channel *c)
 {
     const uint32_t words[] = {c->node, (uint32_t)c->path, (uint32_t)c->interpolation, c->key_count};
-    size_t width = (c->path == SCENE_PATH_ROTATION ? 4u : 3u) *
-                   (c->interpolation == SCENE_CUBIC ? (size_t)3 : 1);
     HASH_FIELD(hash, words);
     HASH_ARRAY(hash, c->times_s, c->key_count);
-    HASH_ARRAY(hash, c->values, c->key_count * width);
+    HASH_ARRAY(hash, c->values, (size_t)c->key_count * scene_channel_width(c));
 }
 
 static void hash_light(struct hash *hash, const struct scene_light *l)
@@ -120,23 +119,70 @@ static void hash_environment(struct hash *hash, const struct scene_environment *
     HASH_ARRAY(hash, sky->rgb, (size_t)sky->width * sky->height * 3);
 }
 
+static void hash_texture(struct hash *hash, const struct scene_texture *t)
+{
+    const uint32_t size[] = {t->width, t->height};
+    HASH_FIELD(hash, size);
+    HASH_ARRAY(hash, t->rgba, (size_t)t->width * t->height * 4);
+}
+
+static void hash_objects(struct hash *hash, const struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->node_count; ++i)
+        hash_node(hash, &scene->nodes[i]);
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        hash_instance(hash, &scene->instances[i]);
+}
+
+uint64_t freeze_hash_objects(const struct scene *scene)
+{
+    struct hash hash = {HASH_START};
+    hash_objects(&hash, scene);
+    return hash.value;
+}
+
+uint64_t freeze_hash_record(enum whit_part_kind kind, const void *record)
+{
+    struct hash hash = {HASH_START};
+    switch (kind) {
+    case WHIT_PART_MESH:
+        hash_mesh(&hash, record);
+        break;
+    case WHIT_PART_MATERIAL:
+        hash_material(&hash, record);
+        break;
+    case WHIT_PART_TEXTURE:
+        hash_texture(&hash, record);
+        break;
+    case WHIT_PART_LIGHT:
+        hash_light(&hash, record);
+        break;
+    case WHIT_PART_CAMERA:
+        hash_camera(&hash, record);
+        break;
+    case WHIT_PART_ANIMATION:
+        hash_channel(&hash, record);
+        break;
+    case WHIT_PART_ENVIRONMENT:
+        hash_environment(&hash, record);
+        break;
+    case WHIT_PART_OBJECTS:
+    case WHIT_PART_KINDS:
+        break;
+    }
+    return hash.value;
+}
+
 uint64_t freeze_hash(const struct scene *scene)
 {
     struct hash hash = {HASH_START};
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         hash_mesh(&hash, &scene->meshes[i]);
-    for (uint32_t i = 0; i < scene->node_count; ++i)
-        hash_node(&hash, &scene->nodes[i]);
-    for (uint32_t i = 0; i < scene->instance_count; ++i)
-        hash_instance(&hash, &scene->instances[i]);
+    hash_objects(&hash, scene);
     for (uint32_t i = 0; i < scene->material_count; ++i)
         hash_material(&hash, &scene->materials[i]);
-    for (uint32_t i = 0; i < scene->texture_count; ++i) {
-        const struct scene_texture *t = &scene->textures[i];
-        const uint32_t size[] = {t->width, t->height};
-        HASH_FIELD(&hash, size);
-        HASH_ARRAY(&hash, t->rgba, (size_t)t->width * t->height * 4);
-    }
+    for (uint32_t i = 0; i < scene->texture_count; ++i)
+        hash_texture(&hash, &scene->textures[i]);
     for (uint32_t i = 0; i < scene->light_count; ++i)
         hash_light(&hash, &scene->lights[i]);
     for (uint32_t i = 0; i < scene->camera_count; ++i)

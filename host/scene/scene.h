@@ -148,6 +148,13 @@ struct scene_channel {
     float *values;  /* 3 (4: rotation) per key; SCENE_CUBIC: in-tangent, value, out-tangent */
 };
 
+/* Numbers in `values` for each key. */
+static inline uint32_t scene_channel_width(const struct scene_channel *channel)
+{
+    return (channel->path == SCENE_PATH_ROTATION ? 4u : 3u) *
+           (channel->interpolation == SCENE_CUBIC ? 3u : 1u);
+}
+
 struct scene_instance {
     char *name;
     uint32_t mesh;
@@ -180,6 +187,7 @@ struct scene_light {
     double position[3];
     double direction[3]; /* the way the light travels; unit */
     float color[3];      /* radiant intensity; irradiance when directional or without falloff */
+    float stated[3];     /* the same before scene_freeze made it suit the picture; set there */
     bool falloff;        /* 1 / distance^2 */
     float range;         /* 0: without limit */
     float cos_inner, cos_outer;  /* SPOT: full inside inner, none outside outer */
@@ -255,9 +263,9 @@ struct scene {
     uint32_t mesh_capacity, node_capacity, instance_capacity, material_capacity, texture_capacity,
         light_capacity, camera_capacity, channel_capacity, note_capacity;
     struct scene_environment environment;
-    bool has_environment; /* false: scene_freeze makes one */
+    bool has_environment; /* a file states it; false: scene_freeze makes one */
     float ambient[3];     /* ambient light, times each material's `ambient` */
-    bool has_ambient;
+    bool has_ambient;     /* likewise */
     float contact; /* surfaces of two media within this distance, world units, are one; 0: only
                       where they touch but for rounding */
     uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */

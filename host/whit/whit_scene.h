@@ -147,6 +147,71 @@ void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info
 /* Where whit looks from at a scene whose file has no camera, at time 0; WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_scene_choose_camera(const whit_scene *scene, whit_camera *camera);
 
+/* What a picture depends on, piece by piece. */
+typedef enum whit_part_kind {
+    WHIT_PART_MESH = 0,
+    WHIT_PART_MATERIAL,
+    WHIT_PART_TEXTURE, /* its decoded texels */
+    WHIT_PART_LIGHT,
+    WHIT_PART_CAMERA,
+    WHIT_PART_ANIMATION,   /* keys of one property of one node */
+    WHIT_PART_ENVIRONMENT, /* with ambient light, and what a scene file says of contact */
+    WHIT_PART_OBJECTS,     /* nodes and instances: where meshes are; and which parts there are */
+    WHIT_PART_KINDS,
+} whit_part_kind;
+/* "mesh", "material", ... */
+const char *whit_part_kind_name(whit_part_kind kind);
+typedef struct whit_part {
+    whit_part_kind kind;
+    const char *name; /* as the file has it, made unique among its kind by `#2`, `#3`, ..., which
+                         stand alone where it has none; show it by whit_text_show. Of textures
+                         without folders; "" of environment and objects, of which there is one */
+    uint64_t hash;    /* of what is loaded: of decoded texels and imported meshes, not of files */
+} whit_part;
+/* The parts of a scene, sorted as the scene has them within each kind. What whit adds to a scene is
+   none, since it follows from the others. *parts with its names is one block, for
+   whit_memory_destroy. WHIT_ERROR_MEMORY; WHIT_ERROR_USAGE for a scene whose pictures were
+   dropped. */
+WHIT_CHECK whit_result whit_scene_parts(const whit_scene *scene, whit_part **parts,
+                                        uint32_t *count);
+
+/* How the part of `after` differs from the one of that kind and name of `before`: "vertices 2716
+   and 2717 moved by up to 0.0013"; "" where it does not, or where one of the two is not there. At
+   most `bytes`, which end with a 0. Names in it are as the files have them. WHIT_ERROR_MEMORY,
+   WHIT_ERROR_USAGE as of whit_scene_parts. */
+WHIT_CHECK whit_result whit_scene_part_change(const whit_scene *before, const whit_scene *after,
+                                              whit_part_kind kind, const char *name, char *text,
+                                              size_t bytes);
+/* A scene of its own that has some parts of `before` and the rest of `after`: `back` says of which
+   parts, in the order of whit_scene_parts of `before`, it has those of `before`. Objects bring the
+   lists of parts with them: a part that one scene alone has comes and goes with these. What whit
+   adds to a scene is made anew. With all or none of `back` it has the hash of `before` or `after`.
+   WHIT_ERROR_MEMORY; WHIT_ERROR_INPUT for what does not go together; WHIT_ERROR_USAGE as above. */
+WHIT_CHECK whit_result whit_scene_mix(const whit_scene *before, const whit_scene *after,
+                                      const bool *back, whit_scene **out);
+
+/* Faults that are put into a scene on purpose, to see whether they are noticed. */
+typedef enum whit_fault_kind {
+    WHIT_FAULT_VERTEX = 0, /* a vertex, or a sphere, moves by `amount` of its mesh's longest side */
+    WHIT_FAULT_IOR,        /* a refractive index grows by `amount` */
+    WHIT_FAULT_LIGHT,      /* a light is brighter by `amount` of what it was */
+    WHIT_FAULT_TEXELS,     /* a row of texels goes by `amount` of its range */
+    WHIT_FAULT_MATERIALS,  /* two materials have each other's values */
+    WHIT_FAULT_ORDER,      /* two objects have each other's place in the file */
+    WHIT_FAULT_KINDS,
+} whit_fault_kind;
+/* "vertex", "ior", ... */
+const char *whit_fault_kind_name(whit_fault_kind kind);
+typedef struct whit_fault {
+    whit_fault_kind kind;
+    uint64_t seed; /* draws what is changed; not how much */
+    double amount; /* above 0; MATERIALS and ORDER: not read */
+} whit_fault;
+/* A copy of a scene with faults in it. WHIT_ERROR_USAGE, not logged, where it has nothing that one
+   of them could change; else as whit_scene_mix. */
+WHIT_CHECK whit_result whit_scene_fault(const whit_scene *scene, const whit_fault *faults,
+                                        uint32_t count, whit_scene **out);
+
 /* Every world-space triangle at `time_s`, in the order of instance, then primitive. Spheres are not
    among them. */
 typedef struct whit_triangle {

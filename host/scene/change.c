@@ -1,0 +1,525 @@
+#include "scene/change.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vec.h"
+
+/* Of more than so many differences the rest is counted. */
+enum { TOLD_MAX = 4 };
+
+struct words {
+    char *text;
+    size_t bytes, used;
+    uint32_t told, left_out;
+};
+
+static void WHIT_PRINTF(2, 3) put(struct words *words, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    size_t room = words->bytes - words->used;
+    int length = vsnprintf(words->text + words->used, room, format, args);
+    va_end(args);
+    if (length > 0)
+        words->used += (size_t)length < room ? (size_t)length : room - 1;
+}
+
+/* Begins one more difference; false where there are enough. */
+static bool begin(struct words *words)
+{
+    if (words->told == TOLD_MAX) {
+        ++words->left_out;
+        return false;
+    }
+    put(words, "%s", words->told++ ? ", " : "");
+    return true;
+}
+
+/* ---- Records, field by field ---- */
+
+enum form { FLOATS, DOUBLES, WORDS, FLAG };
+struct field {
+    const char *name;
+    size_t offset;
+    enum form form;
+    uint32_t count;
+};
+#define FIELD(type, form, field, count, name)                                                      \
+    {                                                                                              \
+        name, offsetof(type, field), form, count                                                   \
+    }
+
+static double number_of(const void *record, const struct field *field, uint32_t i)
+{
+    const char *at = (const char *)record + field->offset;
+    switch (field->form) {
+    case FLOATS:
+        return (double)((const float *)(const void *)at)[i];
+    case DOUBLES:
+        return ((const double *)(const void *)at)[i];
+    case WORDS:
+        return (double)((const int32_t *)(const void *)at)[i];
+    case FLAG:
+        break;
+    }
+    return *(const bool *)at;
+}
+
+static void put_value(struct words *words, const void *record, const struct field *field)
+{
+    if (field->form == FLAG)
+        put(words, "%s", number_of(record, field, 0) > 0.0 ? "on" : "off");
+    for (uint32_t i = 0; field->form != FLAG && i < field->count; ++i)
+        put(words, "%s%.9g", i ? " " : "", number_of(record, field, i));
+}
+
+static bool same_field(const void *a, const void *b, const struct field *field)
+{
+    static const size_t sizes[] = {sizeof(float), sizeof(double), sizeof(int32_t), sizeof(bool)};
+    return memcmp((const char *)a + field->offset, (const char *)b + field->offset,
+                  sizes[field->form] * field->count) == 0;
+}
+
+static void compare_fields(struct words *words, const void *a, const void *b,
+                           const struct field *fields, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        if (same_field(a, b, &fields[i]) || !begin(words))
+            continue;
+        put(words, "%s from ", fields[i].name);
+        put_value(words, a, &fields[i]);
+        put(words, " to ");
+        put_value(words, b, &fields[i]);
+    }
+}
+#define COMPARE(words, a, b, fields)                                                               \
+    compare_fields((words), (a), (b), (fields), sizeof(fields) / sizeof *(fields))
+
+/* A record that is named by another. */
+static void compare_names(struct words *words, const char *what, const char *a, const char *b)
+{
+    if (strcmp(a, b) == 0 || !begin(words))
+        return;
+    put(words, "%s from ", what);
+    put(words, a[0] ? "\"%s\" to " : "none%s to ", a);
+    put(words, b[0] ? "\"%s\"" : "none%s", b);
+}
+
+static void compare_nodes(struct words *words, const struct scene_side *before, uint32_t a,
+                          const struct scene_side *after, uint32_t b)
+{
+    compare_names(words, "node", scene_parts_name(before->parts, SCENE_NAMES_NODE, a),
+                  scene_parts_name(after->parts, SCENE_NAMES_NODE, b));
+}
+
+static const char *const slot_names[] = {
+    [SCENE_SLOT_DIFFUSE] = "texture of diffuse",
+    [SCENE_SLOT_SPECULAR] = "texture of specular",
+    [SCENE_SLOT_EMISSION] = "texture of emission",
+    [SCENE_SLOT_NORMAL] = "normal map",
+    [SCENE_SLOT_BUMP] = "bump map",
+    [SCENE_SLOT_METAL_ROUGH] = "texture of metal and roughness",
+    [SCENE_SLOT_OPACITY] = "texture of opacity",
+    [SCENE_SLOT_TRANSMISSION] = "texture of transmission",
+    [SCENE_SLOT_SPECULAR_LEVEL] = "texture of specular level",
+};
+
+static void compare_materials(struct words *words, const struct scene_side *before,
+                              const struct scene_material *a, const struct scene_side *after,
+                              const struct scene_material *b)
+{
+#define MATERIAL(form, field, count, name) FIELD(struct scene_material, form, field, count, name)
+    static const struct field fields[] = {
+        MATERIAL(WORDS, model, 1, "model"),
+        MATERIAL(WORDS, illum, 1, "illum"),
+        MATERIAL(FLOATS, diffuse, 3, "diffuse"),
+        MATERIAL(FLOATS, ambient, 3, "ambient"),
+        MATERIAL(FLOATS, specular, 3, "specular"),
+        MATERIAL(FLOATS, shininess, 1, "shininess"),
+        MATERIAL(FLOATS, emission, 3, "emission"),
+        MATERIAL(FLOATS, reflection, 3, "reflection"),
+        MATERIAL(FLOATS, transmission, 3, "transmission"),
+        MATERIAL(FLOATS, absorption, 3, "absorption"),
+        MATERIAL(FLOATS, ior, 1, "ior"),
+        MATERIAL(FLAG, fresnel, 1, "fresnel"),
+        MATERIAL(FLAG, thin_walled, 1, "thin walled"),
+        MATERIAL(FLAG, two_sided, 1, "two-sided"),
+        MATERIAL(FLAG, one_sided, 1, "one-sided"),
+        MATERIAL(FLAG, shadow_catcher, 1, "shadow catcher"),
+        MATERIAL(WORDS, priority, 1, "priority"),
+        MATERIAL(FLOATS, metallic, 1, "metallic"),
+        MATERIAL(FLOATS, roughness, 1, "roughness"),
+        MATERIAL(FLOATS, specular_level, 1, "specular level"),
+        MATERIAL(WORDS, alpha, 1, "alpha mode"),
+        MATERIAL(FLOATS, opacity, 1, "opacity"),
+        MATERIAL(FLOATS, alpha_cutoff, 1, "alpha cut-off"),
+        MATERIAL(FLOATS, normal_scale, 1, "scale of normals"),
+    };
+    static const struct field uses[] = {
+        FIELD(struct scene_texture_use, WORDS, uv_set, 1, "set of texture coordinates"),
+        FIELD(struct scene_texture_use, FLOATS, transform, 6, "transform of texture coordinates"),
+        FIELD(struct scene_texture_use, WORDS, wrap_u, 1, "wrap of u"),
+        FIELD(struct scene_texture_use, WORDS, wrap_v, 1, "wrap of v"),
+        FIELD(struct scene_texture_use, FLAG, nearest, 1, "nearest texel"),
+    };
+    COMPARE(words, a, b, fields);
+    for (int i = 0; i < SCENE_SLOT_COUNT; ++i) {
+        compare_names(words, slot_names[i],
+                      scene_parts_name(before->parts, WHIT_PART_TEXTURE, a->textures[i].texture),
+                      scene_parts_name(after->parts, WHIT_PART_TEXTURE, b->textures[i].texture));
+        COMPARE(words, &a->textures[i], &b->textures[i], uses);
+    }
+}
+
+static void compare_lights(struct words *words, const struct scene_light *a,
+                           const struct scene_light *b)
+{
+#define LIGHT(form, field, count, name) FIELD(struct scene_light, form, field, count, name)
+    static const struct field fields[] = {
+        LIGHT(WORDS, kind, 1, "kind"),
+        LIGHT(DOUBLES, position, 3, "position"),
+        LIGHT(DOUBLES, direction, 3, "direction"),
+        LIGHT(FLOATS, stated, 3, "colour"),
+        LIGHT(FLAG, falloff, 1, "falloff"),
+        LIGHT(FLOATS, range, 1, "range"),
+        LIGHT(FLOATS, cos_inner, 1, "cosine of the inner angle"),
+        LIGHT(FLOATS, cos_outer, 1, "cosine of the outer angle"),
+        LIGHT(DOUBLES, edge_u, 3, "first edge"),
+        LIGHT(DOUBLES, edge_v, 3, "second edge"),
+        LIGHT(FLAG, two_sided, 1, "two-sided"),
+    };
+    COMPARE(words, a, b, fields);
+}
+
+static void compare_cameras(struct words *words, const struct scene_camera *a,
+                            const struct scene_camera *b)
+{
+#define CAMERA(form, field, count, name) FIELD(struct scene_camera, form, field, count, name)
+    static const struct field fields[] = {
+        CAMERA(WORDS, kind, 1, "kind"),
+        CAMERA(DOUBLES, eye, 3, "eye"),
+        CAMERA(DOUBLES, target, 3, "target"),
+        CAMERA(DOUBLES, up, 3, "up"),
+        CAMERA(FLOATS, fov_y, 1, "vertical angle"),
+        CAMERA(FLOATS, height, 1, "height"),
+        CAMERA(FLOATS, lens_radius, 1, "radius of the lens"),
+        CAMERA(FLOATS, focus_distance, 1, "focus distance"),
+        CAMERA(FLOATS, aspect, 1, "aspect"),
+    };
+    COMPARE(words, a, b, fields);
+}
+
+/* ---- Arrays ---- */
+
+/* Which elements of an array are other. */
+struct others {
+    uint32_t count, first, last;
+    double by; /* the largest distance of two */
+};
+
+/* Elements of `width` floats, whose distance is that of their first `space` ones. */
+static struct others find_others(const float *a, const float *b, uint32_t count, uint32_t width,
+                                 uint32_t space)
+{
+    struct others others = {.first = SCENE_NONE};
+    for (uint32_t i = 0; a && b && i < count; ++i) {
+        const float *x = a + (size_t)i * width, *y = b + (size_t)i * width;
+        if (memcmp(x, y, width * sizeof *x) == 0)
+            continue;
+        double square = 0.0;
+        for (uint32_t k = 0; k < space; ++k)
+            square += ((double)y[k] - (double)x[k]) * ((double)y[k] - (double)x[k]);
+        others.by = fmax(others.by, sqrt(square));
+        others.first = others.count++ ? others.first : i;
+        others.last = i;
+    }
+    return others;
+}
+
+/* "vertices 3 and 7 moved by up to 0.1". */
+static void put_others(struct words *words, const struct others *others, const char *one,
+                       const char *many, const char *how)
+{
+    if (!others->count || !begin(words))
+        return;
+    if (others->count == 1)
+        put(words, "%s %u %s by %.2g", one, others->first, how, others->by);
+    else if (others->count == 2)
+        put(words, "%s %u and %u %s by up to %.2g", many, others->first, others->last, how,
+            others->by);
+    else
+        put(words, "%u %s (%u to %u) %s by up to %.2g", others->count, many, others->first,
+            others->last, how, others->by);
+}
+
+static void compare_counts(struct words *words, uint32_t a, uint32_t b, const char *what)
+{
+    if (a != b && begin(words))
+        put(words, "%u %s in place of %u", b, what, a);
+}
+
+/* Values at vertices, which one side may lack. */
+static void compare_attribute(struct words *words, const float *a, const float *b, uint32_t count,
+                              uint32_t width, const char *what)
+{
+    struct others others = find_others(a, b, count, width, width);
+    if (!a != !b && begin(words))
+        put(words, "%s %s", what, b ? "that it had not" : "gone");
+    if (others.count && begin(words))
+        put(words, "%s of %u %s other by up to %.2g", what, others.count,
+            others.count == 1 ? "vertex" : "vertices", others.by);
+}
+
+static void compare_indices(struct words *words, const struct scene_mesh *a,
+                            const struct scene_mesh *b)
+{
+    uint32_t count = 0;
+    for (size_t i = 0; i < a->triangle_count; ++i)
+        count += memcmp(a->indices + 3 * i, b->indices + 3 * i, 3 * sizeof *a->indices) != 0;
+    if (count && begin(words))
+        put(words, "%u %s of other vertices", count, count == 1 ? "triangle" : "triangles");
+}
+
+/* The first that wears another one is told of. */
+static void compare_worn(struct words *words, const struct scene_side *before,
+                         const struct scene_mesh *a, const struct scene_side *after,
+                         const struct scene_mesh *b)
+{
+    uint32_t count = 0;
+    const char *was = "", *is = "";
+    for (uint32_t i = 0; i < scene_mesh_primitives(a); ++i) {
+        const char *x = scene_parts_name(before->parts, WHIT_PART_MATERIAL, a->materials[i]);
+        const char *y = scene_parts_name(after->parts, WHIT_PART_MATERIAL, b->materials[i]);
+        if (strcmp(x, y) != 0 && !count++)
+            was = x, is = y;
+    }
+    if (count && begin(words))
+        put(words, "%u of %u primitives of material \"%s\" in place of \"%s\"", count,
+            scene_mesh_primitives(a), is, was);
+}
+
+static void compare_meshes(struct words *words, const struct scene_side *before,
+                           const struct scene_mesh *a, const struct scene_side *after,
+                           const struct scene_mesh *b)
+{
+    compare_counts(words, a->vertex_count, b->vertex_count, "vertices");
+    compare_counts(words, a->triangle_count, b->triangle_count, "triangles");
+    compare_counts(words, a->sphere_count, b->sphere_count, "spheres");
+    if (a->vertex_count == b->vertex_count) {
+        uint32_t count = a->vertex_count;
+        struct others moved = find_others(a->positions, b->positions, count, 3, 3);
+        put_others(words, &moved, "vertex", "vertices", "moved");
+        compare_attribute(words, a->normals, b->normals, count, 3, "normals");
+        compare_attribute(words, a->uvs[0], b->uvs[0], count, 2, "texture coordinates");
+        compare_attribute(words, a->uvs[1], b->uvs[1], count, 2, "second texture coordinates");
+        compare_attribute(words, a->colors, b->colors, count, 4, "vertex colours");
+        compare_attribute(words, a->tangents, b->tangents, count, 4, "tangents");
+    }
+    if (a->sphere_count == b->sphere_count) {
+        struct others moved = find_others(a->spheres, b->spheres, a->sphere_count, 4, 4);
+        put_others(words, &moved, "sphere", "spheres", "other");
+    }
+    if (a->triangle_count == b->triangle_count)
+        compare_indices(words, a, b);
+    if (scene_mesh_primitives(a) == scene_mesh_primitives(b))
+        compare_worn(words, before, a, after, b);
+}
+
+static void compare_textures(struct words *words, const struct scene_texture *a,
+                             const struct scene_texture *b)
+{
+    uint32_t count = 0, first = 0, last = 0;
+    int by = 0;
+    if (a->width != b->width || a->height != b->height) {
+        if (begin(words))
+            put(words, "%u x %u texels in place of %u x %u", b->width, b->height, a->width,
+                a->height);
+        return;
+    }
+    size_t texels = (size_t)a->width * a->height;
+    for (size_t i = 0; i < texels; ++i) {
+        const uint8_t *x = a->rgba + 4 * i, *y = b->rgba + 4 * i;
+        if (memcmp(x, y, 4) == 0)
+            continue;
+        last = (uint32_t)(i / a->width);
+        first = count++ ? first : last;
+        for (int k = 0; k < 4; ++k)
+            by = abs(x[k] - y[k]) > by ? abs(x[k] - y[k]) : by;
+    }
+    if (count && begin(words))
+        put(words, "%u of %zu texels other by up to %d of 255, in rows %u to %u", count, texels, by,
+            first, last);
+}
+
+static void compare_channels(struct words *words, const struct scene_channel *a,
+                             const struct scene_channel *b)
+{
+    static const struct field fields[] = {
+        FIELD(struct scene_channel, WORDS, interpolation, 1, "interpolation"),
+    };
+    COMPARE(words, a, b, fields);
+    compare_counts(words, a->key_count, b->key_count, "keys");
+    if (a->key_count != b->key_count || a->interpolation != b->interpolation)
+        return;
+    uint32_t width = scene_channel_width(a);
+    struct others times = find_others(a->times_s, b->times_s, a->key_count, 1, 1);
+    struct others values = find_others(a->values, b->values, a->key_count, width, width);
+    put_others(words, &times, "time of key", "times of keys", "other");
+    put_others(words, &values, "value of key", "values of keys", "other");
+}
+
+static void compare_environments(struct words *words, const struct scene *a, const struct scene *b)
+{
+#define SKY(form, field, count, name) FIELD(struct scene_environment, form, field, count, name)
+    static const struct field fields[] = {
+        SKY(WORDS, kind, 1, "kind"),
+        SKY(FLOATS, zenith, 3, "zenith"),
+        SKY(FLOATS, horizon, 3, "horizon"),
+        SKY(FLOATS, ground, 3, "ground"),
+        SKY(FLOATS, scale, 3, "scale"),
+        SKY(WORDS, width, 1, "width of the map"),
+        SKY(WORDS, height, 1, "height of the map"),
+    };
+    static const struct field more[] = {
+        FIELD(struct scene, FLAG, has_environment, 1, "environment of the file"),
+        FIELD(struct scene, FLAG, has_ambient, 1, "ambient light of the file"),
+        FIELD(struct scene, FLOATS, ambient, 3, "ambient light"),
+        FIELD(struct scene, FLOATS, contact, 1, "contact"),
+    };
+    const struct scene_environment *x = &a->environment, *y = &b->environment;
+    COMPARE(words, a, b, more);
+    COMPARE(words, x, y, fields);
+    if (x->width != y->width || x->height != y->height)
+        return;
+    struct others others = find_others(x->rgb, y->rgb, x->width * x->height, 3, 3);
+    if (others.count && begin(words))
+        put(words, "%u pixels of the map other by up to %.2g", others.count, others.by);
+}
+
+/* ---- Objects ---- */
+
+/* What one side has and the other has not. */
+static void compare_lists(struct words *words, const struct scene_parts *has,
+                          const struct scene_parts *other, const char *how)
+{
+    for (uint32_t i = 0; i < has->count; ++i) {
+        const struct scene_part *part = &has->items[i];
+        if (!scene_parts_find(other, part->kind, part->name) && begin(words))
+            put(words, "%s \"%s\" is %s", scene_part_kind_name(part->kind), part->name, how);
+    }
+}
+
+static struct affine node_matrix(const struct scene_node *node)
+{
+    return node->has_matrix ? node->matrix
+                            : affine_from_trs(node->translation, node->rotation, node->scale);
+}
+
+/* A node whose own transform is other. */
+static void compare_node(struct words *words, const char *name, const struct scene_node *a,
+                         const struct scene_node *b)
+{
+    struct affine x = node_matrix(a), y = node_matrix(b);
+    double from[3] = {x.m[3], x.m[7], x.m[11]}, to[3] = {y.m[3], y.m[7], y.m[11]};
+    bool turned = false;
+    for (int i = 0; i < 12; ++i)
+        turned = turned || (i % 4 != 3 && x.m[i] != y.m[i]);
+    double by = double3_distance(from, to);
+    if ((!turned && !(by > 0.0)) || !begin(words))
+        return;
+    put(words, "node \"%s\"", name);
+    if (by > 0.0)
+        put(words, " moved by %.2g%s", by, turned ? " and" : "");
+    if (turned)
+        put(words, " turned or scaled");
+}
+
+static void compare_instances(struct words *words, const struct scene_side *before,
+                              const struct scene_side *after)
+{
+    const struct scene *a = before->scene, *b = after->scene;
+    uint32_t count = 0;
+    compare_counts(words, a->instance_count, b->instance_count, "instances");
+    for (uint32_t i = 0; a->instance_count == b->instance_count && i < a->instance_count; ++i) {
+        const struct scene_instance *x = &a->instances[i], *y = &b->instances[i];
+        count += strcmp(scene_parts_name(before->parts, WHIT_PART_MESH, x->mesh),
+                        scene_parts_name(after->parts, WHIT_PART_MESH, y->mesh)) != 0 ||
+                 strcmp(scene_parts_name(before->parts, SCENE_NAMES_NODE, x->node),
+                        scene_parts_name(after->parts, SCENE_NAMES_NODE, y->node)) != 0;
+    }
+    if (count && begin(words))
+        put(words, "%u of %u objects are others or stand in another order", count,
+            a->instance_count);
+}
+
+static void compare_objects(struct words *words, const struct scene_side *before,
+                            const struct scene_side *after)
+{
+    compare_lists(words, after->parts, before->parts, "new");
+    compare_lists(words, before->parts, after->parts, "gone");
+    for (uint32_t i = 0; i < before->scene->node_count; ++i) {
+        const char *name = scene_parts_name(before->parts, SCENE_NAMES_NODE, i);
+        uint32_t k = scene_parts_index(after->parts, SCENE_NAMES_NODE, name);
+        if (k != SCENE_NONE)
+            compare_node(words, name, &before->scene->nodes[i], &after->scene->nodes[k]);
+    }
+    compare_counts(words, before->scene->node_count, after->scene->node_count, "nodes");
+    compare_instances(words, before, after);
+}
+
+/* ---- All kinds ---- */
+
+static void compare(struct words *words, const struct scene_side *before,
+                    const struct scene_part *was, const struct scene_side *after,
+                    const struct scene_part *is)
+{
+    const struct scene *a = before->scene, *b = after->scene;
+    uint32_t i = was->index, k = is->index;
+    switch (was->kind) {
+    case WHIT_PART_MESH:
+        compare_meshes(words, before, &a->meshes[i], after, &b->meshes[k]);
+        break;
+    case WHIT_PART_MATERIAL:
+        compare_materials(words, before, &a->materials[i], after, &b->materials[k]);
+        break;
+    case WHIT_PART_TEXTURE:
+        compare_textures(words, &a->textures[i], &b->textures[k]);
+        break;
+    case WHIT_PART_LIGHT:
+        compare_lights(words, &a->lights[i], &b->lights[k]);
+        compare_nodes(words, before, a->lights[i].node, after, b->lights[k].node);
+        break;
+    case WHIT_PART_CAMERA:
+        compare_cameras(words, &a->cameras[i], &b->cameras[k]);
+        compare_nodes(words, before, a->cameras[i].node, after, b->cameras[k].node);
+        break;
+    case WHIT_PART_ANIMATION:
+        compare_channels(words, &a->channels[i], &b->channels[k]);
+        break;
+    case WHIT_PART_ENVIRONMENT:
+        compare_environments(words, a, b);
+        break;
+    case WHIT_PART_OBJECTS:
+    case WHIT_PART_KINDS:
+        compare_objects(words, before, after);
+        break;
+    }
+}
+
+void scene_change_write(const struct scene_side *before, const struct scene_side *after,
+                        whit_part_kind kind, const char *name, char *text, size_t bytes)
+{
+    const struct scene_part *was = scene_parts_find(before->parts, kind, name);
+    const struct scene_part *is = scene_parts_find(after->parts, kind, name);
+    struct words words = {.text = text, .bytes = bytes};
+    text[0] = 0;
+    if (!was || !is || was->hash == is->hash)
+        return;
+    compare(&words, before, was, after, is);
+    if (words.left_out)
+        put(&words, " and %u more", words.left_out);
+}

@@ -1,0 +1,153 @@
+#include "scene/fault.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "base/vec.h"
+#include "scene/freeze.h"
+
+/* A number below `count`, which is above 0. */
+static uint32_t draw(uint64_t *random, uint32_t count)
+{
+    return (uint32_t)(splitmix64(random) % count);
+}
+
+/* A vertex, or a sphere, that some primitive uses goes some way off, by a share of the mesh's
+   longest side. */
+static bool move_vertex(struct scene *scene, uint64_t *random, double amount)
+{
+    if (!scene->mesh_count)
+        return false;
+    uint32_t index = draw(random, scene->mesh_count);
+    struct scene_mesh *mesh = &scene->meshes[index];
+    uint32_t primitive = draw(random, scene_mesh_primitives(mesh));
+    float *place =
+        mesh->sphere_count
+            ? mesh->spheres + 4 * (size_t)primitive
+            : mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)primitive + draw(random, 3)];
+    double way[3], side = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        way[i] = 2.0 * splitmix64_unit(random) - 1.0;
+        side = fmax(side, (double)mesh->hi[i] - (double)mesh->lo[i]);
+    }
+    double3_unit(way);
+    for (int i = 0; i < 3; ++i)
+        place[i] = (float)((double)place[i] + amount * side * way[i]);
+    return freeze_clean_mesh(scene, index) == WHIT_OK;
+}
+
+/* Of a material that lets light through, or shares it by Fresnel. */
+static bool change_ior(struct scene *scene, uint64_t *random, double amount)
+{
+    uint32_t start = scene->material_count ? draw(random, scene->material_count) : 0;
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        struct scene_material *material = &scene->materials[(start + i) % scene->material_count];
+        const float *through = material->transmission;
+        if (!material->fresnel && !(through[0] + through[1] + through[2] > 0.0f))
+            continue;
+        material->ior = (float)((double)material->ior + amount);
+        return true;
+    }
+    return false;
+}
+
+/* Brighter by a share. */
+static bool change_light(struct scene *scene, uint64_t *random, double amount)
+{
+    if (!scene->light_count)
+        return false;
+    struct scene_light *light = &scene->lights[draw(random, scene->light_count)];
+    for (int i = 0; i < 3; ++i)
+        light->color[i] = (float)((double)light->color[i] * (1.0 + amount));
+    return true;
+}
+
+/* Each channel but alpha of one row goes by a share of 255 towards the other end of its range. */
+static bool change_texels(struct scene *scene, uint64_t *random, double amount)
+{
+    if (!scene->texture_count)
+        return false;
+    struct scene_texture *texture = &scene->textures[draw(random, scene->texture_count)];
+    uint8_t *row = texture->rgba + 4 * (size_t)draw(random, texture->height) * texture->width;
+    int by = (int)fmax(1.0, fmin(amount, 1.0) * 255.0);
+    for (size_t i = 0; i < 4 * (size_t)texture->width; ++i) {
+        if (i % 4 != 3)
+            row[i] = (uint8_t)(row[i] < 128 ? fmin(row[i] + by, 255.0) : fmax(row[i] - by, 0.0));
+    }
+    return true;
+}
+
+/* Two materials have each other's values, and their own names. */
+static bool swap_materials(struct scene *scene, uint64_t *random)
+{
+    if (scene->material_count < 2)
+        return false;
+    uint32_t i = draw(random, scene->material_count);
+    uint32_t k = (i + 1 + draw(random, scene->material_count - 1)) % scene->material_count;
+    struct scene_material *a = &scene->materials[i], *b = &scene->materials[k];
+    struct scene_material swapped = *a;
+    char *name_a = a->name, *name_b = b->name;
+    *a = *b;
+    *b = swapped;
+    a->name = name_a;
+    b->name = name_b;
+    return true;
+}
+
+/* Two objects have each other's place in the order of the file, by which hits are named. */
+static bool swap_objects(struct scene *scene, uint64_t *random)
+{
+    if (scene->instance_count < 2)
+        return false;
+    uint32_t i = draw(random, scene->instance_count);
+    uint32_t k = (i + 1 + draw(random, scene->instance_count - 1)) % scene->instance_count;
+    struct scene_instance swapped = scene->instances[i];
+    scene->instances[i] = scene->instances[k];
+    scene->instances[k] = swapped;
+    return true;
+}
+
+static bool put_fault(struct scene *scene, const whit_fault *fault)
+{
+    uint64_t random = fault->seed;
+    switch (fault->kind) {
+    case WHIT_FAULT_VERTEX:
+        return move_vertex(scene, &random, fault->amount);
+    case WHIT_FAULT_IOR:
+        return change_ior(scene, &random, fault->amount);
+    case WHIT_FAULT_LIGHT:
+        return change_light(scene, &random, fault->amount);
+    case WHIT_FAULT_TEXELS:
+        return change_texels(scene, &random, fault->amount);
+    case WHIT_FAULT_MATERIALS:
+        return swap_materials(scene, &random);
+    case WHIT_FAULT_ORDER:
+        return swap_objects(scene, &random);
+    case WHIT_FAULT_KINDS:
+        break;
+    }
+    return false;
+}
+
+whit_result scene_fault(const whit_log *log, const struct scene_side *side,
+                        const whit_fault *faults, uint32_t count, struct scene **out)
+{
+    bool *back = calloc(side->parts->count, sizeof *back);
+    whit_result result = back ? scene_mix_begin(log, side, side, back, out) : WHIT_ERROR_MEMORY;
+    free(back);
+    if (result != WHIT_OK)
+        return result;
+    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
+        if (!put_fault(*out, &faults[i]))
+            result = WHIT_ERROR_USAGE;
+    }
+    if (result == WHIT_OK)
+        result = freeze_complete(*out);
+    if (result != WHIT_OK) {
+        scene_destroy(*out);
+        *out = NULL;
+    }
+    return result;
+}

@@ -1,0 +1,48 @@
+/* The parts of a frozen scene: what a picture depends on, piece by piece, under names that are the
+   same from run to run. References between parts count by name, so that a part is the same whatever
+   stands in front of it. */
+#ifndef SCENE_PARTS_H
+#define SCENE_PARTS_H
+
+#include "scene/scene.h"
+
+struct scene_part {
+    whit_part_kind kind;
+    uint32_t index;   /* of its record in the scene */
+    const char *name; /* of `names` */
+    uint64_t hash;
+};
+
+/* "mesh", "material", ... */
+const char *scene_part_kind_name(whit_part_kind kind);
+
+/* Names of records, each once. */
+struct scene_names {
+    char **names;
+    uint32_t count;
+    struct table table; /* index by name */
+};
+
+/* Nodes are no parts of their own, but parts name them. */
+enum { SCENE_NAMES_NODE = WHIT_PART_ENVIRONMENT, SCENE_NAMES };
+
+struct scene_parts {
+    struct scene_part *items;
+    uint32_t count, capacity;
+    uint32_t first[WHIT_PART_KINDS];       /* of `items`, by kind */
+    struct scene_names names[SCENE_NAMES]; /* by whit_part_kind, and those of nodes */
+};
+
+/* `scene` is frozen and has its pictures; it is not read afterwards. Release with
+   scene_parts_finish, after a failure too. WHIT_ERROR_MEMORY, not logged. */
+WHIT_CHECK whit_result scene_parts_init(const struct scene *scene, struct scene_parts *out);
+void scene_parts_finish(struct scene_parts *parts);
+/* The part of that kind and name; NULL: there is none. */
+const struct scene_part *scene_parts_find(const struct scene_parts *parts, whit_part_kind kind,
+                                          const char *name);
+/* The name of a record, "" for SCENE_NONE; and the record of a name, or SCENE_NONE. `kind`: of
+   whit_part_kind, or SCENE_NAMES_NODE. */
+const char *scene_parts_name(const struct scene_parts *parts, unsigned kind, uint32_t index);
+uint32_t scene_parts_index(const struct scene_parts *parts, unsigned kind, const char *name);
+
+#endif

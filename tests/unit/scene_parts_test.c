@@ -1,0 +1,360 @@
+/* Parts of scenes: names, hashes, what is other in words, scenes made of the parts of two, and
+   faults put into them. */
+#include <glob.h>
+
+#include "../scenes.h"
+#include "base/array.h"
+#include "load/load.h"
+#include "scene/change.h"
+#include "scene/fault.h"
+#include "unit.h"
+
+struct loaded {
+    struct scene *scene;
+    struct scene_parts parts;
+    struct scene_side side;
+};
+
+static void take(struct loaded *loaded, struct scene *scene)
+{
+    loaded->scene = scene;
+    assert_int_equal(scene_parts_init(scene, &loaded->parts), WHIT_OK);
+    loaded->side = (struct scene_side){scene, &loaded->parts};
+}
+
+static void drop(struct loaded *loaded)
+{
+    scene_parts_finish(&loaded->parts);
+    scene_destroy(loaded->scene);
+}
+
+/* A floor, a textured box and a ball below a node that moves, under a sun and a lamp. */
+struct wish {
+    float ior, sun;
+    uint8_t texel;
+    float vertex;
+    double moved;
+    bool stone;       /* the box wears another material */
+    bool more, other; /* an object in front of all; balls in place of a ball */
+    float key;
+};
+
+static struct scene *small_scene(const struct wish *wish)
+{
+    struct scene *scene = scene_begin(NULL, "small");
+    struct scene_material glass = material_grey("glass"), wood = material_grey("wood");
+    uint8_t rgba[16] = {10, 20, 30, 255, 40, 50, 60, 255, 70, 80, 90, 255, 11, 12, 13, 255};
+    const float times_s[] = {0.0f, 1.0f}, values[] = {0, 0, 0, 0, wish->key, 0};
+    if (wish->more)
+        scene_put(scene, mesh_box(0.1, 0.1, 0.1), &(struct put){.name = "crumb"});
+    glass.ior = wish->ior;
+    glass.transmission[0] = 0.9f;
+    rgba[5] = wish->texel;
+    wood.textures[SCENE_SLOT_DIFFUSE].texture = scene_put_texture(scene, 2, 2, rgba);
+    struct scene_mesh box = mesh_box(1, 1, 1);
+    box.positions[3] += wish->vertex;
+    uint32_t node = scene_put_node(scene, SCENE_NONE, wish->moved, 0, 0);
+    scene_put(scene, mesh_plane(4.0), &(struct put){.name = "floor"});
+    struct scene_material stone = material_grey("stone");
+    scene_put(scene, box, &(struct put){.name = "box", .material = wish->stone ? &stone : &wood});
+    scene_put(scene, wish->other ? mesh_icosphere(0.5, 2) : mesh_icosphere(0.5, 1),
+              &(struct put){.name = "ball", .material = &glass, .node = &node});
+    scene_put_channel(scene, node, SCENE_PATH_TRANSLATION, 2, times_s, values);
+    scene_put_sun(scene, 0.2, -1, 0.1, wish->sun);
+    scene_put_lamp(scene, 1, 2, 1, 4.0f);
+    scene_put_camera(scene, (const double[]){0, 2, 5}, (const double[]){0, 0, 0}, 0.8);
+    return scene_ready(scene);
+}
+
+static const struct wish usual = {.ior = 1.5f, .sun = 1.0f, .texel = 50, .key = 1.0f};
+
+/* Which parts of `after` are other than those of `before`: "mesh box, material glass". */
+static const char *others(const struct loaded *before, const struct loaded *after)
+{
+    static char text[512];
+    text[0] = 0;
+    for (uint32_t i = 0; i < before->parts.count; ++i) {
+        const struct scene_part *was = &before->parts.items[i];
+        const struct scene_part *is = scene_parts_find(&after->parts, was->kind, was->name);
+        if (is && is->hash == was->hash)
+            continue;
+        size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%s%s%s%s", used ? ", " : "",
+                 scene_part_kind_name(was->kind), was->name[0] ? " " : "", was->name);
+    }
+    return text;
+}
+
+static const char *change(const struct loaded *before, const struct loaded *after,
+                          whit_part_kind kind, const char *name)
+{
+    static char text[512];
+    scene_change_write(&before->side, &after->side, kind, name, text, sizeof text);
+    return text;
+}
+
+/* One change alters the hash of one part, and the words say it. */
+static void check_change(struct wish wish, const char *parts, whit_part_kind kind, const char *name,
+                         const char *words)
+{
+    struct loaded before, after;
+    take(&before, small_scene(&usual));
+    take(&after, small_scene(&wish));
+    assert_string_equal(others(&before, &after), parts);
+    assert_string_equal(change(&before, &after, kind, name), words);
+    drop(&before);
+    drop(&after);
+}
+
+TEST(a_change_is_one_of_its_part_and_is_said)
+{
+    struct wish wish = usual;
+    check_change(wish, "", WHIT_PART_MESH, "box", "");
+    wish.ior = 1.51f;
+    check_change(wish, "material glass", WHIT_PART_MATERIAL, "glass", "ior from 1.5 to 1.50999999");
+    wish = usual, wish.sun = 2.0f;
+    check_change(wish, "light sun", WHIT_PART_LIGHT, "sun", "colour from 1 1 1 to 2 2 2");
+    wish = usual, wish.texel = 57;
+    check_change(wish, "texture texture", WHIT_PART_TEXTURE, "texture",
+                 "1 of 4 texels other by up to 7 of 255, in rows 0 to 0");
+    wish = usual, wish.vertex = 0.25f;
+    check_change(wish, "mesh box", WHIT_PART_MESH, "box",
+                 "vertex 1 moved by 0.25, normals that it had not");
+    wish = usual, wish.key = 3.0f;
+    check_change(wish, "animation node translation", WHIT_PART_ANIMATION, "node translation",
+                 "value of key 1 other by 2");
+    wish = usual, wish.moved = 0.5;
+    check_change(wish, "objects", WHIT_PART_OBJECTS, "", "node \"node\" moved by 0.5");
+    wish = usual, wish.other = true;
+    check_change(wish, "mesh ball", WHIT_PART_MESH, "ball",
+                 "162 vertices in place of 42, 320 triangles in place of 80");
+}
+
+TEST(references_count_by_name)
+{
+    struct loaded before, after;
+    struct wish wish = usual;
+    wish.more = true;
+    take(&before, small_scene(&usual));
+    take(&after, small_scene(&wish));
+    assert_string_equal(others(&before, &after), "objects");
+    assert_string_equal(change(&before, &after, WHIT_PART_OBJECTS, ""),
+                        "mesh \"crumb\" is new, 4 instances in place of 3");
+    drop(&after);
+    wish = usual, wish.stone = true;
+    take(&after, small_scene(&wish));
+    assert_string_equal(others(&before, &after), "mesh box, material wood, objects");
+    assert_string_equal(change(&before, &after, WHIT_PART_MESH, "box"),
+                        "12 of 12 primitives of material \"stone\" in place of \"wood\"");
+    drop(&before);
+    drop(&after);
+}
+
+/* Both, with these parts of the first: those whose kind and name are given, or all. */
+static struct scene *mix(const struct loaded *before, const struct loaded *after, bool all,
+                         whit_part_kind kind, const char *name)
+{
+    bool *back = calloc(before->parts.count, sizeof *back);
+    struct scene *made = NULL;
+    uint32_t found = 0;
+    assert_non_null(back);
+    for (uint32_t i = 0; i < before->parts.count; ++i) {
+        const struct scene_part *part = &before->parts.items[i];
+        back[i] = all || (name && part->kind == kind && strcmp(part->name, name) == 0);
+        found += back[i];
+    }
+    assert_true(!name || found == 1);
+    assert_int_equal(scene_mix(NULL, &before->side, &after->side, back, &made), WHIT_OK);
+    free(back);
+    return made;
+}
+
+static void check_hash(struct scene *made, uint64_t hash)
+{
+    assert_true(made->frozen);
+    assert_int_equal(made->hash, hash);
+    scene_destroy(made);
+}
+
+/* Two changes, one of which is taken back: what is left is the other. */
+static void check_back(struct wish both, struct wish other, whit_part_kind kind, const char *name)
+{
+    struct loaded before, after;
+    struct scene *expected = small_scene(&other);
+    take(&before, small_scene(&usual));
+    take(&after, small_scene(&both));
+    assert_true(after.scene->hash != expected->hash);
+    check_hash(mix(&before, &after, false, kind, name), expected->hash);
+    check_hash(mix(&before, &after, true, kind, NULL), before.scene->hash);
+    check_hash(mix(&before, &after, false, kind, NULL), after.scene->hash);
+    scene_destroy(expected);
+    drop(&before);
+    drop(&after);
+}
+
+TEST(a_part_that_is_put_back_leaves_the_others)
+{
+    struct wish both = usual, other = usual;
+    both.ior = 1.6f, both.vertex = 0.1f;
+    other.vertex = 0.1f;
+    check_back(both, other, WHIT_PART_MATERIAL, "glass");
+    other = both, other.vertex = 0.0f;
+    check_back(both, other, WHIT_PART_MESH, "box");
+    both = usual, both.sun = 3.0f, both.texel = 9, both.more = true;
+    other = both, other.sun = usual.sun;
+    check_back(both, other, WHIT_PART_LIGHT, "sun");
+    other = both, other.texel = usual.texel;
+    check_back(both, other, WHIT_PART_TEXTURE, "texture");
+    other = both, other.more = false;
+    check_back(both, other, WHIT_PART_OBJECTS, "");
+    both = usual, both.moved = 2.0, both.key = 7.0f;
+    other = both, other.key = usual.key;
+    check_back(both, other, WHIT_PART_ANIMATION, "node translation");
+}
+
+/* The mesh of before wears what the objects of after have not: that comes along. */
+TEST(what_a_part_names_comes_with_it)
+{
+    struct loaded before, after;
+    struct wish wish = usual;
+    wish.stone = true;
+    take(&before, small_scene(&usual));
+    take(&after, small_scene(&wish));
+    struct scene *made = mix(&before, &after, false, WHIT_PART_MESH, "box");
+    assert_int_equal(made->material_count, after.scene->material_count + 1);
+    const struct scene_material *worn = &made->materials[made->meshes[1].materials[0]];
+    assert_string_equal(worn->name, "wood");
+    const struct scene_texture *texture =
+        &made->textures[worn->textures[SCENE_SLOT_DIFFUSE].texture];
+    assert_int_equal(texture->rgba[0], 10);
+    scene_destroy(made);
+    drop(&before);
+    drop(&after);
+}
+
+static struct scene *load(const char *path)
+{
+    struct scene *scene = NULL;
+    assert_int_equal(load_scene(NULL, path, NULL, &scene), WHIT_OK);
+    return scene;
+}
+
+/* What whit derives, emitters and exposure among it, is derived again to the last bit: over all
+   scenes, each beside the one before. */
+TEST(scenes_of_all_or_no_parts_are_those_they_are_of)
+{
+    glob_t files;
+    struct loaded before, after;
+    assert_int_equal(glob(WHIT_SCENES_DIR "/gallery/*.json", 0, NULL, &files), 0);
+    assert_int_equal(glob(WHIT_SCENES_DIR "/[dglrsw]*.json", GLOB_APPEND, NULL, &files), 0);
+    assert_true(files.gl_pathc > 16);
+    take(&before, load(files.gl_pathv[0]));
+    for (size_t i = 1; i < files.gl_pathc; ++i) {
+        take(&after, load(files.gl_pathv[i]));
+        check_hash(mix(&before, &after, true, 0, NULL), before.scene->hash);
+        check_hash(mix(&before, &after, false, 0, NULL), after.scene->hash);
+        drop(&before);
+        before = after;
+        before.side.parts = &before.parts;
+    }
+    drop(&before);
+    globfree(&files);
+}
+
+/* A model of another program, whose light is made to suit: of what glows in it, or its own. */
+static struct scene *model(bool lamp_glows, float strength)
+{
+    struct scene *scene = scene_begin(NULL, "model");
+    struct scene_material lamp = material_grey("lamp");
+    lamp.emission[0] = lamp.emission[1] = lamp_glows ? strength : 0.0f;
+    scene->is_model = true;
+    scene_put(scene, mesh_plane(4.0), &(struct put){.name = "floor"});
+    scene_put(scene, mesh_box(1, 1, 1), &(struct put){.name = "lamp", .material = &lamp});
+    scene->materials[1].origin.file = string_copy("a.mtl");
+    if (!lamp_glows) {
+        scene_put_lamp(scene, 1, 2, 1, strength);
+        scene_put_sun(scene, 0.5, -1, 0.3, 1e-3f);
+        for (int i = 0; i < 2; ++i)
+            scene->lights[i].origin.file = string_copy("a.gltf");
+    }
+    return scene_ready(scene);
+}
+
+TEST(lights_made_to_suit_are_made_anew)
+{
+    for (int glows = 0; glows < 2; ++glows) {
+        struct loaded before, after;
+        take(&before, model(glows, glows ? 20.0f : 1e-3f));
+        take(&after, model(glows, glows ? 40.0f : 3e-3f));
+        const struct scene_light *light = &before.scene->lights[0];
+        assert_int_equal(light->made_by_whit, glows);
+        assert_true(glows || light->color[0] > 4.0f * light->stated[0]);
+        assert_true(before.scene->cameras[0].made_by_whit);
+        const char *other = glows ? "material lamp" : "light lamp";
+        assert_string_equal(others(&before, &after), other);
+        whit_part_kind kind = glows ? WHIT_PART_MATERIAL : WHIT_PART_LIGHT;
+        check_hash(mix(&before, &after, false, kind, "lamp"), before.scene->hash);
+        check_hash(mix(&before, &after, false, 0, NULL), after.scene->hash);
+        drop(&before);
+        drop(&after);
+    }
+}
+
+TEST(names_are_unique)
+{
+    struct scene *scene = scene_begin(NULL, "names");
+    const char *const names[] = {"a", "a", "a#2", "a"};
+    for (int i = 0; i < 4; ++i)
+        scene_put(scene, mesh_box(1, 1, 1 + i), &(struct put){.name = names[i]});
+    scene_put(scene, mesh_box(1, 1, 9), NULL);
+    struct loaded loaded;
+    take(&loaded, scene_ready(scene));
+    const char *const unique[] = {"a", "a#2", "a#2#2", "a#3", "#4"};
+    for (uint32_t i = 0; i < 5; ++i) {
+        assert_string_equal(loaded.parts.items[i].name, unique[i]);
+        assert_ptr_equal(scene_parts_find(&loaded.parts, WHIT_PART_MESH, unique[i]),
+                         &loaded.parts.items[i]);
+    }
+    assert_null(scene_parts_find(&loaded.parts, WHIT_PART_MESH, "b"));
+    assert_null(scene_parts_find(&loaded.parts, WHIT_PART_LIGHT, "a")); /* whit's own is no part */
+    drop(&loaded);
+}
+
+/* ---- Faults ---- */
+
+/* The parts that a fault alters are of the kind that it says. */
+TEST(a_fault_alters_its_parts_alone)
+{
+    static const struct {
+        whit_fault_kind kind;
+        double amount;
+        const char *begins;
+        uint32_t parts;
+    } cases[] = {
+        {WHIT_FAULT_VERTEX, 1e-3, "mesh ", 1},
+        {WHIT_FAULT_IOR, 0.01, "material glass", 1},
+        {WHIT_FAULT_LIGHT, 0.02, "light ", 1},
+        {WHIT_FAULT_TEXELS, 0.05, "texture texture", 1},
+        {WHIT_FAULT_MATERIALS, 0.0, "material ", 2},
+        {WHIT_FAULT_ORDER, 0.0, "objects", 1},
+    };
+    struct loaded before, after;
+    take(&before, small_scene(&usual));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        for (uint64_t seed = 0; seed < 8; ++seed) {
+            whit_fault fault = {cases[i].kind, seed, cases[i].amount};
+            struct scene *made;
+            assert_int_equal(scene_fault(NULL, &before.side, &fault, 1, &made), WHIT_OK);
+            take(&after, made);
+            const char *text = others(&before, &after);
+            assert_memory_equal(text, cases[i].begins, strlen(cases[i].begins));
+            assert_int_equal(1 + (strchr(text, ',') != NULL), cases[i].parts);
+            drop(&after);
+        }
+    }
+    whit_fault none = {WHIT_FAULT_KINDS, 0, 0.0};
+    struct scene *made;
+    assert_int_equal(scene_fault(NULL, &before.side, &none, 1, &made), WHIT_ERROR_USAGE);
+    assert_null(made);
+    drop(&before);
+}
