@@ -69,12 +69,24 @@ static double number_of(const void *record, const struct field *field, uint32_t 
     return *(const bool *)at;
 }
 
+/* The shortest decimal that reads back, from 6 digits on. */
+static void put_number(struct words *words, const char *before, double number, bool is_float)
+{
+    char text[32];
+    int digits = 6, most = is_float ? 9 : 17;
+    do
+        snprintf(text, sizeof text, "%.*g", digits, number);
+    while ((is_float ? (double)strtof(text, NULL) : strtod(text, NULL)) != number &&
+           ++digits <= most);
+    put(words, "%s%s", before, text);
+}
+
 static void put_value(struct words *words, const void *record, const struct field *field)
 {
     if (field->form == FLAG)
         put(words, "%s", number_of(record, field, 0) > 0.0 ? "on" : "off");
     for (uint32_t i = 0; field->form != FLAG && i < field->count; ++i)
-        put(words, "%s%.9g", i ? " " : "", number_of(record, field, i));
+        put_number(words, i ? " " : "", number_of(record, field, i), field->form == FLOATS);
 }
 
 static bool same_field(const void *a, const void *b, const struct field *field)
@@ -408,7 +420,8 @@ static void compare_lists(struct words *words, const struct scene_parts *has,
 {
     for (uint32_t i = 0; i < has->count; ++i) {
         const struct scene_part *part = &has->items[i];
-        if (!scene_parts_find(other, part->kind, part->name) && begin(words))
+        bool listed = part->kind != WHIT_PART_MATERIAL && part->kind != WHIT_PART_TEXTURE;
+        if (listed && !scene_parts_find(other, part->kind, part->name) && begin(words))
             put(words, "%s \"%s\" is %s", scene_part_kind_name(part->kind), part->name, how);
     }
 }

@@ -79,8 +79,8 @@ static bool change_texels(struct scene *scene, uint64_t *random, double amount)
     return true;
 }
 
-/* Two materials have each other's values, and their own names. */
-static bool swap_materials(struct scene *scene, uint64_t *random)
+/* Two materials have each other's values, and their own names; they may glow as well. */
+static bool swap_materials(struct scene *scene, uint64_t *random, double glow)
 {
     if (scene->material_count < 2)
         return false;
@@ -93,11 +93,25 @@ static bool swap_materials(struct scene *scene, uint64_t *random)
     *b = swapped;
     a->name = name_a;
     b->name = name_b;
+    for (int c = 0; c < 3; ++c) {
+        a->emission[c] += (float)glow;
+        b->emission[c] += (float)glow;
+    }
     return true;
 }
 
-/* Two objects have each other's place in the order of the file, by which hits are named. */
-static bool swap_objects(struct scene *scene, uint64_t *random)
+static void move_object(struct scene_instance *instance, double by)
+{
+    struct affine local = instance->has_local ? instance->local : affine_identity();
+    for (int i = 3; i < 12; i += 4)
+        local.m[i] += by;
+    instance->local = local;
+    instance->has_local |= by > 0.0;
+}
+
+/* Two objects have each other's place in the order of the file, by which hits are named; they may
+   move as well. */
+static bool swap_objects(struct scene *scene, uint64_t *random, double by)
 {
     if (scene->instance_count < 2)
         return false;
@@ -106,6 +120,8 @@ static bool swap_objects(struct scene *scene, uint64_t *random)
     struct scene_instance swapped = scene->instances[i];
     scene->instances[i] = scene->instances[k];
     scene->instances[k] = swapped;
+    move_object(&scene->instances[i], by);
+    move_object(&scene->instances[k], by);
     return true;
 }
 
@@ -122,9 +138,9 @@ static bool put_fault(struct scene *scene, const whit_fault *fault)
     case WHIT_FAULT_TEXELS:
         return change_texels(scene, &random, fault->amount);
     case WHIT_FAULT_MATERIALS:
-        return swap_materials(scene, &random);
+        return swap_materials(scene, &random, fault->amount);
     case WHIT_FAULT_ORDER:
-        return swap_objects(scene, &random);
+        return swap_objects(scene, &random, fault->amount);
     case WHIT_FAULT_KINDS:
         break;
     }

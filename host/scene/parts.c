@@ -83,14 +83,28 @@ static bool add_name(struct scene_names *names, const char *own)
     return name && table_add(&names->table, name, strlen(name), index);
 }
 
+/* Meshes of scene files are called after their shape: better by the first object that has them.
+   NULL: no memory. */
+static const char **object_names(const struct scene *scene)
+{
+    const char **names = array_alloc_zeroed(scene->mesh_count, sizeof *names);
+    for (uint32_t i = 0; names && i < scene->instance_count; ++i) {
+        const struct scene_instance *instance = &scene->instances[i];
+        if (!names[instance->mesh] && instance->name && instance->name[0])
+            names[instance->mesh] = instance->name;
+    }
+    return names;
+}
+
 static bool add_names(const struct scene *scene, unsigned kind, struct scene_parts *parts)
 {
     struct scene_names *names = &parts->names[kind];
     uint32_t count = count_of(scene, kind);
+    const char **objects = kind == WHIT_PART_MESH ? object_names(scene) : NULL;
     names->names = array_alloc_zeroed(count, sizeof *names->names);
-    bool good = names->names != NULL;
+    bool good = names->names && (objects || kind != WHIT_PART_MESH);
     for (uint32_t i = 0; good && i < count; ++i) {
-        const char *own = own_name(scene, kind, i);
+        const char *own = objects && objects[i] ? objects[i] : own_name(scene, kind, i);
         char *made = kind == WHIT_PART_ANIMATION
                          ? channel_name(scene, &parts->names[SCENE_NAMES_NODE], i)
                          : NULL;
@@ -99,6 +113,7 @@ static bool add_names(const struct scene *scene, unsigned kind, struct scene_par
                                                                               : "");
         free(made);
     }
+    free(objects);
     return good;
 }
 
@@ -197,13 +212,15 @@ static bool made_by_whit(const struct scene *scene, unsigned kind, uint32_t inde
            (kind == WHIT_PART_CAMERA && scene->cameras[index].made_by_whit);
 }
 
-/* Which parts there are counts with the objects, and in which order. */
+/* Which parts there are counts with the objects, and in which order; but for materials and
+   textures, which are there for those that name them. */
 static uint64_t hash_objects(const struct scene *scene, const struct scene_parts *parts)
 {
     const uint32_t flags[] = {scene->is_model, (uint32_t)scene->lights_wanted};
     uint64_t value = hash_bytes(freeze_hash_objects(scene), flags, sizeof flags);
     for (unsigned kind = 0; kind < SCENE_NAMES; ++kind) {
-        for (uint32_t i = 0; i < parts->names[kind].count; ++i) {
+        bool listed = kind != WHIT_PART_MATERIAL && kind != WHIT_PART_TEXTURE;
+        for (uint32_t i = 0; listed && i < parts->names[kind].count; ++i) {
             if (!made_by_whit(scene, kind, i))
                 value = hash_name(value, parts->names[kind].names[i]);
         }

@@ -156,16 +156,18 @@ typedef enum whit_part_kind {
     WHIT_PART_CAMERA,
     WHIT_PART_ANIMATION,   /* keys of one property of one node */
     WHIT_PART_ENVIRONMENT, /* with ambient light, and what a scene file says of contact */
-    WHIT_PART_OBJECTS,     /* nodes and instances: where meshes are; and which parts there are */
+    WHIT_PART_OBJECTS,     /* nodes and instances: where meshes are; and which parts there are, but
+                              for materials and textures, which come with those that name them */
     WHIT_PART_KINDS,
 } whit_part_kind;
 /* "mesh", "material", ... */
 const char *whit_part_kind_name(whit_part_kind kind);
 typedef struct whit_part {
     whit_part_kind kind;
-    const char *name; /* as the file has it, made unique among its kind by `#2`, `#3`, ..., which
-                         stand alone where it has none; show it by whit_text_show. Of textures
-                         without folders; "" of environment and objects, of which there is one */
+    const char *name; /* as the file has it, made unique among its kind by `#2`, `#3`, ..., or its
+                         number where it has none; show it by whit_text_show. Meshes are called
+                         after the first object that has them, textures after their file without
+                         folders; "" of environment and objects, of which there is one */
     uint64_t hash;    /* of what is loaded: of decoded texels and imported meshes, not of files */
 } whit_part;
 /* The parts of a scene, sorted as the scene has them within each kind. What whit adds to a scene is
@@ -196,8 +198,8 @@ typedef enum whit_fault_kind {
     WHIT_FAULT_IOR,        /* a refractive index grows by `amount` */
     WHIT_FAULT_LIGHT,      /* a light is brighter by `amount` of what it was */
     WHIT_FAULT_TEXELS,     /* a row of texels goes by `amount` of its range */
-    WHIT_FAULT_MATERIALS,  /* two materials have each other's values */
-    WHIT_FAULT_ORDER,      /* two objects have each other's place in the file */
+    WHIT_FAULT_MATERIALS,  /* two materials have each other's values, and glow by `amount` */
+    WHIT_FAULT_ORDER, /* two objects have each other's place in the file, and move by `amount` */
     WHIT_FAULT_KINDS,
 } whit_fault_kind;
 /* "vertex", "ior", ... */
@@ -205,7 +207,7 @@ const char *whit_fault_kind_name(whit_fault_kind kind);
 typedef struct whit_fault {
     whit_fault_kind kind;
     uint64_t seed; /* draws what is changed; not how much */
-    double amount; /* above 0; MATERIALS and ORDER: not read */
+    double amount; /* above 0; of MATERIALS and ORDER 0 too */
 } whit_fault;
 /* A copy of a scene with faults in it. WHIT_ERROR_USAGE, not logged, where it has nothing that one
    of them could change; else as whit_scene_mix. */

@@ -2,7 +2,7 @@
 #ifndef APP_CHECK_CHECK_H
 #define APP_CHECK_CHECK_H
 
-#include "app/check/draw.h"
+#include "app/check/base.h"
 #include "app/check/verdict.h"
 
 enum { CHECK_PATTERNS_MAX = CLI_OTHERS_MAX };
@@ -15,7 +15,7 @@ struct check_names {
 
 struct check {
     struct settings settings; /* of the command line, for all cases */
-    const char *root, *reason, *accept_from;
+    const char *root, *reason, *base, *accept_from;
     const char *json, *junit, *report; /* or NULL */
     struct check_names accept, only;
     bool list, prune, thumbnails;
@@ -25,6 +25,7 @@ struct check {
     struct golden old, golden; /* as it was read; and as it is to be saved */
     bool *wanted;              /* of each case of the suite */
     struct check_result *results;
+    struct base past;        /* with --base */
     whit_device_info device; /* once something was drawn */
 };
 

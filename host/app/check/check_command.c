@@ -55,6 +55,11 @@ static const struct setting options[] = {
      SETTING_AT_FLAG(struct check, thumbnails)},
     {"prune", 0, NULL, "drop what the golden has of cases that the suite has not",
      SETTING_AT_FLAG(struct check, prune)},
+    {"base", 0, "REVISION",
+     "say of what differs why: draw it as that revision of git has\n"
+     "it, and name the parts that give the old bytes when they are\n"
+     "taken back",
+     SETTING_AT_NAME(struct check, base)},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
      "the suite's own folder", SETTING_AT_NAME(struct check, root)},
     {0},
@@ -176,8 +181,24 @@ static whit_result check_expectations(const struct drawing *drawing, struct chec
     return WHIT_OK;
 }
 
-static whit_result find_verdict(struct check *check, const struct drawing *drawing,
-                                struct check_result *result)
+/* Says by --base why a picture differs, in place of what the golden knows. */
+static whit_result explain(const struct check *check, struct studio *studio,
+                           const struct drawing *drawing, struct check_result *result)
+{
+    whit_result explained =
+        base_explain(&check->past, studio, result->item,
+                     golden_find(&check->old, result->item->name), drawing, &result->cause);
+    if (explained != WHIT_OK || !result->cause)
+        return explained;
+    char *text = string_format("differs: %s", result->cause);
+    if (!text)
+        return WHIT_ERROR_MEMORY;
+    verdict_set(result, CHECK_DIFFERS, text);
+    return WHIT_OK;
+}
+
+static whit_result find_verdict(struct check *check, struct studio *studio,
+                                const struct drawing *drawing, struct check_result *result)
 {
     whit_result described = drawing_describe(drawing, result->item, &result->found);
     if (described != WHIT_OK)
@@ -185,7 +206,11 @@ static whit_result find_verdict(struct check *check, const struct drawing *drawi
     const char *refused;
     if (!verdict_find(result, &check->old))
         return WHIT_ERROR_MEMORY;
-    whit_result found = check_expectations(drawing, result);
+    whit_result found = WHIT_OK;
+    if (check->base && result->verdict == CHECK_DIFFERS)
+        found = explain(check, studio, drawing, result);
+    if (found == WHIT_OK)
+        found = check_expectations(drawing, result);
     if (found == WHIT_OK)
         found = drawing_refuse(drawing, &refused);
     if (found == WHIT_OK && refused)
@@ -224,7 +249,7 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
     cli_errors_of(where);
     whit_result drawn = studio_draw(studio, index, counts(result->item), &drawing);
     if (drawn == WHIT_OK)
-        drawn = find_verdict(check, &drawing, result);
+        drawn = find_verdict(check, studio, &drawing, result);
     if (drawn == WHIT_OK)
         drawn = make_pictures(check, &drawing, result);
     drawing_finish(&drawing);
@@ -350,6 +375,17 @@ static int work(struct check *check)
     return result == WHIT_OK ? status : cli_exit_of(result);
 }
 
+static int work_with_base(struct check *check)
+{
+    whit_result result = check->base
+                             ? base_open(&check->past, check->suite.path, check->root, check->base)
+                             : WHIT_OK;
+    int status = result == WHIT_OK ? work(check) : cli_exit_of(result);
+    if (check->base)
+        base_close(&check->past);
+    return status;
+}
+
 static void say_wrong(void *user, const char *text)
 {
     (void)user;
@@ -371,7 +407,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         check.golden_path && golden_read(&check.golden, check.golden_path) &&
         golden_read(&check.old, check.golden_path) && choose(&check)) {
         job_start(&common);
-        status = check.list ? list(&check) : work(&check);
+        status = check.list ? list(&check) : work_with_base(&check);
     }
     for (uint32_t i = 0; check.results && i < check.suite.count; ++i)
         verdict_finish(&check.results[i]);

@@ -9,8 +9,7 @@
 
 enum { KEY_BYTES = 2048 };
 
-/* Devices give NaN any sign and any bits: it counts as one value. */
-static uint64_t hash_floats(const whit_image *image)
+uint64_t drawing_hash_floats(const whit_image *image)
 {
     whit_image_info info;
     whit_image_get_info(image, &info);
@@ -27,7 +26,7 @@ static uint64_t hash_floats(const whit_image *image)
     return hash;
 }
 
-static uint64_t hash_ids(const whit_image *image)
+uint64_t drawing_hash_ids(const whit_image *image)
 {
     whit_image_info info;
     whit_image_get_info(image, &info);
@@ -70,13 +69,17 @@ static bool put_part(struct golden *found, const struct check_case *item, const 
     return golden_put_part(found, key, hash) && golden_case_add_part(&found->cases[0], hash);
 }
 
-/* The one place that knows what a scene is made of: all of it as one part. */
 static bool put_scene_parts(struct golden *found, const struct check_case *item,
                             const whit_scene *scene)
 {
-    whit_scene_info info;
-    whit_scene_get_info(scene, &info);
-    return put_part(found, item, "all", "", info.hash);
+    whit_part *parts;
+    uint32_t count;
+    bool put = whit_scene_parts(scene, &parts, &count) == WHIT_OK;
+    for (uint32_t i = 0; put && i < count; ++i)
+        put =
+            put_part(found, item, whit_part_kind_name(parts[i].kind), parts[i].name, parts[i].hash);
+    whit_memory_destroy(parts);
+    return put;
 }
 
 static bool put_shader_part(struct golden *found, const struct check_case *item,
@@ -99,8 +102,8 @@ static bool fill(const struct drawing *drawing, const struct check_case *item, s
     whit_image_info info;
     whit_image_get_info(drawing->ids, &info);
     struct golden_case one = {.name = string_copy(item->name),
-                              .ids = hash_ids(drawing->ids),
-                              .colors = hash_floats(drawing->color),
+                              .ids = drawing_hash_ids(drawing->ids),
+                              .colors = drawing_hash_floats(drawing->color),
                               .width = info.width,
                               .height = info.height,
                               .made_by = string_copy(item->made_by)};

@@ -194,7 +194,7 @@ static whit_result check_expected(struct drawing *drawing)
     return result == WHIT_OK && !held ? WHIT_ERROR_FAILED : result;
 }
 
-static whit_result render(struct drawing *drawing)
+whit_result drawing_render(struct drawing *drawing)
 {
     whit_result result = whit_renderer_render(drawing->renderer);
     if (result == WHIT_OK)
@@ -207,11 +207,10 @@ static whit_result render(struct drawing *drawing)
                              : result;
 }
 
-/* The case's own settings, with what the command line says for all cases. */
-static struct settings settings_of(const struct studio *studio, uint32_t index)
+struct settings studio_settings(const struct studio *studio, const struct check_case *item)
 {
     const struct settings *common = &studio->job.settings;
-    struct settings settings = *studio->suite->cases[index].settings;
+    struct settings settings = *item->settings;
     memcpy(settings.device, common->device, sizeof settings.device);
     settings.load.require_sandbox = common->load.require_sandbox;
     settings.validation = common->validation;
@@ -224,7 +223,8 @@ static struct settings settings_of(const struct studio *studio, uint32_t index)
 whit_result studio_draw(struct studio *studio, uint32_t index, bool counts, struct drawing *drawing)
 {
     struct studio_scene *scene;
-    *drawing = (struct drawing){.job = {.settings = settings_of(studio, index)}};
+    *drawing = (struct drawing){
+        .job = {.settings = studio_settings(studio, &studio->suite->cases[index])}};
     struct job *job = &drawing->job;
     drop_scenes(studio, index);
     whit_result result = take_shader(studio, job);
@@ -238,7 +238,7 @@ whit_result studio_draw(struct studio *studio, uint32_t index, bool counts, stru
     if (result == WHIT_OK)
         result = make_renderer(studio, drawing, counts);
     if (result == WHIT_OK)
-        result = render(drawing);
+        result = drawing_render(drawing);
     if (result != WHIT_OK)
         drop_renderer(studio);
     return result == WHIT_OK ? job_still_wanted() : result;

@@ -39,7 +39,16 @@ WHIT_CHECK whit_result studio_open(struct studio *studio, const struct settings 
 WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool counts,
                                    struct drawing *drawing);
 void drawing_finish(struct drawing *drawing);
+/* The case's own settings, with what the command line says for all cases. */
+struct settings studio_settings(const struct studio *studio, const struct check_case *item);
+/* Renders by the drawing's renderer, and reads what its settings ask for. */
+WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
 void studio_close(struct studio *studio);
+
+/* Hashes of colours, or whatever is painted in floats, and of hit identities. Devices give NaN any
+   sign and any bits: it counts as one value. */
+uint64_t drawing_hash_floats(const whit_image *image);
+uint64_t drawing_hash_ids(const whit_image *image);
 
 /* What a golden keeps of a drawing; its name is the case's. *found gets the keys of parts too, as
    the parts of a golden with that one case. WHIT_ERROR_MEMORY, said. */

@@ -54,7 +54,7 @@ static json_t *case_document(const struct check *check, uint32_t index)
     document_text(out, "verdict", verdict_word(result->verdict));
     document_text(out, "text", result->text);
     document_text(out, "changed", result->changed);
-    document_put(out, "cause", json_null());
+    document_text(out, "cause", result->cause);
     document_ms(out, "time_ms", result->time_ms);
     put_command(out, result->item);
     document_put(out, "is", picture_document(found));

@@ -40,6 +40,7 @@ void verdict_add(struct check_result *result, enum check_verdict verdict, char *
 void verdict_finish(struct check_result *result)
 {
     free(result->text);
+    free(result->cause);
     free(result->changed);
     golden_finish(&result->found);
     check_pictures_finish(&result->pictures);

@@ -1,0 +1,139 @@
+#include "app/check/base.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/check/cause.h"
+#include "app/check/difference.h"
+#include "base/array.h"
+#include "base/path.h"
+
+enum { WORDS_BYTES = 1024 };
+
+static void say_wrong(void *user, const char *text)
+{
+    const struct base *base = user;
+    cli_error("--base %s: %s", cli_shown(base->tree.revision), cli_shown(text));
+}
+
+whit_result base_open(struct base *base, const char *suite, const char *root, const char *revision)
+{
+    char *folder = path_folder(suite);
+    *base = (struct base){.folder = NULL};
+    if (!folder)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = worktree_add(&base->tree, folder, revision);
+    if (result == WHIT_OK) {
+        base->folder = worktree_folder(&base->tree, folder);
+        base->root = root ? worktree_folder(&base->tree, root) : NULL;
+        base->path = base->folder ? string_format("%s%s", base->folder, path_name(suite)) : NULL;
+        if (!base->path || (root && !base->root) ||
+            !suite_read(&base->suite, base->path, base->root, say_wrong, base))
+            result = WHIT_ERROR_INPUT;
+    }
+    free(folder);
+    return result;
+}
+
+void base_close(struct base *base)
+{
+    suite_finish(&base->suite);
+    worktree_remove(&base->tree);
+    free(base->folder);
+    free(base->root);
+    free(base->path);
+    *base = (struct base){.folder = NULL};
+}
+
+/* ---- A case as it was ---- */
+
+struct past {
+    struct job job; /* with its scene and shader */
+    struct trial_input input;
+    struct trial picture;
+};
+
+static whit_result draw_past(struct past *past, const struct studio *studio,
+                             const struct check_case *item)
+{
+    struct job *job = &past->job;
+    *past = (struct past){
+        .job = {.settings = studio_settings(studio, item), .compiler = studio->job.compiler}};
+    past->input = (struct trial_input){.settings = job->settings, .device = studio->job.device};
+    whit_result result = job_load_shader(job);
+    if (result == WHIT_OK)
+        result = job_load(job);
+    past->input.scene = job->scene;
+    past->input.shader = job->shader;
+    return result == WHIT_OK ? trial_draw(&past->picture, &past->input) : result;
+}
+
+static void finish_past(struct past *past, const struct studio *studio)
+{
+    trial_finish(&past->picture);
+    if (past->job.compiler == studio->job.compiler)
+        past->job.compiler = NULL;
+    job_finish(&past->job);
+}
+
+static whit_result write_all(const struct past *past, const struct studio *studio,
+                             const struct check_case *item, const struct drawing *drawing, FILE *to)
+{
+    const struct trial_input now = {studio_settings(studio, item), drawing->job.scene,
+                                    drawing->job.shader, studio->job.device};
+    struct difference difference;
+    struct cause cause;
+    char words[WORDS_BYTES];
+    difference_find(&past->picture.drawing, drawing, &difference);
+    difference_write(&difference, words, sizeof words);
+    fprintf(to, "%s; ", words);
+    whit_result result = cause_find(&cause, &past->input, &past->picture, &now);
+    if (result == WHIT_OK)
+        cause_write(&cause, to);
+    cause_finish(&cause);
+    if (result != WHIT_OK)
+        return result;
+    cli_hush(true);
+    difference_write_pixel(&difference, &past->picture.drawing, drawing, words, sizeof words);
+    cli_hush(false);
+    fprintf(to, "%s%s", words[0] ? "; " : "", words);
+    return WHIT_OK;
+}
+
+whit_result base_explain(const struct base *base, struct studio *studio,
+                         const struct check_case *item, const struct golden_case *accepted,
+                         const struct drawing *drawing, char **text)
+{
+    const struct check_case *old = suite_find(&base->suite, item->name);
+    const char *revision = base->tree.revision;
+    struct past past;
+    struct trial now;
+    size_t size;
+    *text = NULL;
+    if (!old) {
+        *text = string_format("%s has no such case", revision);
+        return *text ? WHIT_OK : WHIT_ERROR_MEMORY;
+    }
+    FILE *to = open_memstream(text, &size);
+    if (!to)
+        return WHIT_ERROR_MEMORY;
+    whit_result result = draw_past(&past, studio, old);
+    if (result == WHIT_OK) {
+        trial_hash(drawing, &now);
+        if (trial_same(&now, &past.picture))
+            fprintf(to, "%s gives this picture too: what is other is whit, or the device",
+                    revision);
+        else
+            result = write_all(&past, studio, item, drawing, to);
+        if (accepted &&
+            (accepted->ids != past.picture.ids || accepted->colors != past.picture.colors))
+            fprintf(to, "; at %s the picture is not the golden's either", revision);
+    }
+    finish_past(&past, studio);
+    bool written = fclose(to) == 0;
+    if (result == WHIT_OK && written)
+        return WHIT_OK;
+    free(*text);
+    *text = NULL;
+    return result == WHIT_OK ? WHIT_ERROR_MEMORY : trial_ends_all(result) ? result : WHIT_OK;
+}

@@ -1,0 +1,28 @@
+/* What a suite drew at another revision of its repository, to say why its pictures are other. */
+#ifndef APP_CHECK_BASE_H
+#define APP_CHECK_BASE_H
+
+#include "app/check/draw.h"
+#include "app/check/worktree.h"
+
+struct base {
+    struct worktree tree;
+    char *folder, *root, *path; /* of the suite, in the tree; root: NULL as below */
+    struct suite suite;
+};
+
+/* Reads the suite as `revision` has it; `root`: as of suite_read. What fails was said; base_close()
+   it either way. Before the device is opened. */
+WHIT_CHECK whit_result base_open(struct base *base, const char *suite, const char *root,
+                                 const char *revision);
+/* Draws the case as it was, and says how and why `drawing` is other: "214 pixels other, 96 hit
+   something else; cause: ..."; free() it. `accepted`: the case of the golden, or NULL. What fails
+   was said, and *text is NULL then; also where a picture of before cannot be drawn, which is no
+   error of this run. */
+WHIT_CHECK whit_result base_explain(const struct base *base, struct studio *studio,
+                                    const struct check_case *item,
+                                    const struct golden_case *accepted,
+                                    const struct drawing *drawing, char **text);
+void base_close(struct base *base);
+
+#endif

@@ -1,0 +1,118 @@
+#include "app/check/difference.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- Pixels ---- */
+
+/* The largest step of a channel, where NaN is one value; what is not finite on one side is the
+   farthest off. Below 0: no bit is other. */
+static double distance_of(const float *a, const float *b, uint32_t channels)
+{
+    double largest = -1.0;
+    for (uint32_t i = 0; i < channels; ++i) {
+        double by = fabs((double)b[i] - (double)a[i]);
+        if (memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i])))
+            largest = isnan(by) ? INFINITY : fmax(largest, by);
+    }
+    return largest;
+}
+
+void difference_find(const struct drawing *before, const struct drawing *after,
+                     struct difference *out)
+{
+    whit_image_info a, b;
+    double largest = -2.0;
+    whit_image_get_info(before->color, &a);
+    whit_image_get_info(after->color, &b);
+    *out = (struct difference){.same_size = a.width == b.width && a.height == b.height &&
+                                            a.channels == b.channels};
+    const float *x = whit_image_floats(before->color), *y = whit_image_floats(after->color);
+    const uint32_t *p = whit_image_words(before->ids), *q = whit_image_words(after->ids);
+    size_t pixels = out->same_size ? (size_t)a.width * a.height : 0;
+    for (size_t i = 0; i < pixels; ++i, x += a.channels, y += a.channels, p += 2, q += 2) {
+        bool hit = p[0] != q[0] || p[1] != q[1];
+        double by = distance_of(x, y, a.channels);
+        if (!hit && by < 0.0)
+            continue;
+        ++out->others;
+        if (hit && !out->hits++)
+            largest = -2.0; /* from here on of those */
+        if (!(by > largest) || hit != (out->hits > 0))
+            continue;
+        largest = by;
+        out->x = (uint32_t)(i % a.width);
+        out->y = (uint32_t)(i / a.width);
+    }
+}
+
+void difference_write(const struct difference *difference, char *text, size_t bytes)
+{
+    if (!difference->same_size)
+        snprintf(text, bytes, "another size");
+    else if (difference->hits)
+        snprintf(text, bytes, "%" PRIu64 " pixel%s other, %" PRIu64 " hit%s something else",
+                 difference->others, difference->others == 1 ? "" : "s", difference->hits,
+                 difference->hits == 1 ? "s" : "");
+    else
+        snprintf(text, bytes, "%" PRIu64 " pixel%s other, of the same hits", difference->others,
+                 difference->others == 1 ? "" : "s");
+}
+
+/* ---- One pixel ---- */
+
+struct seen {
+    whit_probe_hit hit;
+    float color[4];
+    char name[256];
+};
+
+static bool probe(const struct drawing *drawing, const struct difference *at, struct seen *out)
+{
+    whit_probe_report *report;
+    whit_instance_info instance = {.name = ""};
+    if (whit_probe(drawing->renderer, at->x, at->y, 1, &report) != WHIT_OK)
+        return false;
+    bool known = report->ray_count > 0;
+    if (known)
+        out->hit = report->rays[0].device;
+    memcpy(out->color, report->color, sizeof out->color);
+    if (known && out->hit.instance != WHIT_NONE)
+        whit_scene_get_instance(drawing->job.scene, out->hit.instance, &instance);
+    snprintf(out->name, sizeof out->name, "%s", instance.name);
+    whit_probe_report_destroy(report);
+    return known;
+}
+
+/* "ball 5532 at 4.1021" */
+static void write_hit(const struct seen *seen, char *text, size_t bytes)
+{
+    if (seen->hit.instance == WHIT_NONE)
+        snprintf(text, bytes, "nothing");
+    else
+        snprintf(text, bytes, "%s%s%" PRIu32 " at %.5g", seen->name, seen->name[0] ? " " : "#",
+                 seen->hit.primitive, seen->hit.t);
+}
+
+void difference_write_pixel(const struct difference *difference, const struct drawing *before,
+                            const struct drawing *after, char *text, size_t bytes)
+{
+    struct seen was, is;
+    char hit_before[400], hit_after[400];
+    text[0] = 0;
+    if (!difference->same_size || !difference->others || !probe(before, difference, &was) ||
+        !probe(after, difference, &is))
+        return;
+    write_hit(&was, hit_before, sizeof hit_before);
+    write_hit(&is, hit_after, sizeof hit_after);
+    if (strcmp(hit_before, hit_after) != 0)
+        snprintf(text, bytes, "pixel %u,%u: was %s, is %s", difference->x, difference->y,
+                 hit_before, hit_after);
+    else
+        snprintf(text, bytes, "pixel %u,%u: %s, was %.6g %.6g %.6g, is %.6g %.6g %.6g",
+                 difference->x, difference->y, hit_after, (double)was.color[0],
+                 (double)was.color[1], (double)was.color[2], (double)is.color[0],
+                 (double)is.color[1], (double)is.color[2]);
+}

@@ -1,0 +1,79 @@
+#!/bin/sh
+# whit check --base: what of the input makes a picture other, by drawing it as a revision of git has it.
+. "$(dirname "$0")/common.sh"
+needs git
+cd "$OUT" || exit 1
+TMPDIR=$OUT/tmp
+export TMPDIR GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_NOSYSTEM=1
+mkdir -p tmp work/suite
+cat >work/suite/a.json <<'END'
+{ "camera": { "eye": [0, 1, 4], "target": [0, 0.5, 0], "fov": 40 },
+  "lights": [ { "name": "lamp", "kind": "point", "position": [2, 4, 3], "color": [1, 1, 1], "intensity": 20 } ],
+  "materials": {
+    "glass": { "transmission": 1, "ior": 1.5 },
+    "floor": { "texture": { "checker": { "colors": ["#ffffff", "#202020"], "size": 8 } } },
+    "unused": { "diffuse": [0.5, 0.5, 0.5] } },
+  "objects": [
+    { "name": "floor", "shape": "plane", "size": 6, "material": "floor" },
+    { "name": "ball", "shape": "ball", "radius": 0.6, "translation": [0, 0.6, 0], "material": "glass" },
+    { "name": "tent", "model": "tent.obj", "translation": [-1, 0, 0] } ] }
+END
+cat >work/suite/tent.obj <<'END'
+o tent
+v 0 0 0
+v 1 0 0
+v 0 1 0.5
+v 1 1 0.5
+f 1 2 3
+f 2 4 3
+END
+echo 'vec3 post(ivec2 at, vec3 color) { return color; }' >work/suite/post.glsl
+(cd work/suite && for name in vertex gone two plain; do sed "s/tent.obj/$name.obj/" a.json >$name.json; cp tent.obj $name.obj; done)
+cat >work/suite/looks.whit <<'END'
+material a.json --size 48x36
+option plain.json --size 48x36 --depth 5
+functions plain.json --size 48x36 --shader post.glsl
+{vertex,gone,two} {}.json --size 48x36
+new a.json --size 32x24
+END
+cd work || exit 1
+refuse 2 "no repository" "base HEAD: fatal: not a git repository" check suite/looks.whit --base HEAD
+git init -q . && git config user.name a && git config user.email a@b
+expect 0 "accepted" check suite/looks.whit --accept all
+sed '/^new/d' suite/looks.whit >without
+mv suite/looks.whit with && mv without suite/looks.whit && git add -A && git commit -qm first && mv with suite/looks.whit
+refuse 2 "no such revision" "base nope: fatal: invalid reference" check suite/looks.whit --base nope
+refuse 2 "an option for a revision" "base --help: no revision" check suite/looks.whit --base=--help
+
+edit() { sed -i "$2" "suite/$1"; }
+edit a.json 's/"ior": 1.5/"ior": 1.6/; s/"diffuse": \[0.5/"diffuse": [0.9/; /"tent"/s/-1, 0, 0/9, 0, 9/'
+edit looks.whit 's/--depth 5/--depth 1/'
+edit post.glsl 's/return color/return color * 2.0/'
+edit vertex.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
+edit gone.json '/"name": "floor", "shape"/d'
+edit two.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
+edit two.json 's/"intensity": 20/"intensity": 21/; s/#202020/#203020/'
+expect 1 "all of it" check suite/looks.whit --base HEAD
+cp "$OUT/stdout" "$OUT/said"
+# says CASE PATTERN
+says() { check "$1: \`$2\`" grep -q "^$1: differs: .*$2" "$OUT/said"; }
+says material 'cause: material "glass", ior from 1.5 to 1.6; and objects, node "tent" moved by 13; input changed, picture same: material "unused"; pixel [0-9]*,[0-9]*: '
+says option 'cause: --depth from 5 to 1; pixel'
+says functions 'cause: functions of suite/post.glsl; pixel'
+says vertex ' pixels other, [0-9]* hit something else; cause: mesh "vertex.obj", vertex 3 moved by 0.25; pixel [0-9]*,[0-9]*: was nothing, is vertex.obj 1 at [0-9.]*$'
+says gone 'cause: objects, mesh "floor" is gone, .*, is nothing$'
+says two 'cause: mesh "two.obj", vertex 3 .*; and material "floor", texture of diffuse from "checker #ffffff #202020" to "checker #ffffff #203020"; and light "lamp", colour from 20 20 20 to 21 21 21; pixel'
+says new 'HEAD has no such case'
+check "nothing is left" test -z "$(ls "$TMPDIR")" -a "$(git worktree list | wc -l)" -eq 1
+
+# Interrupted, or ended by a signal that nothing can catch: what was made is removed all the same.
+is_there() { test -e "$(echo "$TMPDIR"/whit-base-*)/tree/suite/looks.whit"; }
+is_gone() { test -z "$(ls "$TMPDIR")" -a "$(git worktree list | wc -l)" -eq 1; }
+for signal in INT KILL; do
+    "$WHIT" check suite/looks.whit --base HEAD >/dev/null 2>&1 &
+    check "$signal: the tree is there" wait_for $! is_there
+    kill -$signal $!
+    wait $! 2>/dev/null
+    check "$signal: nothing is left" wait_for $$ is_gone
+done
+finish
