@@ -53,15 +53,24 @@ static bool change_ior(struct scene *scene, uint64_t *random, double amount)
     return false;
 }
 
-/* Brighter by a share. */
+static bool brighten(float rgb[3], double amount)
+{
+    for (int i = 0; i < 3; ++i)
+        rgb[i] = (float)((double)rgb[i] * (1.0 + amount));
+    return rgb[0] + rgb[1] + rgb[2] > 0.0f;
+}
+
+/* Brighter by a share; what glows where there is no light. */
 static bool change_light(struct scene *scene, uint64_t *random, double amount)
 {
-    if (!scene->light_count)
-        return false;
-    struct scene_light *light = &scene->lights[draw(random, scene->light_count)];
-    for (int i = 0; i < 3; ++i)
-        light->color[i] = (float)((double)light->color[i] * (1.0 + amount));
-    return true;
+    if (scene->light_count)
+        return brighten(scene->lights[draw(random, scene->light_count)].color, amount);
+    uint32_t start = scene->material_count ? draw(random, scene->material_count) : 0;
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        if (brighten(scene->materials[(start + i) % scene->material_count].emission, amount))
+            return true;
+    }
+    return false;
 }
 
 /* Each channel but alpha of one row goes by a share of 255 towards the other end of its range. */

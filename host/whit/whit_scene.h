@@ -196,7 +196,8 @@ WHIT_CHECK whit_result whit_scene_mix(const whit_scene *before, const whit_scene
 typedef enum whit_fault_kind {
     WHIT_FAULT_VERTEX = 0, /* a vertex, or a sphere, moves by `amount` of its mesh's longest side */
     WHIT_FAULT_IOR,        /* a refractive index grows by `amount` */
-    WHIT_FAULT_LIGHT,      /* a light is brighter by `amount` of what it was */
+    WHIT_FAULT_LIGHT,      /* a light, or what glows where there is none, is brighter by `amount`
+                              of what it was */
     WHIT_FAULT_TEXELS,     /* a row of texels goes by `amount` of its range */
     WHIT_FAULT_MATERIALS,  /* two materials have each other's values, and glow by `amount` */
     WHIT_FAULT_ORDER, /* two objects have each other's place in the file, and move by `amount` */
@@ -207,7 +208,7 @@ const char *whit_fault_kind_name(whit_fault_kind kind);
 typedef struct whit_fault {
     whit_fault_kind kind;
     uint64_t seed; /* draws what is changed; not how much */
-    double amount; /* above 0; of MATERIALS and ORDER 0 too */
+    double amount; /* of VERTEX below 0 the other way; MATERIALS and ORDER: 0 or more */
 } whit_fault;
 /* A copy of a scene with faults in it. WHIT_ERROR_USAGE, not logged, where it has nothing that one
    of them could change; else as whit_scene_mix. */

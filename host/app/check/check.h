@@ -18,7 +18,9 @@ struct check {
     const char *root, *reason, *base, *accept_from;
     const char *json, *junit, *report; /* or NULL */
     struct check_names accept, only;
-    bool list, prune, thumbnails;
+    bool list, prune, thumbnails, power;
+    uint32_t mutate; /* faults that are put into the suite's scenes; 0: none */
+    uint32_t seed;   /* of them */
 
     struct suite suite;
     char *golden_path;

@@ -1,7 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/check/check.h"
+#include "app/check/strength.h"
 #include "app/commands.h"
 #include "base/array.h"
 
@@ -60,6 +60,16 @@ static const struct setting options[] = {
      "it, and name the parts that give the old bytes when they are\n"
      "taken back",
      SETTING_AT_NAME(struct check, base)},
+    {"power", 0, NULL,
+     "print for each case the smallest change of a vertex, an ior, a\n"
+     "light and a texel that it notices; nothing is compared",
+     SETTING_AT_FLAG(struct check, power)},
+    {"mutate", 0, "N",
+     "put N faults into the suite's scenes, one after the other, and\n"
+     "print how many were caught and their cause found",
+     SETTING_AT_COUNT(struct check, mutate), .min = 1, .max = 100000},
+    {"seed", 0, "N", "of these: another N draws other faults (0)",
+     SETTING_AT_COUNT(struct check, seed), .max = UINT32_MAX},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
      "the suite's own folder", SETTING_AT_NAME(struct check, root)},
     {0},
@@ -106,6 +116,12 @@ static bool check_request(struct cli_reader *reader, struct check *check)
         return cli_misuse(reader, "--reason is why something is accepted, and --accept is missing");
     if (check->thumbnails && (!check->accept.count || check->accept_from))
         return cli_misuse(reader, "--thumbnails are of pictures that are drawn for --accept");
+    if ((check->power || check->mutate) &&
+        (check->accept.count || check->prune || check->base || check->json || check->junit))
+        return cli_misuse(reader, "--%s compares nothing with a golden, and goes with --only alone",
+                          check->power ? "power" : "mutate");
+    if (check->power && check->mutate)
+        return cli_misuse(reader, "--power and --mutate: one of them");
     if (!check_outputs(reader, check))
         return false;
     if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
@@ -361,6 +377,8 @@ static whit_result save_reports(const struct check *check, int status)
 
 static int work(struct check *check)
 {
+    if (check->mutate || check->power)
+        return strength_run(check);
     if (check->prune && !check->accept.count)
         return check_prune(check);
     if (check->accept_from && !take_reports(check))

@@ -1,0 +1,45 @@
+#include "app/check/strength.h"
+
+#include "app/check/faults.h"
+#include "app/job.h"
+
+static whit_result try_case(struct check *check, struct studio *studio, uint32_t index,
+                            struct mutate *mutate, uint32_t faults)
+{
+    const struct check_case *item = &check->suite.cases[index];
+    struct drawing drawing;
+    whit_result result = studio_draw(studio, index, false, &drawing);
+    struct fault_case faulted = {
+        .name = item->name,
+        .input = {studio_settings(studio, item), drawing.job.scene, drawing.job.shader,
+                  studio->job.device},
+    };
+    if (result == WHIT_OK) {
+        trial_hash(&drawing, &faulted.was);
+        result = check->power ? power_case(&mutate->random, &faulted)
+                              : mutate_case(mutate, &faulted, faults);
+    }
+    drawing_finish(&drawing);
+    return result;
+}
+
+int strength_run(struct check *check)
+{
+    struct studio studio;
+    struct mutate mutate = {.random = check->seed, .wanted = check->mutate};
+    uint32_t count = 0, at = 0;
+    for (uint32_t i = 0; i < check->suite.count; ++i)
+        count += check->wanted[i];
+    whit_result result = studio_open(&studio, &check->settings, &check->suite, check->wanted);
+    for (uint32_t i = 0; result == WHIT_OK && i < check->suite.count; ++i) {
+        if (!check->wanted[i])
+            continue;
+        uint32_t before = (uint32_t)((uint64_t)check->mutate * at / count);
+        uint32_t behind = (uint32_t)((uint64_t)check->mutate * ++at / count);
+        result = try_case(check, &studio, i, &mutate, behind - before);
+    }
+    studio_close(&studio);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    return cli_finish_stdout(check->power ? EXIT_FINE : mutate_sum_up(&mutate));
+}
