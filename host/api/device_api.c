@@ -221,6 +221,11 @@ void whit_device_open_abandon(whit_device_opening *opening)
     free(opening);
 }
 
+void whit_device_keep_kernels(whit_device *device)
+{
+    device_keep_pipelines(device->device);
+}
+
 void whit_device_destroy(whit_device *device)
 {
     if (!device)

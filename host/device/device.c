@@ -262,6 +262,7 @@ whit_result device_create(const whit_log *log, const struct device_params *param
         log_error(log, "out of memory for a device");
         return WHIT_ERROR_MEMORY;
     }
+    pthread_mutex_init(&device->kept_lock, NULL);
     if (log)
         device->log = log_or_silence(log);
     const char *validation = getenv("WHIT_VALIDATION");
@@ -310,11 +311,13 @@ void device_destroy(struct device *device)
     if (device->vk) {
         commands_destroy(device->transfer);
         buffer_destroy(device->staging);
+        kept_finish(device);
         cache_close(device);
         vkDestroyDevice(device->vk, NULL);
     }
     instance_destroy(device);
     child_release_forks();
+    pthread_mutex_destroy(&device->kept_lock);
     free(device);
 }
 

@@ -131,6 +131,9 @@ struct pipeline_info {
    and the driver fills its constants in; the former is logged. */
 WHIT_CHECK whit_result pipeline_create(struct device *device, const struct pipeline_params *params,
                                        struct pipeline **out);
+/* From here on the device keeps pipelines, and gives who asks for one of the same params the one
+   that it has. */
+void device_keep_pipelines(struct device *device);
 void pipeline_destroy(struct pipeline *pipeline);
 void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *info);
 /* Reads the numbers that the driver keeps of a pipeline made with asks_statistics: subgroup size,

@@ -1,5 +1,5 @@
 whit_module(device
-  SOURCES instance.c device.c layers.c cache.c buffer.c pipeline.c
+  SOURCES instance.c device.c layers.c cache.c buffer.c pipeline.c kept.c
     evaluate.c evaluate_read.c evaluate_memory.c evaluate_output.c spirv_ops.c inspect.c
     statistics.c commands.c swapchain.c swapchain_show.c
   LINK whit_base Vulkan::Vulkan)

@@ -264,6 +264,8 @@ whit_result pipeline_create(struct device *device, const struct pipeline_params 
                             struct pipeline **out)
 {
     *out = NULL;
+    if (kept_take(device, params, !specializing_is_off(), out))
+        return WHIT_OK;
     struct pipeline *pipeline = array_alloc_zeroed(1, sizeof *pipeline);
     whit_result result = pipeline ? WHIT_OK : WHIT_ERROR_MEMORY;
     if (pipeline) {
@@ -282,6 +284,7 @@ whit_result pipeline_create(struct device *device, const struct pipeline_params 
         pipeline_destroy(pipeline);
         return result;
     }
+    kept_add(pipeline, params, !specializing_is_off());
     *out = pipeline;
     return WHIT_OK;
 }
@@ -293,7 +296,7 @@ void pipeline_get_info(const struct pipeline *pipeline, struct pipeline_info *in
 
 void pipeline_destroy(struct pipeline *pipeline)
 {
-    if (!pipeline)
+    if (!pipeline || kept_give_back(pipeline))
         return;
     VkDevice vk = pipeline->device->vk;
     vkDestroyPipeline(vk, pipeline->vk, NULL);

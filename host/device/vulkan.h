@@ -14,6 +14,7 @@
 #ifndef DEVICE_VULKAN_H
 #define DEVICE_VULKAN_H
 
+#include <pthread.h>
 #include <stdatomic.h>
 
 #include <vulkan/vulkan.h>
@@ -66,6 +67,11 @@ struct device {
     PFN_vkGetPipelineExecutablePropertiesKHR get_executables;
     PFN_vkGetPipelineExecutableStatisticsKHR get_executable_statistics;
 
+    bool keeps; /* pipelines: see kept.c */
+    pthread_mutex_t kept_lock;
+    struct pipeline *kept; /* the youngest first */
+    uint32_t kept_count;
+
     struct buffer *staging; /* both made when first needed */
     struct commands *transfer;
 };
@@ -94,6 +100,11 @@ struct pipeline {
     uint32_t push_bytes;
     bool asks_statistics;
     char name[OBJECT_NAME_BYTES];
+    /* Of one that the device keeps: */
+    bool kept;
+    uint32_t users;
+    uint64_t key[2];
+    struct pipeline *next;
 };
 
 struct binding_set {
@@ -113,6 +124,16 @@ whit_result instance_select(struct device *device, const char *selector);
 /* `surface`: not null: the family also draws, and presents to it. */
 bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t *family,
                            uint32_t *timestamp_bits);
+
+/* kept.c: a pipeline of the same params, with one user more; false: the device keeps none.
+   `specializes`: whether constants are filled in before the driver sees the kernel. */
+bool kept_take(struct device *device, const struct pipeline_params *params, bool specializes,
+               struct pipeline **out);
+/* Keeps one that was just made, where the device keeps any. */
+void kept_add(struct pipeline *pipeline, const struct pipeline_params *params, bool specializes);
+/* Whether the device keeps it, which has one user less. */
+bool kept_give_back(struct pipeline *pipeline);
+void kept_finish(struct device *device);
 
 /* cache.c: the pipeline cache and its file. */
 whit_result cache_open(struct device *device);

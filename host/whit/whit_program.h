@@ -53,6 +53,9 @@ WHIT_CHECK whit_device_opening *whit_device_open_begin(const whit_device_params 
 WHIT_CHECK whit_result whit_device_open_end(whit_device_opening *opening, whit_device **out);
 /* Instead: nothing is logged, and a device is destroyed again. NULL is fine. */
 void whit_device_open_abandon(whit_device_opening *opening);
+/* For programs that draw many small pictures: from here on kernels stay with the device, and who
+   makes a renderer that needs the same ones has them at once. Before any renderer. */
+void whit_device_keep_kernels(whit_device *device);
 
 /* ---- What can be made again, kept from one run to the next ---- */
 

@@ -447,3 +447,44 @@ int main(void)
     setenv("WHIT_NO_CACHE", "1", 1);
     return unit_run(open_device, close_device);
 }
+
+/* What the driver is asked for as `value` says; given back at once. */
+static struct pipeline *make_and_drop(struct device *keeper, uint32_t value)
+{
+    const uint32_t spec[] = {64, value, 7};
+    const struct pipeline_params params = affine_params(spec);
+    struct pipeline *pipeline;
+    assert_int_equal(pipeline_create(keeper, &params, &pipeline), WHIT_OK);
+    pipeline_destroy(pipeline);
+    return pipeline;
+}
+
+TEST(a_device_that_keeps_pipelines_makes_each_once)
+{
+    enum { MANY = 140 }; /* more than it keeps */
+    struct messages said;
+    struct device *keeper = device_open(&said, true);
+    const uint32_t spec[] = {64, 3, 7}, copy[] = {64, 3, 7};
+    const struct pipeline_params params = affine_params(spec), same = affine_params(copy);
+    struct pipeline *held, *again;
+    device_keep_pipelines(keeper);
+    assert_int_equal(pipeline_create(keeper, &params, &held), WHIT_OK);
+    assert_int_equal(pipeline_create(keeper, &same, &again), WHIT_OK);
+    assert_ptr_equal(held, again);
+    pipeline_destroy(again);
+    struct pipeline *other = make_and_drop(keeper, 4);
+    assert_ptr_not_equal(held, other);
+    assert_ptr_equal(other, make_and_drop(keeper, 4));
+    struct pipeline_params wider = params;
+    wider.push_bytes += 4;
+    assert_int_equal(pipeline_create(keeper, &wider, &again), WHIT_OK);
+    assert_ptr_not_equal(held, again);
+    pipeline_destroy(again);
+    for (uint32_t i = 0; i < MANY; ++i)
+        make_and_drop(keeper, 100 + i);
+    assert_int_equal(pipeline_create(keeper, &params, &again), WHIT_OK);
+    assert_ptr_equal(held, again); /* the oldest of all, and used */
+    pipeline_destroy(held);
+    pipeline_destroy(again);
+    device_close(keeper, &said);
+}

@@ -36,7 +36,11 @@ whit_result studio_open(struct studio *studio, const struct settings *common,
     /* The compiler's process has the memory that this one has now. */
     if (any_compiles(studio))
         result = job_begin_compiler(&studio->job, &cli_log);
-    return result == WHIT_OK ? job_open_device(&studio->job) : result;
+    if (result == WHIT_OK)
+        result = job_open_device(&studio->job);
+    if (studio->job.device)
+        whit_device_keep_kernels(studio->job.device);
+    return result;
 }
 
 /* ---- What cases share ---- */

@@ -22,7 +22,7 @@ enum fault_end {
 WHIT_CHECK whit_result fault_draw(const struct fault_case *item, const whit_fault *faults,
                                   uint32_t count, enum fault_end *end, whit_scene **made);
 /* Draws seeds from `random` until a fault of the kind and amount is seen, or is not: `seen`.
-   *found: false where some dozens were not so. */
+ *found: false where some dozens were not so. */
 WHIT_CHECK whit_result fault_find(const struct fault_case *item, whit_fault_kind kind,
                                   double amount, bool seen, uint64_t *random, whit_fault *fault,
                                   bool *found);

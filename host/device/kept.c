@@ -1,0 +1,104 @@
+/* Pipelines that a device keeps, so that who asks for the same one again gets it at once: a driver
+   takes long for one, even out of its cache. */
+#include <stdlib.h>
+
+#include "base/hash.h"
+#include "device/vulkan.h"
+
+/* Of more than so many those go that nobody uses, the oldest first. */
+enum { KEPT_MAX = 128 };
+
+void device_keep_pipelines(struct device *device)
+{
+    device->keeps = true;
+}
+
+/* Of all that decides what is made. Two hashes of 64 bits: a wrong kernel is a wrong picture. */
+static void key_of(const struct pipeline_params *params, bool specializes, uint64_t key[2])
+{
+    const uint64_t sizes[] = {params->spec_count, params->binding_count, params->push_bytes,
+                              params->asks_statistics, specializes};
+    for (int i = 0; i < 2; ++i) {
+        uint64_t hash = hash_bytes(HASH_START + (uint64_t)i, sizes, sizeof sizes);
+        hash = hash_bytes(hash, params->spirv, params->spirv_bytes);
+        hash = hash_bytes(hash, params->spec, params->spec_count * sizeof *params->spec);
+        key[i] =
+            hash_bytes(hash, params->bindings, params->binding_count * sizeof *params->bindings);
+    }
+}
+
+bool kept_take(struct device *device, const struct pipeline_params *params, bool specializes,
+               struct pipeline **out)
+{
+    uint64_t key[2];
+    struct pipeline *found = NULL;
+    if (!device->keeps || !params->spirv)
+        return false;
+    key_of(params, specializes, key);
+    pthread_mutex_lock(&device->kept_lock);
+    for (struct pipeline *i = device->kept; i && !found; i = i->next) {
+        if (i->key[0] == key[0] && i->key[1] == key[1])
+            found = i;
+    }
+    if (found)
+        ++found->users;
+    pthread_mutex_unlock(&device->kept_lock);
+    *out = found;
+    return found != NULL;
+}
+
+/* Takes out of the list, and gives, the oldest one without a user. */
+static struct pipeline *take_oldest(struct device *device)
+{
+    struct pipeline **at = &device->kept, **oldest = NULL;
+    for (; *at; at = &(*at)->next) {
+        if (!(*at)->users)
+            oldest = at;
+    }
+    struct pipeline *gone = oldest ? *oldest : NULL;
+    if (oldest)
+        *oldest = gone->next;
+    device->kept_count -= oldest != NULL;
+    return gone;
+}
+
+void kept_add(struct pipeline *pipeline, const struct pipeline_params *params, bool specializes)
+{
+    struct device *device = pipeline->device;
+    struct pipeline *gone = NULL;
+    if (!device->keeps)
+        return;
+    key_of(params, specializes, pipeline->key);
+    pthread_mutex_lock(&device->kept_lock);
+    if (device->kept_count == KEPT_MAX)
+        gone = take_oldest(device);
+    pipeline->kept = true;
+    pipeline->users = 1;
+    pipeline->next = device->kept;
+    device->kept = pipeline;
+    ++device->kept_count;
+    pthread_mutex_unlock(&device->kept_lock);
+    if (gone)
+        gone->kept = false;
+    pipeline_destroy(gone);
+}
+
+bool kept_give_back(struct pipeline *pipeline)
+{
+    if (!pipeline->kept)
+        return false;
+    pthread_mutex_lock(&pipeline->device->kept_lock);
+    --pipeline->users;
+    pthread_mutex_unlock(&pipeline->device->kept_lock);
+    return true;
+}
+
+void kept_finish(struct device *device)
+{
+    while (device->kept) {
+        struct pipeline *pipeline = device->kept;
+        device->kept = pipeline->next;
+        pipeline->kept = false;
+        pipeline_destroy(pipeline);
+    }
+}
