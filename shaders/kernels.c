@@ -3,6 +3,7 @@
 #include "kernel_closest.h"
 #include "kernel_closest_hooks.h"
 #include "kernel_miss_hooks.h"
+#include "kernel_portable.h"
 #include "kernel_resolve.h"
 #include "kernel_resolve_hooks.h"
 #include "kernel_shade.h"
@@ -28,3 +29,5 @@ const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
     [HOOK_KERNEL_MISS] = {"miss", kernel_miss_hooks, sizeof kernel_miss_hooks},
     [HOOK_KERNEL_TEST] = {"test", kernel_test_hooks, sizeof kernel_test_hooks},
 };
+
+const struct kernel_code portable_kernel = {"portable", kernel_portable, sizeof kernel_portable};

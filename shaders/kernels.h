@@ -36,4 +36,8 @@ enum hook_kernel {
 
 extern const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT];
 
+/* The functions of lib/portable.glsl with their names, all of them, and an entry point that answers
+   one for cases in a buffer (abi/portable.h). */
+extern const struct kernel_code portable_kernel;
+
 #endif

@@ -10,29 +10,7 @@ const float FF_RELATIVE = 1.0 / 2199023255552.0; // 2^-41
 const float FF_ABSOLUTE = 1.0 / 1208925819614629174706176.0; // 2^-80
 const float PAIR_MIN = 1.0 / 1099511627776.0; // 2^-40
 
-vec2 ff_sum(float a, float b) // exact (Knuth's two-sum)
-{
-    precise float s = a + b;
-    precise float from_b = s - a;
-    precise float error = (a - (s - from_b)) + (b - from_b);
-    return vec2(s, error);
-}
-
-vec2 ff_split(float a)
-{
-    precise float c = 4097.0 * a;
-    precise float high = c - (c - a);
-    precise float low = a - high;
-    return vec2(high, low);
-}
-
-vec2 ff_product(float a, float b) // exact, but for underflow
-{
-    vec2 as = ff_split(a), bs = ff_split(b);
-    precise float p = a * b;
-    precise float error = ((as.x * bs.x - p) + as.x * bs.y + as.y * bs.x) + as.y * bs.y;
-    return vec2(p, error);
-}
+#include "pairs.glsl"
 
 vec2 ff_times(vec2 a, vec2 b)
 {
