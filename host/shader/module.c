@@ -168,6 +168,68 @@ void spv_finish(struct spv_module *m)
     *m = (struct spv_module){0};
 }
 
+uint32_t spv_function_words(const struct spv_module *m, size_t at)
+{
+    size_t end = at;
+    while (end < m->count && spv_op(m->words + end) != SPV_FUNCTION_END)
+        end += spv_length(m->words + end);
+    return (uint32_t)((end < m->count ? end + 1 : end) - at);
+}
+
+size_t spv_next_function(const struct spv_module *m, size_t at)
+{
+    while (at < m->count && spv_op(m->words + at) != SPV_FUNCTION)
+        at += spv_length(m->words + at);
+    return at;
+}
+
+/* --- what stands where in an instruction ------------------------------------------------------ */
+
+/* The number of words, from the first, that may be ids. */
+static uint32_t id_words(uint32_t op, uint32_t length)
+{
+    static const struct {
+        uint16_t op, words;
+    } few[] = {{SPV_TYPE_INT, 2},
+               {SPV_TYPE_FLOAT, 2},
+               {SPV_TYPE_VECTOR, 3},
+               {SPV_TYPE_MATRIX, 3},
+               {SPV_CONSTANT, 3},
+               {SPV_SPEC_CONSTANT, 3},
+               {SPV_COMPOSITE_EXTRACT, 4},
+               {SPV_COMPOSITE_INSERT, 5},
+               {SPV_VECTOR_SHUFFLE, 5},
+               {SPV_LOAD, 4},
+               {SPV_STORE, 3},
+               {SPV_COPY_MEMORY, 3},
+               {SPV_ARRAY_LENGTH, 4},
+               {SPV_LOOP_MERGE, 3},
+               {SPV_SELECTION_MERGE, 2},
+               {SPV_BRANCH_CONDITIONAL, 4}};
+    for (size_t i = 0; i < sizeof few / sizeof *few; ++i) {
+        if (few[i].op == op && few[i].words < length)
+            return few[i].words;
+    }
+    return length;
+}
+
+bool spv_is_id(const uint32_t *words, uint32_t i)
+{
+    switch (spv_op(words)) {
+    case SPV_TYPE_POINTER:
+        return i != 2;
+    case SPV_VARIABLE:
+    case SPV_FUNCTION:
+        return i != 3;
+    case SPV_EXT_INST:
+        return i != 4;
+    case SPV_SWITCH: /* numbers of 32 bits before labels */
+        return i < 3 || i % 2 == 0;
+    default:
+        return i < id_words(spv_op(words), spv_length(words));
+    }
+}
+
 /* --- where an instruction stands ------------------------------------------------------------ */
 
 static struct spv_place place_of(const struct spv_module *m, const uint32_t *line)

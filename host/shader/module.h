@@ -60,6 +60,11 @@ bool spv_follow(struct spv_module *m, const uint32_t *instruction);
 const uint32_t *spv_def(const struct spv_module *m, uint32_t id);
 /* The result of an instruction; 0: it has none. */
 uint32_t spv_result(const struct spv_module *m, const uint32_t *words);
+/* The first word of a function from `at` on; m->count: there is none. And its length in words. */
+size_t spv_next_function(const struct spv_module *m, size_t at);
+uint32_t spv_function_words(const struct spv_module *m, size_t at);
+/* Whether word i of an instruction, from the first, is an id. */
+bool spv_is_id(const uint32_t *words, uint32_t i);
 /* What stands in a module for people alone. */
 bool spv_is_remark(uint32_t op);
 uint32_t spv_type_of(const struct spv_module *m, uint32_t id); /* 0: it has none */
