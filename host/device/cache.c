@@ -9,14 +9,13 @@
 #include "base/hash.h"
 #include "base/store.h"
 
-/* The name of the kept pipelines in the cache, by driver and its subgroup size, which kept
-   pipelines may depend on. free() it. */
-static char *kept_name(const struct device *device)
+/* The subgroup size is part of it, which kept pipelines may depend on. */
+char *device_kept_name(const struct device *device, const char *what)
 {
     char uuid[2 * VK_UUID_SIZE + 1];
     for (size_t i = 0; i < VK_UUID_SIZE; ++i)
         snprintf(uuid + 2 * i, 3, "%02x", device->properties.pipelineCacheUUID[i]);
-    return string_format("pipelines-%04x-%04x-%s-%u%s", device->properties.vendorID,
+    return string_format("%s-%04x-%04x-%s-%u%s", what, device->properties.vendorID,
                          device->properties.deviceID, uuid, device->info.subgroup_size,
                          device->validation ? "-validation" : "");
 }
@@ -40,7 +39,7 @@ whit_result cache_open(struct device *device)
     whit_result result = WHIT_OK;
     uint8_t *data = NULL;
     size_t data_bytes = 0;
-    char *name = kept_name(device);
+    char *name = device_kept_name(device, "pipelines");
     bool found = name && store_read(&device->log, name, &data, &data_bytes) &&
                  is_of_driver(device, data, data_bytes);
     if (found)
@@ -65,7 +64,7 @@ static void cache_save(struct device *device)
         size_bytes < sizeof(VkPipelineCacheHeaderVersionOne))
         return;
     uint8_t *data = array_alloc_zeroed(size_bytes, 1);
-    char *name = kept_name(device);
+    char *name = device_kept_name(device, "pipelines");
     if (data && name &&
         vkGetPipelineCacheData(device->vk, device->cache, &size_bytes, data) == VK_SUCCESS &&
         hash_bytes(HASH_START, data, size_bytes) != device->cache_hash)

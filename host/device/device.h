@@ -38,6 +38,9 @@ struct device_info {
     uint32_t max_push_bytes, max_group_count_x, max_group_invocations;
     uint32_t subgroup_size;
     bool float64, int64, timestamps;
+    /* What kernels may ask of floats of 32 bits: sums rounded to nearest; NaN, infinity and the
+       sign of 0 kept; denormals kept. */
+    bool asked_nearest, asked_special, asked_denormals;
     bool loop_limited; /* a driver that may end shaders after 65535 iterations (old lavapipe) */
     bool usable;       /* has what whit needs */
     char why_not[128]; /* when not usable */
@@ -81,6 +84,9 @@ const struct device_info *device_get_info(const struct device *device);
    as there are cores. 1 while validation layers check, since those of Debian 12 crash where threads
    make devices at once and were not tried with pipelines; and while WHIT_FAULT counts calls. */
 uint32_t device_compile_threads(const struct device *device);
+/* `what` and by which device and driver it was found, for store_read; free() it. NULL: no memory.
+ */
+char *device_kept_name(const struct device *device, const char *what);
 /* Warnings and errors of the validation layers so far (each was logged). */
 uint32_t device_validation_messages(const struct device *device);
 
@@ -108,9 +114,19 @@ WHIT_CHECK whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes,
 
 enum binding_kind { BINDING_NONE, BINDING_STORAGE, BINDING_TEXELS };
 
+enum { REWRITE_WHY_BYTES = 160 };
+
+/* Makes another kernel of one, before its constants are filled in: *out is malloc()ed.
+   WHIT_ERROR_INPUT: `why` says why not. Threads that make pipelines call it at once. */
+typedef whit_result pipeline_rewrite(const void *user, const uint32_t *words, size_t word_count,
+                                     uint32_t **out, size_t *out_words,
+                                     char why[REWRITE_WHY_BYTES]);
+
 struct pipeline_params {
     const uint32_t *spirv;
     size_t spirv_bytes;
+    pipeline_rewrite *rewrite; /* NULL: the kernel as it is */
+    const void *rewrite_user;
     const uint32_t *spec; /* value of specialization constant i, for i < spec_count */
     uint32_t spec_count;
     const enum binding_kind *bindings; /* of binding number i in set 0; NONE leaves a gap */

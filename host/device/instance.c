@@ -316,6 +316,9 @@ static void fill_details(VkPhysicalDevice physical, struct device_info *info)
     snprintf(info->driver, sizeof info->driver, "%.127s %.127s", v12.driverName, v12.driverInfo);
     info->max_allocation_bytes = v11.maxMemoryAllocationSize;
     info->subgroup_size = v11.subgroupSize;
+    info->asked_nearest = v12.shaderRoundingModeRTEFloat32;
+    info->asked_special = v12.shaderSignedZeroInfNanPreserveFloat32;
+    info->asked_denormals = v12.shaderDenormPreserveFloat32;
     info->loop_limited =
         v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE && lavapipe_ends_loops(v12.driverInfo);
 

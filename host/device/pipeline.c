@@ -95,15 +95,37 @@ fail:
     return result;
 }
 
+/* What the driver gets in place of the kernel; `whole` where it is not specialized, and NULL where
+   it is not rewritten. */
+static whit_result rewrite_kernel(const struct pipeline_params *params, struct kernel_words *out,
+                                  char why[REWRITE_WHY_BYTES])
+{
+    why[0] = '\0';
+    *out = (struct kernel_words){.whole_count = params->spirv_bytes / sizeof *out->whole};
+    return params->rewrite ? params->rewrite(params->rewrite_user, params->spirv, out->whole_count,
+                                             &out->whole, &out->whole_count, why)
+                           : WHIT_OK;
+}
+
+static const uint32_t *whole_kernel(const struct pipeline_params *params,
+                                    const struct kernel_words *kernel)
+{
+    return kernel->whole ? kernel->whole : params->spirv;
+}
+
 static whit_result specialize_kernel(const struct pipeline_params *params, struct kernel_words *out)
 {
-    size_t word_count = params->spirv_bytes / sizeof *out->specialized;
-    *out = (struct kernel_words){.word_count = word_count};
-    whit_result result = spirv_evaluate(params->spirv, word_count, params->spec, params->spec_count,
-                                        &out->specialized, &out->word_count);
+    whit_result result = spirv_evaluate(whole_kernel(params, out), out->whole_count, params->spec,
+                                        params->spec_count, &out->specialized, &out->word_count);
     if (result == WHIT_OK && !spirv_inspect(out->specialized, out->word_count, &out->info))
         result = WHIT_ERROR_MEMORY;
     return result;
+}
+
+static void kernel_words_finish(struct kernel_words *kernel)
+{
+    free(kernel->whole);
+    free(kernel->specialized);
 }
 
 static bool specializing_is_off(void)
@@ -117,8 +139,14 @@ static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeli
                                   struct kernel_words *kernel)
 {
     struct pipeline_info *info = &pipeline->info;
-    whit_result result =
-        specializing_is_off() ? WHIT_ERROR_INPUT : specialize_kernel(params, kernel);
+    char why[REWRITE_WHY_BYTES];
+    whit_result result = rewrite_kernel(params, kernel, why);
+    if (result == WHIT_ERROR_INPUT) {
+        log_error(&pipeline->device->log, "pipeline \"%s\": %s", pipeline->name, why);
+        return result;
+    }
+    if (result == WHIT_OK)
+        result = specializing_is_off() ? WHIT_ERROR_INPUT : specialize_kernel(params, kernel);
     if (result == WHIT_ERROR_MEMORY) {
         log_error(&pipeline->device->log, "pipeline \"%s\": out of memory", pipeline->name);
         return result;
@@ -126,13 +154,12 @@ static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeli
     info->specialized = result == WHIT_OK;
     if (!info->specialized) {
         struct spirv_info found;
-        *kernel = (struct kernel_words){.word_count = params->spirv_bytes / sizeof(uint32_t)};
         if (!specializing_is_off())
             log_warning(&pipeline->device->log,
                         "pipeline \"%s\": its kernel cannot be specialized and goes to the driver "
                         "whole: slower to compile, no slower to run",
                         pipeline->name);
-        if (spirv_inspect(params->spirv, kernel->word_count, &found))
+        if (spirv_inspect(whole_kernel(params, kernel), kernel->whole_count, &found))
             kernel->info.instructions = found.instructions;
         kernel->info.bindings = UINT64_MAX;
     }
@@ -152,12 +179,13 @@ static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeli
 bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info)
 {
     struct kernel_words kernel;
+    char why[REWRITE_WHY_BYTES];
     *info = (struct pipeline_info){0};
-    if (specialize_kernel(params, &kernel) != WHIT_OK) {
-        free(kernel.specialized);
+    bool counted = rewrite_kernel(params, &kernel, why) == WHIT_OK &&
+                   specialize_kernel(params, &kernel) == WHIT_OK;
+    kernel_words_finish(&kernel);
+    if (!counted)
         return false;
-    }
-    free(kernel.specialized);
     *info = (struct pipeline_info){
         .specialized = true,
         .instructions = kernel.info.instructions,
@@ -174,8 +202,9 @@ static whit_result make_module(const struct pipeline *pipeline,
     whit_result result = WHIT_OK;
     VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = kernel->word_count * sizeof(uint32_t),
-        .pCode = kernel->specialized ? kernel->specialized : params->spirv,
+        .codeSize =
+            (kernel->specialized ? kernel->word_count : kernel->whole_count) * sizeof(uint32_t),
+        .pCode = kernel->specialized ? kernel->specialized : whole_kernel(params, kernel),
     };
     VK_TRY(device, vkCreateShaderModule(device->vk, &info, NULL, module));
     device_name_object(device, VK_OBJECT_TYPE_SHADER_MODULE, (uint64_t)*module, pipeline->name);
@@ -256,7 +285,7 @@ static whit_result fill_pipeline(struct pipeline *pipeline, const struct pipelin
         result = make_layout(pipeline);
     if (result == WHIT_OK)
         result = make_pipeline(pipeline, params, &kernel);
-    free(kernel.specialized);
+    kernel_words_finish(&kernel);
     return result;
 }
 

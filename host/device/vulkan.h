@@ -141,7 +141,9 @@ void cache_close(struct device *device); /* saves, destroys */
 
 /* A kernel as the driver gets it. */
 struct kernel_words {
-    uint32_t *specialized; /* owned; NULL: as it came */
+    uint32_t *whole; /* owned; NULL: as it came */
+    size_t whole_count;
+    uint32_t *specialized; /* owned; NULL: it cannot be */
     size_t word_count;
     struct spirv_info info;
 };

@@ -11,6 +11,7 @@
 #include "picture/environment.h"
 #include "picture/media.h"
 #include "picture/sequence.h"
+#include "render/portable.h"
 #include "render/render.h"
 #include "shader/program.h"
 
@@ -182,6 +183,7 @@ struct renderer {
     struct async_state async;
     struct commands *commands;
     struct gpu_frame frame;
+    struct portable_params portable;    /* where params.portable asks for it */
     float sliders[SLIDERS_MAX];         /* of params.shader */
     uint64_t effects_unasked;           /* of params.effects_removed, for the shader alone */
     struct bodies bodies;               /* of media, of the frame's pose */

@@ -227,6 +227,8 @@ static struct pipeline_params pass_params(const struct target *target,
     return (struct pipeline_params){
         .spirv = code ? code->words : own->words,
         .spirv_bytes = code ? code->bytes : own->bytes,
+        .rewrite = target->renderer->params.portable ? portable_rewrite : NULL,
+        .rewrite_user = &target->renderer->portable,
         .spec = (const uint32_t *)spec,
         .spec_count = GPU_SPEC_COUNT,
         .bindings = bindings->kinds,
@@ -500,6 +502,8 @@ whit_result variant_create_tests(const struct target *target, struct buffer *fou
     const struct pipeline_params params = {
         .spirv = code->words,
         .spirv_bytes = code->bytes,
+        .rewrite = renderer->params.portable ? portable_rewrite : NULL,
+        .rewrite_user = &renderer->portable,
         .spec = (const uint32_t *)&spec,
         .spec_count = GPU_SPEC_COUNT,
         .bindings = bindings.kinds,

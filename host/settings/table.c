@@ -21,7 +21,7 @@ static const struct setting_value values_edges[] = {{"off", EDGES_OFF, NULL},
                                                     {"objects", EDGES_OBJECTS, NULL},
                                                     {"triangles", EDGES_TRIANGLES, NULL},
                                                     {0}};
-static const struct setting_value values_grid[] = {{"off", 0, NULL}, {"on", 1, NULL}, {0}};
+static const struct setting_value values_switch[] = {{"off", 0, NULL}, {"on", 1, NULL}, {0}};
 static const struct setting_value values_at_rest[] = {{"refine", 1, NULL}, {"stay", 0, NULL}, {0}};
 static const struct setting_value values_segments[] = {
     {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
@@ -274,6 +274,11 @@ const struct setting settings_table[] = {
      AT(CHOICE, picture.minification), .values = values_minification,
      .commands = IN_PICTURES | IN_SCENE, .change = SETTING_LIGHT, .need = SETTING_NEEDS_KERNEL,
      .title = "minification"},
+    {"portable", 0, NULL,
+     "on: the same bits on every device; nothing is left to its\n"
+     "driver, as division, roots and powers are",
+     AT(EITHER, picture.portable), .values = values_switch, .commands = IN_PICTURES,
+     .change = SETTING_LIGHT, .need = SETTING_NEEDS_KERNEL, .title = "portable"},
     {"exposure", 0, "auto|EV",
      "what is displayed, in the window, PNG and FLIP, times 2^EV;\n"
      "auto: as suits what the first camera sees of a model, with\n"
@@ -296,7 +301,7 @@ const struct setting settings_table[] = {
     {"grid", 0, NULL,
      "on: lines on the ground, just below the scene, behind what\n"
      "stands before them",
-     AT(EITHER, grid), .values = values_grid, .commands = IN_RENDER | IN_VIEW,
+     AT(EITHER, grid), .values = values_switch, .commands = IN_RENDER | IN_VIEW,
      .change = SETTING_LIGHT, .tells = overlays_tell, .title = "grid"},
 
     {"shader", 0, "FILE",

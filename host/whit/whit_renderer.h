@@ -80,6 +80,10 @@ typedef struct whit_renderer_params {
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     whit_minification minification;
+    /* The same bits on every device: nothing is left to the driver (docs/numerics.md).
+       WHIT_ERROR_DEVICE where a device keeps no denormals, WHIT_ERROR_INPUT for a shader that calls
+       what has no portable form. */
+    bool portable;
     double exposure_ev;   /* what is displayed (.png, FLIP, bytes) is times 2^this */
     bool soft_highlights; /* and runs softly towards 1 from 0.6 on, in place of a cut at 1 */
     /* Kernels have what the scene calls for. With all_effects they have everything, which changes

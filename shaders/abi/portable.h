@@ -21,6 +21,14 @@
 #define PORTABLE_MAX         16u
 #define PORTABLE_INT         17u
 #define PORTABLE_UINT        18u
-#define PORTABLE_PLAIN       19u /* x + y, whether denormals are kept */
+/* Of a device: whether it is one that portable kernels run on (host/render/portable.c). */
+#define PORTABLE_SUM      19u /* the device's own */
+#define PORTABLE_PRODUCT  20u /* the same */
+#define PORTABLE_COMPARED 21u /* see compare() of kernel/portable.comp */
+
+#define COMPARED_ROOTS     (1u << 24)
+#define COMPARED_INVERSES  (1u << 24)
+#define COMPARED_QUOTIENTS 10000000u
+#define COMPARED_ALL       (COMPARED_ROOTS + COMPARED_INVERSES + COMPARED_QUOTIENTS)
 
 #endif

@@ -13,7 +13,7 @@ layout(set = 0, binding = 0, std430) readonly buffer Cases
 {
     uvec2 cases[];
 };
-layout(set = 0, binding = 1, std430) writeonly buffer Answers
+layout(set = 0, binding = 1, std430) buffer Answers
 {
     uint answers[];
 };
@@ -21,7 +21,9 @@ layout(set = 0, binding = 1, std430) writeonly buffer Answers
 // One branch each, of which host/device/evaluate.c leaves the one that is asked for.
 uint answer(const float x, const float y)
 {
-    float found = x + y;
+    float found = x + y; // PORTABLE_SUM
+    if (FUNCTION == PORTABLE_PRODUCT)
+        found = x * y;
     if (FUNCTION == PORTABLE_INT)
         return uint(portable_int(x));
     if (FUNCTION == PORTABLE_UINT)
@@ -63,9 +65,41 @@ uint answer(const float x, const float y)
     return floatBitsToUint(found);
 }
 
+bool is_other(const float x, const float y)
+{
+    return floatBitsToUint(x) != floatBitsToUint(y) && !(portable_isnan(x) && portable_isnan(y));
+}
+
+// Some number for each; lowbias32 (Wellons 2018).
+uint scramble(uint n)
+{
+    n = (n ^ n >> 16) * 0x7feb352du;
+    n = (n ^ n >> 15) * 0x846ca68bu;
+    return n ^ n >> 16;
+}
+
+// Whether the device's own root or quotient number n has other bits than that of lib/portable.glsl:
+// roots of all floats of 1..4, with those of all others by even powers of two; 1 / x of all of 1..4; and
+// quotients of any two floats, denormals, infinities and NaN too.
+bool compare(const uint n)
+{
+    float x = uintBitsToFloat(0x3f800000u + n % COMPARED_ROOTS);
+    if (n < COMPARED_ROOTS)
+        return is_other(sqrt(x), rooted(x));
+    if (n < COMPARED_ROOTS + COMPARED_INVERSES)
+        return is_other(1.0 / x, divided(1.0, x));
+    x = uintBitsToFloat(scramble(n));
+    float y = uintBitsToFloat(scramble(n + 0x9e3779b9u));
+    return is_other(x / y, divided(x, y));
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i < uint(answers.length()))
+    if (FUNCTION == PORTABLE_COMPARED) { // cases[0].x: the first number of this dispatch
+        uint n = cases[0].x + i;
+        if (n < COMPARED_ALL && compare(n))
+            atomicAdd(answers[0], 1u);
+    } else if (i < uint(answers.length()))
         answers[i] = answer(uintBitsToFloat(cases[i].x), uintBitsToFloat(cases[i].y));
 }

@@ -604,7 +604,7 @@ PORTABLE_VECTOR(vec3)
 PORTABLE_VECTOR(vec4)
 
 // Written out, so that vectors are compared as such.
-#define PORTABLE_COMPARED(T)                                                                       \
+#define PORTABLE_WRITTEN(T)                                                                       \
     T portable_min(const T x, const T y) { return mix(x, y, lessThan(y, x)); }                     \
     T portable_max(const T x, const T y) { return mix(x, y, lessThan(x, y)); }                     \
     T portable_clamp(const T x, const T low, const T high)                                         \
@@ -616,9 +616,9 @@ PORTABLE_VECTOR(vec4)
     T portable_mix(const T x, const T y, const T a) { return x * (T(1.0) - a) + y * a; }           \
     T portable_radians(const T x) { return x * 0.0174532925; }                                     \
     T portable_degrees(const T x) { return x * 57.2957795; }
-PORTABLE_COMPARED(vec2)
-PORTABLE_COMPARED(vec3)
-PORTABLE_COMPARED(vec4)
+PORTABLE_WRITTEN(vec2)
+PORTABLE_WRITTEN(vec3)
+PORTABLE_WRITTEN(vec4)
 
 vec2 portable_times(const mat2 m, const vec2 v)
 {

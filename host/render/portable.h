@@ -1,0 +1,30 @@
+/* Kernels that give the same bits on every device (shader/portable.h), and the devices that they
+   run on. */
+#ifndef RENDER_PORTABLE_H
+#define RENDER_PORTABLE_H
+
+#include "device/device.h"
+#include "shader/portable.h"
+
+struct portable_device {
+    bool own_division;    /* its own division and square root are rounded correctly */
+    bool keeps_denormals; /* in sums and products, where kernels ask for it */
+    bool rounds_nearest;  /* the same of what is no denormal */
+};
+
+/* Found out once for a device and its driver, in about a second, and kept (base/store.h). */
+WHIT_CHECK whit_result portable_find(const whit_log *log, struct device *device,
+                                     struct portable_device *out);
+
+/* What kernels are made with for a device; WHIT_ERROR_DEVICE, logged, where it cannot be: it
+   flushes denormals, or rounds sums otherwise. WHIT_OWN_DIVISION=0 in the environment: with the
+   functions in place of the device's own division, for tests. `device` NULL: as for one that has
+   everything. */
+WHIT_CHECK whit_result portable_choose(const whit_log *log, struct device *device,
+                                       struct portable_params *out);
+
+/* A pipeline_rewrite; `user`: a struct portable_params. */
+whit_result portable_rewrite(const void *user, const uint32_t *words, size_t word_count,
+                             uint32_t **out, size_t *out_words, char why[REWRITE_WHY_BYTES]);
+
+#endif

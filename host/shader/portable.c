@@ -1,0 +1,371 @@
+#include "shader/portable.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "kernels.h"
+#include "shader/exact.h"
+#include "shader/graft.h"
+
+enum { NAME_BYTES = 96 };
+
+struct portable {
+    const struct portable_params *params;
+    struct graft g;   /* base: the kernel; user: the functions */
+    bool *replaced;   /* by id of the kernel: what it was the result of is a call now */
+    uint32_t *wanted; /* functions, ids of the user's module */
+    uint32_t wanted_count, wanted_capacity;
+    char *why;
+};
+
+/* --- what is left to the driver ----------------------------------------------------------------
+ */
+
+struct stand_in {
+    uint16_t number;
+    bool division;        /* where the device's own is rounded correctly, it stays */
+    const char *function; /* behind "portable_"; NULL: there is none */
+    const char *name;     /* for messages; NULL: as the function */
+};
+
+/* Numbers of SPIR-V 1.5, 3.32. "Precision and Operation of SPIR-V Instructions" of Vulkan 1.2 tells
+   which of them are open; the others that kernels may have are exact, or rounded correctly. */
+static const struct stand_in operations[] = {
+    {109, false, "uint", NULL},       {110, false, "int", NULL},
+    {115, false, NULL, "OpFConvert"}, {116, false, NULL, "OpQuantizeToF16"},
+    {136, true, "divide", NULL},      {140, false, NULL, "OpFRem"},
+    {141, false, "mod", NULL},        {144, false, "times", NULL},
+    {145, false, "times", NULL},      {146, false, "times", NULL},
+    {148, false, "dot", NULL},        {156, false, "isnan", NULL},
+    {157, false, "isinf", NULL},
+};
+
+/* Of GLSL.std.450. What is not here is exact: RoundEven, Trunc, FAbs, SAbs, SSign, Floor, Ceil,
+   UMin, SMin, UMax, SMax, UClamp, SClamp, Step, and the finding of bits. */
+static const struct stand_in instructions[] = {
+    {1, false, "round", NULL},
+    {6, false, "sign", NULL},
+    {10, false, "fract", NULL},
+    {11, false, "radians", NULL},
+    {12, false, "degrees", NULL},
+    {13, false, "sin", NULL},
+    {14, false, "cos", NULL},
+    {15, false, "tan", NULL},
+    {16, false, "asin", NULL},
+    {17, false, "acos", NULL},
+    {18, false, "atan", NULL},
+    {19, false, NULL, "sinh"},
+    {20, false, NULL, "cosh"},
+    {21, false, NULL, "tanh"},
+    {22, false, NULL, "asinh"},
+    {23, false, NULL, "acosh"},
+    {24, false, NULL, "atanh"},
+    {25, false, "atan", NULL},
+    {26, false, "pow", NULL},
+    {27, false, "exp", NULL},
+    {28, false, "log", NULL},
+    {29, false, "exp2", NULL},
+    {30, false, "log2", NULL},
+    {31, true, "sqrt", NULL},
+    {32, false, "inversesqrt", NULL},
+    {33, false, NULL, "determinant"},
+    {34, false, NULL, "inverse"},
+    {35, false, NULL, "modf"},
+    {36, false, NULL, "modf"},
+    {37, false, "min", NULL},
+    {40, false, "max", NULL},
+    {43, false, "clamp", NULL},
+    {46, false, "mix", NULL},
+    {49, false, "smoothstep", NULL},
+    {50, false, "fma", NULL},
+    {51, false, NULL, "frexp"},
+    {52, false, NULL, "frexp"},
+    {53, false, NULL, "ldexp"},
+    {54, false, NULL, "packSnorm4x8"},
+    {55, false, NULL, "packUnorm4x8"},
+    {56, false, NULL, "packSnorm2x16"},
+    {57, false, NULL, "packUnorm2x16"},
+    {58, false, NULL, "packHalf2x16"},
+    {59, false, NULL, "packDouble2x32"},
+    {60, false, NULL, "unpackSnorm2x16"},
+    {61, false, "unpackUnorm2x16", NULL},
+    {62, false, NULL, "unpackHalf2x16"},
+    {63, false, NULL, "unpackSnorm4x8"},
+    {64, false, "unpackUnorm4x8", NULL},
+    {65, false, NULL, "unpackDouble2x32"},
+    {66, false, "length", NULL},
+    {67, false, "distance", NULL},
+    {68, false, "cross", NULL},
+    {69, false, "normalize", NULL},
+    {70, false, "faceforward", NULL},
+    {71, false, "reflect", NULL},
+    {72, false, "refract", NULL},
+    {76, false, NULL, "interpolateAtCentroid"},
+    {77, false, NULL, "interpolateAtSample"},
+    {78, false, NULL, "interpolateAtOffset"},
+    {79, false, NULL, "NMin"},
+    {80, false, NULL, "NMax"},
+    {81, false, NULL, "NClamp"},
+};
+
+static const struct stand_in *find_stand_in(const uint32_t *words)
+{
+    bool extended = spv_op(words) == SPV_EXT_INST && spv_length(words) > 4;
+    const struct stand_in *rows = extended ? instructions : operations;
+    size_t count = extended ? sizeof instructions / sizeof *instructions
+                            : sizeof operations / sizeof *operations;
+    uint32_t number = extended ? words[4] : spv_op(words);
+    for (size_t i = 0; i < count; ++i) {
+        if (rows[i].number == number)
+            return &rows[i];
+    }
+    return NULL;
+}
+
+/* --- names -------------------------------------------------------------------------------------
+ */
+
+/* "vf3;", as glslang writes the types of arguments behind the names of functions. */
+static void append_type(const struct spv_module *m, uint32_t type, char *name)
+{
+    const uint32_t *def = spv_def(m, type), *row;
+    size_t used = strlen(name);
+    char letter = 'f', *at = name + used;
+    size_t room = NAME_BYTES - used;
+    if (!def)
+        return;
+    if (spv_op(def) == SPV_TYPE_MATRIX) {
+        row = spv_def(m, def[2]);
+        snprintf(at, room, "mf%u%u;", def[3], row ? row[3] : 0);
+        return;
+    }
+    row = spv_op(def) == SPV_TYPE_VECTOR ? spv_def(m, def[2]) : def;
+    if (row && spv_op(row) == SPV_TYPE_INT)
+        letter = row[3] ? 'i' : 'u';
+    if (row != def)
+        snprintf(at, room, "v%c%u;", letter, def[3]);
+    else
+        snprintf(at, room, "%c1;", letter);
+}
+
+/* The id in the user's module of what stands in for an instruction; 0: there is none. */
+static uint32_t find_function(const struct portable *p, const struct stand_in *row,
+                              const uint32_t *words)
+{
+    const struct spv_module *user = &p->g.user;
+    char name[NAME_BYTES];
+    snprintf(name, sizeof name, "portable_%s(", row->function);
+    for (uint32_t i = spv_op(words) == SPV_EXT_INST ? 5 : 3; i < spv_length(words); ++i)
+        append_type(&p->g.base, spv_type_of(&p->g.base, words[i]), name);
+    for (size_t at = spv_next_function(user, user->functions_at); at < user->count;
+         at = spv_next_function(user, at + spv_function_words(user, at))) {
+        if (graft_same_name(p->g.user_names[user->words[at + 2]], name))
+            return user->words[at + 2];
+    }
+    return 0;
+}
+
+/* --- functions that are called for -------------------------------------------------------------
+ */
+
+static void want(struct portable *p, uint32_t function)
+{
+    for (uint32_t i = 0; i < p->wanted_count; ++i) {
+        if (p->wanted[i] == function)
+            return;
+    }
+    if (!ARRAY_PUSH(p->wanted, p->wanted_count, p->wanted_capacity, function))
+        p->g.base.failed = true;
+}
+
+/* The one specialization constant, which is set here. */
+static void take_switch(struct portable *p, const uint32_t *words)
+{
+    enum { CONSTANT_FALSE = 42 };
+    struct spv_module *base = &p->g.base;
+    uint32_t op = p->params->own_division ? SPV_CONSTANT_TRUE : CONSTANT_FALSE;
+    const uint32_t constant[] = {spv_head(op, 3), p->g.ids[words[1]], graft_id(&p->g, words[2])};
+    spv_put(base, &base->globals, constant, 3);
+}
+
+/* A type or constant with all that it is made of. */
+static void take_global(struct portable *p, uint32_t id)
+{
+    const uint32_t *words = spv_def(&p->g.user, id);
+    if (!words || p->g.ids[id])
+        return;
+    uint32_t op = spv_op(words);
+    bool is_type = op >= SPV_TYPE_VOID && op <= SPV_TYPE_FUNCTION;
+    if (op == SPV_EXT_INST_IMPORT) {
+        p->g.ids[id] = p->g.base.glsl;
+        return;
+    }
+    for (uint32_t i = is_type ? 2 : 1; i < spv_length(words); ++i) {
+        if (spv_is_id(words, i) && words[i] != id)
+            take_global(p, words[i]);
+    }
+    if (op == SPV_SPEC_CONSTANT_TRUE)
+        take_switch(p, words);
+    else
+        graft_value(&p->g, words, is_type ? 1 : 2);
+}
+
+static void take_instruction(struct portable *p, const uint32_t *words)
+{
+    const struct spv_module *user = &p->g.user;
+    for (uint32_t i = 1; i < spv_length(words); ++i) {
+        const uint32_t *def = spv_is_id(words, i) ? spv_def(user, words[i]) : NULL;
+        if (def && def < user->words + user->functions_at)
+            take_global(p, words[i]);
+    }
+    if (spv_op(words) == SPV_FUNCTION_CALL)
+        want(p, words[3]);
+    if (!spv_is_remark(spv_op(words)))
+        graft_put(&p->g, &p->g.base.body, words);
+}
+
+/* Those that the kernel calls, and those that these call. */
+static void take_functions(struct portable *p)
+{
+    const struct spv_module *user = &p->g.user;
+    for (uint32_t i = 0; i < p->wanted_count && !p->g.base.failed; ++i) {
+        size_t at = (size_t)(spv_def(user, p->wanted[i]) - user->words);
+        size_t end = at + spv_function_words(user, at);
+        for (; at < end && !p->g.base.failed; at += spv_length(user->words + at))
+            take_instruction(p, user->words + at);
+    }
+}
+
+/* --- the kernel --------------------------------------------------------------------------------
+ */
+
+/* Puts the call of a function in the place of an instruction. */
+static bool replace(struct portable *p, const struct stand_in *row, const uint32_t *words)
+{
+    struct spv_module *base = &p->g.base;
+    uint32_t first = spv_op(words) == SPV_EXT_INST ? 5 : 3, count = spv_length(words) - first;
+    uint32_t function = row->function ? find_function(p, row, words) : 0;
+    if (!function) {
+        const char *file = p->params->file;
+        snprintf(p->why, PORTABLE_WHY_BYTES, "%.100s%s%s has no portable form", file ? file : "",
+                 file ? ": " : "", row->name ? row->name : row->function);
+        return false;
+    }
+    want(p, function);
+    const uint32_t head[] = {spv_head(SPV_FUNCTION_CALL, 4 + count), words[1], words[2],
+                             graft_id(&p->g, function)};
+    spv_put(base, &base->body, head, 4);
+    spv_put(base, &base->body, words + first, count);
+    p->replaced[words[2]] = true;
+    return true;
+}
+
+static bool replace_all(struct portable *p)
+{
+    struct spv_module *base = &p->g.base;
+    for (size_t at = base->functions_at; at < base->count; at += spv_length(base->words + at)) {
+        const uint32_t *words = base->words + at;
+        const struct stand_in *row = find_stand_in(words);
+        if (row && !(row->division && p->params->own_division)) {
+            if (!replace(p, row, words))
+                return false;
+        } else if (!spv_is_remark(spv_op(words))) {
+            spv_put(base, &base->body, words, spv_length(words));
+        }
+    }
+    return true;
+}
+
+/* What kernels ask of floats of 32 bits: capabilities and execution modes of SPIR-V 1.4. */
+struct mode {
+    bool asked;
+    uint32_t capability, mode;
+};
+
+enum { MODES = 3, EXECUTION_MODE = 16 };
+
+static void list_modes(const struct portable_params *params, struct mode modes[MODES])
+{
+    modes[0] = (struct mode){params->asks_denormals, 4464, 4459};
+    modes[1] = (struct mode){params->asks_special, 4466, 4461};
+    modes[2] = (struct mode){params->asks_nearest, 4467, 4462};
+}
+
+static void put_modes(struct spv_module *m, struct spv_words *out, const struct mode modes[MODES],
+                      uint32_t entry)
+{
+    for (int i = 0; i < MODES; ++i) {
+        const uint32_t mode[] = {spv_head(EXECUTION_MODE, 4), entry, modes[i].mode, 32};
+        if (modes[i].asked)
+            spv_put(m, out, mode, 4);
+    }
+}
+
+static struct spv_words write_module(struct portable *p)
+{
+    struct spv_module *base = &p->g.base;
+    struct spv_words out = {0};
+    struct mode modes[MODES];
+    list_modes(p->params, modes);
+    spv_put(base, &out, base->words, SPV_HEADER_WORDS);
+    for (int i = 0; i < MODES; ++i) {
+        const uint32_t capability[] = {spv_head(SPV_CAPABILITY, 2), modes[i].capability};
+        if (modes[i].asked)
+            spv_put(base, &out, capability, 2);
+    }
+    for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
+         at += spv_length(base->words + at)) {
+        const uint32_t *words = base->words + at;
+        bool decorates = spv_op(words) == SPV_DECORATE && words[1] < base->bound;
+        if (spv_is_remark(spv_op(words)) || (decorates && p->replaced[words[1]]))
+            continue;
+        spv_put(base, &out, words, spv_length(words));
+        if (spv_op(words) == SPV_ENTRY_POINT)
+            put_modes(base, &out, modes, words[2]);
+    }
+    spv_put(base, &out, base->globals.words, base->globals.count);
+    spv_put(base, &out, base->body.words, base->body.count);
+    if (!base->failed)
+        out.words[SPV_BOUND_AT] = base->next_id;
+    return out;
+}
+
+/* No words: no memory, or `why` says why. */
+static struct spv_words make(struct portable *p, const uint32_t *words, size_t word_count)
+{
+    struct spv_words out = {0};
+    if (!graft_begin(&p->g, words, word_count, portable_kernel.words,
+                     portable_kernel.bytes / sizeof *words, "")) {
+        snprintf(p->why, PORTABLE_WHY_BYTES, "it is no kernel, or there is no memory for it");
+        return out;
+    }
+    p->replaced = array_alloc_zeroed(p->g.base.bound + (size_t)1, sizeof *p->replaced);
+    if (p->replaced && replace_all(p)) {
+        take_functions(p);
+        out = write_module(p);
+    }
+    if (p->g.base.failed) {
+        free(out.words);
+        out = (struct spv_words){0};
+    }
+    return out;
+}
+
+whit_result shader_make_portable(const struct portable_params *params, const uint32_t *words,
+                                 size_t word_count, uint32_t **out, size_t *out_words,
+                                 char why[PORTABLE_WHY_BYTES])
+{
+    struct portable p = {.params = params, .why = why};
+    why[0] = '\0';
+    *out = NULL;
+    struct spv_words made = make(&p, words, word_count);
+    enum shader_exact end =
+        made.words ? shader_exact(made.words, made.count, out, out_words) : EXACT_NO_MEMORY;
+    free(made.words);
+    free(p.replaced);
+    free(p.wanted);
+    graft_finish(&p.g);
+    return end == EXACT_DONE ? WHIT_OK : why[0] ? WHIT_ERROR_INPUT : WHIT_ERROR_MEMORY;
+}

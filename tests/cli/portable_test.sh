@@ -1,0 +1,47 @@
+#!/bin/sh
+# --portable: pictures are the same bytes by the device's own division and by whit's, at every level of
+# numerics, and where functions of users stand in kernels; what has no portable form is refused.
+. "$(dirname "$0")/common.sh"
+
+# both NAME SCENE OPTIONS...: twice, without the device's own division and root in the second.
+both() {
+    name=$1
+    scene=$2
+    shift 2
+    set -- render "$scene" --size 48x36 --portable on -q "$@"
+    expect 0 "$name" "$@" -o "$OUT/own.pfm" --ids "$OUT/own.exr"
+    WHIT_OWN_DIVISION=0 expect 0 "$name by whit's own division" "$@" -o "$OUT/functions.pfm" \
+        --ids "$OUT/functions.exr"
+    check "$name: the same colours" cmp "$OUT/own.pfm" "$OUT/functions.pfm"
+    check "$name: the same ids" cmp "$OUT/own.exr" "$OUT/functions.exr"
+}
+both fast "$CUBE" --numerics fast
+both watertight "$SCENES/layers.json"
+both exact "$CUBE" --numerics exact
+
+# All of GLSL that is left to drivers and has a portable form.
+cat >"$OUT/all.glsl" <<'END'
+vec3 shade(Surface s, Optics o, vec3 to_eye)
+{
+    vec3 p = s.p, q = p / (abs(p.zxy) + 0.3), r = sqrt(abs(p)) + inversesqrt(abs(q) + 0.1);
+    r += exp(q) + exp2(-q) + log(abs(p) + 0.01) + log2(abs(q) + 0.01) + pow(abs(p), abs(q));
+    r += sin(p * 9.0) + cos(q) + tan(q) + asin(fract(q)) + acos(fract(p)) + atan(p) + atan(p, q);
+    r += mod(p, vec3(0.37)) + mix(p, q, r) + smoothstep(p, p + 1.0, q) + round(p) + sign(q);
+    r += clamp(p, min(p, q), max(p, q)) + fma(p, q, r) + radians(p) + degrees(q) * 0.01;
+    r += normalize(p) + reflect(p, s.ns) + refract(normalize(p), s.ns, 0.9) + cross(p, q);
+    r += faceforward(p, q, r) + length(p) + distance(p, q) + dot(p, q) + vec3(ivec3(p * 40.0));
+    mat3 m = mat3(p, q, r);
+    r = fract(m * (q * m) + (m * m)[1] + unpackUnorm4x8(uint(abs(p.x) * 1e6)).xyz);
+    return mix(r, vec3(0.25), isnan(r));
+}
+END
+both "all functions" "$CUBE" --shader "$OUT/all.glsl"
+
+for call in 'determinant(mat3(s.p, s.ns, s.p))' 'ldexp(s.p.x, 2)'; do
+    name=${call%%(*}
+    echo "vec3 shade(Surface s, Optics o, vec3 to_eye) { return vec3($call); }" >"$OUT/none.glsl"
+    set -- render "$CUBE" --size 16x16 -q --shader "$OUT/none.glsl" -o "$OUT/none.pfm"
+    refuse 2 "$name" "none.glsl: .*$name" "$@" --portable on
+    check "$name: no picture" test ! -e "$OUT/none.pfm"
+done
+exit $FAILED
