@@ -5,6 +5,7 @@
 
 #include "api/handles.h"
 #include "base/threads.h"
+#include "render/portable.h"
 #include "whit/whit_program.h"
 
 static void describe(const struct device_info *from, whit_device_info *to)
@@ -238,6 +239,14 @@ void whit_device_destroy(whit_device *device)
 void whit_device_get_info(const whit_device *device, whit_device_info *info)
 {
     describe(device_get_info(device->device), info);
+}
+
+whit_result whit_device_find_floats(whit_device *device, whit_device_floats *floats)
+{
+    struct portable_device found = {0};
+    whit_result result = portable_find(&device->log, device->device, &found);
+    *floats = (whit_device_floats){found.own_division, found.keeps_denormals, found.rounds_nearest};
+    return result;
 }
 
 uint32_t whit_device_validation_messages(const whit_device *device)

@@ -10,6 +10,7 @@ enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SID
 struct traced_on {
     struct device *device;
     const volatile bool *cancel;
+    bool portable;
 };
 
 static whit_result trace(const struct hard_device *device, const whit_log *log, struct accel *accel,
@@ -22,6 +23,7 @@ static whit_result trace(const struct hard_device *device, const whit_log *log, 
                                          .time_s = time_s,
                                          .cancel = on->cancel,
                                          .numerics = (whit_numerics)numerics,
+                                         .portable = on->portable,
                                          .trace_rays = (uint32_t)count};
     struct renderer *renderer = NULL;
     whit_result result = renderer_create(log, on->device, accel, &params, &renderer);
@@ -41,7 +43,7 @@ whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
 {
     const whit_hard_params defaults = {0};
     params = params ? params : &defaults;
-    struct traced_on on = {device ? device->device : NULL, params->cancel};
+    struct traced_on on = {device ? device->device : NULL, params->cancel, params->portable};
     const struct hard_device hard_device = {trace, &on};
     return hard_run(device ? &hard_device : NULL, scene ? scene->scene : NULL,
                     scene && api_one_tree(scene, params->instances), params, log, out);
@@ -57,7 +59,7 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
                            uint64_t *wrong_pixels, uint64_t *other_pixels, whit_image **out)
 {
     whit_hard_view_params own = params ? *params : (whit_hard_view_params){0};
-    struct traced_on on = {device ? device->device : NULL, NULL};
+    struct traced_on on = {device ? device->device : NULL, NULL, own.portable};
     const struct hard_device hard_device = {trace, &on};
     *out = NULL;
     own.width = own.width ? own.width : WIDTH_DEFAULT;

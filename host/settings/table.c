@@ -277,8 +277,9 @@ const struct setting settings_table[] = {
     {"portable", 0, NULL,
      "on: the same bits on every device; nothing is left to its\n"
      "driver, as division, roots and powers are",
-     AT(EITHER, picture.portable), .values = values_switch, .commands = IN_PICTURES,
-     .change = SETTING_LIGHT, .need = SETTING_NEEDS_KERNEL, .title = "portable"},
+     AT(EITHER, picture.portable), .values = values_switch,
+     .commands = IN_PICTURES | IN_TRACE | IN_HARD, .change = SETTING_LIGHT,
+     .need = SETTING_NEEDS_KERNEL, .title = "portable"},
     {"exposure", 0, "auto|EV",
      "what is displayed, in the window, PNG and FLIP, times 2^EV;\n"
      "auto: as suits what the first camera sees of a model, with\n"

@@ -35,6 +35,19 @@ WHIT_CHECK whit_result whit_device_create(const whit_device_params *params, cons
                                           whit_device **out);
 void whit_device_destroy(whit_device *device);
 void whit_device_get_info(const whit_device *device, whit_device_info *info);
+
+/* What a device does with floats of 32 bits where Vulkan leaves that to it;
+   whit_renderer_params.portable asks for the last two. */
+typedef struct whit_device_floats {
+    bool own_division;    /* division and square root are rounded correctly, as far as 43 million of
+                             them tell */
+    bool keeps_denormals; /* numbers below 2^-126 are no zeros to sums and products */
+    bool rounds_nearest;  /* sums and products are rounded to nearest */
+} whit_device_floats;
+
+/* Found out once for a device and its driver, in about a second, and kept. */
+WHIT_CHECK whit_result whit_device_find_floats(whit_device *device, whit_device_floats *floats);
+
 uint32_t whit_device_validation_messages(const whit_device *device);
 
 #ifdef __cplusplus

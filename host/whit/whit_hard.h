@@ -19,6 +19,7 @@ typedef struct whit_hard_params {
     uint32_t threads;   /* on the CPU; 0: one a core */
     const char *filter; /* of the built-in cases those with this in their name; NULL: all, and then
                            there is a hash */
+    bool portable;      /* as of whit_renderer_params */
     whit_instances instances; /* of `scene` as it is given; variants and built-in cases say it */
     const volatile bool *cancel;
     double time_limit_s; /* 0: none */
@@ -83,6 +84,7 @@ typedef struct whit_hard_view_params {
     uint32_t width, height; /* 0: 640 x 480 */
     whit_camera camera;
     double time_s;
+    bool portable; /* as of whit_renderer_params */
     whit_numerics numerics;
     whit_instances instances;
     uint32_t threads;

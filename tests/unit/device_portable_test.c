@@ -67,7 +67,7 @@ static const struct row rows[] = {
     {"sqrt", PORTABLE_SQRT, sqrt, NULL, 0.5},
     {"inversesqrt", PORTABLE_INVERSESQRT, inverse_root, NULL, 1.5},
     {"exp2", PORTABLE_EXP2, exp2, NULL, 1.1},
-    {"exp", PORTABLE_EXP, exp, NULL, 1.25},
+    {"exp", PORTABLE_EXP, exp, NULL, 1.35},
     {"log2", PORTABLE_LOG2, log2, NULL, 0.51},
     {"log", PORTABLE_LOG, log, NULL, 0.51},
     {"pow", PORTABLE_POW, NULL, power, 1.5},

@@ -1,3 +1,4 @@
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "app/cache.h"
@@ -13,6 +14,45 @@ static const struct setting options[] = {
     {"json", 0, NULL, "everything as JSON", SETTING_AT_FLAG(struct devices, json)},
     {0},
 };
+
+/* False: the device cannot be opened, and what it does is not known. */
+static bool find_floats(const whit_device_info *info, whit_device_floats *floats)
+{
+    char selector[16];
+    whit_device *device = NULL;
+    snprintf(selector, sizeof selector, "%u", info->index);
+    const whit_device_params params = {.selector = selector};
+    whit_result result =
+        info->usable ? whit_device_create(&params, NULL, &device) : WHIT_ERROR_DEVICE;
+    if (result == WHIT_OK)
+        result = whit_device_find_floats(device, floats);
+    whit_device_destroy(device);
+    return result == WHIT_OK;
+}
+
+static json_t *floats_document(const whit_device_info *info)
+{
+    whit_device_floats floats;
+    if (!find_floats(info, &floats))
+        return json_null();
+    json_t *document = document_object();
+    document_flag(document, "own_division", floats.own_division);
+    document_flag(document, "keeps_denormals", floats.keeps_denormals);
+    document_flag(document, "rounds_nearest", floats.rounds_nearest);
+    return document;
+}
+
+static void print_floats(const whit_device_info *info)
+{
+    whit_device_floats floats;
+    if (!find_floats(info, &floats))
+        return;
+    bool portable = floats.keeps_denormals && floats.rounds_nearest;
+    printf("     portable  %s, division by %s%s%s\n", portable ? "pictures" : "no pictures",
+           floats.own_division ? "itself" : "whit",
+           floats.keeps_denormals ? "" : ", denormals are 0 to it",
+           floats.rounds_nearest ? "" : ", sums are not rounded to nearest");
+}
 
 static json_t *device_document(const whit_device_info *info)
 {
@@ -31,6 +71,7 @@ static json_t *device_document(const whit_device_info *info)
     document_flag(device, "usable", info->usable);
     document_text(device, "why_not", info->usable ? NULL : info->why_not);
     document_flag(device, "automatic", info->automatic);
+    document_put(device, "floats", floats_document(info));
     return device;
 }
 
@@ -45,6 +86,7 @@ static void print_device(const whit_device_info *info)
     printf("     subgroup  %u\n", info->subgroup_size);
     printf("     has       %s%s%s\n", info->timestamps ? "timestamps" : "no timestamps",
            info->float64 ? ", float64" : "", info->int64 ? ", int64" : "");
+    print_floats(info);
     if (!info->usable)
         printf("     not usable: %s\n", cli_shown(info->why_not));
 }

@@ -44,6 +44,7 @@ static whit_result find_out(struct hard *hard)
     cli_progress_init(&hard->progress, job->settings.quiet);
     hard->params.threads = job->settings.trees.threads;
     hard->params.instances = job->settings.trees.instances;
+    hard->params.portable = job->settings.picture.portable;
     hard->params.cancel = &cli_cancel;
     hard->params.time_limit_s = cli_time_left_s();
     hard->params.progress = cli_progress_update;
@@ -60,6 +61,7 @@ static whit_result draw(struct hard *hard, uint64_t *wrong, uint64_t *other)
     struct job *job = &hard->job;
     whit_image *image = NULL;
     hard->view.time_s = job->settings.picture.time_s;
+    hard->view.portable = job->settings.picture.portable;
     hard->view.numerics =
         hard->level == HARD_ALL ? WHIT_NUMERICS_WATERTIGHT : (whit_numerics)hard->level;
     hard->view.threads = job->settings.trees.threads;
