@@ -127,6 +127,7 @@ struct pipeline_params {
     size_t spirv_bytes;
     pipeline_rewrite *rewrite; /* NULL: the kernel as it is */
     const void *rewrite_user;
+    uint32_t rewrite_as;  /* another number where *rewrite_user makes another kernel */
     const uint32_t *spec; /* value of specialization constant i, for i < spec_count */
     uint32_t spec_count;
     const enum binding_kind *bindings; /* of binding number i in set 0; NONE leaves a gap */

@@ -16,8 +16,9 @@ void device_keep_pipelines(struct device *device)
 /* Of all that decides what is made. Two hashes of 64 bits: a wrong kernel is a wrong picture. */
 static void key_of(const struct pipeline_params *params, bool specializes, uint64_t key[2])
 {
-    const uint64_t sizes[] = {params->spec_count, params->binding_count, params->push_bytes,
-                              params->asks_statistics, specializes};
+    const uint64_t sizes[] = {
+        params->spec_count, params->binding_count,   params->push_bytes, params->asks_statistics,
+        specializes,        params->rewrite != NULL, params->rewrite_as};
     for (int i = 0; i < 2; ++i) {
         uint64_t hash = hash_bytes(HASH_START + (uint64_t)i, sizes, sizeof sizes);
         hash = hash_bytes(hash, params->spirv, params->spirv_bytes);

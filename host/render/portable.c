@@ -19,6 +19,12 @@ whit_result portable_rewrite(const void *user, const uint32_t *words, size_t wor
     return shader_make_portable(user, words, word_count, out, out_words, why);
 }
 
+uint32_t portable_number(const struct portable_params *params)
+{
+    return (uint32_t)params->own_division | (uint32_t)params->asks_nearest << 1 |
+           (uint32_t)params->asks_special << 2 | (uint32_t)params->asks_denormals << 3;
+}
+
 /* One function of kernel/portable.comp, on a device. */
 struct run {
     struct device *device;
@@ -48,6 +54,7 @@ static whit_result run_init(struct run *run, struct device *device,
         .spirv_bytes = portable_kernel.bytes,
         .rewrite = portable_rewrite,
         .rewrite_user = asks,
+        .rewrite_as = portable_number(asks),
         .spec = spec,
         .spec_count = 2,
         .bindings = bindings,

@@ -26,5 +26,7 @@ WHIT_CHECK whit_result portable_choose(const whit_log *log, struct device *devic
 /* A pipeline_rewrite; `user`: a struct portable_params. */
 whit_result portable_rewrite(const void *user, const uint32_t *words, size_t word_count,
                              uint32_t **out, size_t *out_words, char why[REWRITE_WHY_BYTES]);
+/* Another number for params with which other kernels are made. */
+uint32_t portable_number(const struct portable_params *params);
 
 #endif
