@@ -442,12 +442,6 @@ TEST(refuses_wrong_pipelines_and_sets)
     pipeline_destroy(pipeline);
 }
 
-int main(void)
-{
-    setenv("WHIT_NO_CACHE", "1", 1);
-    return unit_run(open_device, close_device);
-}
-
 /* What the driver is asked for as `value` says; given back at once. */
 static struct pipeline *make_and_drop(struct device *keeper, uint32_t value)
 {
@@ -459,6 +453,19 @@ static struct pipeline *make_and_drop(struct device *keeper, uint32_t value)
     return pipeline;
 }
 
+/* A pipeline_rewrite that leaves everything as it is. */
+static whit_result copy_kernel(const void *user, const uint32_t *words, size_t word_count,
+                               uint32_t **out, size_t *out_words, char why[REWRITE_WHY_BYTES])
+{
+    (void)user;
+    (void)why;
+    *out = malloc(word_count * sizeof **out);
+    assert_non_null(*out);
+    memcpy(*out, words, word_count * sizeof **out);
+    *out_words = word_count;
+    return WHIT_OK;
+}
+
 TEST(a_device_that_keeps_pipelines_makes_each_once)
 {
     enum { MANY = 140 }; /* more than it keeps */
@@ -466,7 +473,7 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
     struct device *keeper = device_open(&said, true);
     const uint32_t spec[] = {64, 3, 7}, copy[] = {64, 3, 7};
     const struct pipeline_params params = affine_params(spec), same = affine_params(copy);
-    struct pipeline *held, *again;
+    struct pipeline *held, *again, *before = NULL;
     device_keep_pipelines(keeper);
     assert_int_equal(pipeline_create(keeper, &params, &held), WHIT_OK);
     assert_int_equal(pipeline_create(keeper, &same, &again), WHIT_OK);
@@ -480,6 +487,16 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
     assert_int_equal(pipeline_create(keeper, &wider, &again), WHIT_OK);
     assert_ptr_not_equal(held, again);
     pipeline_destroy(again);
+    for (uint32_t as = 1; as < 3; ++as) {
+        struct pipeline_params rewritten = params;
+        rewritten.rewrite = copy_kernel;
+        rewritten.rewrite_as = as;
+        assert_int_equal(pipeline_create(keeper, &rewritten, &again), WHIT_OK);
+        assert_ptr_not_equal(held, again);
+        assert_ptr_not_equal(before, again);
+        before = again;
+        pipeline_destroy(again);
+    }
     for (uint32_t i = 0; i < MANY; ++i)
         make_and_drop(keeper, 100 + i);
     assert_int_equal(pipeline_create(keeper, &params, &again), WHIT_OK);
@@ -487,4 +504,10 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
     pipeline_destroy(held);
     pipeline_destroy(again);
     device_close(keeper, &said);
+}
+
+int main(void)
+{
+    setenv("WHIT_NO_CACHE", "1", 1);
+    return unit_run(open_device, close_device);
 }
