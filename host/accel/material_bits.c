@@ -2,11 +2,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/same.h"
+
 #include "accel/accel_inside.h"
 
 static uint32_t optical_depth(double transmittance)
 {
-    double depth = transmittance > 0.0 ? -log2(transmittance) * SHADOW_DEPTH_SCALE : 1023.0;
+    double depth = transmittance > 0.0 ? -same_log2(transmittance) * SHADOW_DEPTH_SCALE : 1023.0;
     return depth >= 1023.0 ? 1023u : depth > 0.0 ? (uint32_t)(depth + 0.5) : 0u;
 }
 

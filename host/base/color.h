@@ -4,14 +4,16 @@
 
 #include <math.h>
 
+#include "base/same.h"
+
 static inline double srgb_from_linear(double linear)
 {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * same_pow(linear, 1.0 / 2.4) - 0.055;
 }
 
 static inline double linear_from_srgb(double srgb)
 {
-    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+    return srgb <= 0.04045 ? srgb / 12.92 : same_pow((srgb + 0.055) / 1.055, 2.4);
 }
 
 /* Leaves values up to 0.6 alone; from there on a hyperbola with the same slope runs towards 1. */

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/same.h"
 #include "base/text.h"
 #include "load/gltf.h"
 
@@ -123,7 +124,8 @@ static bool read_volume(struct reading *r, const json_t *volume)
     r->out->thin_walled = !(thickness > 0);
     for (int i = 0; i < 3; i++) {
         float left = fminf(fmaxf(color[i], 1e-6f), 1.0f);
-        r->out->absorption[i] = thickness > 0 && distance > 0 ? -logf(left) / distance : 0;
+        r->out->absorption[i] =
+            thickness > 0 && distance > 0 ? (float)-same_log((double)left) / distance : 0;
     }
     return true;
 }

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/same.h"
 #include "load/gltf.h"
 #include "scene/afford.h"
 
@@ -239,7 +240,7 @@ static bool read_lens(const struct gltf *gltf, const json_t *object, const struc
         !gltf_number(gltf, lens, at, "aspectRatio", &aspect) ||
         !gltf_number(gltf, lens, at, "xmag", &xmag) || !gltf_number(gltf, lens, at, "ymag", &ymag))
         return false;
-    if (perspective && !(yfov > 0 && yfov < acos(-1.0)))
+    if (perspective && !(yfov > 0 && yfov < same_acos(-1.0)))
         return gltf_fail(gltf, at, "yfov should be between 0 and pi and is %g", yfov);
     if (!perspective && !(fabs(xmag) > 0 && fabs(ymag) > 0))
         return gltf_fail(gltf, at, "xmag and ymag should not be 0");
@@ -278,15 +279,15 @@ static bool read_spot(const struct gltf *gltf, const json_t *object, const struc
                       struct scene_light *out)
 {
     json_t *spot;
-    double quarter = atan(1.0), inner = 0, outer = quarter;
+    double quarter = same_atan2(1.0, 1.0), inner = 0, outer = quarter;
     if (!gltf_object(gltf, object, at, "spot", &spot) ||
         !gltf_number(gltf, spot, at, "innerConeAngle", &inner) ||
         !gltf_number(gltf, spot, at, "outerConeAngle", &outer))
         return false;
     if (!(inner >= 0 && inner < outer && outer <= 2 * quarter + 1e-6))
         return gltf_fail(gltf, at, "its cone angles %g and %g make no cone", inner, outer);
-    out->cos_inner = (float)cos(inner);
-    out->cos_outer = (float)cos(outer);
+    out->cos_inner = (float)same_cos(inner);
+    out->cos_outer = (float)same_cos(outer);
     return true;
 }
 
@@ -303,7 +304,7 @@ static bool read_light(const struct gltf *gltf, const json_t *object, const stru
         !gltf_number(gltf, object, at, "range", &range))
         return false;
     for (int i = 0; i < 3; i++)
-        out->color[i] = (float)(color[i] * intensity / acos(-1.0));
+        out->color[i] = (float)(color[i] * intensity / same_acos(-1.0));
     out->range = (float)fmax(range, 0);
     out->falloff = true;
     if (type && strcmp(type, "directional") == 0) {

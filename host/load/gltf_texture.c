@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/same.h"
 #include "base/text.h"
 #include "load/gltf.h"
 
@@ -122,7 +123,7 @@ static bool read_transform(const struct gltf *gltf, const json_t *info, const st
         !gltf_number(gltf, transform, at, "rotation", &angle) ||
         !gltf_whole(gltf, transform, at, "texCoord", UINT32_MAX, uv_set))
         return false;
-    double c = cos(angle), s = sin(angle);
+    double c = same_cos(angle), s = same_sin(angle);
     const double matrix[6] = {c * scale[0],  s * scale[1], offset[0],
                               -s * scale[0], c * scale[1], offset[1]};
     for (int i = 0; i < 6; i++)

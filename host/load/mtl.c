@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/same.h"
 #include "base/text.h"
 
 /* --- words and numbers, in any locale ------------------------------------------------------- */
@@ -59,7 +60,7 @@ static bool parse_number(const char *word, float *out)
             power = power < 1000 ? power * 10 + (*at - '0') : power;
         exponent += down ? -power : power;
     }
-    value *= pow(10.0, exponent);
+    value *= same_pow(10.0, exponent);
     *out = (float)(negative ? -value : value);
     return digits > 0 && *at == 0 && isfinite(*out);
 }

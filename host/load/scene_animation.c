@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/vec.h"
 #include "load/scene_reader.h"
 
@@ -10,8 +11,8 @@ void reader_quaternion(const double degrees[3], double out[4])
 {
     double s[3], c[3];
     for (int i = 0; i < 3; ++i) {
-        s[i] = sin(degrees[i] * PI / 360.0);
-        c[i] = cos(degrees[i] * PI / 360.0);
+        s[i] = same_sin(degrees[i] * PI / 360.0);
+        c[i] = same_cos(degrees[i] * PI / 360.0);
     }
     out[0] = s[0] * c[1] * c[2] - c[0] * s[1] * s[2];
     out[1] = c[0] * s[1] * c[2] + s[0] * c[1] * s[2];

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/same.h"
 #include "base/text.h"
 #include "base/vec.h"
 #include "load/scene_reader.h"
@@ -127,8 +128,8 @@ static bool read_light_values(struct reader *reader, const struct place *place,
         return false;
     if (inner > outer)
         return reader_fail(reader, &here, "the inner angle is over the outer one");
-    out->cos_inner = (float)cos(inner * RADIANS);
-    out->cos_outer = (float)cos(outer * RADIANS);
+    out->cos_inner = (float)same_cos(inner * RADIANS);
+    out->cos_outer = (float)same_cos(outer * RADIANS);
     for (int i = 0; i < 3; ++i)
         out->color[i] = (float)((double)out->color[i] * intensity);
     return true;

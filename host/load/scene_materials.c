@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/same.h"
 #include "base/text.h"
 #include "base/vec.h"
 #include "image/image.h"
@@ -174,8 +175,8 @@ static bool texture_transform(struct reader *reader, const struct place *place, 
         !reader_numbers(reader, place, value, "offset", 2, offset) ||
         !reader_number(reader, place, value, "rotation", -36000.0, 36000.0, &degrees))
         return false;
-    double c = cos(degrees * PI / 180.0);
-    double s = sin(degrees * PI / 180.0), size = (double)use->transform[0];
+    double c = same_cos(degrees * PI / 180.0);
+    double s = same_sin(degrees * PI / 180.0), size = (double)use->transform[0];
     const double rows[6] = {c * scale[0] * size, -s * scale[1] * size, offset[0],
                             s * scale[0] * size, c * scale[1] * size,  offset[1]};
     for (int i = 0; i < 6; ++i)

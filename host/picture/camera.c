@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/same.h"
 #include "base/vec.h"
 #include "picture/sequence.h"
 
@@ -111,7 +112,7 @@ static double half_height(const struct scene_camera *camera)
 {
     switch (camera->kind) {
     case SCENE_CAMERA_PERSPECTIVE:
-        return (double)camera->fov_y < PI ? tan(0.5 * (double)camera->fov_y) : 0.0;
+        return (double)camera->fov_y < PI ? same_tan(0.5 * (double)camera->fov_y) : 0.0;
     case SCENE_CAMERA_ORTHOGRAPHIC:
         return 0.5 * (double)camera->height;
     case SCENE_CAMERA_PANORAMA:
@@ -194,8 +195,8 @@ static void square_to_disk(const double square[2], double disk[2])
         radius = b;
         angle = PI / 2.0 - PI / 4.0 * (a / b);
     }
-    disk[0] = radius * cos(angle);
-    disk[1] = radius * sin(angle);
+    disk[0] = radius * same_cos(angle);
+    disk[1] = radius * same_sin(angle);
 }
 
 void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk)

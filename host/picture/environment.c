@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/threads.h"
 #include "base/vec.h"
 #include "picture/environment.h"
@@ -34,8 +35,8 @@ static void dir_from_octahedron(double x, double y, double dir[3])
 static void sample_map(const struct scene_environment *map, const double dir[3], float out[3])
 {
     /* The middle of the map is at -z, u grows to the right as seen from inside; row 0 is up. */
-    double u = 0.5 + atan2(dir[0], -dir[2]) / (2.0 * PI);
-    double v = acos(fmax(-1.0, fmin(1.0, dir[1]))) / PI;
+    double u = 0.5 + same_atan2(dir[0], -dir[2]) / (2.0 * PI);
+    double v = same_acos(fmax(-1.0, fmin(1.0, dir[1]))) / PI;
     double x = u * map->width - 0.5, y = v * map->height - 0.5;
     double x_floor = floor(x), y_floor = floor(y);
     double fx = x - x_floor, fy = y - y_floor;

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "base/same.h"
+
 /* Where the ground is, and where its lines are. */
 struct ground {
     double height, step, center[2], radius;
@@ -10,7 +12,7 @@ struct ground {
 /* 1, 2 or 5 times a power of ten, no more than `value`. */
 static double round_down(double value)
 {
-    double power = pow(10.0, floor(log10(value))), digits = value / power;
+    double power = same_pow(10.0, floor(same_log10(value))), digits = value / power;
     return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
 }
 
@@ -47,7 +49,8 @@ static double meet(const struct ground *ground, const struct gpu_ray *ray, doubl
 static double cover_of(const struct ground *ground, const double at[2], const double right[2],
                        const double below[2])
 {
-    double most = 0.0, away = hypot(at[0] - ground->center[0], at[1] - ground->center[1]);
+    double x = at[0] - ground->center[0], y = at[1] - ground->center[1];
+    double most = 0.0, away = sqrt(x * x + y * y);
     for (int k = 0; k < 2; ++k) {
         double wide = fmax(fabs(right[k] - at[k]), fabs(below[k] - at[k])) / ground->step;
         double place = at[k] / ground->step, off = fabs(place - round(place));

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/color.h"
+#include "base/same.h"
 
 /* ---- Sizes ---- */
 
@@ -180,8 +181,8 @@ uint8_t *mipmap_make(const uint8_t *rgba, uint32_t width, uint32_t height, enum 
 void mipmap_pieces(float pieces[2 * MIPMAP_PIECES])
 {
     for (int i = 0; i < MIPMAP_PIECES; ++i) {
-        double here = 0.5 * log2(1.0 + (double)i / MIPMAP_PIECES);
-        double next = 0.5 * log2(1.0 + (i + 1.0) / MIPMAP_PIECES);
+        double here = 0.5 * same_log2(1.0 + (double)i / MIPMAP_PIECES);
+        double next = 0.5 * same_log2(1.0 + (i + 1.0) / MIPMAP_PIECES);
         pieces[2 * i] = (float)here;
         pieces[2 * i + 1] = (float)(next - here);
     }

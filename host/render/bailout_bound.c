@@ -49,7 +49,8 @@ static bool uses(const struct scene_material *m, enum scene_slot slot)
    times 0.5 / alpha, as the spread is no less than alpha times the cosine (lib/optics.glsl). */
 static double ggx_max(const struct scene_material *m)
 {
-    double alpha = uses(m, SCENE_SLOT_METAL_ROUGH) ? 0.0 : pow((double)m->roughness, 2.0);
+    double alpha =
+        uses(m, SCENE_SLOT_METAL_ROUGH) ? 0.0 : (double)m->roughness * (double)m->roughness;
     alpha = fmax(alpha, 0.02);
     return 0.5 / (alpha * alpha * alpha);
 }

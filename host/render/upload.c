@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "render/renderer.h"
 #include "scene/afford.h"
 
@@ -348,7 +349,7 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
         params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 4.0 : (double)params->sampling.count;
     double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
     double rays = (double)params->width * params->height * samples * (1.0 + lights);
-    double halvings = log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
+    double halvings = same_log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
     uint32_t chosen = 1;
     for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {
         bool pays = rays * halvings * packet_choices[i].saved_ns >= packet_choices[i].kernels_ns;

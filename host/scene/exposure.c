@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/freeze.h"
 
@@ -248,10 +249,10 @@ static double exposure_of(struct freeze_seen *seen, double *burnt)
     double white = at_share(seen->white, seen->count, SHARE);
     *burnt = share_from(seen->shown, seen->count, BURNT);
     if (*burnt > BURNT_SHARE)
-        ev =
-            fmax(floor(-2.0 * log2(bright)) / 2.0, fmin(ceil(2.0 * log2(LOW / middle)) / 2.0, 0.0));
+        ev = fmax(floor(-2.0 * same_log2(bright)) / 2.0,
+                  fmin(ceil(2.0 * same_log2(LOW / middle)) / 2.0, 0.0));
     else if (white < BLACK && bright > 0.0)
-        ev = floor(2.0 * log2(BRIGHTNESS / white)) / 2.0;
+        ev = floor(2.0 * same_log2(BRIGHTNESS / white)) / 2.0;
     return fmin(fmax(ev, -EV_MAX), EV_MAX);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/color.h"
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/freeze.h"
 
@@ -172,7 +173,7 @@ static struct ray look(const struct scene_camera *camera, uint32_t index, uint32
     double3_cross(forward, camera->up, right);
     double3_unit(right);
     double3_cross(right, forward, up);
-    tall = parallel ? 0.5 * (double)camera->height : tan(0.5 * (double)camera->fov_y);
+    tall = parallel ? 0.5 * (double)camera->height : same_tan(0.5 * (double)camera->fov_y);
     for (int k = 0; k < 3; ++k) {
         double aside = tall * (4.0 / 3.0 * x * right[k] + y * up[k]);
         ray.origin[k] = camera->eye[k] + (parallel ? aside : 0.0);

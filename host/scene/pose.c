@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/text.h"
 #include "scene/scene.h"
 
@@ -53,9 +54,9 @@ static void slerp(const double from[4], const double to[4], double s, double out
     cosine = fmin(fabs(cosine), 1.0);
     double weight_a = 1.0 - s, weight_b = s;
     if (cosine < 1.0 - 1e-9) {
-        double angle = acos(cosine), sine = sin(angle);
-        weight_a = sin((1.0 - s) * angle) / sine;
-        weight_b = sin(s * angle) / sine;
+        double angle = same_acos(cosine), sine = same_sin(angle);
+        weight_a = same_sin((1.0 - s) * angle) / sine;
+        weight_b = same_sin(s * angle) / sine;
     }
     for (int i = 0; i < 4; ++i)
         out[i] = weight_a * a[i] + sign * weight_b * b[i];

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/vec.h"
 
 bool shape_positive(double value)
@@ -76,6 +77,6 @@ void shaper_quad(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c, uint
 void shape_circle_point(uint32_t step, uint32_t steps, double *cosine, double *sine)
 {
     double angle = 2.0 * PI * (step % steps) / steps;
-    *cosine = cos(angle);
-    *sine = sin(angle);
+    *cosine = same_cos(angle);
+    *sine = same_sin(angle);
 }

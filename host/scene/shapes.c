@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/shaper.h"
 
@@ -82,8 +83,8 @@ whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struc
     if (result != WHIT_OK)
         return result;
     for (uint32_t j = 0; j <= rings; ++j) {
-        double sine = j == 0 || j == rings ? 0.0 : sin(PI * j / rings),
-               height = cos(PI * j / rings);
+        double sine = j == 0 || j == rings ? 0.0 : same_sin(PI * j / rings),
+               height = same_cos(PI * j / rings);
         for (uint32_t i = 0; i <= segments; ++i) {
             double c, s;
             shape_circle_point(i, segments, &c, &s);
@@ -215,8 +216,8 @@ whit_result shape_icosphere(double radius, uint32_t level, struct scene_mesh *ou
     for (uint32_t i = 0; i < ico.point_count; ++i) {
         const double *n = ico.points[i];
         shaper_vertex(&shaper, (double[]){radius * n[0], radius * n[1], radius * n[2]}, n,
-                      0.5 + atan2(-n[2], n[0]) / (2.0 * PI),
-                      acos(fmax(-1.0, fmin(1.0, n[1]))) / PI);
+                      0.5 + same_atan2(-n[2], n[0]) / (2.0 * PI),
+                      same_acos(fmax(-1.0, fmin(1.0, n[1]))) / PI);
     }
     for (uint32_t i = 0; i < ico.face_count; ++i)
         shaper_triangle(&shaper, ico.faces[i][0], ico.faces[i][1], ico.faces[i][2]);
@@ -389,16 +390,16 @@ struct flake {
    the three below would meet the grandparent. */
 static struct flake flake_child(const struct flake *parent, uint32_t child)
 {
-    double polar = child < 6 ? PI / 2.0 : acos(sqrt(2.0 / 3.0));
+    double polar = child < 6 ? PI / 2.0 : same_acos(sqrt(2.0 / 3.0));
     double azimuth = child < 6 ? child * PI / 3.0 : PI / 6.0 + (child - 6) * 2.0 * PI / 3.0;
     double v[3];
     double3_cross(parent->w, parent->u, v);
     struct flake out = {.radius = parent->radius / 3.0};
     double reach = parent->radius + out.radius;
     for (int i = 0; i < 3; ++i) {
-        out.w[i] = sin(polar) * (cos(azimuth) * parent->u[i] + sin(azimuth) * v[i]) +
-                   cos(polar) * parent->w[i];
-        out.u[i] = -sin(azimuth) * parent->u[i] + cos(azimuth) * v[i];
+        out.w[i] = same_sin(polar) * (same_cos(azimuth) * parent->u[i] + same_sin(azimuth) * v[i]) +
+                   same_cos(polar) * parent->w[i];
+        out.u[i] = -same_sin(azimuth) * parent->u[i] + same_cos(azimuth) * v[i];
         out.centre[i] = parent->centre[i] + reach * out.w[i];
     }
     return out;

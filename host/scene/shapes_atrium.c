@@ -2,6 +2,7 @@
    triangles, many of them long, thin or diagonal. */
 #include <math.h>
 
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/shaper.h"
 #include "scene/shapes.h"
@@ -120,7 +121,7 @@ static void add_ring(struct atrium *atrium, const struct frame *frame, double ra
 {
     uint32_t first = atrium->shaper.vertex;
     for (uint32_t i = 0; i <= segments; ++i) {
-        double c = cos(angle * i / segments), s = sin(angle * i / segments);
+        double c = same_cos(angle * i / segments), s = same_sin(angle * i / segments);
         for (uint32_t j = 0; j <= sides; ++j) {
             double ct, st;
             shape_circle_point(j, sides, &ct, &st);
@@ -154,9 +155,9 @@ static void add_arch(struct atrium *atrium, const struct frame *frame, double ra
     }
     for (uint32_t i = 0; i < segments; ++i) {
         double a = PI * i / segments, b = PI * (i + 1) / segments;
-        double xa = radius * cos(a), ya = radius * sin(a);
-        double xb = i + 1 < segments ? radius * cos(b) : -radius;
-        double yb = i + 1 < segments ? radius * sin(b) : 0.0;
+        double xa = radius * same_cos(a), ya = radius * same_sin(a);
+        double xb = i + 1 < segments ? radius * same_cos(b) : -radius;
+        double yb = i + 1 < segments ? radius * same_sin(b) : 0.0;
         const double corners[4][3] = {{xb, yb, z}, {xa, ya, z}, {xa, top, z}, {xb, top, z}};
         const double behind[4][3] = {{xa, ya, -z}, {xb, yb, -z}, {xb, top, -z}, {xa, top, -z}};
         add_plane(atrium, frame, corners, front);
@@ -261,7 +262,7 @@ static void add_vaults(struct atrium *atrium)
         uint32_t first = atrium->shaper.vertex;
         paint(atrium, stone);
         for (uint32_t i = 0; i <= segments; ++i) {
-            double c = cos(PI * i / segments), s = sin(PI * i / segments);
+            double c = same_cos(PI * i / segments), s = same_sin(PI * i / segments);
             for (int far = 0; far < 2; ++far)
                 put(atrium, &frame,
                     (double[]){radius * c, radius * s, far ? -atrium->end : atrium->end},
@@ -362,11 +363,11 @@ static void add_hangings(struct atrium *atrium)
         uint32_t first = atrium->shaper.vertex;
         paint(atrium, colors[n / 2 % 3]);
         for (uint32_t j = 0; j <= rows; ++j) {
-            double down = (double)j / rows, width = 1.4 - 0.35 * sin(PI * down);
+            double down = (double)j / rows, width = 1.4 - 0.35 * same_sin(PI * down);
             for (uint32_t i = 0; i <= columns; ++i) {
                 double across = 2.0 * i / columns - 1.0, phase = 3.0 * PI * across;
-                double fold = 0.12 * sin(phase) * (0.4 + 0.6 * down);
-                double slope = 0.12 * 3.0 * PI * cos(phase) * (0.4 + 0.6 * down) / width;
+                double fold = 0.12 * same_sin(phase) * (0.4 + 0.6 * down);
+                double slope = 0.12 * 3.0 * PI * same_cos(phase) * (0.4 + 0.6 * down) / width;
                 put(atrium, &frame, (double[]){across * width, FLOOR2 + 4.2 - 3.2 * down, fold},
                     (double[]){-slope, 0, 1});
             }

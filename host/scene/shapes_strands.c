@@ -1,5 +1,6 @@
 #include <math.h>
 
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/shaper.h"
 #include "scene/shapes.h"
@@ -20,7 +21,7 @@ static void random_direction(uint32_t *state, double out[3])
 {
     double height = 2.0 * random_next(state) - 1.0, turn = 2.0 * PI * random_next(state);
     double reach = sqrt(1.0 - height * height);
-    out[0] = reach * cos(turn), out[1] = height, out[2] = reach * sin(turn);
+    out[0] = reach * same_cos(turn), out[1] = height, out[2] = reach * same_sin(turn);
 }
 
 static void normalize(double v[3])
@@ -57,8 +58,9 @@ static void add_needle(struct shaper *shaper, const double middle[3], const doub
         corners[3][i] = middle[i] + 0.5 * length * dir[i];
         for (int k = 0; k < 3; ++k) {
             double angle = 2.0 * PI * k / 3.0;
-            corners[k][i] = middle[i] - 0.5 * length * dir[i] +
-                            width / sqrt(3.0) * (cos(angle) * side[i] + sin(angle) * up[i]);
+            corners[k][i] =
+                middle[i] - 0.5 * length * dir[i] +
+                width / sqrt(3.0) * (same_cos(angle) * side[i] + same_sin(angle) * up[i]);
         }
     }
     add_face(shaper, corners[0], corners[2], corners[1]);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/same.h"
 #include "base/vec.h"
 
 #define FILL 0.93 /* of the picture's height or width, by what is seen */
@@ -27,7 +28,7 @@ void view_make(const double toward_eye[3], double fov_y, struct view *out)
     double3_cross(out->forward, (const double[]){0, 1, 0}, out->right);
     double3_unit(out->right);
     double3_cross(out->right, out->forward, out->up);
-    out->tan_y = tan(0.5 * fov_y);
+    out->tan_y = same_tan(0.5 * fov_y);
     out->tan_x = out->tan_y * SKETCH_ACROSS / SKETCH_DOWN;
 }
 
@@ -59,7 +60,7 @@ static void fit_distance(const float *corners, uint32_t count, const double way[
     distance = fmax(distance, top / (ty * back + rise));
     distance = fmax(distance, bottom / (ty * back - rise));
     if (!(distance > 0.0) || !isfinite(distance))
-        distance = 1.0 / sin(VIEW_FOV_Y / 2.0);
+        distance = 1.0 / same_sin(VIEW_FOV_Y / 2.0);
     for (int i = 0; i < 3; ++i)
         view->eye[i] = distance * way[i];
 }
