@@ -98,7 +98,8 @@ TEST(paths_are_beside_the_suite)
     static const char *const pairs[][2] = {{"looks.whit", "looks.golden"},
                                            {"a.b/looks.whit", "a.b/looks.golden"},
                                            {"a.whit/looks", "a.whit/looks.golden"},
-                                           {".whit", ".whit.golden"}};
+                                           {".whit", ".whit.golden"},
+                                           {"a/whit.suite", "a/whit.golden"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
         char *path = golden_path(pairs[i][0]);
         assert_string_equal(path, pairs[i][1]);

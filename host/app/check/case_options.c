@@ -134,8 +134,6 @@ static bool read_words(struct check_case *item, struct cli_reader *reader)
     char why[SETTING_WHY_BYTES];
     struct settings *settings = item->settings;
     *settings = settings_usual();
-    if (!make_portable(settings, why))
-        return cli_misuse(reader, "--portable%s", why);
     if (!cli_read(reader, NULL, settings))
         return false;
     const char *scene = reader->positional ? reader->positional : "";
@@ -145,6 +143,12 @@ static bool read_words(struct check_case *item, struct cli_reader *reader)
         return cli_misuse(reader, "the scene's path is too long");
     strcpy(settings->scene, scene);
     return settings_check(settings, why) || cli_misuse(reader, "%s", why);
+}
+
+static bool take_portable(struct check_case *item, struct cli_reader *reader)
+{
+    char why[SETTING_WHY_BYTES];
+    return make_portable(item->settings, why) || cli_misuse(reader, "--portable%s", why);
 }
 
 bool case_options_read(struct check_case *item, const struct suite *suite, const char *where,
@@ -165,5 +169,5 @@ bool case_options_read(struct check_case *item, const struct suite *suite, const
     item->loaded = loading_words_of(item->settings);
     if (!item->made_by || !item->loaded)
         return cli_misuse(&reader, "more options than there is room for");
-    return take_files(item, suite, &reader);
+    return take_files(item, suite, &reader) && take_portable(item, &reader);
 }

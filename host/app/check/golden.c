@@ -331,10 +331,13 @@ bool golden_read(struct golden *golden, const char *path)
 
 char *golden_path(const char *suite)
 {
-    static const char ending[] = ".whit";
-    size_t length = strlen(suite), behind_name = strlen(path_name(suite));
-    if (behind_name >= sizeof ending && strcmp(suite + length - strlen(ending), ending) == 0)
-        length -= strlen(ending);
+    static const char *const endings[] = {".whit", ".suite"};
+    size_t length = strlen(suite), name = strlen(path_name(suite));
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
+        size_t bytes = strlen(endings[i]);
+        if (name > bytes && strcmp(suite + strlen(suite) - bytes, endings[i]) == 0)
+            length -= bytes;
+    }
     return string_format("%.*s.golden", (int)length, suite);
 }
 

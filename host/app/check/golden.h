@@ -39,7 +39,8 @@ struct golden {
     uint32_t part_count, part_capacity; /* sorted by key */
 };
 
-/* Beside the suite, with the ending .golden; release with free(). NULL: out of memory. */
+/* Beside the suite, with .golden in the place of .whit or .suite; release with free(). NULL: out of
+ * memory. */
 char *golden_path(const char *suite);
 /* An empty one where there is no file. False, with an error that names file and line, where the
    file is damaged or cannot be read. golden_finish() it either way. */
