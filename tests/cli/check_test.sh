@@ -8,10 +8,10 @@ cp "$SCENES/cube.json" "$SCENES/balls.json" .
 cat >looks.whit <<'END'
 # two scenes
 cube cube.json --size 64x48
-balls-{fast,exact} balls.json --size 64x48 --numerics {}
+balls-{fast,watertight} balls.json --size 64x48 --numerics {}
 END
 expect 4 "without a golden" check looks.whit
-check "each case is named" grep -qx "balls-exact: no golden" stdout
+check "each case is named" grep -qx "balls-watertight: no golden" stdout
 check "they are counted" grep -qx "3 cases, 3 new" stdout
 check "nothing is written" test ! -e looks.golden
 expect 0 "accept one" check looks.whit --accept cube
@@ -19,10 +19,10 @@ check "only that is drawn" grep -qx "1 case, 1 accepted" stdout
 check "a line a case" test "$(grep -c '^case' looks.golden)" -eq 1
 expect 4 "the rest is missing" check looks.whit
 check "one is fine" grep -qx "cube: ok" stdout
-expect 0 "accept the rest" check looks.whit --accept balls-fast balls-exact
+expect 0 "accept the rest" check looks.whit --accept balls-fast balls-watertight
 expect 0 "all as it was" check looks.whit
 check "three are fine" grep -qx "3 cases, 3 ok" stdout
-expect 0 "again, by one and in another order" check looks.whit --only balls-exact --only cube
+expect 0 "again, by one and in another order" check looks.whit --only balls-watertight --only cube
 check "two of them" grep -qx "2 cases, 2 ok" stdout
 expect 0 "quiet" check looks.whit -q
 check "quiet: the counts alone" test "$(wc -l <stdout)" -eq 1
@@ -65,7 +65,7 @@ refuse 2 "another file" "second.json: no report of" check looks.whit --accept-fr
 refuse 2 "no report" "nowhere.json: there is no such file" check looks.whit --accept-from nowhere.json
 cp ci/report.json ci/second.json
 check "nothing was written" cmp before looks.golden
-expect 0 "a report's lines" check looks.whit --accept-from ci --accept balls-exact --reason "CI has it so"
+expect 0 "a report's lines" check looks.whit --accept-from ci --accept balls-watertight --reason "CI has it so"
 check "one of them" grep -qx "1 case, 1 accepted" stdout
 check "with its reason" grep -q "^ why CI has it so" looks.golden
 check "the other one stays" test "$(diff before looks.golden | grep -c '^<')" -eq 2
@@ -75,7 +75,7 @@ cp before looks.golden
 refuse 2 "without a reason" "2 cases are other than the golden: .*--reason TEXT" check looks.whit --accept all
 check "nothing is written" cmp before looks.golden
 expect 0 "with a reason" check looks.whit --accept 'balls-*' --reason "two bounces less"
-check "it is shown first" grep -q "^balls-exact: differs: " stdout
+check "it is shown first" grep -q "^balls-watertight: differs: " stdout
 check "it is kept" test "$(grep -c '^ why two bounces less$' looks.golden)" -eq 2
 expect 0 "as it is now" check looks.whit
 expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
