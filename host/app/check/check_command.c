@@ -116,8 +116,8 @@ static bool check_request(struct cli_reader *reader, struct check *check)
         return cli_misuse(reader, "--reason is why something is accepted, and --accept is missing");
     if (check->thumbnails && (!check->accept.count || check->accept_from))
         return cli_misuse(reader, "--thumbnails are of pictures that are drawn for --accept");
-    if ((check->power || check->mutate) &&
-        (check->accept.count || check->prune || check->base || check->json || check->junit))
+    if ((check->power || check->mutate) && (check->accept.count || check->prune || check->base ||
+                                            check->json || check->junit || check->report))
         return cli_misuse(reader, "--%s compares nothing with a golden, and goes with --only alone",
                           check->power ? "power" : "mutate");
     if (check->power && check->mutate)
