@@ -53,8 +53,9 @@ edit vertex.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
 edit gone.json '/"name": "floor", "shape"/d'
 edit two.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
 edit two.json 's/"intensity": 20/"intensity": 21/; s/#202020/#203020/'
-expect 1 "all of it" check suite/looks.whit --base HEAD
+expect 1 "all of it" check suite/looks.whit --base HEAD --report page.html
 cp "$OUT/stdout" "$OUT/said"
+check "the page has what was" test "$(grep -o "\"before\":\"data:image/png" page.html | wc -l)" -eq 6
 # says CASE PATTERN
 says() { check "$1: \`$2\`" grep -q "^$1: differs: .*$2" "$OUT/said"; }
 says material 'cause: material "glass", ior from 1.5 to 1.6; and objects, node "tent" moved by 13; input changed, picture same: material "unused"; pixel [0-9]*,[0-9]*: '

@@ -102,7 +102,7 @@ static whit_result write_all(const struct past *past, const struct studio *studi
 
 whit_result base_explain(const struct base *base, struct studio *studio,
                          const struct check_case *item, const struct golden_case *accepted,
-                         const struct drawing *drawing, char **text)
+                         const struct drawing *drawing, char **text, whit_image **before)
 {
     const struct check_case *old = suite_find(&base->suite, item->name);
     const char *revision = base->tree.revision;
@@ -110,6 +110,7 @@ whit_result base_explain(const struct base *base, struct studio *studio,
     struct trial now;
     size_t size;
     *text = NULL;
+    *before = NULL;
     if (!old) {
         *text = string_format("%s has no such case", revision);
         return *text ? WHIT_OK : WHIT_ERROR_MEMORY;
@@ -129,6 +130,8 @@ whit_result base_explain(const struct base *base, struct studio *studio,
             (accepted->ids != past.picture.ids || accepted->colors != past.picture.colors))
             fprintf(to, "; at %s the picture is not the golden's either", revision);
     }
+    *before = past.picture.drawing.color;
+    past.picture.drawing.color = NULL;
     finish_past(&past, studio);
     bool written = fclose(to) == 0;
     if (result == WHIT_OK && written)

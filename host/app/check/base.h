@@ -16,13 +16,15 @@ struct base {
 WHIT_CHECK whit_result base_open(struct base *base, const char *suite, const char *root,
                                  const char *revision);
 /* Draws the case as it was, and says how and why `drawing` is other: "214 pixels other, 96 hit
-   something else; cause: ..."; free() it. `accepted`: the case of the golden, or NULL. What fails
+   something else; cause: ..."; free() it, and destroy *before,
+   its colours, or NULL. `accepted`: the case of the golden, or NULL. What fails
    was said, and *text is NULL then; also where a picture of before cannot be drawn, which is no
    error of this run. */
 WHIT_CHECK whit_result base_explain(const struct base *base, struct studio *studio,
                                     const struct check_case *item,
                                     const struct golden_case *accepted,
-                                    const struct drawing *drawing, char **text);
+                                    const struct drawing *drawing, char **text,
+                                    whit_image **before);
 void base_close(struct base *base);
 
 #endif

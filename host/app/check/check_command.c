@@ -201,9 +201,9 @@ static whit_result check_expectations(const struct drawing *drawing, struct chec
 static whit_result explain(const struct check *check, struct studio *studio,
                            const struct drawing *drawing, struct check_result *result)
 {
-    whit_result explained =
-        base_explain(&check->past, studio, result->item,
-                     golden_find(&check->old, result->item->name), drawing, &result->cause);
+    whit_result explained = base_explain(&check->past, studio, result->item,
+                                         golden_find(&check->old, result->item->name), drawing,
+                                         &result->cause, &result->before);
     if (explained != WHIT_OK || !result->cause)
         return explained;
     char *text = string_format("differs: %s", result->cause);
@@ -241,9 +241,10 @@ static whit_result make_pictures(const struct check *check, const struct drawing
     if (!check->report && !check->thumbnails)
         return WHIT_OK;
     whit_result made = check_pictures_make(&result->pictures, drawing);
-    return made == WHIT_OK && check->report && result->verdict >= CHECK_DIFFERS
-               ? check_compare_thumbnail(check, drawing, result)
-               : made;
+    if (made != WHIT_OK || !check->report || result->verdict < CHECK_DIFFERS)
+        return made;
+    return result->before ? check_pictures_compare(&result->pictures, drawing, result->before)
+                          : check_compare_thumbnail(check, drawing, result);
 }
 
 /* Whether no other case can be drawn either. */
@@ -268,6 +269,8 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
         drawn = find_verdict(check, studio, &drawing, result);
     if (drawn == WHIT_OK)
         drawn = make_pictures(check, &drawing, result);
+    whit_image_destroy(result->before);
+    result->before = NULL;
     drawing_finish(&drawing);
     result->time_ms = whit_clock_ms() - start_ms;
     result->error = drawn;

@@ -41,6 +41,7 @@ void verdict_finish(struct check_result *result)
 {
     free(result->text);
     free(result->cause);
+    whit_image_destroy(result->before);
     free(result->changed);
     golden_finish(&result->found);
     check_pictures_finish(&result->pictures);

@@ -26,6 +26,7 @@ struct check_result {
     enum check_verdict verdict;
     char *text;          /* behind "NAME: " in what is printed; NULL where it was not run */
     char *cause;         /* how and why it differs from what --base has; NULL: not known */
+    whit_image *before;  /* its colours there; NULL: not known, or not wanted any more */
     char *changed;       /* parts and options that are other, as text; NULL: none */
     whit_result error;   /* CHECK_BROKEN */
     struct golden found; /* with this case alone, unless it could not be drawn */
