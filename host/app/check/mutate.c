@@ -7,7 +7,7 @@
 #include "base/random.h"
 
 /* One fault in so many has another beside it, which nobody sees. */
-enum { PAIR_EVERY = 20, PLACES_MAX = 8 };
+enum { PAIR_EVERY = 20, PLACES_MAX = 8, NAME_BYTES = 300 };
 enum { PAIRS = WHIT_FAULT_KINDS }; /* the last class */
 
 static double amount_of(whit_fault_kind kind)
@@ -21,17 +21,20 @@ static double amount_of(whit_fault_kind kind)
     return amounts[kind];
 }
 
-/* The probe for a place: a vertex goes the other way, the rest is stronger. */
+/* The probe for a place that is seen: half as much, of a vertex the other way; materials that glow,
+   objects that move. */
 static double probe_of(whit_fault_kind kind)
 {
-    return kind == WHIT_FAULT_VERTEX ? -2.0 * amount_of(kind) : fault_strong(kind);
+    double half = 0.5 * amount_of(kind);
+    return kind == WHIT_FAULT_VERTEX ? -half : half > 0.0 ? half : fault_strong(kind);
 }
 
 /* ---- What a fault alters ---- */
 
-/* Whether part `name` of `scene` is another than in `before`; without a name: whether any is. */
+/* Whether the part like that is another in `scene` than in `before`; NULL: whether any is. `name`:
+   gets the first such one, or is NULL. */
 static whit_result is_altered(const whit_scene *before, const whit_scene *scene,
-                              const whit_part *like, bool *altered)
+                              const whit_part *like, bool *altered, char name[NAME_BYTES])
 {
     whit_part *a = NULL, *b = NULL;
     uint32_t count_a = 0, count_b = 0;
@@ -41,7 +44,11 @@ static whit_result is_altered(const whit_scene *before, const whit_scene *scene,
         result = whit_scene_parts(scene, &b, &count_b);
     for (uint32_t i = 0; result == WHIT_OK && i < count_a && i < count_b; ++i) {
         bool meant = !like || (a[i].kind == like->kind && strcmp(a[i].name, like->name) == 0);
-        *altered |= meant && a[i].hash != b[i].hash;
+        if (!meant || *altered || a[i].hash == b[i].hash)
+            continue;
+        *altered = true;
+        if (name)
+            snprintf(name, NAME_BYTES, "%s \"%s\"", whit_part_kind_name(a[i].kind), a[i].name);
     }
     whit_memory_destroy(a);
     whit_memory_destroy(b);
@@ -66,8 +73,8 @@ static whit_result is_right(const struct fault_case *item, const whit_fault *fau
         if (!cause.search.cause[i])
             continue;
         if (cause.changes[i].kind == CAUSE_PART)
-            result =
-                is_altered(item->input.scene, alone, &cause.parts[cause.changes[i].part], &altered);
+            result = is_altered(item->input.scene, alone, &cause.parts[cause.changes[i].part],
+                                &altered, NULL);
         *right = *right && altered;
     }
     whit_scene_destroy(alone);
@@ -93,7 +100,7 @@ static whit_result find_place(const struct fault_case *item, whit_fault_kind kin
         fault->amount = amount_of(kind);
         result = whit_scene_fault(item->input.scene, fault, 1, &made);
         if (result == WHIT_OK)
-            result = is_altered(item->input.scene, made, NULL, &altered);
+            result = is_altered(item->input.scene, made, NULL, &altered, NULL);
         whit_scene_destroy(made);
     }
     *found = altered;
@@ -130,7 +137,8 @@ static whit_result find_any(struct mutate *mutate, const struct fault_case *item
 static whit_result mutate_once(struct mutate *mutate, const struct fault_case *item, bool pair)
 {
     whit_fault faults[2];
-    bool found, beside = false, right = false;
+    bool found, beside = false, right = false, any;
+    char name[NAME_BYTES] = "";
     whit_result result = find_any(mutate, item, true, 0, &faults[0], &found);
     if (result == WHIT_OK && found && pair)
         result = find_any(mutate, item, false, 1u << faults[0].kind, &faults[1], &beside);
@@ -144,6 +152,8 @@ static whit_result mutate_once(struct mutate *mutate, const struct fault_case *i
     enum fault_end end;
     whit_scene *made;
     result = fault_draw(item, faults, pair ? 2 : 1, &end, &made);
+    if (result == WHIT_OK && made)
+        result = is_altered(item->input.scene, made, NULL, &any, name);
     if (result == WHIT_OK && end == FAULT_SEEN)
         result = is_right(item, &faults[0], made, &right);
     whit_scene_destroy(made);
@@ -153,8 +163,9 @@ static whit_result mutate_once(struct mutate *mutate, const struct fault_case *i
     row->caught += end == FAULT_SEEN;
     row->right += right;
     if (!right)
-        printf("%s: %s, seed %016" PRIx64 "%s: %s\n", item->name,
-               whit_fault_kind_name(faults[0].kind), faults[0].seed, pair ? " and another" : "",
+        printf("%s: %s of %s, seed %016" PRIx64 "%s: %s\n", item->name,
+               whit_fault_kind_name(faults[0].kind), cli_shown(name), faults[0].seed,
+               pair ? ", and another" : "",
                end == FAULT_SEEN ? "caught, and the cause is another" : "missed");
     fflush(stdout);
     return WHIT_OK;
