@@ -43,7 +43,8 @@ endforeach()
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/whit)
 configure_package_config_file(api/cmake/whitConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake INSTALL_DESTINATION ${package_dir})
+  ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake INSTALL_DESTINATION ${package_dir}
+  PATH_VARS CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(TARGETS whit whit_shared EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -54,8 +55,11 @@ install(FILES ${PROJECT_BINARY_DIR}/cmake/whit.pc DESTINATION ${CMAKE_INSTALL_LI
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
   ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/example_check
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(EXPORT whitTargets NAMESPACE whit:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_BINARY_DIR}/cmake/whitConfig.cmake
-  ${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake DESTINATION ${package_dir})
+  ${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.cmake
+  ${CMAKE_CURRENT_SOURCE_DIR}/api/cmake/whitChecks.cmake DESTINATION ${package_dir})
 list(FILTER public_headers EXCLUDE REGEX whit_program)
 install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/whit)
