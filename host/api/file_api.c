@@ -106,6 +106,11 @@ void whit_cache_get_info(whit_cache_info *info)
     store_get_info(info);
 }
 
+const char *whit_version(void)
+{
+    return WHIT_VERSION;
+}
+
 void whit_memory_destroy(void *memory)
 {
     free(memory);

@@ -50,11 +50,13 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.c
 install(TARGETS whit whit_shared EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # pkg-config
+file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(api/cmake/whit.pc.in ${PROJECT_BINARY_DIR}/cmake/whit.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cmake/whit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
   ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES api/python/whit.py DESTINATION ${CMAKE_INSTALL_DATADIR}/whit/python)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/example_check
   DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(EXPORT whitTargets NAMESPACE whit:: DESTINATION ${package_dir})

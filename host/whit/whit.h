@@ -29,4 +29,16 @@
 
 #define WHIT_VERSION "0.2.0"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The WHIT_VERSION of the library that runs, for programs that load it without this header. Never
+   NULL. */
+const char *whit_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
 #endif

@@ -1,0 +1,432 @@
+"""whit from Python: pictures, ids and rays of an installed libwhit, by ctypes alone.
+
+    import whit
+    scene = whit.Scene("part.stl")
+    renderer = whit.Renderer(scene, width=256, height=192, samples=4, numerics="exact")
+    color = renderer.render()            # memoryview, [y, x, channel]: linear RGB and alpha, float32
+    ids = renderer.ids()                 # memoryview, [y, x, 0 or 1]: instance, primitive, uint32
+    hits = renderer.trace([((0, 0, 9), (0, 0, -1))])
+    if not hits[0].missed:
+        print(scene.instances[hits[0].instance], hits[0].primitive, hits[0].t)
+
+numpy.asarray() makes arrays of all of these without a copy, and `out=` takes an array of one's own. What goes wrong
+is an Error with whit's own message; warnings go to logging.getLogger("whit"). An object is used by one thread at a
+time; it lives as long as what was made from it. Names of parameters, units and defaults are those of whit.h, and words
+of enumerations are the last ones of its names: numerics="exact" is WHIT_NUMERICS_EXACT.
+
+The library is $WHIT_LIBRARY, or the libwhit.so of the prefix that this file is installed in, or else the system's.
+"""
+
+import ctypes
+import glob
+import logging
+import os
+import re
+import weakref
+from ctypes import c_bool, c_char, c_char_p, c_double, c_float, c_uint, c_uint8, c_uint32, c_uint64, c_void_p
+from enum import IntEnum
+
+VERSION = "0.2.0"  # of the library that this file goes with, in its first two numbers
+NONE = 0xFFFFFFFF  # no primitive, no instance: a miss
+CPU = object()  # in the place of a device: rays alone, traced by the device's twin in C
+
+# ---- What whit.h declares (a test holds all of it against that header) ----
+
+
+def _enumeration(name, words):
+    return IntEnum(name, words.split(), start=0)
+
+
+Result = _enumeration("whit_result", "OK ERROR_FAILED ERROR_USAGE ERROR_INPUT ERROR_OUTPUT ERROR_NO_DEVICE"
+                      " ERROR_DEVICE ERROR_MEMORY ERROR_STATUS ERROR_TIME_LIMIT ERROR_CANCELLED")
+LogLevel = _enumeration("whit_log_level", "ERROR WARNING INFO DEBUG")
+Up = _enumeration("whit_up", "Y X Z MINUS_X MINUS_Y MINUS_Z AUTO")
+Lights = _enumeration("whit_lights", "AUTO FILE NONE KEY")
+Traversal = _enumeration("whit_traversal", "DISTANCE SIGN BASIC")
+Numerics = _enumeration("whit_numerics", "WATERTIGHT FAST EXACT")
+Shadows = _enumeration("whit_shadows", "TINTED OPAQUE NONE")
+SamplingKind = _enumeration("whit_sampling_kind", "FIXED ADAPTIVE")
+Minification = _enumeration("whit_minification", "MIPMAP NONE")
+LoadPath = _enumeration("whit_load_path", "AUTO STORAGE TEXEL")
+Packets = _enumeration("whit_packets", "AUTO ON OFF")
+Classes = _enumeration("whit_classes", "AUTO ONE MANY")
+TraceOn = _enumeration("whit_trace_on", "DEVICE CPU_FLOAT CPU_BRUTE")
+Aov = _enumeration("whit_aov", "COLOR IDS CUTS")
+# What their enumerators begin with, where that is not the type's name.
+PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD",
+            TraceOn: "WHIT_TRACE"}
+
+_LogFn = ctypes.CFUNCTYPE(None, c_void_p, c_uint, c_char_p)
+_ProgressFn = ctypes.CFUNCTYPE(None, c_void_p, c_double)
+
+
+def _struct(name, *members):
+    """The struct `name`, of (names, type); an enumeration takes its words too."""
+    fields = [(field, kind) for names, kind in members for field in names.split()]
+    plain = [(field, c_uint if isinstance(kind, type(Result)) else kind) for field, kind in fields]
+    return type(name, (ctypes.Structure,), {"_fields_": plain, "kinds": dict(fields)})
+
+
+Log = _struct("whit_log", ("fn", _LogFn), ("user", c_void_p), ("level", LogLevel))
+Camera = _struct("whit_camera", ("name", c_char_p), ("own", c_bool), ("eye target up", c_double * 3),
+                 ("fov_y_degrees", c_double))
+Sampling = _struct("whit_sampling", ("kind", SamplingKind), ("count first", c_uint32), ("contrast", c_double))
+LoadParams = _struct(
+    "whit_load_params", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),
+    ("background", c_uint8 * 3), ("import_limit_s time_limit_s", c_double), ("require_sandbox", c_bool),
+    ("memory_limit_bytes", c_uint64), ("texture_limit", c_uint32), ("cancel", c_void_p),
+    ("allowed_folders", ctypes.POINTER(c_char_p)), ("allowed_count", c_uint32), ("refused", c_void_p))
+SceneInfo = _struct(
+    "whit_scene_info",
+    ("mesh_count instance_count node_count material_count texture_count light_count camera_count note_count"
+     " effect_count", c_uint32),
+    ("mesh_triangle_count triangle_count sphere_count file_bytes hash", c_uint64), ("channel_count", c_uint32),
+    ("time_end_s", c_double), ("one_tree", c_bool), ("lo hi objects_lo objects_hi", c_double * 3),
+    ("environment", c_char_p), ("environment_made_by_whit", c_bool), ("exposure_ev", c_double))
+InstanceInfo = _struct("whit_instance_info", ("name", c_char_p), ("mesh", c_uint32),
+                       ("object_to_world", c_double * 12))
+CameraInfo = _struct("whit_camera_info", ("name kind", c_char_p), ("eye target up", c_double * 3),
+                     ("fov_y_degrees height lens_radius focus_distance", c_double), ("made_by_whit", c_bool))
+DeviceParams = _struct("whit_device_params", ("selector", c_char_p), ("validation", c_bool))
+DeviceInfo = _struct(
+    "whit_device_info", ("index", c_uint32), ("name driver", c_char * 256), ("api_version", c_char * 32),
+    ("kind", c_char * 16), ("memory_bytes max_storage_range_bytes", c_uint64), ("subgroup_size", c_uint32),
+    ("float64 int64 timestamps usable automatic", c_bool), ("why_not", c_char * 128))
+RendererParams = _struct(
+    "whit_renderer_params", ("width height", c_uint32), ("camera", Camera), ("time_s", c_double),
+    ("sampling", Sampling), ("depth", c_uint32), ("bailout", c_double), ("shadows", Shadows),
+    ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("exposure_ev", c_double),
+    ("soft_highlights all_effects", c_bool), ("effects_added effects_removed", c_uint64),
+    ("compile_async many_pictures", c_bool), ("tile_size", c_uint32), ("cancel", c_void_p),
+    ("progress", _ProgressFn), ("progress_user", c_void_p), ("step_spacing step_aov", c_uint32),
+    ("step", c_void_p), ("time_limit_s", c_double), ("load_path", LoadPath), ("traversal", Traversal),
+    ("numerics", Numerics), ("packets", Packets), ("classes", Classes), ("segments", c_uint32), ("count", c_bool),
+    ("shader", c_void_p), ("sliders", c_char_p), ("skip_sliders", c_bool), ("trace_rays", c_uint32))
+ImageInfo = _struct("whit_image_info", ("width height channels", c_uint32), ("integers", c_bool))
+Ray = _struct("whit_ray", ("origin", c_float * 3), ("t_min", c_float), ("dir", c_float * 3), ("t_max", c_float))
+Hit = _struct("whit_hit", ("t u v", c_float), ("primitive instance", c_uint32), ("ng", c_float * 3))
+Hit.missed = property(lambda hit: hit.primitive == NONE)
+STRUCTS = [Log, Camera, Sampling, LoadParams, SceneInfo, InstanceInfo, CameraInfo, DeviceParams, DeviceInfo,
+           RendererParams, ImageInfo, Ray, Hit]
+
+PROTOTYPES = """
+const char *whit_version(void);
+const char *whit_result_name(whit_result result);
+whit_result whit_scene_load(const char *path, const whit_load_params *params, const whit_log *log, whit_scene **out);
+void whit_scene_destroy(whit_scene *scene);
+void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
+void whit_scene_get_instance(const whit_scene *scene, uint32_t index, whit_instance_info *info);
+void whit_scene_get_camera(const whit_scene *scene, uint32_t index, whit_camera_info *info);
+whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params, whit_accel **out);
+void whit_accel_destroy(whit_accel *accel);
+whit_result whit_device_create(const whit_device_params *params, const whit_log *log, whit_device **out);
+void whit_device_destroy(whit_device *device);
+void whit_device_get_info(const whit_device *device, whit_device_info *info);
+whit_renderer_params whit_renderer_defaults(void);
+whit_result whit_renderer_create(whit_device *device, whit_accel *accel, const whit_renderer_params *params,
+                                 whit_renderer **out);
+void whit_renderer_destroy(whit_renderer *renderer);
+whit_result whit_renderer_render(whit_renderer *renderer);
+whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
+void whit_image_get_info(const whit_image *image, whit_image_info *info);
+const float *whit_image_floats(const whit_image *image);
+const uint32_t *whit_image_words(const whit_image *image);
+whit_result whit_image_save(const whit_image *image, const char *path, const whit_text *texts, uint32_t text_count,
+                            const whit_log *log);
+void whit_image_destroy(whit_image *image);
+whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays, uint64_t count, bool any,
+                       whit_hit *hits, whit_cost *cost);
+"""
+
+# ---- The library ----
+
+_TYPES = {"void": None, "bool": c_bool, "double": c_double, "uint32_t": c_uint32, "uint64_t": c_uint64,
+          "whit_renderer_params": RendererParams}
+
+
+def _type_of(text):
+    """Of "const char *path" or "uint32_t": all pointers but texts are void *, enumerations are unsigned."""
+    words = text.replace("const ", "").split()
+    if "*" in text:
+        return c_char_p if words[0] == "char" else c_void_p
+    return _TYPES.get(words[0], c_uint)
+
+
+def _candidates():
+    name = "libwhit.so." + ".".join(VERSION.split(".")[:2])
+    prefix = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", ".."))
+    if "WHIT_LIBRARY" in os.environ:
+        return [os.environ["WHIT_LIBRARY"]]
+    return sorted(glob.glob(glob.escape(prefix) + "/lib*/" + name) +
+                  glob.glob(glob.escape(prefix) + "/lib*/*/" + name)) + [name]
+
+
+def _load():
+    path = _candidates()[0]
+    library = ctypes.CDLL(path)
+    try:
+        library.whit_version.restype = c_char_p
+        version = library.whit_version().decode()
+    except AttributeError:
+        version = "an older version"
+    if version.split(".")[:2] != VERSION.split(".")[:2]:
+        raise ImportError(f"{__file__} is for libwhit {VERSION}, and {path} is {version}")
+    for result, name, parameters in re.findall(r"([^;]*?\W)(whit_\w+)\(([^)]*)\);", PROTOTYPES):
+        function = getattr(library, name)
+        function.restype = _type_of(result)
+        function.argtypes = [_type_of(one) for one in parameters.split(",") if one != "void"]
+    return library
+
+
+_library = _load()
+
+
+class Error(Exception):
+    """What whit refused or could not do, in its own words. `result`: a Result, which tells the kind."""
+
+    def __init__(self, result, lines):
+        self.result = Result(result)
+        super().__init__("\n".join(lines) or _library.whit_result_name(result).decode())
+
+
+class _Hearing:
+    """Where a handle's messages go: errors are kept for the exception, others are logged."""
+
+    def __init__(self):
+        self.errors = []
+        self._fn = _LogFn(self._hear)
+        self.log = Log(fn=self._fn, level=LogLevel.WARNING)
+
+    def _hear(self, _user, level, text):
+        text = text.decode("utf-8", "replace")
+        if level == LogLevel.ERROR:
+            self.errors.append(text)
+        else:
+            logging.getLogger("whit").warning("%s", text)
+
+
+def _check(result, *hearings):
+    lines = [line for hearing in hearings for line in hearing.errors]
+    for hearing in hearings:
+        hearing.errors.clear()
+    if result != Result.OK:
+        raise Error(result, lines)
+
+
+class _Handle(c_void_p):
+    """What a function of libwhit made, and another ends."""
+
+
+def _release(destroy, address, _kept):
+    destroy(address)
+
+
+def _make(create, destroy, *arguments, hearings, keep):
+    """The handle that `create` gives. Once nothing uses it `destroy` ends it, and what it borrows is kept until then."""
+    handle = _Handle()
+    _check(create(*arguments, ctypes.byref(handle)), *hearings)
+    weakref.finalize(handle, _release, destroy, handle.value, keep)
+    return handle
+
+
+# ---- Parameters ----
+
+
+def _number(name, kind, value):
+    if isinstance(kind, type(Result)) and isinstance(value, str):
+        words = [word.lower().replace("_", "-") for word in kind.__members__]
+        if value.lower().replace("_", "-") not in words:
+            raise ValueError(f"{name}: {value!r} is none of {', '.join(words)}")
+        return words.index(value.lower().replace("_", "-"))
+    if kind in (c_uint8, c_uint32, c_uint64):
+        if not 0 <= value < 1 << 8 * ctypes.sizeof(kind):
+            raise ValueError(f"{name}: {value} is out of range")
+    return value
+
+
+def _fill(params, values):
+    """Sets members of `params` by name."""
+    for name, value in values.items():
+        kind = params.kinds.get(name)
+        if kind in (None, c_void_p, _ProgressFn):
+            raise TypeError(f"there is no parameter {name!r}; there are {', '.join(sorted(params.kinds))}")
+        if kind is c_char_p:
+            value = os.fsencode(value)
+        elif isinstance(kind, type(ctypes.Structure)):
+            _fill(getattr(params, name), value)
+            continue
+        elif isinstance(kind, type(c_uint8 * 3)):
+            if len(value) != kind._length_:
+                raise ValueError(f"{name}: {kind._length_} numbers are needed")
+            value = kind(*(_number(name, kind._type_, one) for one in value))
+        else:
+            value = _number(name, kind, value)
+        setattr(params, name, value)
+
+
+# ---- Scenes and devices ----
+
+
+class Scene:
+    """A file of a scene or a model. Parameters are those of whit_load_params, of which `background` is a colour of
+    three bytes; `allow`: further folders that may be read. `info` has the members of whit_scene_info."""
+
+    def __init__(self, path, *, allow=(), **params):
+        load = LoadParams()
+        _fill(load, params)
+        load.has_background = "background" in params
+        load.allowed_folders = (c_char_p * len(allow))(*map(os.fsencode, allow))
+        load.allowed_count = len(allow)
+        self._hearing = _Hearing()
+        self.handle = _make(_library.whit_scene_load, _library.whit_scene_destroy, os.fsencode(path),
+                            ctypes.byref(load), ctypes.byref(self._hearing.log), hearings=[self._hearing],
+                            keep=self._hearing)
+        self.info = SceneInfo()
+        _library.whit_scene_get_info(self.handle, ctypes.byref(self.info))
+        self.instances = self._names(InstanceInfo, _library.whit_scene_get_instance, self.info.instance_count)
+        self.cameras = self._names(CameraInfo, _library.whit_scene_get_camera, self.info.camera_count)
+
+    def _names(self, info, get, count):
+        names, one = [], info()
+        for index in range(count):
+            get(self.handle, index, ctypes.byref(one))
+            names.append(os.fsdecode(one.name))
+        return names
+
+
+class Device:
+    """A Vulkan device: by number, or part of a name; None: the one that whit takes by itself. `info` has the members
+    of whit_device_info."""
+
+    def __init__(self, selector=None, *, validation=False):
+        params = DeviceParams(None if selector is None else str(selector).encode(), validation)
+        self._hearing = _Hearing()
+        self.handle = _make(_library.whit_device_create, _library.whit_device_destroy, ctypes.byref(params),
+                            ctypes.byref(self._hearing.log), hearings=[self._hearing], keep=self._hearing)
+        self.info = DeviceInfo()
+        _library.whit_device_get_info(self.handle, ctypes.byref(self.info))
+
+
+# ---- Pictures and rays ----
+
+
+def _copy(source, count, kind, shape, out):
+    """`count` numbers of 4 bytes at `source`, of `kind` "f" or "I", in `out`, or in memory of their own."""
+    memory = bytearray(4 * count) if out is None else out
+    view = memoryview(memory)
+    if view.readonly or not view.c_contiguous or view.nbytes != 4 * count or \
+            view.format.lstrip("<=@") not in (kind, "B"):
+        raise ValueError(f"out: {count} numbers of the format {kind!r}, side by side and writable, are needed; it has "
+                         f"{view.nbytes} bytes of the format {view.format!r}")
+    ctypes.memmove((c_char * view.nbytes).from_buffer(memory), source, view.nbytes)
+    return view.cast(kind, shape) if out is None else out
+
+
+def _rays_of(rays):
+    """Rays * n of (origin, dir) or (origin, dir, t_min, t_max) each, or of n * 8 floats in the order of whit_ray."""
+    try:
+        view = memoryview(rays)
+    except TypeError:
+        rays = [(origin, *(span or (0.0, float("inf"))), direction) for origin, direction, *span in rays]
+        return (Ray * len(rays))(*(Ray(tuple(o), low, tuple(d), high) for o, low, high, d in rays))
+    if not view.c_contiguous or view.nbytes % ctypes.sizeof(Ray) or view.format.lstrip("<=@") not in ("f", "B"):
+        raise ValueError("rays: 8 floats of 32 bits each are needed: origin, t_min, direction, t_max")
+    return (Ray * (view.nbytes // ctypes.sizeof(Ray))).from_buffer_copy(view.cast("B") if view.nbytes else b"")
+
+
+class _Progress:
+    """How far a picture is, told to `tell`; what that raises ends the picture, as Ctrl+C does: no exception may pass
+    through C."""
+
+    def __init__(self, tell):
+        self.cancel = c_bool(False)
+        self.raised = None
+        self.fn = _ProgressFn(self._go_on)
+        self._tell = tell
+
+    def _go_on(self, _user, done):
+        try:
+            if self._tell:
+                self._tell(done)
+        except BaseException as raised:  # pylint: disable=broad-except
+            self.raised = raised
+            self.cancel.value = True
+
+
+class Renderer:
+    """Pictures of a scene. `device`: a Device, a selector of one, None, or CPU. `camera`: the name or number of one of
+    the scene's, or (eye, target, up, vertical degrees). `samples` of a pixel. `progress`: called with the share done,
+    0 to 1. Further parameters are those of whit_renderer_params."""
+
+    def __init__(self, scene, device=None, *, camera=None, samples=None, progress=None, **params):
+        self.scene = scene
+        self.device = device if isinstance(device, Device) or device is CPU else Device(device)
+        self._hearings = [scene._hearing] + ([] if self.device is CPU else [self.device._hearing])
+        self._progress = _Progress(progress)
+        self._params = _library.whit_renderer_defaults()
+        if camera is not None and not isinstance(camera, (str, int)):
+            eye, target, up, degrees = camera
+            camera = {"own": True, "eye": eye, "target": target, "up": up, "fov_y_degrees": degrees}
+        elif camera is not None:
+            camera = {"name": str(camera)}
+        sampling = {} if samples is None else {"count": samples}
+        _fill(self._params, {"sampling": sampling, **params, "camera": camera or {}})
+        self._params.progress = self._progress.fn
+        self._params.cancel = ctypes.addressof(self._progress.cancel)
+        on = None if self.device is CPU else self.device.handle
+        accel = _make(_library.whit_accel_create, _library.whit_accel_destroy, scene.handle, None,
+                      hearings=self._hearings, keep=scene.handle)
+        self.handle = _make(_library.whit_renderer_create, _library.whit_renderer_destroy, on, accel,
+                            ctypes.byref(self._params), hearings=self._hearings,
+                            keep=(accel, on, self._params, self._progress))
+
+    def _call(self, function, *arguments):
+        self._progress.raised = None
+        self._progress.cancel.value = False
+        result = function(self.handle, *arguments)
+        if self._progress.raised:
+            for hearing in self._hearings:
+                hearing.errors.clear()
+            raise self._progress.raised
+        _check(result, *self._hearings)
+
+    def _with_image(self, aov, use):
+        image = c_void_p()
+        self._call(_library.whit_renderer_image, aov, ctypes.byref(image))
+        try:
+            return use(image)
+        finally:
+            _library.whit_image_destroy(image)
+
+    def _array(self, aov, out):
+        def copy(image):
+            info = ImageInfo()
+            _library.whit_image_get_info(image, ctypes.byref(info))
+            shape = (info.height, info.width, info.channels)
+            source = (_library.whit_image_words if info.integers else _library.whit_image_floats)(image)
+            return _copy(source, shape[0] * shape[1] * shape[2], "I" if info.integers else "f", shape, out)
+        return self._with_image(aov, copy)
+
+    def render(self, out=None):
+        """Draws the picture. Gives `out`, or a memoryview of float32 [y, x, 4]: linear RGB and alpha, row 0 above."""
+        self._call(_library.whit_renderer_render)
+        return self._array(Aov.COLOR, out)
+
+    def ids(self, out=None):
+        """What the picture's pixels hit, by their first samples: uint32 [y, x, 2], an index of scene.instances and the
+        number of a primitive; NONE: nothing."""
+        return self._array(Aov.IDS, out)
+
+    def save(self, path):
+        """Writes the picture that was drawn: .png, .exr or .pfm."""
+        self._with_image(Aov.COLOR, lambda image: _check(_library.whit_image_save(
+            image, os.fsencode(path), None, 0, ctypes.byref(self._hearings[-1].log)), *self._hearings))
+
+    def trace(self, rays, *, any_hit=False, on=None):
+        """Hits of rays: Hit * n. `rays`: a sequence of (origin, dir) or (origin, dir, t_min, t_max), or an array of
+        n * 8 floats as whit_ray has them. `on`: a word of TraceOn; by itself the device, where there is one."""
+        rays = _rays_of(rays)
+        hits = (Hit * len(rays))()
+        on = _number("on", TraceOn, on or ("cpu-float" if self.device is CPU else "device"))
+        self._call(_library.whit_trace, on, rays, len(rays), any_hit, hits, None)
+        return hits

@@ -1,0 +1,147 @@
+"""whit.py over the library that was built: pictures and rays against the program's, and what goes wrong."""
+
+import gc
+import logging
+import os
+import struct
+import subprocess
+
+import pytest
+import whit
+
+SCENES = os.environ["WHIT_SCENES"]
+CUBE = SCENES + "/cube.json"
+SMALL = {"width": 40, "height": 30}
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    return whit.Renderer(whit.Scene(CUBE), samples=4, **SMALL)
+
+
+def pfm_of(tmp_path, *options):
+    path = tmp_path / "a.pfm"
+    subprocess.run([os.environ["WHIT"], "render", CUBE, "--size", "40x30", "-o", path, "-q", *options], check=True)
+    head, pixels = path.read_bytes()[:16], path.read_bytes()[-40 * 30 * 12:]
+    assert head.startswith(b"PF\n40 30\n-1")
+    rows = [pixels[y * 480:y * 480 + 480] for y in range(30)]
+    return [struct.unpack("<120f", row) for row in reversed(rows)]
+
+
+def test_a_picture_is_the_programs(renderer, tmp_path):
+    color = renderer.render()
+    assert (color.shape, color.format) == ((30, 40, 4), "f")
+    rows = pfm_of(tmp_path, "--aa", "4")
+    assert all(color[y, x, c] == rows[y][3 * x + c] for y in range(30) for x in range(40) for c in range(3))
+    renderer.save(tmp_path / "b.pfm")
+    assert (tmp_path / "b.pfm").read_bytes() == (tmp_path / "a.pfm").read_bytes()
+
+
+def test_parameters_are_the_programs(tmp_path):
+    view = whit.Renderer(whit.Scene(CUBE, background=(16, 32, 48)), camera=((3, 2, 4), (0, 0, 0), (0, 1, 0), 35),
+                         numerics="exact", shadows="none", depth=2, exposure_ev=1.0, **SMALL)
+    rows = pfm_of(tmp_path, "--camera", "3,2,4,0,0,0,0,1,0,35", "--numerics", "exact", "--shadows", "none", "--depth",
+                  "2", "--background", "#102030")
+    color = view.render()
+    assert all(color[y, x, c] == rows[y][3 * x + c] for y in range(30) for x in range(40) for c in range(3))
+
+
+def test_ids_are_what_rays_hit(renderer):
+    color, ids = renderer.render(), renderer.ids()
+    assert (ids.shape, ids.format, color.nbytes) == ((30, 40, 2), "I", 19200)
+    assert renderer.scene.instances[ids[15, 20, 0]]
+    hits = {(ids[y, x, 0], ids[y, x, 1]) for y in range(30) for x in range(40)}
+    assert len(hits) > 3
+
+
+def test_memory_of_ones_own(renderer):
+    color = renderer.render()
+    own = bytearray(color.nbytes)
+    assert renderer.render(out=own) is own and own == color.tobytes()
+    for wrong in (bytearray(8), bytes(color.nbytes), memoryview(bytearray(color.nbytes)).cast("d")):
+        with pytest.raises(ValueError, match="4800 numbers of the format 'f'"):
+            renderer.render(out=wrong)
+
+
+def test_rays(renderer):
+    rays = [((0, 9, 0), (0, -1, 0)), ((0, 9, 0), (0, 1, 0)), ((0, 9, 0), (0, -1, 0), 0.0, 1.0)]
+    hits = renderer.trace(rays)
+    assert [hit.missed for hit in hits] == [False, True, True]
+    assert hits[0].instance < len(renderer.scene.instances) and 0 < hits[0].t < 10
+    flat = struct.pack("<24f", *(n for o, d, *s in rays for n in (*o, (s or [0])[0], *d, (s or [0, float("inf")])[1])))
+    assert bytes(renderer.trace(flat)) == bytes(hits)
+    twin = whit.Renderer(renderer.scene, whit.CPU)
+    assert bytes(twin.trace(rays)) == bytes(hits) == bytes(twin.trace(rays, on="cpu-brute"))
+    assert not renderer.trace(rays, any_hit=True)[0].missed
+    with pytest.raises(ValueError, match="8 floats"):
+        renderer.trace(b"123")
+
+
+def test_numpy(renderer):
+    numpy = pytest.importorskip("numpy")
+    color = numpy.empty((30, 40, 4), numpy.float32)
+    assert renderer.render(out=color) is color
+    assert (color == numpy.asarray(renderer.render())).all() and color[..., 3].min() == 1
+    ids = numpy.asarray(renderer.ids())
+    assert ids.dtype == numpy.uint32 and ids.shape == (30, 40, 2)
+    rays = numpy.array([[0, 9, 0, 0, 0, -1, 0, numpy.inf]] * 3, numpy.float32)
+    hits = numpy.asarray(renderer.trace(rays))
+    assert hits["t"].shape == (3,) and (hits["instance"] == hits["instance"][0]).all()
+    with pytest.raises(ValueError, match="of the format 'f'"):
+        renderer.render(out=color.astype(numpy.float64))
+
+
+def test_what_goes_wrong_says_why(tmp_path):
+    with pytest.raises(whit.Error, match="nowhere.stl: there is no such file") as raised:
+        whit.Scene("nowhere.stl")
+    assert raised.value.result == whit.Result.ERROR_INPUT
+    scene = whit.Scene(CUBE)
+    with pytest.raises(whit.Error, match="camera .nobody.: the scene has 1 cameras"):
+        whit.Renderer(scene, camera="nobody")
+    with pytest.raises(whit.Error) as raised:
+        whit.Renderer(scene, "no such device")
+    assert raised.value.result == whit.Result.ERROR_NO_DEVICE and "no such device" in str(raised.value)
+    with pytest.raises(whit.Error, match="without a device"):
+        whit.Renderer(scene, whit.CPU).render()
+    with pytest.raises(ValueError, match="numerics: 'fine' is none of watertight, fast, exact"):
+        whit.Renderer(scene, numerics="fine")
+    with pytest.raises(ValueError, match="width: -1 is out of range"):
+        whit.Renderer(scene, width=-1)
+    with pytest.raises(TypeError, match="no parameter 'hight'; there are .*height"):
+        whit.Renderer(scene, hight=3)
+
+
+def test_warnings_are_logged(tmp_path, caplog):
+    (tmp_path / "a.obj").write_text("mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    with caplog.at_level(logging.WARNING, "whit"):
+        whit.Scene(tmp_path / "a.obj")
+    assert "no.mtl" in caplog.text
+
+
+def test_progress_can_stop(renderer):
+    class Stop(Exception):
+        pass
+
+    def progress(done):
+        assert 0 <= done <= 1
+        raise Stop
+
+    with pytest.raises(Stop):
+        whit.Renderer(renderer.scene, progress=progress, tile_size=16, **SMALL).render()
+
+
+def test_what_is_borrowed_goes_last(monkeypatch):
+    gone = []
+
+    def listen(name):
+        destroy = getattr(whit._library, name)
+        monkeypatch.setattr(whit._library, name, lambda handle: (gone.append(name.split("_")[1]), destroy(handle)))
+
+    for kind in ("scene", "accel", "device", "renderer"):
+        listen(f"whit_{kind}_destroy")
+    scene = whit.Scene(CUBE)
+    scene.cycle = whit.Renderer(scene, **SMALL)
+    del scene
+    gc.collect()
+    assert sorted(gone) == ["accel", "device", "renderer", "scene"] and gone[0] == "renderer"
+    assert gone.index("accel") < gone.index("scene")
