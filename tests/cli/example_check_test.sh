@@ -1,5 +1,7 @@
 #!/bin/sh
-# A project that has its part checked by an installed whit, by ctest: sh example_check_test.sh WHIT SCENES CMAKE BUILD
+# A project that has its part checked by an installed whit, by ctest; and the lines of docs/check.md and of the recipe for
+# CI, in which packages are there, and whit is built and installed already, but with `whole`:
+# example_check_test.sh WHIT SCENES CMAKE BUILD [whole]
 . "$(dirname "$0")/common.sh"
 CMAKE=$3
 BUILD=$4
@@ -8,11 +10,11 @@ SOURCE=$SCENES/..
 cd "$OUT" || exit 1
 check "it installs" "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix" >stderr 2>&1
 cp -r "$SOURCE/tests/example_check" part
-# with TEXT COMMAND...: it ends with 0, and says TEXT; without TEXT COMMAND...: with another, and says so too.
+# with TEXT COMMAND...: it ends with 0, and says TEXT where there is one; without TEXT COMMAND...: with another, and says so too.
 with() {
     text=$1
     shift
-    "$@" >stderr 2>&1 && grep -q -e "$text" stderr
+    "$@" >stderr 2>&1 </dev/null && { [ -z "$text" ] || grep -q -e "$text" stderr; }
 }
 without() {
     text=$1
@@ -31,12 +33,63 @@ for name in looks.front-watertight looks.front-exact looks.side; do
     check "$name is one" grep -q " $name \.* *Passed" stderr
 done
 
-
 no_device="env VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent"
 # shellcheck disable=SC2086
 check "without a device a case fails" without "0% tests passed, 1 tests failed out of 1" $no_device \
     "$CTEST" --test-dir build --output-on-failure -R side
 check "and says why" grep -q "whit: error: .*no Vulkan driver" stderr
+
+# ---- From nothing to a check ----
+
+mkdir -p own/whit/tools hands && cp "$SOURCE/tools/packages" own/whit/tools/ && cp build/bracket.stl own/part.stl
+cat >hands/packages <<'PACKAGES'
+#!/bin/sh
+case "$*" in update) exit 0 ;; install\ *) ;; *) exit 1 ;; esac
+shift
+for package; do
+    case $package in -*) continue ;; esac
+    grep -qE "^run +$package( |$)" whit/tools/packages && echo "$package" >>packages || exit 1
+done
+PACKAGES
+cat >hands/cmake <<'BUILT'
+#!/bin/sh
+case "$*" in
+"-S whit -B whit/build -G Ninja -DWHIT_TESTS=OFF" | "--build whit/build" | "--install whit/build"*) echo "$*" >>built ;;
+*) exit 1 ;;
+esac
+BUILT
+printf '#!/bin/sh\nexec "$@"\n' >hands/sudo
+cp hands/packages hands/apt && cp hands/packages hands/apt-get && chmod +x hands/*
+usr=$OUT/prefix opt=$OUT/prefix
+if [ "${5:-}" = whole ]; then
+    git -C "$SOURCE" ls-files -z | tar -C "$SOURCE" --null -T - -c | tar -C own/whit -x
+    rm hands/cmake
+    export DESTDIR="$OUT/whole"
+    usr=$DESTDIR/usr/local opt=$DESTDIR/opt/whit
+fi
+# follow FILE: its lines one by one, each of which has to succeed; packages are all, whit is built and installed once.
+follow() {
+    rm -f own/packages own/built
+    while read -r line; do
+        check "$line" with "" env -C own "PATH=$OUT/hands:$usr/bin:$PATH" sh -ec "$line"
+    done <"$1"
+    check "all packages" test "$(grep -c . own/packages 2>/dev/null)" = "$(grep -c ^run "$SOURCE/tools/packages")"
+    check "built and installed" test -n "${DESTDIR:-}" -o "$(grep -c . own/built 2>/dev/null)" = 3
+}
+awk '/^On a Debian/ { on = 1 } on && /^    / { print } on && /^    whit check looks.whit$/ { exit }' \
+    "$SOURCE/docs/check.md" >lines
+check "five lines" test "$(grep -c . lines)" -eq 5
+follow lines
+check "a green check" grep -qx "part: ok" stderr
+sed -n "s/^ *-* run: //p" "$SOURCE/tests/example_check/check.yml" | sed "s,/opt/whit/bin,$opt/bin," >lines
+check "three lines in CI" test "$(grep -c . lines)" -eq 3
+follow lines
+for file in json xml html; do
+    check "a report: $file" test -s own/reports/looks.$file
+done
+check "which is uploaded" grep -q "^        with: {name: looks, path: reports}" "$SOURCE/tests/example_check/check.yml"
+
+# ---- What is other ----
 
 # Another part, and another suite: the next build takes them over.
 echo 'under bracket.stl --size 160x120 --camera 140,-60,30,25,18,-18,0,1,0,30' >>part/looks.whit
@@ -52,5 +105,5 @@ echo 'lost nowhere.stl' >>part/looks.whit
 check "a suite that is wrong" without "looks.whit:6: the scene .nowhere.stl.: there is no such file" configure build
 sed -i '$d' part/looks.whit
 sed -i 's/ROOT/ROUTE/' part/CMakeLists.txt
-check "no keyword" without "ROUTE;.*: no keyword" configure build
+check "no keyword" without "  no keyword, or one without its value: ROUTE" configure build
 finish

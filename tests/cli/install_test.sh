@@ -10,7 +10,8 @@ quietly() {
 check "it installs" quietly "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix"
 cd "$OUT/prefix" || exit 1
 for file in bin/whit $(cd "$SOURCE/host" && ls whit/*.h | grep -v whit_program | sed 's,^,include/,') \
-    share/doc/whit/LICENSE share/doc/whit/CHANGELOG.md share/doc/whit/docs/cli.md; do
+    share/doc/whit/LICENSE share/doc/whit/CHANGELOG.md share/doc/whit/docs/cli.md \
+    share/whit/python/whit.py share/whit/python/pytest_whit.py share/doc/whit/examples/example_check/check.yml; do
     check "$file is installed" test -s "$file"
 done
 build_example() {
@@ -48,6 +49,8 @@ by_pkg_config() {
 if command -v pkg-config >/dev/null && [ -z "${CFLAGS_EXTRA:-}" ]; then
     check "the example by pkg-config and the shared library" quietly by_pkg_config
     check "the same picture" cmp "$OUT/cube.png" "$OUT/shared.png"
+    check "where Python finds it" test -s \
+        "$(PKG_CONFIG_PATH=$(dirname "$library")/pkgconfig pkg-config --variable=pythondir whit)/whit.py"
 fi
 check "the installed program runs" bin/whit --version
 check "an installed scene has its map" quietly bin/whit scene share/whit/scenes/gallery/normal-map.json

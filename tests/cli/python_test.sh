@@ -15,11 +15,29 @@ layout() {
 }
 check "structs, enumerators and prototypes of whit.py are those of whit.h" layout
 check "pictures, rays and errors" "$PYTHON" -m pytest -q -p no:cacheprovider "$TESTS/whit_test.py"
+cd "$OUT" || exit 1
+awk -f "$SCENES/../tests/example_check/bracket.awk" >part.stl </dev/null
+sed -n '/^```python$/,/^```$/p' "$SCENES/../docs/check.md" | grep -v '^```' >doc.py
+check "the lines of the docs" "$PYTHON" doc.py
+
+# Where they are installed, and beside another library.
+mkdir -p prefix/share/whit/python prefix/lib/any && cp "$PYTHONPATH"/*.py prefix/share/whit/python
+ln -s "$WHIT_LIBRARY" prefix/lib/any/libwhit.so.0.2
+found() {
+    env -u WHIT_LIBRARY PYTHONPATH=prefix/share/whit/python "$PYTHON" -c \
+        'import whit, sys; sys.exit(whit._library._name != sys.argv[1])' "$OUT/prefix/lib/any/libwhit.so.0.2" 2>stderr
+}
+check "the library of the same prefix is taken" found
+sed -i 's/^VERSION = .*/VERSION = "9.9.0"/' prefix/share/whit/python/whit.py
+refused() {
+    ! PYTHONPATH=prefix/share/whit/python "$PYTHON" -c 'import whit' 2>stderr
+}
+check "a library of another version is not" refused
+check "which is said" grep -q "^ImportError: .*/whit.py is for libwhit 9.9.0, and .* is [0-9.]*$" stderr
 
 # A suite as tests of pytest.
-cd "$OUT" || exit 1
 cp "$SCENES"/../tests/example_check/looks.* .
-awk -f "$SCENES/../tests/example_check/bracket.awk" >bracket.stl </dev/null
+mv part.stl bracket.stl
 # says CODE WHAT PATTERN COMMAND...: the command ends with CODE, and says PATTERN.
 says() {
     code=$1 what=$2 pattern=$3

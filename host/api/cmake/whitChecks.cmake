@@ -12,8 +12,8 @@
 function(whit_add_checks suite)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "PREFIX;ROOT;WORKING_DIRECTORY;TIMEOUT" "LABELS;OPTIONS")
   if(DEFINED ARG_UNPARSED_ARGUMENTS OR DEFINED ARG_KEYWORDS_MISSING_VALUES)
-    message(FATAL_ERROR "whit_add_checks(${suite}): ${ARG_UNPARSED_ARGUMENTS} "
-      "${ARG_KEYWORDS_MISSING_VALUES}: no keyword, or one without its value")
+    message(FATAL_ERROR "whit_add_checks(${suite}):\n  no keyword, or one without its value: "
+      "${ARG_UNPARSED_ARGUMENTS} ${ARG_KEYWORDS_MISSING_VALUES}")
   endif()
   get_filename_component(suite "${suite}" ABSOLUTE)
   if(NOT DEFINED ARG_PREFIX)
@@ -33,7 +33,7 @@ function(whit_add_checks suite)
     OUTPUT_VARIABLE names ERROR_VARIABLE said RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
     string(REPLACE "\n" "\n  " said "\n${said}") # indented, lines stay whole
-    message(FATAL_ERROR "whit_add_checks(${suite}): ${whit_PROGRAM} ends with ${status}:${said}")
+    message(FATAL_ERROR "whit_add_checks(${suite}):\n  ${whit_PROGRAM} ends with ${status}${said}")
   endif()
   string(REGEX MATCHALL "[^\n]+" names "${names}")
   list(TRANSFORM names PREPEND "${ARG_PREFIX}" OUTPUT_VARIABLE tests)
