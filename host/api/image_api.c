@@ -3,9 +3,12 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "base/array.h"
 #include "image/display.h"
 #include "image/flip.h"
 #include "image/heat.h"
+#include "image/rows.h"
+#include "whit/whit_program.h"
 
 void whit_image_get_info(const whit_image *image, whit_image_info *info)
 {
@@ -89,6 +92,71 @@ whit_result whit_image_save_layers(const whit_image *image, const whit_image_lay
         image_save_layers(log, &image->image, items, layer_count, path, copies, text_count);
     free(copies);
     return result;
+}
+
+struct whit_image_strips {
+    whit_log log;
+    char *path;
+    struct image_text *texts;
+    struct image_rows *rows;
+};
+
+static void free_strips(whit_image_strips *strips)
+{
+    free(strips->path);
+    free(strips->texts);
+    free(strips);
+}
+
+whit_result whit_image_strips_begin(const char *path, const whit_image *like, uint32_t height,
+                                    const whit_text *texts, uint32_t text_count,
+                                    const whit_log *log, whit_image_strips **out)
+{
+    struct image shape = like->image;
+    whit_image_strips *strips = calloc(1, sizeof *strips);
+    *out = NULL;
+    shape.height = height;
+    if (!strips) {
+        log_error(log, "%s: out of memory", path);
+        return WHIT_ERROR_MEMORY;
+    }
+    strips->log = *log;
+    strips->path = string_copy(path);
+    strips->texts = texts_from_public(log, path, texts, text_count);
+    whit_result result = WHIT_ERROR_MEMORY;
+    if (strips->path && strips->texts)
+        result = image_rows_begin(&strips->log, strips->path, &shape, strips->texts, text_count,
+                                  &strips->rows);
+    if (result == WHIT_OK)
+        *out = strips;
+    else
+        free_strips(strips);
+    return result;
+}
+
+whit_result whit_image_strips_add(whit_image_strips *strips, const whit_image *strip)
+{
+    return image_rows_add(strips->rows, &strip->image);
+}
+
+whit_result whit_image_strips_commit(whit_image_strips *strips)
+{
+    whit_result result = image_rows_commit(strips->rows);
+    free_strips(strips);
+    return result;
+}
+
+void whit_image_strips_abandon(whit_image_strips *strips)
+{
+    if (!strips)
+        return;
+    image_rows_abandon(strips->rows);
+    free_strips(strips);
+}
+
+float *whit_image_edit(whit_image *image)
+{
+    return image->image.pixels;
 }
 
 whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,

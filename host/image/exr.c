@@ -1,5 +1,6 @@
 /* OpenEXR through OpenEXRCore, from and to memory: the library writes its chunk table last, which
    a pipe would not allow. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ enum { REASON_BYTES = 256, CHANNELS_MAX = 4 };
 /* What the library's callbacks see. */
 struct memory_file {
     const uint8_t *read_data;
+    FILE *stream;  /* what is written goes there, or where this is NULL into `data` */
     uint8_t *data; /* written */
     size_t size_bytes, capacity_bytes;
     char reason[REASON_BYTES]; /* the first one: what follows is its consequence */
@@ -80,6 +82,13 @@ static int64_t on_write(exr_const_context_t context, void *user, const void *fro
                         uint64_t size_bytes, uint64_t offset, exr_stream_error_func_ptr_t error)
 {
     struct memory_file *file = user;
+    if (file->stream) {
+        if (fseeko(file->stream, (off_t)offset, SEEK_SET) == 0 &&
+            fwrite(from, 1, size_bytes, file->stream) == size_bytes)
+            return (int64_t)size_bytes;
+        error(context, EXR_ERR_WRITE_IO, "%s", strerror(errno));
+        return -1;
+    }
     if (offset > SIZE_MAX / 4 || size_bytes > SIZE_MAX / 4 || !grow(file, offset + size_bytes)) {
         file->no_memory = true;
         error(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
@@ -216,54 +225,89 @@ static void set_sources(exr_encode_pipeline_t *encode, const struct image_target
     }
 }
 
-static exr_result_t write_chunks(exr_context_t context, const struct image_target *target,
-                                 const struct image *image)
+/* A file in the making. */
+struct exr_writer {
+    const struct image_target *target;
+    struct memory_file file;
+    exr_context_t context;
+    exr_encode_pipeline_t encode;
+    exr_result_t code;
+    uint32_t y; /* rows so far */
+};
+
+static exr_result_t write_chunk(struct exr_writer *writer, const struct image *rows, uint32_t row)
 {
-    int32_t chunk_rows = 0;
-    bool first = true;
-    exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
-    exr_result_t code = exr_get_scanlines_per_chunk(context, 0, &chunk_rows);
-    for (uint32_t y = 0; y < image->height && code == EXR_ERR_SUCCESS; y += (uint32_t)chunk_rows) {
-        exr_chunk_info_t chunk;
-        code = exr_write_scanline_chunk_info(context, 0, (int)y, &chunk);
-        if (code != EXR_ERR_SUCCESS)
-            break;
-        code = first ? exr_encoding_initialize(context, 0, &chunk, &encode)
-                     : exr_encoding_update(context, 0, &chunk, &encode);
-        if (code != EXR_ERR_SUCCESS)
-            break;
-        set_sources(&encode, target, image, y);
-        if (first)
-            code = exr_encoding_choose_default_routines(context, 0, &encode);
-        first = false;
-        if (code == EXR_ERR_SUCCESS)
-            code = exr_encoding_run(context, 0, &encode);
+    exr_context_t context = writer->context;
+    bool first = writer->y + row == 0;
+    exr_chunk_info_t chunk;
+    exr_result_t code = exr_write_scanline_chunk_info(context, 0, (int)(writer->y + row), &chunk);
+    if (code == EXR_ERR_SUCCESS)
+        code = first ? exr_encoding_initialize(context, 0, &chunk, &writer->encode)
+                     : exr_encoding_update(context, 0, &chunk, &writer->encode);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    set_sources(&writer->encode, writer->target, rows, row);
+    if (first)
+        code = exr_encoding_choose_default_routines(context, 0, &writer->encode);
+    return code == EXR_ERR_SUCCESS ? exr_encoding_run(context, 0, &writer->encode) : code;
+}
+
+void exr_rows_add(struct exr_writer *writer, const struct image *rows)
+{
+    int32_t chunk_rows = 1;
+    current = &writer->file;
+    if (writer->code == EXR_ERR_SUCCESS)
+        writer->code = exr_get_scanlines_per_chunk(writer->context, 0, &chunk_rows);
+    for (uint32_t y = 0; y < rows->height && writer->code == EXR_ERR_SUCCESS;
+         y += (uint32_t)chunk_rows)
+        writer->code = write_chunk(writer, rows, y);
+    writer->y += rows->height;
+}
+
+struct exr_writer *exr_rows_begin(const struct image_target *target, const struct image *shape,
+                                  bool direct)
+{
+    struct exr_writer *writer = calloc(1, sizeof *writer);
+    if (!writer) {
+        log_error(target->log, "%s: out of memory", target->path);
+        return NULL;
     }
-    exr_encoding_destroy(context, &encode);
-    return code;
+    writer->target = target;
+    writer->encode = (exr_encode_pipeline_t)EXR_ENCODE_PIPELINE_INITIALIZER;
+    writer->file.stream = direct ? target->stream : NULL;
+    exr_context_initializer_t init = callbacks(&writer->file);
+    init.write_fn = on_write;
+    writer->code = exr_start_write(&writer->context, target->path, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (writer->code == EXR_ERR_SUCCESS)
+        writer->code = write_header(writer->context, target, shape);
+    return writer;
+}
+
+whit_result exr_rows_end(struct exr_writer *writer)
+{
+    const struct image_target *target = writer->target;
+    struct memory_file *file = &writer->file;
+    whit_result result = WHIT_OK;
+    current = file;
+    exr_encoding_destroy(writer->context, &writer->encode);
+    exr_result_t end_code = finish(&writer->context); /* writes the chunk table */
+    exr_result_t code = writer->code == EXR_ERR_SUCCESS ? end_code : writer->code;
+    if (code != EXR_ERR_SUCCESS)
+        result = report(target->log, target->path, file, code, WHIT_ERROR_OUTPUT);
+    else if (!file->stream)
+        fwrite(file->data, 1, file->size_bytes, target->stream);
+    free(file->data);
+    free(writer);
+    return result;
 }
 
 whit_result exr_write(const struct image_target *target, const struct image *image)
 {
-    struct memory_file file = {0};
-    exr_context_initializer_t init = callbacks(&file);
-    init.write_fn = on_write;
-    exr_context_t context = NULL;
-    whit_result result = WHIT_OK;
-    exr_result_t code = exr_start_write(&context, target->path, EXR_WRITE_FILE_DIRECTLY, &init);
-    if (code == EXR_ERR_SUCCESS)
-        code = write_header(context, target, image);
-    if (code == EXR_ERR_SUCCESS)
-        code = write_chunks(context, target, image);
-    exr_result_t end_code = finish(&context); /* writes the chunk table */
-    if (code == EXR_ERR_SUCCESS)
-        code = end_code;
-    if (code == EXR_ERR_SUCCESS)
-        fwrite(file.data, 1, file.size_bytes, target->stream);
-    else
-        result = report(target->log, target->path, &file, code, WHIT_ERROR_OUTPUT);
-    free(file.data);
-    return result;
+    struct exr_writer *writer = exr_rows_begin(target, image, false);
+    if (!writer)
+        return WHIT_ERROR_MEMORY;
+    exr_rows_add(writer, image);
+    return exr_rows_end(writer);
 }
 
 /* Which of the file's channels go where. */

@@ -42,6 +42,10 @@ WHIT_CHECK whit_result image_decode(const struct image_source *source, struct im
 WHIT_CHECK whit_result image_decode_texts(const struct image_source *source,
                                           struct text_list *list);
 
+/* Whether sizes, channels and the file's name allow it; logs. */
+WHIT_CHECK whit_result image_check_savable(const whit_log *log, const struct image *image,
+                                           const char *path);
+
 /* False when memory runs out. */
 bool text_list_add(struct text_list *list, const char *key, const char *value);
 void text_list_finish(struct text_list *list);
@@ -61,6 +65,23 @@ WHIT_CHECK whit_result exr_load_texts(const struct image_source *source, struct 
 
 WHIT_CHECK whit_result pfm_write(const struct image_target *target, const struct image *image);
 WHIT_CHECK whit_result pfm_load(const struct image_source *source, struct image *image);
+
+/* The same in strips of rows, from the top down, each of a multiple of 16 rows but for the last.
+   `shape`: the picture's sizes, channels and kind; its pixels are not read. `target` has to stay.
+   NULL: memory ran out, which was logged. What fails is logged at the end, which frees the writer.
+   `direct`: the stream is a file in which one can go back; else all is kept until the end. */
+struct exr_writer;
+struct exr_writer *exr_rows_begin(const struct image_target *target, const struct image *shape,
+                                  bool direct);
+void exr_rows_add(struct exr_writer *writer, const struct image *rows);
+WHIT_CHECK whit_result exr_rows_end(struct exr_writer *writer);
+struct png_writer;
+struct png_writer *png_rows_begin(const struct image_target *target, const struct image *shape);
+void png_rows_add(struct png_writer *writer, const struct image *rows);
+WHIT_CHECK whit_result png_rows_end(struct png_writer *writer, bool whole);
+/* The header of a PFM, and its size in bytes; and rows, the lowest first. */
+size_t pfm_put_header(const struct image_target *target, const struct image *shape);
+WHIT_CHECK whit_result pfm_put_rows(const struct image_target *target, const struct image *rows);
 
 WHIT_CHECK whit_result hdr_load(const struct image_source *source, struct image *image);
 

@@ -99,7 +99,7 @@ bool image_format_known(const char *path, bool integers)
     return format == FORMAT_EXR || (format != FORMAT_UNKNOWN && !integers);
 }
 
-static whit_result check_savable(const whit_log *log, const struct image *image, const char *path)
+whit_result image_check_savable(const whit_log *log, const struct image *image, const char *path)
 {
     bool integers = image->words != NULL;
     if (!image->pixels == !image->words || image->width == 0 || image->height == 0 ||
@@ -168,7 +168,7 @@ whit_result image_save_layers(const whit_log *log, const struct image *image,
                               const struct image_layer *layers, uint32_t layer_count,
                               const char *path, const struct image_text *texts, uint32_t text_count)
 {
-    whit_result result = check_savable(log, image, path);
+    whit_result result = image_check_savable(log, image, path);
     if (result == WHIT_OK)
         result = check_layers(log, image, layers, layer_count, path);
     if (result != WHIT_OK)
@@ -210,7 +210,7 @@ whit_result image_encode_png(const whit_log *log, const struct image *image,
     char *bytes = NULL;
     *data = NULL;
     *size_bytes = 0;
-    whit_result result = check_savable(log, image, name);
+    whit_result result = image_check_savable(log, image, name);
     if (result != WHIT_OK)
         return result;
     struct image_target target = {.log = log,

@@ -26,17 +26,27 @@ static float get_float(const uint8_t *from, bool little_endian)
     return value;
 }
 
-whit_result pfm_write(const struct image_target *target, const struct image *image)
+static uint32_t kept_channels(const struct image *image)
 {
-    uint32_t colours = image->channels == 1 ? 1 : 3;
+    return image->channels == 1 ? 1 : 3;
+}
+
+size_t pfm_put_header(const struct image_target *target, const struct image *shape)
+{
+    int bytes = fprintf(target->stream, "%s\n%u %u\n-1.0\n",
+                        kept_channels(shape) == 1 ? "Pf" : "PF", shape->width, shape->height);
+    return bytes > 0 ? (size_t)bytes : 0;
+}
+
+whit_result pfm_put_rows(const struct image_target *target, const struct image *image)
+{
+    uint32_t colours = kept_channels(image);
     size_t row_bytes = (size_t)image->width * colours * 4;
     uint8_t *row = array_alloc(row_bytes, 1);
     if (!row) {
         log_error(target->log, "%s: no memory for a row of pixels", target->path);
         return WHIT_ERROR_MEMORY;
     }
-    fprintf(target->stream, "%s\n%u %u\n-1.0\n", colours == 1 ? "Pf" : "PF", image->width,
-            image->height);
     for (uint32_t y = image->height; y-- > 0;) {
         const float *pixel = image->pixels + (size_t)y * image->width * image->channels;
         for (uint32_t x = 0; x < image->width; ++x, pixel += image->channels) {
@@ -47,6 +57,12 @@ whit_result pfm_write(const struct image_target *target, const struct image *ima
     }
     free(row);
     return WHIT_OK;
+}
+
+whit_result pfm_write(const struct image_target *target, const struct image *image)
+{
+    (void)pfm_put_header(target, image);
+    return pfm_put_rows(target, image);
 }
 
 /* The next word of the header, and the one white space behind it. */

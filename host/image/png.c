@@ -26,6 +26,13 @@ struct job {
     whit_result result;
 };
 
+/* A file in the making. */
+struct png_writer {
+    struct job job;
+    struct display_encoder encoder;
+    uint32_t channels;
+};
+
 static void on_error(png_structp png, png_const_charp message)
 {
     struct job *job = png_get_error_ptr(png);
@@ -138,58 +145,95 @@ static void set_texts(struct job *job, const struct image_target *target)
     png_set_text(job->png, job->info, job->texts, (int)target->text_count);
 }
 
-static void write_rows(struct job *job, const struct image *image, uint32_t to_channels)
+static void write_row(struct png_writer *writer, const struct image *rows, uint32_t y)
 {
-    struct display_encoder encoder;
-    display_encoder_init(&encoder);
-    job->bytes = allocate(job, (size_t)image->width * to_channels, 1);
-    for (uint32_t y = 0; y < image->height; ++y) {
-        for (uint32_t x = 0; x < image->width; ++x)
-            display_encode(&encoder, image, (size_t)y * image->width + x,
-                           job->bytes + (size_t)x * to_channels, to_channels);
-        png_write_row(job->png, job->bytes);
-    }
+    struct job *job = &writer->job;
+    for (uint32_t x = 0; x < rows->width; ++x)
+        display_encode(&writer->encoder, rows, (size_t)y * rows->width + x,
+                       job->bytes + (size_t)x * writer->channels, writer->channels);
+    png_write_row(job->png, job->bytes);
 }
 
-whit_result png_write(const struct image_target *target, const struct image *image)
+static void write_head(struct png_writer *writer, const struct image_target *target,
+                       const struct image *shape)
 {
     static const int colour_types[5] = {0, PNG_COLOR_TYPE_GRAY, 0, PNG_COLOR_TYPE_RGB,
                                         PNG_COLOR_TYPE_RGB_ALPHA};
-    struct job *job = calloc(1, sizeof *job);
-    if (!job)
+    struct job *job = &writer->job;
+    png_set_write_fn(job->png, job, write_data, flush_data);
+    png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
+    png_set_IHDR(job->png, job->info, shape->width, shape->height, 8,
+                 colour_types[writer->channels], PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    set_texts(job, target);
+    /* One filter, and of matches runs of one byte alone: of rendered pictures files 1 to 22 %
+       smaller than by level 2 with all matches, in 0.85 to 0.95 of its time. */
+    png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    png_set_compression_level(job->png, 1);
+    png_set_compression_strategy(job->png, Z_RLE);
+    png_write_info(job->png, job->info);
+    job->bytes = allocate(job, (size_t)shape->width * writer->channels, 1);
+}
+
+/* A function of its own: what setjmp leaves undefined is not in its frame. */
+static void try_head(struct png_writer *writer, const struct image_target *target,
+                     const struct image *shape)
+{
+    if (setjmp(png_jmpbuf(writer->job.png)) == 0)
+        write_head(writer, target, shape);
+}
+
+struct png_writer *png_rows_begin(const struct image_target *target, const struct image *shape)
+{
+    struct png_writer *writer = calloc(1, sizeof *writer);
+    if (!writer)
         goto no_memory;
+    struct job *job = &writer->job;
     *job = (struct job){.log = target->log, .path = target->path, .stream = target->stream};
+    writer->channels = shape->channels;
+    display_encoder_init(&writer->encoder);
     job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
     job->info = job->png ? png_create_info_struct(job->png) : NULL;
     if (!job->info)
         goto no_memory;
-    if (setjmp(png_jmpbuf(job->png)) == 0) {
-        uint32_t channels = written_channels(image);
-        png_set_write_fn(job->png, job, write_data, flush_data);
-        png_set_user_limits(job->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
-        png_set_IHDR(job->png, job->info, image->width, image->height, 8, colour_types[channels],
-                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-        png_set_sRGB_gAMA_and_cHRM(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
-        set_texts(job, target);
-        /* One filter, and of matches runs of one byte alone: of rendered pictures files 1 to 22 %
-           smaller than by level 2 with all matches, in 0.85 to 0.95 of its time. */
-        png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-        png_set_compression_level(job->png, 1);
-        png_set_compression_strategy(job->png, Z_RLE);
-        png_write_info(job->png, job->info);
-        write_rows(job, image, channels);
-        png_write_end(job->png, NULL);
-    }
-    whit_result result = job->result;
-    finish(job);
-    free(job);
-    return result;
+    try_head(writer, target, shape);
+    return writer;
 no_memory:
     log_error(target->log, "%s: no memory to write a PNG", target->path);
-    if (job)
-        finish(job);
-    free(job);
-    return WHIT_ERROR_MEMORY;
+    if (writer)
+        finish(&writer->job);
+    free(writer);
+    return NULL;
+}
+
+void png_rows_add(struct png_writer *writer, const struct image *rows)
+{
+    if (writer->job.result == WHIT_OK && setjmp(png_jmpbuf(writer->job.png)) == 0) {
+        for (uint32_t y = 0; y < rows->height; ++y)
+            write_row(writer, rows, y);
+    }
+}
+
+whit_result png_rows_end(struct png_writer *writer, bool whole)
+{
+    if (whole && writer->job.result == WHIT_OK && setjmp(png_jmpbuf(writer->job.png)) == 0)
+        png_write_end(writer->job.png, NULL);
+    whit_result result = writer->job.result;
+    finish(&writer->job);
+    free(writer);
+    return result;
+}
+
+whit_result png_write(const struct image_target *target, const struct image *image)
+{
+    struct image shape = *image;
+    shape.channels = written_channels(image);
+    struct png_writer *writer = png_rows_begin(target, &shape);
+    if (!writer)
+        return WHIT_ERROR_MEMORY;
+    png_rows_add(writer, image);
+    return png_rows_end(writer, true);
 }
 
 static bool begin_read(struct job *job, const struct image_source *source)

@@ -29,6 +29,26 @@ uint64_t whit_peak_memory_bytes(void);
 double whit_clock_ms(void);
 double whit_clock_cpu_ms(void); /* used by all threads of this process */
 
+/* ---- Pictures in strips ---- */
+
+/* A picture that is written in strips of rows, from the top down, so that no more than one of them
+   is in memory: each but the last has a multiple of WHIT_STRIP_ROWS rows. The file appears at
+   commit, with the bytes that whit_image_save of the whole picture gives it. */
+#define WHIT_STRIP_ROWS 16
+typedef struct whit_image_strips whit_image_strips;
+/* `like`: a strip, for all but the height. Names and log of `texts` have to stay. WHIT_ERROR_OUTPUT
+   also for pipes. */
+WHIT_CHECK whit_result whit_image_strips_begin(const char *path, const whit_image *like,
+                                               uint32_t height, const whit_text *texts,
+                                               uint32_t text_count, const whit_log *log,
+                                               whit_image_strips **out);
+WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const whit_image *strip);
+/* One of the two ends it; abandon takes NULL too. */
+WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
+void whit_image_strips_abandon(whit_image_strips *strips);
+/* The floats of a picture, to be changed; NULL where it has integers. */
+float *whit_image_edit(whit_image *image);
+
 /* ---- Overlays ---- */
 
 typedef struct whit_overlay {

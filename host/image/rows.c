@@ -1,0 +1,140 @@
+/* Pictures that are written in strips of rows, so that no more than one strip is in memory. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/path.h"
+#include "image/formats.h"
+#include "image/rows.h"
+
+struct image_rows {
+    struct file_write file;
+    struct image_target target;
+    struct image shape; /* without pixels */
+    struct png_writer *png;
+    struct exr_writer *exr;
+    size_t header_bytes; /* of a PFM, which has its last row first */
+    uint32_t y;          /* rows so far */
+    whit_result result;
+};
+
+static whit_result fail(struct image_rows *rows)
+{
+    log_error(rows->target.log, "%s: cannot be written in strips: %s", rows->target.path,
+              strerror(errno));
+    return WHIT_ERROR_OUTPUT;
+}
+
+static whit_result begin(struct image_rows *rows)
+{
+    char extension[8];
+    path_extension(rows->target.path, extension, sizeof extension);
+    if (fseeko(rows->target.stream, 0, SEEK_CUR) != 0)
+        return fail(rows);
+    if (strcmp(extension, "pfm") == 0)
+        rows->header_bytes = pfm_put_header(&rows->target, &rows->shape);
+    else if (strcmp(extension, "exr") == 0)
+        rows->exr = exr_rows_begin(&rows->target, &rows->shape, true);
+    else
+        rows->png = png_rows_begin(&rows->target, &rows->shape);
+    return rows->header_bytes || rows->exr || rows->png ? WHIT_OK : WHIT_ERROR_MEMORY;
+}
+
+whit_result image_rows_begin(const whit_log *log, const char *path, const struct image *shape,
+                             const struct image_text *texts, uint32_t text_count,
+                             struct image_rows **out)
+{
+    *out = NULL;
+    whit_result result = image_check_savable(log, shape, path);
+    struct image_rows *rows = result == WHIT_OK ? calloc(1, sizeof *rows) : NULL;
+    if (result == WHIT_OK && !rows) {
+        log_error(log, "%s: out of memory", path);
+        result = WHIT_ERROR_MEMORY;
+    }
+    if (result == WHIT_OK)
+        result = file_write_begin(log, path, &rows->file);
+    if (result != WHIT_OK) {
+        free(rows);
+        return result;
+    }
+    rows->shape = *shape;
+    rows->target = (struct image_target){.log = log,
+                                         .path = path,
+                                         .stream = rows->file.stream,
+                                         .texts = texts,
+                                         .text_count = text_count};
+    result = begin(rows);
+    if (result == WHIT_OK)
+        *out = rows;
+    else
+        image_rows_abandon(rows);
+    return result;
+}
+
+static whit_result put_pfm_rows(struct image_rows *rows, const struct image *strip)
+{
+    uint64_t below = rows->shape.height - rows->y - strip->height;
+    uint64_t row_bytes = (uint64_t)strip->width * (strip->channels == 1 ? 1 : 3) * sizeof(float);
+    if (fseeko(rows->target.stream, (off_t)(rows->header_bytes + below * row_bytes), SEEK_SET))
+        return fail(rows);
+    return pfm_put_rows(&rows->target, strip);
+}
+
+whit_result image_rows_add(struct image_rows *rows, const struct image *strip)
+{
+    const struct image *shape = &rows->shape;
+    if (strip->width != shape->width || strip->channels != shape->channels ||
+        !strip->words != !shape->words || strip->height > shape->height - rows->y) {
+        log_error(rows->target.log, "%s: a strip of another shape", rows->target.path);
+        rows->result = WHIT_ERROR_USAGE;
+    } else if (rows->exr) {
+        exr_rows_add(rows->exr, strip);
+    } else if (rows->png) {
+        png_rows_add(rows->png, strip);
+    } else if (rows->result == WHIT_OK) {
+        rows->result = put_pfm_rows(rows, strip);
+    }
+    rows->y += strip->height;
+    return rows->result;
+}
+
+/* Frees what the formats keep. */
+static whit_result end(struct image_rows *rows, bool whole)
+{
+    whit_result result = WHIT_OK;
+    if (rows->exr)
+        result = exr_rows_end(rows->exr);
+    if (rows->png)
+        result = png_rows_end(rows->png, whole);
+    return rows->result == WHIT_OK ? result : rows->result;
+}
+
+whit_result image_rows_commit(struct image_rows *rows)
+{
+    const whit_log *log = rows->target.log;
+    bool whole = rows->y == rows->shape.height;
+    if (!whole && rows->result == WHIT_OK) {
+        log_error(log, "%s: %u of %u rows", rows->target.path, rows->y, rows->shape.height);
+        rows->result = WHIT_ERROR_USAGE;
+    }
+    whit_result result = end(rows, whole);
+    if (result == WHIT_OK)
+        result = file_write_commit(log, &rows->file);
+    else
+        file_write_abandon(&rows->file);
+    free(rows);
+    return result;
+}
+
+void image_rows_abandon(struct image_rows *rows)
+{
+    static const whit_log silent = {0};
+    if (!rows)
+        return;
+    rows->target.log = &silent;
+    whit_result ignored = end(rows, false);
+    (void)ignored;
+    file_write_abandon(&rows->file);
+    free(rows);
+}
