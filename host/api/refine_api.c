@@ -63,6 +63,7 @@ void whit_refine_move(whit_refine *refine, whit_renderer *renderer,
     refine->renderer = renderer;
     refine->params = *params;
     refine->params.sampling = (whit_sampling){.count = 1};
+    refine->params.first_row = refine->params.row_count = 0; /* the whole picture */
 }
 
 void whit_refine_destroy(whit_refine *refine)

@@ -433,6 +433,11 @@ whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay 
                                     whit_image *color)
 {
     whit_result result = api_need_device(renderer);
+    bool any = overlay->grid || overlay->edges_of_instances || overlay->edges_of_primitives;
+    if (result == WHIT_OK && any && renderer->params.row_count) {
+        log_error(&renderer->log, "grid and edges are drawn over whole pictures");
+        result = WHIT_ERROR_USAGE;
+    }
     if (result == WHIT_OK && overlay->grid)
         result = draw_grid(renderer, &color->image);
     if (result == WHIT_OK && (overlay->edges_of_instances || overlay->edges_of_primitives))

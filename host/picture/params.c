@@ -32,6 +32,33 @@ static bool is_known(const whit_renderer_params *params)
            (uint32_t)params->sampling.kind <= WHIT_SAMPLING_ADAPTIVE;
 }
 
+uint32_t params_rows(const whit_renderer_params *params)
+{
+    return params->row_count ? params->row_count : params->height;
+}
+
+/* Pixels are drawn in blocks of 8 x 8. */
+static whit_result check_rows(const whit_log *log, const whit_renderer_params *params)
+{
+    uint32_t first = params->first_row, count = params->row_count;
+    bool inside = first < params->height && count <= params->height - first;
+    bool whole_blocks = first % 8 == 0 && (count % 8 == 0 || first + count == params->height);
+    if (!inside || !whole_blocks || (first && !count)) {
+        log_error(log, "%u rows from %u on of %u: must begin and end at multiples of 8 or the last",
+                  count, first, params->height);
+        return WHIT_ERROR_USAGE;
+    }
+    if (count && params->sampling.kind == WHIT_SAMPLING_ADAPTIVE) {
+        log_error(log, "adaptive samples of some rows: only whole pictures tell who differs");
+        return WHIT_ERROR_USAGE;
+    }
+    if (count && params->count) {
+        log_error(log, "what rays cost is counted of whole pictures");
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
 whit_result params_check(const whit_log *log, whit_renderer_params *params)
 {
     if (params->width == 0 && params->height == 0) {
@@ -96,5 +123,5 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
         log_error(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
         return WHIT_ERROR_USAGE;
     }
-    return WHIT_OK;
+    return check_rows(log, params);
 }

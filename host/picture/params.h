@@ -10,4 +10,7 @@ enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of tiles, pixels */
 /* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
 WHIT_CHECK whit_result params_check(const whit_log *log, whit_renderer_params *params);
 
+/* How many rows of the picture are drawn. */
+uint32_t params_rows(const whit_renderer_params *params);
+
 #endif

@@ -8,7 +8,7 @@
 
 bool readback_is_late(const struct renderer *renderer)
 {
-    return renderer->picture.buffers.band_rows >= renderer->params.height &&
+    return renderer->picture.buffers.band_rows >= params_rows(&renderer->params) &&
            renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
@@ -115,7 +115,7 @@ whit_result readback_non_finite(const struct target *target, uint32_t *x, uint32
 whit_result readback_band(struct renderer *renderer, const struct progress *progress,
                           uint32_t band_y, uint32_t rows)
 {
-    size_t first = (size_t)renderer->params.width * band_y;
+    size_t first = (size_t)renderer->params.width * (band_y - renderer->params.first_row);
     size_t count = (size_t)renderer->params.width * rows;
     whit_result result = WHIT_OK;
     if (progress->listed) {
@@ -143,7 +143,8 @@ static whit_result begin_read(const struct renderer *renderer, uint32_t channels
         log_error(&renderer->log, "no picture was rendered yet");
         return WHIT_ERROR_USAGE;
     }
-    return image_init(out, renderer->params.width, renderer->params.height, channels, integers);
+    return image_init(out, renderer->params.width, params_rows(&renderer->params), channels,
+                      integers);
 }
 
 whit_result renderer_read_color(struct renderer *renderer, struct image *out)

@@ -16,8 +16,8 @@ bool renderer_bounces(const struct renderer *renderer)
 static whit_result create_parts(struct renderer *renderer)
 {
     double start_ms = clock_ms();
-    whit_result result =
-        pixels_create(&renderer->picture, renderer->params.height, renderer->params.tile_size);
+    whit_result result = pixels_create(&renderer->picture, params_rows(&renderer->params),
+                                       renderer->params.tile_size);
     if (result == WHIT_OK)
         result = upload_scene(renderer);
     if (result == WHIT_OK)

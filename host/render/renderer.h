@@ -129,7 +129,7 @@ struct trace_state {
 /* The pixels of a picture that a pass draws: from (x, y) on every so-many-th. */
 struct lattice {
     uint32_t x, y, spacing_x, spacing_y; /* spacing: 1, 2, 4, 8 */
-    uint32_t width, height;              /* how many */
+    uint32_t width, height;              /* how many, those above params.first_row among them */
 };
 
 /* What one picture in the making knows. An adaptive one, or one in steps, is made in several
@@ -470,7 +470,7 @@ WHIT_CHECK whit_result adaptive_list(struct target *target, const struct progres
 /* Whether pixel `index` of the picture is drawn by the pass. */
 bool adaptive_draws(const struct progress *progress, size_t index);
 
-/* steps.c */
+/* steps.c: all pixels of the rows that are drawn. */
 struct lattice lattice_whole(const whit_renderer_params *params);
 /* gpu_chunk.lattice */
 uint32_t lattice_word(const struct lattice *lattice);

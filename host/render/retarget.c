@@ -7,6 +7,8 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     whit_renderer_params params = *own;
     params.width = from->width;
     params.height = from->height;
+    params.first_row = from->first_row;
+    params.row_count = from->row_count;
     params.camera = from->camera;
     params.time_s = from->time_s;
     params.sampling = from->sampling;
@@ -20,8 +22,9 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
 
 static bool same_buffers(const whit_renderer_params *a, const whit_renderer_params *b)
 {
-    return a->width == b->width && a->height == b->height && a->depth == b->depth &&
-           a->light_samples == b->light_samples && a->sampling.kind == b->sampling.kind;
+    return a->width == b->width && a->height == b->height && params_rows(a) == params_rows(b) &&
+           a->depth == b->depth && a->light_samples == b->light_samples &&
+           a->sampling.kind == b->sampling.kind;
 }
 
 static whit_result replace_pixels(struct renderer *renderer)
@@ -29,7 +32,7 @@ static whit_result replace_pixels(struct renderer *renderer)
     const whit_renderer_params *params = &renderer->params;
     target_drop_pixels(&renderer->picture);
     target_drop_pixels(&renderer->probe);
-    whit_result result = pixels_create(&renderer->picture, params->height, params->tile_size);
+    whit_result result = pixels_create(&renderer->picture, params_rows(params), params->tile_size);
     if (result != WHIT_OK)
         target_drop_pixels(&renderer->picture);
     renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;

@@ -28,7 +28,9 @@ static struct lattice make_lattice(const whit_renderer_params *params, uint32_t 
 
 struct lattice lattice_whole(const whit_renderer_params *params)
 {
-    return make_lattice(params, 0, 0, 1, 1);
+    struct lattice lattice = make_lattice(params, 0, 0, 1, 1);
+    lattice.height = params->first_row + params_rows(params);
+    return lattice;
 }
 
 static uint32_t log2_of(uint32_t spacing)
@@ -45,8 +47,9 @@ uint32_t lattice_word(const struct lattice *lattice)
 bool steps_are_wanted(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
-    return params->step && params->step_spacing && params->width >= SIDE_MIN &&
-           params->height >= SIDE_MIN && !params->count && readback_is_late(renderer);
+    return params->step && params->step_spacing && !params->row_count &&
+           params->width >= SIDE_MIN && params->height >= SIDE_MIN && !params->count &&
+           readback_is_late(renderer);
 }
 
 /* A column or row of squares that ends outside of the picture shows what is left of or above it. */

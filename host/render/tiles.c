@@ -269,9 +269,10 @@ whit_result render_pass(struct renderer *renderer, uint32_t samples, struct prog
     whit_result result = WHIT_OK;
     progress->samples = samples;
     progress->work_done = 0;
+    uint32_t first = renderer->params.first_row;
     progress->work_total = (uint64_t)pixels_blocks_across(lattice->width) *
-                           pixels_blocks_across(lattice->height) * samples;
-    for (uint32_t y = 0; result == WHIT_OK && y < lattice->height;
+                           pixels_blocks_across(lattice->height - first) * samples;
+    for (uint32_t y = first; result == WHIT_OK && y < lattice->height;
          y += renderer->picture.buffers.band_rows)
         result = render_band(renderer, y, progress);
     progress->before += progress->share;
@@ -312,7 +313,7 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
 static whit_result render_picture(struct renderer *renderer, struct progress *progress)
 {
     const whit_renderer_params *params = &renderer->params;
-    uint64_t pixels = (uint64_t)params->width * params->height;
+    uint64_t pixels = (uint64_t)params->width * params_rows(params);
     renderer->picture.stats.rays_primary = pixels * params->sampling.count;
     if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return render_adaptive(renderer, progress);
@@ -328,6 +329,7 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
 whit_result renderer_render(struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
+    uint32_t rows = params_rows(params);
     renderer->rendered = false;
     if (renderer->between_times) {
         log_error(&renderer->log,
@@ -343,15 +345,15 @@ whit_result renderer_render(struct renderer *renderer)
     if (result == WHIT_OK)
         result = renderer_compile(renderer);
     if (result == WHIT_OK && !readback_is_late(renderer))
-        result = image_init(&renderer->color, params->width, params->height, 4, false);
+        result = image_init(&renderer->color, params->width, rows, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))
-        result = image_init(&renderer->ids, params->width, params->height, 2, true);
+        result = image_init(&renderer->ids, params->width, rows, 2, true);
     if (result == WHIT_OK && !readback_is_late(renderer) &&
         params->sampling.kind == WHIT_SAMPLING_FIXED)
-        result = image_init(&renderer->cuts, params->width, params->height, 2, false);
+        result = image_init(&renderer->cuts, params->width, rows, 2, false);
     uint32_t aovs = hooks_aov_count(&renderer->picture);
     if (result == WHIT_OK && !readback_is_late(renderer) && aovs)
-        result = image_init(&renderer->aovs, params->width * aovs, params->height, 4, false);
+        result = image_init(&renderer->aovs, params->width * aovs, rows, 4, false);
     stats_clear(&renderer->picture);
     material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);

@@ -70,8 +70,12 @@ typedef struct whit_step {
 /* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
-    whit_camera camera;     /* its name is borrowed by renderers */
-    double time_s;          /* of the animation */
+    /* Of the picture's rows those that are drawn, and that its images have: `row_count` of them
+       from `first_row` on, a multiple of 8, up to another one or to the last; 0: all. The picture
+       has a fixed number of samples, and its costs are not counted. */
+    uint32_t first_row, row_count;
+    whit_camera camera; /* its name is borrowed by renderers */
+    double time_s;      /* of the animation */
     whit_sampling sampling;
     uint32_t depth; /* most bounces; 0: what the camera ray sees, with its shadows */
     double bailout; /* rays that can add less than this to a pixel are not traced;

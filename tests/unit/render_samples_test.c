@@ -130,6 +130,46 @@ TEST(full_queues_do_not_matter)
     assert_memory_equal(smaller, whole, sizeof whole);
 }
 
+/* ---- Rows ---- */
+
+static whit_result set_rows(uint32_t first, uint32_t count, whit_sampling_kind kind)
+{
+    const whit_renderer_params params = {
+        .width = WIDTH,
+        .height = HEIGHT,
+        .depth = 3,
+        .light_samples = 4,
+        .sampling = {.kind = kind, .count = SAMPLES, .contrast = 0.1},
+        .first_row = first,
+        .row_count = count};
+    return renderer_set_view(f.renderer, &params);
+}
+
+TEST(rows_drawn_alone_are_those_of_the_picture)
+{
+    static const uint32_t rows[][2] = {{8, 8}, {0, 8}, {16, 2}, {0, 16}, {0, 0}};
+    struct picture all, some;
+    assert_int_equal(set_rows(0, 0, WHIT_SAMPLING_FIXED), WHIT_OK);
+    all = render_picture(&f);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+        uint32_t first = rows[i][0], count = rows[i][1] ? rows[i][1] : HEIGHT;
+        assert_int_equal(set_rows(first, rows[i][1], WHIT_SAMPLING_FIXED), WHIT_OK);
+        some = render_picture(&f);
+        assert_int_equal(some.color.height, count);
+        assert_memory_equal(some.color.pixels, &all.color.pixels[4 * first * WIDTH],
+                            count * WIDTH * 4 * sizeof(float));
+        assert_memory_equal(some.ids.words, &all.ids.words[2 * first * WIDTH],
+                            count * WIDTH * 2 * sizeof(uint32_t));
+        picture_finish(&some);
+    }
+    picture_finish(&all);
+    assert_int_equal(set_rows(4, 8, WHIT_SAMPLING_FIXED), WHIT_ERROR_USAGE);
+    assert_int_equal(set_rows(8, 9, WHIT_SAMPLING_FIXED), WHIT_ERROR_USAGE);
+    assert_int_equal(set_rows(16, 8, WHIT_SAMPLING_FIXED), WHIT_ERROR_USAGE);
+    assert_int_equal(set_rows(8, 0, WHIT_SAMPLING_FIXED), WHIT_ERROR_USAGE);
+    assert_int_equal(set_rows(8, 8, WHIT_SAMPLING_ADAPTIVE), WHIT_ERROR_USAGE);
+}
+
 /* ---- Steps ---- */
 
 static uint32_t steps, steps_wrong;
