@@ -39,7 +39,7 @@ struct cli_command {
     const char *(*word)(const char *option, uint32_t index);
 };
 
-enum { CLI_OTHERS_MAX = 64 };
+enum { CLI_OTHERS_MAX = 4096 };
 
 /* Reads the arguments of one command. */
 struct cli_reader {

@@ -5,13 +5,15 @@
 #include "app/document.h"
 #include "app/job.h"
 #include "app/render/frames.h"
+#include "app/render/layers.h"
+#include "app/render/part.h"
 #include "app/render/refine.h"
 #include "app/render/repeat.h"
 #include "app/render/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench, command_hard, command_compare, command_cost, command_view,
-    command_probe, command_shader, command_check;
+    command_probe, command_shader, command_check, command_merge;
 
 /* The options of `whit render` itself; those of the picture are in the job's settings. */
 struct render_request {
@@ -21,7 +23,8 @@ struct render_request {
     struct refine_goal refine;
     struct repeat repeat;
     struct frames frames; /* with them `output` and `ids` are patterns */
-    uint32_t thumbnail;   /* pixels on a side, of a PNG whatever its name; 0: none */
+    struct part part;
+    uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 
 /* Makes the kernels of a picture and prints them (kernels.c). Gives the exit code. */
@@ -60,11 +63,12 @@ whit_result render_save(const struct job *job, const struct render_request *requ
 
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */
-enum { RECIPE_TEXTS = 10 };
+enum { RECIPE_TEXTS = 11 };
 struct recipe {
     whit_text texts[RECIPE_TEXTS];
     uint32_t count;
-    char *command, *options, *counters, *view, *scene, *name, *driver, *functions; /* owned */
+    char *command, *options, *counters, *view, *part, *scene, *name, *driver,
+        *functions; /* owned */
     char hash[17];
     whit_device_info device;
 };
@@ -77,6 +81,11 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
 /* Adds what a picture of costs shows; false as above. */
 bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);
+/* Adds which part of a picture it is; false as above. */
+bool recipe_add_part(struct recipe *recipe, const struct part *part,
+                     const struct settings *settings);
+/* whit:counters of these numbers; free() it. NULL: memory ran out. */
+char *recipe_counters(const whit_stats *stats);
 void recipe_finish(struct recipe *recipe);
 
 /* The device's driver without the name of the device in front. */

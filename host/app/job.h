@@ -13,8 +13,9 @@ struct job {
     whit_device_opening *opening;
     whit_shader_compiler *compiler; /* of --shader */
     whit_shader *shader;
-    uint64_t recipe_hash; /* of the scene, as a picture's recipe says; 0: nothing does */
-    bool keeps_axes;      /* `--up auto` turns no model: see job_load */
+    uint64_t recipe_hash;  /* of the scene, as a picture's recipe says; 0: nothing does */
+    char recipe_part[512]; /* which part of a picture it was drawn as, likewise; "": the whole */
+    bool keeps_axes;       /* `--up auto` turns no model: see job_load */
     double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
 };
 

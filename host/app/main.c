@@ -14,6 +14,7 @@ static const struct cli_command *const commands[] = {
     &command_render, &command_scene,   &command_trace,  &command_probe,
     &command_bvh,    &command_bench,   &command_hard,   &command_compare,
     &command_cost,   &command_devices, &command_shader, &command_check,
+    &command_merge,
 #ifdef WHIT_VIEWER
     &command_view,
 #endif

@@ -76,6 +76,7 @@ enum settings_command {
     IN_BENCH = 1 << 9,
     IN_SHADER = 1 << 10,
     IN_CHECK = 1 << 11,
+    IN_MERGE = 1 << 12,
 };
 
 /* The table; it ends with a row that has no name. */

@@ -422,11 +422,11 @@ const struct setting settings_table[] = {
      "seconds of the processor for each file that foreign code\n"
      "reads; ten times that by the clock",
      "by its size, 8 to 60", AT(NUMBER, load.import_limit_s), .min = 1e-3, .max = 1e6,
-     .commands = IN_SCENES | IN_COMPARE, .trusted = true},
+     .commands = IN_SCENES | IN_COMPARE | IN_MERGE, .trusted = true},
     {"require-sandbox", 0, NULL,
      "fail where such code cannot be locked in, in place of a\n"
      "warning",
-     AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE | IN_CHECK,
+     AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE | IN_MERGE | IN_CHECK,
      .trusted = true},
 
     {"device", 0, "auto|N|NAME", "Vulkan device; see `whit devices`", "auto", AT(TEXT, device),
@@ -450,7 +450,7 @@ const struct setting settings_table[] = {
     {"validation", 0, NULL, "run with the Vulkan validation layers", AT(FLAG, validation),
      .commands = (IN_SCENES & ~IN_SCENE) | IN_SHADER | IN_CHECK},
     {"quiet", 'q', NULL, "no notes, no progress, only errors", AT(FLAG, quiet),
-     .commands = IN_SCENES | IN_COMPARE | IN_BENCH | IN_CHECK},
+     .commands = IN_SCENES | IN_COMPARE | IN_MERGE | IN_BENCH | IN_CHECK},
 
     {"tile-size", 0, "N", "pixels on a tile's side, 16 to 512", "by measured time",
      AT(COUNT, picture.tile_size), .min = 16, .max = 512, .developer = true, .commands = IN_RENDER},
@@ -479,7 +479,6 @@ const struct setting settings_table[] = {
      .commands = IN_PICTURES},
     {"opaque-shadows", 0, NULL, "is `--shadows opaque` now", .kind = SETTING_GONE,
      .commands = IN_PICTURES},
-    {"tile", 0, NULL, "is `--tile-size` now", .kind = SETTING_GONE, .commands = IN_RENDER},
     {0},
 };
 _Static_assert(sizeof settings_table / sizeof *settings_table <= 64,

@@ -40,7 +40,7 @@ for samples in 0 4097 -1 4x four ""; do
 done
 refuse 2 "--depth -1" "whole number" render "$CUBE" -o "$P" --depth -1
 refuse 2 "--tile-size 5" "from 16 to 512" render "$CUBE" -o "$P" --tile-size 5
-refuse 2 "--tile 32" "option \`--tile\` is \`--tile-size\` now" render "$CUBE" -o "$P" --tile 32
+refuse 2 "--tile 32" "\`--tile-size\` now" render "$CUBE" -o "$P" --tile 32
 refuse 2 "--packets some" "auto, on, off" render "$CUBE" -o "$P" --packets some
 refuse 2 "--classes two" "auto, one, many" render "$CUBE" -o "$P" --classes two
 refuse 2 "--segments 3" "auto, 1, 2" render "$CUBE" -o "$P" --segments 3

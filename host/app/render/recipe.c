@@ -26,7 +26,7 @@ static char *options_line(const struct settings *settings)
     return document_line(options);
 }
 
-static char *counters_line(const whit_stats *stats)
+char *recipe_counters(const whit_stats *stats)
 {
     json_t *rays = document_object();
     document_count(rays, "primary", stats->rays_primary);
@@ -71,7 +71,7 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     snprintf(recipe->hash, sizeof recipe->hash, "%016" PRIx64, info.hash);
     recipe->command = command_line(settings, output);
     recipe->options = options_line(settings);
-    recipe->counters = counters_line(stats);
+    recipe->counters = recipe_counters(stats);
     /* Other programs print what pictures hold, as it is. */
     recipe->scene = strdup(cli_shown(settings->scene));
     recipe->name = strdup(cli_shown(recipe->device.name));
@@ -111,8 +111,18 @@ bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
     return recipe->view != NULL;
 }
 
+bool recipe_add_part(struct recipe *recipe, const struct part *part,
+                     const struct settings *settings)
+{
+    recipe->part = part_line(part, settings);
+    if (recipe->part)
+        add(recipe, PART_KEY, recipe->part);
+    return recipe->part != NULL;
+}
+
 void recipe_finish(struct recipe *recipe)
 {
+    free(recipe->part);
     free(recipe->scene);
     free(recipe->name);
     free(recipe->driver);

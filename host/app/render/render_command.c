@@ -17,6 +17,14 @@ static const struct setting options[] = {
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png",
      .kind = SETTING_OWN, .read = frames_read},
+    {"tile", 0, "I/N",
+     "tile I of N alone, rows over the whole width, with its place;\n"
+     "`whit merge` puts tiles together, see docs/batch.md",
+     .kind = SETTING_OWN, .read = part_read_tile},
+    {"samples-part", 0, "I/N",
+     "run I of N of the samples alone, as sums, in .exr or .pfm;\n"
+     "N: a power of 4 that divides the samples",
+     .kind = SETTING_OWN, .read = part_read_samples},
     {"thumbnail", 0, "N",
      "for file managers: N x N pixels, and a PNG whatever the\n"
      "picture is called; says errors only",
@@ -137,6 +145,7 @@ whit_result render_create(const struct job *job, const struct render_request *re
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count |= request->counters;
+    part_take(&request->part, &params);
     if (refine_is_wanted(&request->refine)) /* what kernels are chosen for */
         params.sampling.count = REFINE_SAMPLES_USUAL;
     whit_result result = whit_renderer_create(job->device, job->accel, &params, renderer);
@@ -189,6 +198,8 @@ static whit_result save_own_colors(whit_renderer *renderer, const struct setting
 {
     whit_image *image;
     whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    if (result == WHIT_OK && request->part.sets)
+        part_sum(&request->part, settings->picture.sampling.count, image);
     if (result == WHIT_OK)
         result = save_colors(renderer, settings, request, image, layers, recipe);
     whit_image_destroy(image);
@@ -233,7 +244,10 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     whit_device_get_info(job->device, &device);
     if (!recipe_init(&recipe, settings, job->scene, job->shader, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
-    if (request->ids)
+    bool part = part_is_given(&request->part);
+    if (part && !recipe_add_part(&recipe, &request->part, settings))
+        result = WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK && request->ids)
         result = save_ids(renderer, request->ids, &recipe);
     if (result == WHIT_OK && cli_cancel)
         result = WHIT_ERROR_CANCELLED;
@@ -248,6 +262,8 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     else if (result == WHIT_OK)
         result = color ? save_colors(renderer, settings, request, color, layers, &recipe)
                        : save_own_colors(renderer, settings, request, layers, &recipe);
+    if (result == WHIT_OK && part && part_is_pfm(request->output))
+        result = part_save_beside(request->output, &recipe);
     recipe_finish(&recipe);
     return result;
 }
@@ -265,7 +281,7 @@ whit_result render_prepare(struct job *job, const struct render_request *request
                            struct frames_progress *progress, whit_renderer **renderer)
 {
     whit_result result = job_load_shader(job);
-    if (result == WHIT_OK && !layers_check(job))
+    if (result == WHIT_OK && (!layers_check(job) || !part_check_shader(job, request)))
         result = WHIT_ERROR_USAGE;
     if (result == WHIT_OK) {
         job_begin_device(job);
@@ -297,11 +313,14 @@ static void say_done(const struct job *job, const struct render_request *request
                      const whit_stats *stats)
 {
     const struct frames *frames = &request->frames;
-    char about[64] = "";
+    char about[128] = "", part[64];
     whit_device_info device;
     whit_device_get_info(job->device, &device);
     if (frames->given)
         snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
+    if (part_is_given(&request->part))
+        snprintf(about + strlen(about), sizeof about - strlen(about), "%s of ",
+                 part_name(&request->part, part));
     if (is_told(job))
         fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
                 cli_shown(request->output), about, job->settings.picture.width,
@@ -415,8 +434,15 @@ static bool read_all(struct job *job, struct cli_reader *reader, struct render_r
 {
     if (!cli_read(reader, request, &job->settings))
         return false;
-    if (repeat_picture(reader, &request->repeat))
-        return repeat_read(job, reader, request, &request->repeat, argc, argv);
+    if (repeat_picture(reader, &request->repeat)) {
+        struct part_place place;
+        if (!repeat_read(job, reader, request, &request->repeat, argc, argv))
+            return false;
+        if (job->recipe_part[0] && !part_is_given(&request->part) &&
+            part_of_line(job->recipe_part, &place))
+            request->part = place.part;
+        return true;
+    }
     job_init(job, reader->command);
     cli_reader_init(reader, reader->command, argc, argv);
     return job_read(job, reader, request, false);
@@ -431,7 +457,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     cli_reader_init(&reader, command, argc, argv);
     if (!read_all(&job, &reader, &request, argc, argv) || !frames_check(&reader, &job, &request) ||
         !check_choice(&reader, &job.settings, &request) || !refine_check(&reader, &job, &request) ||
-        !check_outputs(&reader, &request))
+        !part_check(&reader, &job, &request) || !check_outputs(&reader, &request))
         return reader.status;
     if (request.thumbnail) {
         job.settings.picture.width = job.settings.picture.height = request.thumbnail;

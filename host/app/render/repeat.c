@@ -264,6 +264,8 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
     job->settings.given = 0; /* what it says and the command line says too is no quarrel */
     const char *hash = find_text(recipe->texts, recipe->text_count, "whit:scene_hash");
     job->recipe_hash = hash ? strtoull(hash, NULL, 16) : 0;
+    const char *part = find_text(recipe->texts, recipe->text_count, PART_KEY);
+    snprintf(job->recipe_part, sizeof job->recipe_part, "%s", part ? part : "");
     cli_reader_init(reader, command, argc, argv);
     if (!job_read(job, reader, own, true))
         return false;

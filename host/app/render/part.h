@@ -1,0 +1,64 @@
+/* Parts of a picture that are drawn alone, anywhere and in any order, and merge to the bytes of one
+   run: `whit render --tile I/N --samples-part I/N`. */
+#ifndef APP_RENDER_PART_H
+#define APP_RENDER_PART_H
+
+#include "app/job.h"
+
+struct recipe;
+struct render_request;
+
+/* Which tile of how many, and which run of the samples of how many; 1 is the first. A count of 0:
+   the option was not given, and the part has all of them. */
+struct part {
+    uint32_t tile, tiles;
+    uint32_t set, sets;
+};
+
+bool part_is_given(const struct part *part);
+/* setting.read of --tile and --samples-part, into a render_request. */
+bool part_read_tile(const struct setting *setting, const char *value, void *request,
+                    char why[SETTING_WHY_BYTES]);
+bool part_read_samples(const struct setting *setting, const char *value, void *request,
+                       char why[SETTING_WHY_BYTES]);
+/* Whether the other options go with them. */
+bool part_check(struct cli_reader *reader, const struct job *job,
+                const struct render_request *request);
+/* Whether the functions of the job's shader do, of which a merged picture has to have all. */
+bool part_check_shader(const struct job *job, const struct render_request *request);
+
+/* The most tiles of a picture of `height` rows. */
+uint32_t part_tiles_max(uint32_t height);
+/* The rows of the part's tile: from `first` on `count` of them. */
+void part_rows(const struct part *part, uint32_t height, uint32_t *first, uint32_t *count);
+/* What of `params` of the whole picture the part draws. */
+void part_take(const struct part *part, whit_renderer_params *params);
+/* How messages name it, such as "tile 2/4, samples 1/16"; gives `text`. */
+const char *part_name(const struct part *part, char text[64]);
+
+/* Makes sums of the means of the part's samples, of `samples` in all. */
+void part_sum(const struct part *part, uint32_t samples, whit_image *image);
+/* Colours times `factor`; alpha stays. */
+void part_scale(float factor, whit_image *image);
+
+/* What a recipe says of a part: itself, and the picture that it is of. */
+struct part_place {
+    struct part part;
+    uint32_t width, height, samples; /* of the whole picture */
+};
+#define PART_KEY "whit:part"
+/* One line of JSON; free() it. NULL: memory ran out, which was said. */
+char *part_line(const struct part *part, const struct settings *settings);
+/* False: `line` is none of whit's. */
+bool part_of_line(const char *line, struct part_place *place);
+
+/* A PFM has no room for a recipe: it is kept in NAME.pfm.part beside it, with a hash of the
+   picture's file. */
+bool part_is_pfm(const char *path);
+WHIT_CHECK whit_result part_save_beside(const char *path, const struct recipe *recipe);
+/* The recipe of a part, of the picture or from beside it; *texts for whit_memory_destroy.
+   WHIT_ERROR_INPUT, said: it is missing, damaged, or not that of the picture as it is. */
+WHIT_CHECK whit_result part_load_texts(const char *path, const whit_load_params *params,
+                                       whit_text **texts, uint32_t *count);
+
+#endif
