@@ -31,6 +31,7 @@ static volatile sig_atomic_t grace_ms = GRACE_MS;
 static char written_texts[2][64] = {"nothing was written", ""};
 static const char *volatile written_text = written_texts[0];
 static const char saving_text[] = "each file is whole or as it was";
+static const char *volatile next_command; /* or NULL */
 static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */
@@ -179,6 +180,8 @@ int cli_exit_of(whit_result result)
         fprintf(stderr, "whit: interrupted, %s\n", written_text);
     else if (!error_said)
         fprintf(stderr, "whit: error: %s\n", whit_result_name(result));
+    if (next_command && (cancelled || cli_time_over()))
+        fprintf(stderr, "whit: to go on: %s", next_command);
     end_said = error_said = 1;
     unlock_reason(&before);
     if (cancelled)
@@ -214,6 +217,10 @@ void cli_put_end(const char *kind, const char *why)
     put(", ");
     put(written_text);
     put("\n");
+    if (next_command) {
+        put("whit: to go on: ");
+        put(next_command);
+    }
 }
 
 __attribute__((no_sanitize_address)) void cli_leave(int code)
@@ -265,6 +272,11 @@ void cli_set_kept(uint32_t done, uint32_t count, const char *what)
     char *text = written_texts[written_text == written_texts[0]];
     snprintf(text, sizeof written_texts[0], "%u of %u %s", done, count, what);
     written_text = text;
+}
+
+void cli_set_next(const char *command)
+{
+    next_command = command;
 }
 
 void cli_set_saving(void)

@@ -137,6 +137,9 @@ void cli_set_saving(void);
 void cli_keep_what_is_done(int grace_ms);
 /* For the message of interrupted work: "12 of 40 WHAT". */
 void cli_set_kept(uint32_t done, uint32_t count, const char *what);
+/* For the message of interrupted work, and of a time limit that has passed: the command that goes
+   on with it, and a line end. It has to stay. */
+void cli_set_next(const char *command);
 /* Ends the process with EXIT_TIME some time after `seconds`, for what does not watch the time by
    itself. */
 void cli_limit_time(double seconds);

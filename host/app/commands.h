@@ -9,6 +9,7 @@
 #include "app/render/part.h"
 #include "app/render/refine.h"
 #include "app/render/repeat.h"
+#include "app/render/resume.h"
 #include "app/render/view_image.h"
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
@@ -24,6 +25,7 @@ struct render_request {
     struct repeat repeat;
     struct frames frames; /* with them `output` and `ids` are patterns */
     struct part part;
+    bool resume;        /* what is finished is kept */
     uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 

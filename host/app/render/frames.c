@@ -181,29 +181,11 @@ static whit_result save_with_layers(const struct job *job, const struct render_r
     return result;
 }
 
-static whit_result save_frame(const struct job *job, const struct render_request *request,
-                              whit_renderer *renderer, const whit_stats *stats, uint32_t frame)
-{
-    struct render_request single = *request;
-    char *output = frames_path(request->output, frame);
-    char *ids = request->ids ? frames_path(request->ids, frame) : NULL;
-    whit_result result = WHIT_ERROR_MEMORY;
-    single.output = output;
-    single.ids = ids;
-    if (output && (ids || !request->ids))
-        result = save_with_layers(job, &single, renderer, stats);
-    else
-        cli_error("out of memory");
-    free(output);
-    free(ids);
-    return result;
-}
-
-static whit_result render_frame(struct job *job, const struct render_request *request,
+/* `single`: the request of the frame alone. */
+static whit_result render_frame(struct job *job, const struct render_request *single,
                                 whit_renderer *renderer, uint32_t frame, struct sequence *sequence)
 {
     whit_stats stats;
-    job->settings.picture.time_s = (double)frame / job->settings.fps;
     whit_result result = whit_renderer_set_time(renderer, job->settings.picture.time_s);
     if (result == WHIT_OK)
         result = whit_renderer_render(renderer);
@@ -211,7 +193,7 @@ static whit_result render_frame(struct job *job, const struct render_request *re
         return result;
     double start_ms = whit_clock_ms();
     whit_renderer_get_stats(renderer, &stats);
-    result = save_frame(job, request, renderer, &stats, frame);
+    result = save_with_layers(job, single, renderer, &stats);
     if (result != WHIT_OK)
         return result;
     double save_ms = whit_clock_ms() - start_ms;
@@ -230,21 +212,79 @@ static whit_result render_frame(struct job *job, const struct render_request *re
                                                       .save_ms = save_ms});
 }
 
+/* Draws the frame, or with --resume keeps it where it is finished, or leaves it to the process that
+   draws it: *left. */
+static whit_result take_frame(struct job *job, const struct render_request *request,
+                              whit_renderer *renderer, uint32_t frame, struct sequence *sequence,
+                              bool *left)
+{
+    struct render_request single = *request;
+    struct lock lock = {0};
+    enum resume_state state = RESUME_DRAW;
+    char *output = frames_path(request->output, frame);
+    char *ids = request->ids ? frames_path(request->ids, frame) : NULL;
+    whit_result result = output && (ids || !request->ids) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    single.output = output;
+    single.ids = ids;
+    job->settings.picture.time_s = (double)frame / job->settings.fps;
+    if (result != WHIT_OK)
+        cli_error("out of memory");
+    else if (request->resume)
+        result = resume_begin(job, &single, &state, &lock);
+    if (result == WHIT_OK && state == RESUME_DRAW)
+        result = render_frame(job, &single, renderer, frame, sequence);
+    lock_give_back(&lock);
+    *left = state == RESUME_OTHERS;
+    sequence->kept += result == WHIT_OK && state == RESUME_KEPT;
+    free(output);
+    free(ids);
+    return result;
+}
+
+/* Goes over all frames, and over those that other processes draw until they are there: these may
+   have been stopped. `left`: of each frame. */
+static whit_result take_frames(struct job *job, const struct render_request *request,
+                               whit_renderer *renderer, struct frames_progress *progress,
+                               struct sequence *sequence, bool *left)
+{
+    uint32_t count = progress->count, waiting = count;
+    whit_result result = WHIT_OK;
+    memset(left, true, count);
+    while (result == WHIT_OK && waiting > 0) {
+        waiting = 0;
+        for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
+            if (!left[i])
+                continue;
+            progress->done = sequence->written;
+            progress->count = count - sequence->kept; /* what was kept took no time */
+            cli_set_written(sequence->written + sequence->kept, count);
+            result = job_still_wanted();
+            if (result == WHIT_OK)
+                result = take_frame(job, request, renderer, request->frames.first + i, sequence,
+                                    &left[i]);
+            waiting += left[i];
+        }
+        if (result == WHIT_OK && waiting > 0)
+            result = resume_wait();
+    }
+    progress->count = count;
+    cli_set_written(sequence->written + sequence->kept, count);
+    return result;
+}
+
 whit_result frames_render(struct job *job, const struct render_request *request,
                           whit_renderer *renderer, struct frames_progress *progress,
                           struct sequence *sequence)
 {
-    whit_result result = WHIT_OK;
+    bool *left = malloc(progress->count * sizeof *left);
     *sequence = (struct sequence){0};
+    if (!left) {
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
     whit_renderer_get_stats(renderer, &sequence->stats);
     sequence->stats.render_device_ms = sequence->stats.bailout_bound = 0.0;
-    for (uint32_t i = 0; result == WHIT_OK && i < progress->count; ++i) {
-        progress->done = i;
-        cli_set_written(i, progress->count);
-        result = job_still_wanted();
-        if (result == WHIT_OK)
-            result = render_frame(job, request, renderer, request->frames.first + i, sequence);
-    }
-    cli_set_written(sequence->written, progress->count);
+    whit_result result = take_frames(job, request, renderer, progress, sequence, left);
+    free(left);
     return result == WHIT_OK ? find_medians(sequence) : result;
 }

@@ -25,7 +25,7 @@ struct sequence {
     struct frame_times *each;
     struct frame_times median;
     uint32_t count, capacity;
-    uint32_t written; /* frames */
+    uint32_t written, kept; /* frames; kept: they were finished before */
     double save_ms;
     whit_stats stats; /* summed up; upload and compile: before the first frame */
 };

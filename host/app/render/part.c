@@ -207,7 +207,7 @@ void part_scale(float factor, whit_image *image)
 
 /* ---- Recipes ---- */
 
-char *part_line(const struct part *part, const struct settings *settings)
+json_t *part_document(const struct part *part, const struct settings *settings)
 {
     uint32_t samples = settings->picture.sampling.count, first, rows;
     part_rows(part, settings->picture.height, &first, &rows);
@@ -221,7 +221,12 @@ char *part_line(const struct part *part, const struct settings *settings)
     document_count(object, "width", settings->picture.width);
     document_count(object, "height", settings->picture.height);
     document_count(object, "samples", samples ? samples : 1);
-    char *line = document_line(object);
+    return object;
+}
+
+char *part_line(const struct part *part, const struct settings *settings)
+{
+    char *line = document_line(part_document(part, settings));
     if (!line)
         cli_error("out of memory");
     return line;

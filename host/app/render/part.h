@@ -47,7 +47,10 @@ struct part_place {
     uint32_t width, height, samples; /* of the whole picture */
 };
 #define PART_KEY "whit:part"
-/* One line of JSON; free() it. NULL: memory ran out, which was said. */
+/* The same as JSON. */
+struct json_t;
+struct json_t *part_document(const struct part *part, const struct settings *settings);
+/* In one line; free() it. NULL: memory ran out, which was said. */
 char *part_line(const struct part *part, const struct settings *settings);
 /* False: `line` is none of whit's. */
 bool part_of_line(const char *line, struct part_place *place);

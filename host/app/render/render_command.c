@@ -25,6 +25,11 @@ static const struct setting options[] = {
      "run I of N of the samples alone, as sums, in .exr or .pfm;\n"
      "N: a power of 4 that divides the samples",
      .kind = SETTING_OWN, .read = part_read_samples},
+    {"resume", 0, NULL,
+     "keep files that are finished, by their recipes, and draw the\n"
+     "others; processes with the same files share them, see\n"
+     "docs/batch.md",
+     SETTING_AT_FLAG(struct render_request, resume)},
     {"thumbnail", 0, "N",
      "for file managers: N x N pixels, and a PNG whatever the\n"
      "picture is called; says errors only",
@@ -348,9 +353,9 @@ static whit_result draw_one(struct job *job, const struct render_request *reques
     return result;
 }
 
-static whit_result render_one(struct job *job, const struct render_request *request,
-                              whit_renderer *renderer, struct frames_progress *progress,
-                              struct refined *refined, struct sequence *sequence)
+static whit_result draw_and_save(struct job *job, const struct render_request *request,
+                                 whit_renderer *renderer, struct frames_progress *progress,
+                                 struct refined *refined, struct sequence *sequence)
 {
     whit_image *color;
     struct layers layers = {0};
@@ -369,13 +374,37 @@ static whit_result render_one(struct job *job, const struct render_request *requ
     return result;
 }
 
+static whit_result render_one(struct job *job, const struct render_request *request,
+                              whit_renderer *renderer, struct frames_progress *progress,
+                              struct refined *refined, struct sequence *sequence)
+{
+    enum resume_state state = RESUME_OTHERS;
+    struct lock lock = {0};
+    whit_result result = WHIT_OK;
+    if (!request->resume)
+        return draw_and_save(job, request, renderer, progress, refined, sequence);
+    while (result == WHIT_OK && state == RESUME_OTHERS) {
+        result = resume_begin(job, request, &state, &lock);
+        if (result == WHIT_OK && state == RESUME_OTHERS)
+            result = resume_wait();
+    }
+    if (result == WHIT_OK && state == RESUME_DRAW)
+        result = draw_and_save(job, request, renderer, progress, refined, sequence);
+    lock_give_back(&lock);
+    sequence->kept = result == WHIT_OK && state == RESUME_KEPT;
+    if (sequence->kept)
+        whit_renderer_get_stats(renderer, &sequence->stats);
+    return result;
+}
+
 /* Says how many frames were written when a sequence ends too early. After an interrupt its handler
    says so. */
 static void say_written(const struct job *job, const struct frames_progress *progress,
                         const struct sequence *sequence)
 {
     if (!cli_cancel && !job->settings.quiet)
-        cli_note("%u of %u frames were written", sequence->written, progress->count);
+        cli_note("%u of %u frames were written", sequence->written + sequence->kept,
+                 progress->count);
 }
 
 static int work(struct job *job, const struct render_request *request)
@@ -396,6 +425,9 @@ static int work(struct job *job, const struct render_request *request)
     cli_progress_finish(&progress.bar);
     if (result == WHIT_OK) {
         say_done(job, request, &sequence.stats);
+        if (sequence.kept && is_told(job))
+            cli_note("%u finished file%s kept", sequence.kept,
+                     sequence.kept == 1 ? " was" : "s were");
         status = stats_print(job, request, renderer, &sequence.stats, sequence.save_ms,
                              frames->given ? &sequence : NULL, refined.samples ? &refined : NULL);
         bool missed = refined.samples && !refined.reached;
@@ -457,7 +489,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     cli_reader_init(&reader, command, argc, argv);
     if (!read_all(&job, &reader, &request, argc, argv) || !frames_check(&reader, &job, &request) ||
         !check_choice(&reader, &job.settings, &request) || !refine_check(&reader, &job, &request) ||
-        !part_check(&reader, &job, &request) || !check_outputs(&reader, &request))
+        !part_check(&reader, &job, &request) || !resume_check(&reader, &job, &request) ||
+        !check_outputs(&reader, &request))
         return reader.status;
     if (request.thumbnail) {
         job.settings.picture.width = job.settings.picture.height = request.thumbnail;
@@ -467,6 +500,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         job.settings.stats = STATS_TEXT;
     if (request.frames.given)
         job.settings.picture.time_s = (double)request.frames.first / job.settings.fps;
+    resume_keep_line(&request, &job, argc, argv);
     job_start(&job);
     int status = work(&job, &request);
     job_finish(&job);

@@ -208,6 +208,7 @@ static json_t *frames_document(const struct job *job, const struct sequence *seq
 {
     json_t *frames = document_object(), *median = document_object(), *each = document_array();
     document_count(frames, "count", sequence->count);
+    document_count(frames, "kept", sequence->kept);
     document_number(frames, "fps", job->settings.fps);
     put_frame_times(median, &sequence->median);
     document_put(frames, "median", median);
@@ -246,6 +247,8 @@ static int print_json(const struct job *job, const struct render_request *reques
         document_put(root, "refine", refined_document(figures->refined));
     if (figures->sequence)
         document_put(root, "frames", frames_document(job, figures->sequence));
+    if (part_is_given(&request->part))
+        document_put(root, "part", part_document(&request->part, &job->settings));
     json_t *work = document_object();
     document_count(work, "dispatches", figures->render->dispatches);
     document_count(work, "tiles", figures->render->tiles);

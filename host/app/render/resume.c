@@ -1,0 +1,159 @@
+#include "app/render/resume.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "app/commands.h"
+#include "base/file.h"
+#include "settings/quote.h"
+
+/* ---- Options ---- */
+
+/* A PFM that is no part has no recipe. */
+static bool has_recipe(const struct render_request *request)
+{
+    return part_is_given(&request->part) || !request->output || !part_is_pfm(request->output);
+}
+
+bool resume_check(struct cli_reader *reader, const struct job *job,
+                  const struct render_request *request)
+{
+    const struct settings *settings = &job->settings;
+    if (!request->resume)
+        return true;
+    if (!has_recipe(request))
+        return cli_misuse(reader,
+                          "--resume: %s has no recipe that would tell whether it is finished: "
+                          ".png and .exr have",
+                          request->output);
+    const char *other = refine_is_wanted(&request->refine) ? "--refine"
+                        : settings->budget_ms > 0.0        ? "--budget-ms"
+                        : settings->max_error > 0.0        ? "--max-error"
+                        : request->thumbnail               ? "--thumbnail"
+                                                           : NULL;
+    return !other ||
+           cli_misuse(reader, "--resume and %s: another run may draw another picture", other);
+}
+
+/* ---- What is finished ---- */
+
+/* Devices and what they counted are none of what was asked for. */
+static bool decides(const char *key)
+{
+    return strcmp(key, "whit:device") != 0 && strcmp(key, "whit:driver") != 0 &&
+           strcmp(key, "whit:counters") != 0;
+}
+
+static bool same_recipe(const struct recipe *wanted, const whit_text *texts, uint32_t count)
+{
+    for (uint32_t i = 0; i < wanted->count; ++i) {
+        uint32_t k = 0;
+        while (k < count && strcmp(texts[k].key, wanted->texts[i].key) != 0)
+            ++k;
+        if (decides(wanted->texts[i].key) &&
+            (k == count || strcmp(texts[k].value, wanted->texts[i].value) != 0))
+            return false;
+    }
+    return true;
+}
+
+/* What is wrong with a file is no error: it is drawn again. */
+static bool is_finished(const struct job *job, const char *path, const struct recipe *wanted)
+{
+    const char *folders[SETTING_FOLDERS_MAX];
+    whit_load_params load = settings_load(&job->settings, folders);
+    whit_text *texts = NULL;
+    whit_image *image = NULL;
+    uint32_t count;
+    load.cancel = &cli_cancel;
+    if (!file_exists(path))
+        return false;
+    cli_hush(true);
+    bool finished = part_load_texts(path, &load, &texts, &count) == WHIT_OK &&
+                    same_recipe(wanted, texts, count) &&
+                    whit_image_load(path, &load, &cli_log, &image) == WHIT_OK;
+    cli_hush(false);
+    whit_memory_destroy(texts);
+    whit_image_destroy(image);
+    return finished;
+}
+
+static whit_result find_finished(const struct job *job, const struct render_request *single,
+                                 bool *finished)
+{
+    const whit_device_info device = {0};
+    const whit_stats stats = {0};
+    struct recipe wanted;
+    if (!recipe_init(&wanted, &job->settings, job->scene, job->shader, &device, &stats,
+                     single->output))
+        return WHIT_ERROR_MEMORY;
+    bool part = part_is_given(&single->part);
+    whit_result result = !part || recipe_add_part(&wanted, &single->part, &job->settings)
+                             ? WHIT_OK
+                             : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        *finished = is_finished(job, single->output, &wanted) &&
+                    (!single->ids || is_finished(job, single->ids, &wanted));
+    recipe_finish(&wanted);
+    return result == WHIT_OK ? job_still_wanted() : result;
+}
+
+whit_result resume_begin(const struct job *job, const struct render_request *single,
+                         enum resume_state *state, struct lock *lock)
+{
+    bool finished = false;
+    enum lock_end end = lock_take(&cli_log, single->output, lock);
+    *state = RESUME_OTHERS;
+    if (end == LOCK_FAILED)
+        return WHIT_ERROR_OUTPUT;
+    if (end == LOCK_OTHERS)
+        return WHIT_OK;
+    /* Not before it is locked: who held the lock may just have finished it. */
+    whit_result result = find_finished(job, single, &finished);
+    *state = finished ? RESUME_KEPT : RESUME_DRAW;
+    if (result != WHIT_OK || finished)
+        lock_give_back(lock);
+    return result;
+}
+
+whit_result resume_wait(void)
+{
+    const struct timespec moment = {.tv_nsec = 50 * 1000 * 1000};
+    nanosleep(&moment, NULL);
+    return job_still_wanted();
+}
+
+/* ---- The line that goes on ---- */
+
+struct line {
+    char text[4096];
+    size_t used;
+};
+
+static void put(void *user, const char *part)
+{
+    struct line *line = user;
+    size_t left = sizeof line->text - line->used, length = strlen(part);
+    if (length < left)
+        memcpy(line->text + line->used, part, length + 1);
+    line->used += length < left ? length : left;
+}
+
+void resume_keep_line(const struct render_request *request, const struct job *job, int argc,
+                      char **argv)
+{
+    static struct line line;
+    bool leaves_parts = request->frames.given || part_is_given(&request->part) || request->resume;
+    if (!leaves_parts || !has_recipe(request) || job->settings.quiet)
+        return;
+    line.used = 0;
+    put(&line, "whit");
+    for (int i = 0; i < argc; ++i) {
+        put(&line, " ");
+        quote_word(argv[i], put, &line);
+    }
+    put(&line, request->resume ? "\n" : " --resume\n");
+    if (line.used < sizeof line.text)
+        cli_set_next(line.text);
+}

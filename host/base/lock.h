@@ -1,0 +1,28 @@
+/* Work that several processes share: who holds the lock of a file does it. A lock ends with the
+   process that holds it, whatever ends that, so none is ever stale. */
+#ifndef BASE_LOCK_H
+#define BASE_LOCK_H
+
+#include <stdbool.h>
+
+#include "base/log.h"
+
+/* Of the file PATH.lock, which is there while somebody holds it, or was killed while he did. A
+   zeroed one holds nothing. */
+struct lock {
+    char *path; /* of the lock file */
+    int file;
+};
+
+enum lock_end {
+    LOCK_MINE,   /* give it back with lock_give_back */
+    LOCK_OTHERS, /* another process or lock has it */
+    LOCK_FAILED, /* no such file can be made or locked; logged */
+};
+
+/* Does not wait. */
+enum lock_end lock_take(const whit_log *log, const char *path, struct lock *lock);
+/* Removes the lock file. Nothing for a zeroed one. */
+void lock_give_back(struct lock *lock);
+
+#endif

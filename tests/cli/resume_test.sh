@@ -1,0 +1,96 @@
+#!/bin/sh
+# Work that is stopped anywhere goes on to the same bytes, and processes share it. With `all` it is killed at twenty
+# moments of 50 frames, and in each of 8 tiles.
+# shellcheck disable=SC2086 # Options are split where they are used.
+. "$(dirname "$0")/common.sh"
+mkdir "$OUT/work"
+cd "$OUT/work" || exit 1
+SWARM=$SCENES/swarm.json
+moments="1 4"
+last=11
+tiles=2
+if [ "${3:-}" = all ]; then
+    moments=$(seq 2 2 40)
+    last=49
+    tiles=8
+fi
+frames="$SWARM --frames 0-$last --size 96x72 --aa 4"
+
+# files N: at least N pictures are there.
+files() {
+    test "$(find . -name 'a.*.png' | wc -l)" -ge "$1"
+}
+
+# killed COMMAND...: whit in the background is killed once the command succeeds.
+killed() {
+    wait_for "$pid" "$@"
+    kill -9 "$pid" 2>/dev/null
+    wait "$pid" 2>/dev/null
+}
+
+# same WHAT: all frames are those of one run, and no other file is left.
+same() {
+    for i in $(seq 0 $last); do
+        number=$(printf %03d "$i")
+        cmp "one.$number.png" "a.$number.png" || return 1
+        cmp "one.$number.exr" "a.$number.exr" || return 1
+    done
+    test "$(ls -A | grep -c '^\.*a\.')" -eq $((2 * last + 2)) || { ls -A && return 1; }
+}
+
+expect 0 "one run" render $frames -o one.###.png --ids one.###.exr -q
+for moment in $moments; do
+    "$WHIT" render $frames -o a.###.png --ids a.###.exr --resume -q &
+    pid=$!
+    killed files "$moment"
+done
+check "not all is there" sh -c "! test -e a.$(printf %03d $last).png"
+head -c 600 one.000.png >a.000.png       # cut short
+cp one.002.exr a.001.exr                 # of another frame
+: >a.003.png.lock                        # nobody has it
+expect 0 "it goes on" render $frames -o a.###.png --ids a.###.exr --resume --stats json
+check "what was finished is kept" jq -e ".frames.kept >= 1 and .frames.count >= 2 and .frames.kept + .frames.count == $((last + 1))" "$OUT/stdout"
+check "all is as of one run" same
+expect 0 "all is there" render $frames -o a.###.png --ids a.###.exr --resume --stats json
+check "nothing is drawn" jq -e ".frames.count == 0 and .frames.kept == $((last + 1))" "$OUT/stdout"
+
+# Three processes: what one draws no other does.
+rm -f a.*
+for i in 1 2 3; do
+    "$WHIT" render $frames -o a.###.png --ids a.###.exr --resume --stats json >"$i.json" 2>"$i.err" &
+done
+wait
+check "three processes draw every frame once" jq -es "map(.frames.count) | add == $((last + 1))" 1.json 2.json 3.json
+check "each ends with all frames there" jq -es "all(.[]; .frames.count + .frames.kept == $((last + 1)))" 1.json 2.json 3.json
+check "they are those of one run" same
+
+# A tile, in a PFM with its recipe beside it.
+expect 0 "one picture" render "$CUBE" --size 64x130 --aa 4 -o one.pfm -q
+for i in $(seq $tiles); do
+    "$WHIT" render "$CUBE" --size 64x130 --aa 4 -o "t$i.pfm" --tile $i/$tiles --resume -q &
+    pid=$!
+    killed test -e "t$i.pfm.lock"
+    expect 0 "tile $i goes on" render "$CUBE" --size 64x130 --aa 4 -o "t$i.pfm" --tile $i/$tiles --resume -q
+done
+expect 0 "the tiles" merge t?.pfm -o merged.pfm
+check "are the picture" cmp one.pfm merged.pfm
+printf x >>t1.pfm
+expect 0 "a tile that was changed" render "$CUBE" --size 64x130 --aa 4 -o t1.pfm --tile 1/$tiles --resume
+check "is drawn again" sh -c "! grep -q kept '$OUT/stderr' && ! tail -c 1 t1.pfm | grep -q x"
+
+# Ctrl+C and --time-limit leave what is finished, and say how it goes on.
+rm -f a.*
+"$WHIT" render $frames --frames 0-5000 -o a.###.png --ids a.###.exr 2>"$OUT/stderr" &
+interrupted $! files 2
+check "it says how to go on" grep -q "^whit: to go on: whit render .* --resume$" "$OUT/stderr"
+line=$(sed -n "s/^whit: to go on: whit \(.*\)/\1/p" "$OUT/stderr" | sed "s/--frames 0-5000/--frames 0-$last/")
+eval "run $line"
+check "and so it does" same
+rm -f a.*
+expect 5 "a time limit" render $frames --frames 0-5000 -o a.####.png --ids a.####.exr --resume --time-limit 1.5
+check "it says how to go on" grep -q "^whit: to go on: whit render .* --resume --time-limit 1.5$" "$OUT/stderr"
+
+refuse 2 "--resume of a PFM" "has no recipe" render "$CUBE" -o x.pfm --resume
+refuse 2 "--resume and --refine" "--resume and --refine" render "$CUBE" -o x.png --resume --refine 0.1
+refuse 2 "a folder that is not there" "cannot" render "$CUBE" -o none/x.png --resume
+finish
