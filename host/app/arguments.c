@@ -256,7 +256,7 @@ static void take(struct cli_reader *reader, const struct setting *option, void *
             snprintf(reader->left + used, reader->left_bytes - used, " --%s", option->name);
         return;
     }
-    bool is_barred = !is_setting || (option->trusted && !reader->takes_files);
+    bool is_barred = !reader->trusted && (!is_setting || (option->trusted && !reader->takes_files));
     if (reader->where && !reader->left && is_barred) {
         /* No file of settings may widen what files may be read. */
         cli_misuse(reader, "--%s is nothing to be saved", option->name);

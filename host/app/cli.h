@@ -54,6 +54,7 @@ struct cli_reader {
     bool done;         /* with `status`: no more options, or an error, or help was printed */
     int status;        /* < 0: go on with the work; else exit with it */
     const char *where; /* "FILE:LINE" of options that are not of the command line, or NULL */
+    bool trusted;      /* lines of that file may say all that a command line may */
     char *left; /* gets " --NAME" of each option that no recipe may say, of a recipe; or NULL */
     size_t left_bytes;
     bool takes_files; /* with `where`: options that name files are taken, and whoever reads them

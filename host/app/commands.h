@@ -14,7 +14,7 @@
 
 extern const struct cli_command command_render, command_scene, command_trace, command_bvh,
     command_devices, command_bench, command_hard, command_compare, command_cost, command_view,
-    command_probe, command_shader, command_check, command_merge;
+    command_probe, command_shader, command_check, command_merge, command_batch;
 
 /* The options of `whit render` itself; those of the picture are in the job's settings. */
 struct render_request {
@@ -26,6 +26,8 @@ struct render_request {
     struct frames frames; /* with them `output` and `ids` are patterns */
     struct part part;
     bool resume;        /* what is finished is kept */
+    bool many;          /* one of many pictures by one renderer */
+    bool leaves;        /* with `resume`: a picture that another process draws is not waited for */
     uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 
@@ -41,9 +43,7 @@ void settings_describe(const struct settings *settings, enum settings_command co
 WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
 
-/* Whether the job's scene has its camera, before trees are built; else says what there is
-   (render_command.c). */
-WHIT_CHECK whit_result render_check_camera(const struct job *job);
+    command_probe, command_shader, command_check, command_merge, command_batch;
 
 /* A renderer of what `request` says (render_command.c). */
 WHIT_CHECK whit_result render_create(const struct job *job, const struct render_request *request,

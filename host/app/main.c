@@ -11,10 +11,9 @@
 #include "base/text.h"
 
 static const struct cli_command *const commands[] = {
-    &command_render, &command_scene,   &command_trace,  &command_probe,
-    &command_bvh,    &command_bench,   &command_hard,   &command_compare,
-    &command_cost,   &command_devices, &command_shader, &command_check,
-    &command_merge,
+    &command_render, &command_scene, &command_trace,   &command_probe, &command_bvh,
+    &command_bench,  &command_hard,  &command_compare, &command_cost,  &command_devices,
+    &command_shader, &command_check, &command_merge,   &command_batch,
 #ifdef WHIT_VIEWER
     &command_view,
 #endif

@@ -77,6 +77,7 @@ enum settings_command {
     IN_SHADER = 1 << 10,
     IN_CHECK = 1 << 11,
     IN_MERGE = 1 << 12,
+    IN_BATCH = 1 << 13,
 };
 
 /* The table; it ends with a row that has no name. */

@@ -47,6 +47,7 @@ done
 check "not all is there" sh -c "! test -e a.$(printf %03d $last).png"
 head -c 600 one.000.png >a.000.png       # cut short
 cp one.002.exr a.001.exr                 # of another frame
+head -c -10 one.002.exr >a.002.exr        # whole but for its end
 : >a.003.png.lock                        # nobody has it
 expect 0 "it goes on" render $frames -o a.###.png --ids a.###.exr --resume --stats json
 check "what was finished is kept" jq -e ".frames.kept >= 1 and .frames.count >= 2 and .frames.kept + .frames.count == $((last + 1))" "$OUT/stdout"
@@ -63,6 +64,30 @@ wait
 check "three processes draw every frame once" jq -es "map(.frames.count) | add == $((last + 1))" 1.json 2.json 3.json
 check "each ends with all frames there" jq -es "all(.[]; .frames.count + .frames.kept == $((last + 1)))" 1.json 2.json 3.json
 check "they are those of one run" same
+
+# The same by lines of one process, and of two at once.
+{
+    echo "# frames of one scene"
+    for i in $(seq 0 $last); do
+        echo "whit render '$SWARM' --frame $i --size 96x72 --aa 4 -o a.$(printf %03d "$i").png --ids a.$(printf %03d "$i").exr"
+        [ "$i" -ne 3 ] || echo
+    done
+} >lines
+rm -f a.*
+"$WHIT" batch lines --resume --stats json >1.json 2>1.err &
+"$WHIT" batch lines --resume --stats json >2.json 2>2.err
+wait
+check "two processes draw every line once" jq -es "map(.written) | add == $((last + 1))" 1.json 2.json
+check "with one renderer each" jq -es "map(.renderers) | max == 1" 1.json 2.json
+check "lines are the frames of one run" same
+sed 's/96x72/0x72/;6q' lines >wrong
+refuse 2 "a wrong line" "wrong:2: --size \`0x72\`" batch wrong
+echo "'$SWARM' -o x.png --time-limit 1" >wrong
+refuse 2 "a limit of a line" "wrong:1: --time-limit is of all lines" batch wrong
+echo "'$SWARM' -o x.png 'x" >wrong
+refuse 2 "a quote without end" "wrong:1: a quote has no end" batch wrong
+expect 5 "a time limit" batch lines --time-limit 0.001
+check "says how lines go on" grep -q "^whit: to go on: whit batch lines --time-limit 0.001 --resume$" "$OUT/stderr"
 
 # A tile, in a PFM with its recipe beside it.
 expect 0 "one picture" render "$CUBE" --size 64x130 --aa 4 -o one.pfm -q

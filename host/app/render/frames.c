@@ -116,8 +116,9 @@ void frames_progress_update(void *user, double done)
     struct frames_progress *progress = user;
     double parts = progress->parts ? progress->parts : 1;
     watch_budget(progress, done);
+    double share = ((double)progress->done + parts * done) / (double)progress->count;
     cli_progress_update(&progress->bar,
-                        ((double)progress->done + parts * done) / (double)progress->count);
+                        progress->lines ? (progress->line + share) / progress->lines : share);
 }
 
 /* ---- Times ---- */

@@ -26,6 +26,7 @@ struct sequence {
     struct frame_times median;
     uint32_t count, capacity;
     uint32_t written, kept; /* frames; kept: they were finished before */
+    bool left;              /* another process draws it: render_request.leaves */
     double save_ms;
     whit_stats stats; /* summed up; upload and compile: before the first frame */
 };
@@ -47,6 +48,7 @@ struct frames_progress {
     uint32_t parts;       /* of these that are drawn at once; 0: 1 */
     double budget_ms;     /* of a picture; 0: none. One that will take more is said, once */
     bool said;
+    uint32_t line, lines; /* of several such pieces of work; lines 0: the only one */
 };
 void frames_progress_update(void *progress, double done);
 

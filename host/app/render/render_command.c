@@ -146,7 +146,7 @@ whit_result render_create(const struct job *job, const struct render_request *re
                           struct frames_progress *progress, whit_renderer **renderer)
 {
     whit_renderer_params params = job_picture(job);
-    params.many_pictures = request->frames.given;
+    params.many_pictures = request->frames.given || request->many;
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count |= request->counters;
@@ -385,6 +385,8 @@ static whit_result render_one(struct job *job, const struct render_request *requ
         return draw_and_save(job, request, renderer, progress, refined, sequence);
     while (result == WHIT_OK && state == RESUME_OTHERS) {
         result = resume_begin(job, request, &state, &lock);
+        if (request->leaves)
+            break;
         if (result == WHIT_OK && state == RESUME_OTHERS)
             result = resume_wait();
     }
@@ -392,7 +394,8 @@ static whit_result render_one(struct job *job, const struct render_request *requ
         result = draw_and_save(job, request, renderer, progress, refined, sequence);
     lock_give_back(&lock);
     sequence->kept = result == WHIT_OK && state == RESUME_KEPT;
-    if (sequence->kept)
+    sequence->left = result == WHIT_OK && state == RESUME_OTHERS;
+    if (sequence->kept || sequence->left)
         whit_renderer_get_stats(renderer, &sequence->stats);
     return result;
 }
@@ -407,44 +410,72 @@ static void say_written(const struct job *job, const struct frames_progress *pro
                  progress->count);
 }
 
-static int work(struct job *job, const struct render_request *request)
+int render_draw(struct job *job, const struct render_request *request, whit_renderer *renderer,
+                struct frames_progress *progress, struct sequence *sequence)
 {
     const struct frames *frames = &request->frames;
-    struct frames_progress progress = {.count = frames->last - frames->first + 1};
+    struct refined refined = {0};
+    progress->count = frames->last - frames->first + 1;
+    progress->done = 0;
+    whit_result result = frames->given
+                             ? frames_render(job, request, renderer, progress, sequence)
+                             : render_one(job, request, renderer, progress, &refined, sequence);
+    cli_progress_finish(&progress->bar);
+    if (result != WHIT_OK) {
+        int failed = cli_exit_of(result);
+        if (frames->given)
+            say_written(job, progress, sequence);
+        return failed;
+    }
+    if (sequence->left)
+        return EXIT_FINE;
+    if (!sequence->kept || sequence->written)
+        say_done(job, request, &sequence->stats);
+    if (sequence->kept && is_told(job))
+        cli_note("%s: %u finished picture%s kept", request->output, sequence->kept,
+                 sequence->kept == 1 ? " was" : "s were");
+    int status = stats_print(job, request, renderer, &sequence->stats, sequence->save_ms,
+                             frames->given ? sequence : NULL, refined.samples ? &refined : NULL);
+    bool missed = refined.samples && !refined.reached;
+    if (refined.samples && (missed || is_told(job)))
+        refine_say(&request->refine, &refined);
+    if (missed && status == EXIT_FINE)
+        status = EXIT_DIFFERS;
+    return status == EXIT_FINE ? job_check_validation(job) : status;
+}
+
+static int work(struct job *job, const struct render_request *request)
+{
+    struct frames_progress progress = {.count = 1};
     whit_renderer *renderer = NULL;
     struct sequence sequence = {0};
-    struct refined refined = {0};
-    int status = EXIT_FINE;
+    int status;
     cli_progress_init(&progress.bar, job->settings.quiet);
     whit_result result = render_prepare(job, request, &progress, &renderer);
     progress.bar.start_ms = whit_clock_ms();
     progress.budget_ms = job->settings.budget_ms;
-    if (result == WHIT_OK)
-        result = frames->given ? frames_render(job, request, renderer, &progress, &sequence)
-                               : render_one(job, request, renderer, &progress, &refined, &sequence);
-    cli_progress_finish(&progress.bar);
     if (result == WHIT_OK) {
-        say_done(job, request, &sequence.stats);
-        if (sequence.kept && is_told(job))
-            cli_note("%u finished file%s kept", sequence.kept,
-                     sequence.kept == 1 ? " was" : "s were");
-        status = stats_print(job, request, renderer, &sequence.stats, sequence.save_ms,
-                             frames->given ? &sequence : NULL, refined.samples ? &refined : NULL);
-        bool missed = refined.samples && !refined.reached;
-        if (refined.samples && (missed || is_told(job)))
-            refine_say(&request->refine, &refined);
-        if (missed && status == EXIT_FINE)
-            status = EXIT_DIFFERS;
+        status = render_draw(job, request, renderer, &progress, &sequence);
     } else {
+        cli_progress_finish(&progress.bar);
         status = cli_exit_of(result);
-        if (frames->given && renderer)
-            say_written(job, &progress, &sequence);
     }
-    if (status == EXIT_FINE)
-        status = job_check_validation(job);
     sequence_finish(&sequence);
     whit_renderer_destroy(renderer);
     return status;
+}
+
+whit_result render_retarget(struct job *job, const struct render_request *request,
+                            whit_renderer *renderer)
+{
+    whit_result result = job_take_scene(job);
+    if (result == WHIT_OK)
+        result = check_camera(job, job->settings.camera);
+    if (result != WHIT_OK || !part_check_shader(job, request) || !layers_check(job))
+        return result == WHIT_OK ? WHIT_ERROR_USAGE : result;
+    whit_renderer_params params = job_picture(job);
+    part_take(&request->part, &params);
+    return whit_renderer_set_view(renderer, &params);
 }
 
 static bool check_choice(struct cli_reader *reader, const struct settings *settings,
@@ -475,9 +506,34 @@ static bool read_all(struct job *job, struct cli_reader *reader, struct render_r
             request->part = place.part;
         return true;
     }
+    struct cli_reader again;
     job_init(job, reader->command);
-    cli_reader_init(reader, reader->command, argc, argv);
+    cli_reader_init(&again, reader->command, argc, argv);
+    again.where = reader->where;
+    again.trusted = reader->trusted;
+    again.said = reader->said;
+    again.said_bytes = reader->said_bytes;
+    *reader = again;
     return job_read(job, reader, request, false);
+}
+
+bool render_read(struct job *job, struct cli_reader *reader, struct render_request *request,
+                 int argc, char **argv)
+{
+    if (!read_all(job, reader, request, argc, argv) || !frames_check(reader, job, request) ||
+        !check_choice(reader, &job->settings, request) || !refine_check(reader, job, request) ||
+        !part_check(reader, job, request) || !resume_check(reader, job, request) ||
+        !check_outputs(reader, request))
+        return false;
+    if (request->thumbnail) {
+        job->settings.picture.width = job->settings.picture.height = request->thumbnail;
+        job->settings.quiet = true;
+    }
+    if (request->counters && job->settings.stats == STATS_NONE)
+        job->settings.stats = STATS_TEXT;
+    if (request->frames.given)
+        job->settings.picture.time_s = (double)request->frames.first / job->settings.fps;
+    return true;
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)
@@ -487,20 +543,10 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct render_request request = {0};
     job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
-    if (!read_all(&job, &reader, &request, argc, argv) || !frames_check(&reader, &job, &request) ||
-        !check_choice(&reader, &job.settings, &request) || !refine_check(&reader, &job, &request) ||
-        !part_check(&reader, &job, &request) || !resume_check(&reader, &job, &request) ||
-        !check_outputs(&reader, &request))
+    if (!render_read(&job, &reader, &request, argc, argv))
         return reader.status;
-    if (request.thumbnail) {
-        job.settings.picture.width = job.settings.picture.height = request.thumbnail;
-        job.settings.quiet = true;
-    }
-    if (request.counters && job.settings.stats == STATS_NONE)
-        job.settings.stats = STATS_TEXT;
-    if (request.frames.given)
-        job.settings.picture.time_s = (double)request.frames.first / job.settings.fps;
-    resume_keep_line(&request, &job, argc, argv);
+    if (resume_leaves_files(&request) && !job.settings.quiet)
+        resume_keep_line(request.resume, argc, argv);
     job_start(&job);
     int status = work(&job, &request);
     job_finish(&job);

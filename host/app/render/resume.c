@@ -140,20 +140,22 @@ static void put(void *user, const char *part)
     line->used += length < left ? length : left;
 }
 
-void resume_keep_line(const struct render_request *request, const struct job *job, int argc,
-                      char **argv)
+bool resume_leaves_files(const struct render_request *request)
+{
+    bool parts = request->frames.given || part_is_given(&request->part) || request->resume;
+    return parts && has_recipe(request);
+}
+
+void resume_keep_line(bool resumed, int argc, char **argv)
 {
     static struct line line;
-    bool leaves_parts = request->frames.given || part_is_given(&request->part) || request->resume;
-    if (!leaves_parts || !has_recipe(request) || job->settings.quiet)
-        return;
     line.used = 0;
     put(&line, "whit");
     for (int i = 0; i < argc; ++i) {
         put(&line, " ");
         quote_word(argv[i], put, &line);
     }
-    put(&line, request->resume ? "\n" : " --resume\n");
+    put(&line, resumed ? "\n" : " --resume\n");
     if (line.used < sizeof line.text)
         cli_set_next(line.text);
 }

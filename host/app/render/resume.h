@@ -24,9 +24,10 @@ bool resume_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request);
 /* Waits a moment for other processes. */
 whit_result resume_wait(void);
-/* Keeps the line that goes on with this work, for the message of interrupted work, where there is
-   one: of the words of `whit render`. */
-void resume_keep_line(const struct render_request *request, const struct job *job, int argc,
-                      char **argv);
+/* Whether what is interrupted leaves finished files, which --resume keeps. */
+bool resume_leaves_files(const struct render_request *request);
+/* Keeps the line that goes on, for the message of interrupted work: the words of the command, which
+   has --resume already where `resumed`. */
+void resume_keep_line(bool resumed, int argc, char **argv);
 
 #endif
