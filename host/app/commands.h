@@ -43,7 +43,22 @@ void settings_describe(const struct settings *settings, enum settings_command co
 WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
 
-    command_probe, command_shader, command_check, command_merge, command_batch;
+/* Reads what `whit render` is told: reader->status is < 0 where there is work to do
+   (render_command.c). */
+bool render_read(struct job *job, struct cli_reader *reader, struct render_request *request,
+                 int argc, char **argv);
+/* Makes the renderer of another picture, of the same kernels, one of what `request` and the job's
+   settings say (render_command.c). */
+WHIT_CHECK whit_result render_retarget(struct job *job, const struct render_request *request,
+                                       whit_renderer *renderer);
+/* Draws and saves what `request` says, and tells of it; gives the exit code. `sequence`: zeroed,
+   for sequence_finish (render_command.c). */
+int render_draw(struct job *job, const struct render_request *request, whit_renderer *renderer,
+                struct frames_progress *progress, struct sequence *sequence);
+
+/* Whether the job's scene has its camera, before trees are built; else says what there is
+   (render_command.c). */
+WHIT_CHECK whit_result render_check_camera(const struct job *job);
 
 /* A renderer of what `request` says (render_command.c). */
 WHIT_CHECK whit_result render_create(const struct job *job, const struct render_request *request,

@@ -95,7 +95,7 @@ DeviceInfo = _struct(
 RendererParams = _struct(
     "whit_renderer_params", ("width height", c_uint32), ("camera", Camera), ("time_s", c_double),
     ("sampling", Sampling), ("depth", c_uint32), ("bailout", c_double), ("shadows", Shadows),
-    ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("exposure_ev", c_double),
+    ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("portable", c_bool), ("exposure_ev", c_double),
     ("soft_highlights all_effects", c_bool), ("effects_added effects_removed", c_uint64),
     ("compile_async many_pictures", c_bool), ("tile_size", c_uint32), ("cancel", c_void_p),
     ("progress", _ProgressFn), ("progress_user", c_void_p), ("step_spacing step_aov", c_uint32),

@@ -470,7 +470,7 @@ whit_result render_retarget(struct job *job, const struct render_request *reques
 {
     whit_result result = job_take_scene(job);
     if (result == WHIT_OK)
-        result = check_camera(job, job->settings.camera);
+        result = render_check_camera(job);
     if (result != WHIT_OK || !part_check_shader(job, request) || !layers_check(job))
         return result == WHIT_OK ? WHIT_ERROR_USAGE : result;
     whit_renderer_params params = job_picture(job);
