@@ -45,7 +45,8 @@ typedef struct whit_device_floats {
     bool rounds_nearest;  /* sums and products are rounded to nearest */
 } whit_device_floats;
 
-/* Found out once for a device and its driver, in about a second, and kept. */
+/* Found out once for a device and its driver, in about a second, and kept. WHIT_ERROR_DEVICE,
+   WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_device_find_floats(whit_device *device, whit_device_floats *floats);
 
 uint32_t whit_device_validation_messages(const whit_device *device);

@@ -43,7 +43,8 @@ WHIT_CHECK whit_result whit_image_strips_begin(const char *path, const whit_imag
                                                uint32_t text_count, const whit_log *log,
                                                whit_image_strips **out);
 WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const whit_image *strip);
-/* One of the two ends it; abandon takes NULL too. */
+/* One of the two ends it; abandon takes NULL too. WHIT_ERROR_OUTPUT: the file could not be
+   written, and there is none. */
 WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
 void whit_image_strips_abandon(whit_image_strips *strips);
 /* The floats of a picture, to be changed; NULL where it has integers. */

@@ -93,9 +93,10 @@ DeviceInfo = _struct(
     ("kind", c_char * 16), ("memory_bytes max_storage_range_bytes", c_uint64), ("subgroup_size", c_uint32),
     ("float64 int64 timestamps usable automatic", c_bool), ("why_not", c_char * 128))
 RendererParams = _struct(
-    "whit_renderer_params", ("width height", c_uint32), ("camera", Camera), ("time_s", c_double),
-    ("sampling", Sampling), ("depth", c_uint32), ("bailout", c_double), ("shadows", Shadows),
-    ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("portable", c_bool), ("exposure_ev", c_double),
+    "whit_renderer_params", ("width height first_row row_count", c_uint32), ("camera", Camera),
+    ("time_s", c_double), ("sampling", Sampling), ("depth", c_uint32), ("bailout", c_double), ("shadows", Shadows),
+    ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("portable", c_bool),
+    ("exposure_ev", c_double),
     ("soft_highlights all_effects", c_bool), ("effects_added effects_removed", c_uint64),
     ("compile_async many_pictures", c_bool), ("tile_size", c_uint32), ("cancel", c_void_p),
     ("progress", _ProgressFn), ("progress_user", c_void_p), ("step_spacing step_aov", c_uint32),

@@ -17,6 +17,7 @@ enum { OPTIONS_BYTES = 16384 };
 static const char writes[] = "writes a file, which no case may",
                   loosens[] = "loosens a limit, which no case may",
                   of_command[] = "is for `whit check` itself, not for a case",
+                  a_part[] = "makes a part: a case is a whole picture",
                   by_time[] = "goes by measured time: no two runs need to agree";
 
 /* What no case may say, with the reason; the other rows are those of `whit render`. */
@@ -27,6 +28,9 @@ static const struct setting refused[] = {
     REFUSED("stats", writes),
     REFUSED("counters", writes),
     REFUSED("frames", "makes several pictures: a case is one, with --frame"),
+    REFUSED("tile", a_part),
+    REFUSED("samples-part", a_part),
+    REFUSED("resume", a_part),
     REFUSED("refine", by_time),
     REFUSED("fresh", by_time),
     REFUSED("budget-ms", by_time),
