@@ -129,6 +129,10 @@ check "a camera that is not there" grep -q "^whit: error: looks.whit:3: lost: .*
 check "all are counted" grep -qx "3 cases, 1 new, 2 broken" stdout
 expect 2 "nor accepted" check looks.whit --accept all
 check "the others are" grep -q "^case fine$" looks.golden
+printf 'mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >tri.obj
+printf 'one tri.obj --size 16x12\ntwo tri.obj --size 16x12 --depth 0\n' >models.whit
+expect 4 "a model without its materials" check models.whit
+check "is drawn with a warning, once" test "$(grep -c "^whit: warning: .*nowhere.mtl" stderr)" -eq 1
 expect 5 "a time limit" check looks.whit --time-limit 0.001
 export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
 refuse 3 "no device" "no Vulkan driver" check looks.whit

@@ -101,6 +101,8 @@ static whit_result take_scene(struct studio *studio, struct job *job, struct stu
     job->scene = NULL;
     whit_result result = job_load(job);
     scene.scene = job->scene;
+    if (result == WHIT_OK)
+        job_print_notes(job, false);
     if (scene.scene &&
         !ARRAY_PUSH(studio->scenes, studio->scene_count, studio->scene_capacity, scene)) {
         finish_scene(&scene);
@@ -220,7 +222,7 @@ struct settings studio_settings(const struct studio *studio, const struct check_
     settings.validation = common->validation;
     settings.no_cache = common->no_cache;
     settings.time_limit_s = common->time_limit_s;
-    settings.quiet = true;
+    settings.quiet = common->quiet;
     return settings;
 }
 
