@@ -55,7 +55,13 @@ refuse 2 "a ray cut short" "cut: 99 bytes .*at byte 96" \
 refuse 2 "missing rays" "missing: cannot read" \
     trace "$CUBE" --input "$OUT/missing" -o "$OUT/files/hits"
 refuse 2 "a folder of rays" "cannot read" trace "$CUBE" --input "$OUT" -o "$OUT/files/hits"
+TINY='\001\000\000\000' # 2^-149
+{ cat "$R" && printf "$EIGHTH$FOUR$ZERO$ZERO$TINY$MINUS$ZERO$INF"; } >"$OUT/tiny"
+refuse 2 "a direction that boxes take for another" "tiny: ray 3: 1.4013e-45 .* 2^-126" \
+    trace "$CUBE" --input "$OUT/tiny" -o "$OUT/files/hits" --on cpu --numerics exact
 check "no file was left" test "$(ls -A "$OUT/files")" = rays
+expect 0 "the same where nothing exact is promised" \
+    trace "$CUBE" --input "$OUT/tiny" -o "$OUT/hits" --on cpu --quiet
 
 printf 'mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/bare.obj"
 head -c 32 /dev/zero >"$OUT/one.rays"

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 
 #include "app/commands.h"
@@ -14,7 +15,7 @@ static const struct setting_value values_on[] = {{"device", WHIT_TRACE_DEVICE, N
 struct trace {
     const char *rays_path, *output;
     uint32_t on; /* whit_trace_on */
-    bool any;
+    bool any, exact;
     struct ray_file input;
     uint64_t done_count;
     double trace_ms;
@@ -40,6 +41,25 @@ static const struct setting options[] = {
     {0},
 };
 
+/* Boxes take components of a direction below 2^-126 for 0, so that what only they lead to would be
+   missed, which exact arithmetic would not (docs/numerics-method.md). */
+static whit_result check_exact(const struct trace *trace, uint64_t count)
+{
+    for (uint64_t i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            float d = trace->rays[i].dir[k];
+            if (fpclassify(d) != FP_SUBNORMAL)
+                continue;
+            cli_error("%s: ray %llu: %g in its direction is below 2^-126, which --numerics exact "
+                      "does not answer",
+                      cli_shown(trace->rays_path), (unsigned long long)(trace->done_count + i),
+                      (double)d);
+            return WHIT_ERROR_INPUT;
+        }
+    }
+    return WHIT_OK;
+}
+
 static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
                                 struct cli_progress *progress)
 {
@@ -53,6 +73,8 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
             cli_error("the time limit has passed");
             return WHIT_ERROR_TIME_LIMIT;
         }
+        if (trace->exact && (result = check_exact(trace, count)) != WHIT_OK)
+            return result;
         double start_ms = whit_clock_ms();
         result = whit_trace(renderer, (whit_trace_on)trace->on, trace->rays, count, trace->any,
                             trace->hits, NULL);
@@ -83,6 +105,7 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
 {
     whit_renderer_params params = settings_picture(&job->settings);
     params.cancel = &cli_cancel;
+    trace->exact = params.numerics == WHIT_NUMERICS_EXACT;
     whit_result result = ray_file_open(trace->rays_path, &trace->input);
     if (result == WHIT_OK)
         result = allocate(trace);
