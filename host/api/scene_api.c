@@ -137,19 +137,6 @@ void whit_scene_get_mesh(const whit_scene *handle, uint32_t index, whit_mesh_inf
     };
 }
 
-static const char *model_name(enum scene_model model)
-{
-    switch (model) {
-    case SCENE_MODEL_PHONG:
-        return "phong";
-    case SCENE_MODEL_METAL_ROUGH:
-        return "metal-rough";
-    case SCENE_MODEL_UNLIT:
-        return "unlit";
-    }
-    return "";
-}
-
 static uint32_t count_textures(const struct scene_material *material)
 {
     uint32_t count = 0;
@@ -168,7 +155,7 @@ void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_mate
         .name = or_empty(material->name),
         .file = material->origin.file,
         .line = material->origin.line,
-        .model = model_name(material->model),
+        .model = scene_model_names[material->model],
         .illum = material->illum,
         .shininess = material->shininess,
         .ior = material->ior,
@@ -184,25 +171,6 @@ void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_mate
     copy3(info->transmission, material->transmission);
 }
 
-static const char *light_kind_name(enum scene_light_kind kind)
-{
-    switch (kind) {
-    case SCENE_LIGHT_POINT:
-        return "point";
-    case SCENE_LIGHT_DIRECTIONAL:
-        return "directional";
-    case SCENE_LIGHT_SPOT:
-        return "spot";
-    case SCENE_LIGHT_AREA_SAMPLE:
-        return "area-sample";
-    case SCENE_LIGHT_RECTANGLE:
-        return "rectangle";
-    case SCENE_LIGHT_TRIANGLE:
-        return "triangle";
-    }
-    return "";
-}
-
 void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_info *info)
 {
     *info = (whit_light_info){.name = "", .kind = ""};
@@ -211,7 +179,7 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
     const struct scene_light *light = &handle->pose.lights[index];
     *info = (whit_light_info){
         .name = or_empty(light->name),
-        .kind = light_kind_name(light->kind),
+        .kind = scene_light_kind_names[light->kind],
         .made_by_whit = light->made_by_whit,
     };
     copy3_double(info->position, light->position);
@@ -220,19 +188,6 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
         info->position[i] += 0.5 * (light->edge_u[i] + light->edge_v[i]);
     copy3_double(info->direction, light->direction);
     copy3(info->color, light->color);
-}
-
-static const char *camera_kind_name(enum scene_camera_kind kind)
-{
-    switch (kind) {
-    case SCENE_CAMERA_PERSPECTIVE:
-        return "perspective";
-    case SCENE_CAMERA_ORTHOGRAPHIC:
-        return "orthographic";
-    case SCENE_CAMERA_PANORAMA:
-        return "panorama";
-    }
-    return "";
 }
 
 void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
@@ -245,7 +200,7 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
     bool orthographic = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC;
     *info = (whit_camera_info){
         .name = or_empty(camera->name),
-        .kind = camera_kind_name(camera->kind),
+        .kind = scene_camera_kind_names[camera->kind],
         .fov_y_degrees = perspective ? (double)camera->fov_y * DEGREES : 0.0,
         .height = orthographic ? (double)camera->height : 0.0,
         .lens_radius = (double)camera->lens_radius,

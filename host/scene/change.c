@@ -41,16 +41,21 @@ static bool begin(struct words *words)
 
 /* ---- Records, field by field ---- */
 
-enum form { FLOATS, DOUBLES, WORDS, FLAG };
+enum form { FLOATS, DOUBLES, WORDS, FLAG, NAMED };
 struct field {
     const char *name;
     size_t offset;
     enum form form;
     uint32_t count;
+    const char *const *names; /* NAMED: an enumeration */
 };
 #define FIELD(type, form, field, count, name)                                                      \
     {                                                                                              \
-        name, offsetof(type, field), form, count                                                   \
+        name, offsetof(type, field), form, count, NULL                                             \
+    }
+#define FIELD_OF_NAMES(type, field, names, name)                                                   \
+    {                                                                                              \
+        name, offsetof(type, field), NAMED, 1, names                                               \
     }
 
 static double number_of(const void *record, const struct field *field, uint32_t i)
@@ -62,6 +67,7 @@ static double number_of(const void *record, const struct field *field, uint32_t 
     case DOUBLES:
         return ((const double *)(const void *)at)[i];
     case WORDS:
+    case NAMED:
         return (double)((const int32_t *)(const void *)at)[i];
     case FLAG:
         break;
@@ -83,15 +89,19 @@ static void put_number(struct words *words, const char *before, double number, b
 
 static void put_value(struct words *words, const void *record, const struct field *field)
 {
+    double first = number_of(record, field, 0);
     if (field->form == FLAG)
-        put(words, "%s", number_of(record, field, 0) > 0.0 ? "on" : "off");
-    for (uint32_t i = 0; field->form != FLAG && i < field->count; ++i)
+        put(words, "%s", first > 0.0 ? "on" : "off");
+    else if (field->form == NAMED)
+        put(words, "%s", field->names[(uint32_t)first]);
+    for (uint32_t i = 0; field->form < FLAG && i < field->count; ++i)
         put_number(words, i ? " " : "", number_of(record, field, i), field->form == FLOATS);
 }
 
 static bool same_field(const void *a, const void *b, const struct field *field)
 {
-    static const size_t sizes[] = {sizeof(float), sizeof(double), sizeof(int32_t), sizeof(bool)};
+    static const size_t sizes[] = {sizeof(float), sizeof(double), sizeof(int32_t), sizeof(bool),
+                                   sizeof(int32_t)};
     return memcmp((const char *)a + field->offset, (const char *)b + field->offset,
                   sizes[field->form] * field->count) == 0;
 }
@@ -146,7 +156,7 @@ static void compare_materials(struct words *words, const struct scene_side *befo
 {
 #define MATERIAL(form, field, count, name) FIELD(struct scene_material, form, field, count, name)
     static const struct field fields[] = {
-        MATERIAL(WORDS, model, 1, "model"),
+        FIELD_OF_NAMES(struct scene_material, model, scene_model_names, "model"),
         MATERIAL(WORDS, illum, 1, "illum"),
         MATERIAL(FLOATS, diffuse, 3, "diffuse"),
         MATERIAL(FLOATS, ambient, 3, "ambient"),
@@ -166,7 +176,7 @@ static void compare_materials(struct words *words, const struct scene_side *befo
         MATERIAL(FLOATS, metallic, 1, "metallic"),
         MATERIAL(FLOATS, roughness, 1, "roughness"),
         MATERIAL(FLOATS, specular_level, 1, "specular level"),
-        MATERIAL(WORDS, alpha, 1, "alpha mode"),
+        FIELD_OF_NAMES(struct scene_material, alpha, scene_alpha_names, "alpha mode"),
         MATERIAL(FLOATS, opacity, 1, "opacity"),
         MATERIAL(FLOATS, alpha_cutoff, 1, "alpha cut-off"),
         MATERIAL(FLOATS, normal_scale, 1, "scale of normals"),
@@ -174,8 +184,8 @@ static void compare_materials(struct words *words, const struct scene_side *befo
     static const struct field uses[] = {
         FIELD(struct scene_texture_use, WORDS, uv_set, 1, "set of texture coordinates"),
         FIELD(struct scene_texture_use, FLOATS, transform, 6, "transform of texture coordinates"),
-        FIELD(struct scene_texture_use, WORDS, wrap_u, 1, "wrap of u"),
-        FIELD(struct scene_texture_use, WORDS, wrap_v, 1, "wrap of v"),
+        FIELD_OF_NAMES(struct scene_texture_use, wrap_u, scene_wrap_names, "wrap of u"),
+        FIELD_OF_NAMES(struct scene_texture_use, wrap_v, scene_wrap_names, "wrap of v"),
         FIELD(struct scene_texture_use, FLAG, nearest, 1, "nearest texel"),
     };
     COMPARE(words, a, b, fields);
@@ -192,7 +202,7 @@ static void compare_lights(struct words *words, const struct scene_light *a,
 {
 #define LIGHT(form, field, count, name) FIELD(struct scene_light, form, field, count, name)
     static const struct field fields[] = {
-        LIGHT(WORDS, kind, 1, "kind"),
+        FIELD_OF_NAMES(struct scene_light, kind, scene_light_kind_names, "kind"),
         LIGHT(DOUBLES, position, 3, "position"),
         LIGHT(DOUBLES, direction, 3, "direction"),
         LIGHT(FLOATS, stated, 3, "colour"),
@@ -212,7 +222,7 @@ static void compare_cameras(struct words *words, const struct scene_camera *a,
 {
 #define CAMERA(form, field, count, name) FIELD(struct scene_camera, form, field, count, name)
     static const struct field fields[] = {
-        CAMERA(WORDS, kind, 1, "kind"),
+        FIELD_OF_NAMES(struct scene_camera, kind, scene_camera_kind_names, "kind"),
         CAMERA(DOUBLES, eye, 3, "eye"),
         CAMERA(DOUBLES, target, 3, "target"),
         CAMERA(DOUBLES, up, 3, "up"),
@@ -371,7 +381,8 @@ static void compare_channels(struct words *words, const struct scene_channel *a,
                              const struct scene_channel *b)
 {
     static const struct field fields[] = {
-        FIELD(struct scene_channel, WORDS, interpolation, 1, "interpolation"),
+        FIELD_OF_NAMES(struct scene_channel, interpolation, scene_interpolation_names,
+                       "interpolation"),
     };
     COMPARE(words, a, b, fields);
     compare_counts(words, a->key_count, b->key_count, "keys");
@@ -388,7 +399,7 @@ static void compare_environments(struct words *words, const struct scene *a, con
 {
 #define SKY(form, field, count, name) FIELD(struct scene_environment, form, field, count, name)
     static const struct field fields[] = {
-        SKY(WORDS, kind, 1, "kind"),
+        FIELD_OF_NAMES(struct scene_environment, kind, scene_environment_kind_names, "kind"),
         SKY(FLOATS, zenith, 3, "zenith"),
         SKY(FLOATS, horizon, 3, "horizon"),
         SKY(FLOATS, ground, 3, "ground"),

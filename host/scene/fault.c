@@ -109,18 +109,8 @@ static bool swap_materials(struct scene *scene, uint64_t *random, double glow)
     return true;
 }
 
-static void move_object(struct scene_instance *instance, double by)
-{
-    struct affine local = instance->has_local ? instance->local : affine_identity();
-    for (int i = 3; i < 12; i += 4)
-        local.m[i] += by;
-    instance->local = local;
-    instance->has_local |= by > 0.0;
-}
-
-/* Two objects have each other's place in the order of the file, by which hits are named; they may
-   move as well. */
-static bool swap_objects(struct scene *scene, uint64_t *random, double by)
+/* Two objects have each other's place in the order of the file, by which hits are named. */
+static bool swap_objects(struct scene *scene, uint64_t *random)
 {
     if (scene->instance_count < 2)
         return false;
@@ -129,8 +119,6 @@ static bool swap_objects(struct scene *scene, uint64_t *random, double by)
     struct scene_instance swapped = scene->instances[i];
     scene->instances[i] = scene->instances[k];
     scene->instances[k] = swapped;
-    move_object(&scene->instances[i], by);
-    move_object(&scene->instances[k], by);
     return true;
 }
 
@@ -149,7 +137,7 @@ static bool put_fault(struct scene *scene, const whit_fault *fault)
     case WHIT_FAULT_MATERIALS:
         return swap_materials(scene, &random, fault->amount);
     case WHIT_FAULT_ORDER:
-        return swap_objects(scene, &random, fault->amount);
+        return swap_objects(scene, &random);
     case WHIT_FAULT_KINDS:
         break;
     }

@@ -238,6 +238,14 @@ struct scene_environment {
     bool made_by_whit;
 };
 
+/* names.c: by the enumerations above. */
+extern const char *const scene_model_names[],
+    *const scene_alpha_names[], *const scene_wrap_names[],
+                                    *const scene_interpolation_names[],
+                                        *const scene_light_kind_names[],
+                                            *const scene_camera_kind_names[],
+                                                *const scene_environment_kind_names[];
+
 enum scene_note_level { SCENE_NOTE_INFO, SCENE_NOTE_WARNING };
 
 /* What a loader or scene_freeze noticed, dropped or made up. */

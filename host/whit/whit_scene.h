@@ -200,7 +200,7 @@ typedef enum whit_fault_kind {
                               of what it was */
     WHIT_FAULT_TEXELS,     /* a row of texels goes by `amount` of its range */
     WHIT_FAULT_MATERIALS,  /* two materials have each other's values, and glow by `amount` */
-    WHIT_FAULT_ORDER, /* two objects have each other's place in the file, and move by `amount` */
+    WHIT_FAULT_ORDER,      /* two objects have each other's place in the file */
     WHIT_FAULT_KINDS,
 } whit_fault_kind;
 /* "vertex", "ior", ... */
@@ -208,7 +208,7 @@ const char *whit_fault_kind_name(whit_fault_kind kind);
 typedef struct whit_fault {
     whit_fault_kind kind;
     uint64_t seed; /* draws what is changed; not how much */
-    double amount; /* of VERTEX below 0 the other way; MATERIALS and ORDER: 0 or more */
+    double amount; /* of VERTEX below 0 the other way; of MATERIALS 0 too; of ORDER not read */
 } whit_fault;
 /* A copy of a scene with faults in it. WHIT_ERROR_USAGE, not logged, where it has nothing that one
    of them could change; else as whit_scene_mix. */

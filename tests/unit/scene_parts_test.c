@@ -37,6 +37,7 @@ struct wish {
     bool stone;       /* the box wears another material */
     bool more, other; /* an object in front of all; balls in place of a ball */
     float key;
+    bool hidden; /* the wood is a mask, and more than is told of */
 };
 
 static struct scene *small_scene(const struct wish *wish)
@@ -50,6 +51,14 @@ static struct scene *small_scene(const struct wish *wish)
     glass.ior = wish->ior;
     glass.transmission[0] = 0.9f;
     rgba[5] = wish->texel;
+    if (wish->hidden) {
+        wood.alpha = SCENE_ALPHA_MASK;
+        wood.model = SCENE_MODEL_UNLIT;
+        wood.two_sided = true;
+        wood.opacity = 0.5f;
+        wood.priority = 3;
+        wood.textures[SCENE_SLOT_DIFFUSE].wrap_u = SCENE_WRAP_MIRROR;
+    }
     wood.textures[SCENE_SLOT_DIFFUSE].texture = scene_put_texture(scene, 2, 2, rgba);
     struct scene_mesh box = mesh_box(1, 1, 1);
     box.positions[3] += wish->vertex;
@@ -120,6 +129,10 @@ TEST(a_change_is_one_of_its_part_and_is_said)
     wish = usual, wish.vertex = 0.25f;
     check_change(wish, "mesh box", WHIT_PART_MESH, "box",
                  "vertex 1 moved by 0.25, normals that it had not");
+    wish = usual, wish.hidden = true;
+    check_change(wish, "material wood", WHIT_PART_MATERIAL, "wood",
+                 "model from phong to unlit, two-sided from off to on, priority from 0 to 3, alpha "
+                 "mode from opaque to mask and 2 more");
     wish = usual, wish.key = 3.0f;
     check_change(wish, "animation node translation", WHIT_PART_ANIMATION, "node translation",
                  "value of key 1 other by 2");

@@ -8,7 +8,7 @@ double fault_strong(whit_fault_kind kind)
 {
     static const double amounts[WHIT_FAULT_KINDS] = {
         [WHIT_FAULT_VERTEX] = 0.1, [WHIT_FAULT_IOR] = 0.5,       [WHIT_FAULT_LIGHT] = 1.0,
-        [WHIT_FAULT_TEXELS] = 1.0, [WHIT_FAULT_MATERIALS] = 1.0, [WHIT_FAULT_ORDER] = 0.5,
+        [WHIT_FAULT_TEXELS] = 1.0, [WHIT_FAULT_MATERIALS] = 1.0,
     };
     return amounts[kind];
 }
@@ -38,18 +38,18 @@ whit_result fault_draw(const struct fault_case *item, const whit_fault *faults, 
     return trial_ends_all(result) ? result : WHIT_OK;
 }
 
-whit_result fault_find(const struct fault_case *item, whit_fault_kind kind, double amount,
-                       bool seen, uint64_t *random, whit_fault *fault, bool *found)
+whit_result fault_find(const struct fault_case *item, whit_fault_kind kind, uint64_t *random,
+                       whit_fault *fault, bool *found)
 {
     whit_result result = WHIT_OK;
     *found = false;
     for (int i = 0; result == WHIT_OK && !*found && i < SEEDS_MAX; ++i) {
         enum fault_end end;
-        *fault = (whit_fault){kind, splitmix64(random), amount};
+        *fault = (whit_fault){kind, splitmix64(random), fault_strong(kind)};
         result = fault_draw(item, fault, 1, &end, NULL);
         if (result != WHIT_OK || end == FAULT_NONE)
             return result;
-        *found = end == (seen ? FAULT_SEEN : FAULT_SAME);
+        *found = end == FAULT_SEEN;
     }
     return result;
 }

@@ -9,6 +9,7 @@ struct fault_case {
     const char *name;
     struct trial_input input;
     struct trial was;
+    const whit_image *ids; /* of that picture */
 };
 
 enum fault_end {
@@ -21,11 +22,10 @@ enum fault_end {
    caller to destroy; may be NULL. */
 WHIT_CHECK whit_result fault_draw(const struct fault_case *item, const whit_fault *faults,
                                   uint32_t count, enum fault_end *end, whit_scene **made);
-/* Draws seeds from `random` until a fault of the kind and amount is seen, or is not: `seen`.
- *found: false where some dozens were not so. */
+/* Draws seeds from `random` until a strong fault of the kind is seen. *found: false where one after
+   the other was not. */
 WHIT_CHECK whit_result fault_find(const struct fault_case *item, whit_fault_kind kind,
-                                  double amount, bool seen, uint64_t *random, whit_fault *fault,
-                                  bool *found);
+                                  uint64_t *random, whit_fault *fault, bool *found);
 /* So strong that nobody can overlook them where their place is seen at all. */
 double fault_strong(whit_fault_kind kind);
 

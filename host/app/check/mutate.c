@@ -7,7 +7,7 @@
 #include "base/random.h"
 
 /* One fault in so many has another beside it, which nobody sees. */
-enum { PAIR_EVERY = 20, PLACES_MAX = 8, NAME_BYTES = 300 };
+enum { PAIR_EVERY = 20, SEEN_MAX = 24, UNSEEN_MAX = 6, NAME_BYTES = 300 };
 enum { PAIRS = WHIT_FAULT_KINDS }; /* the last class */
 
 static double amount_of(whit_fault_kind kind)
@@ -19,14 +19,6 @@ static double amount_of(whit_fault_kind kind)
         [WHIT_FAULT_TEXELS] = 0.05,
     };
     return amounts[kind];
-}
-
-/* The probe for a place that is seen: half as much, of a vertex the other way; materials that glow,
-   objects that move. */
-static double probe_of(whit_fault_kind kind)
-{
-    double half = 0.5 * amount_of(kind);
-    return kind == WHIT_FAULT_VERTEX ? -half : half > 0.0 ? half : fault_strong(kind);
 }
 
 /* ---- What a fault alters ---- */
@@ -84,26 +76,66 @@ static whit_result is_right(const struct fault_case *item, const whit_fault *fau
 
 /* ---- One fault ---- */
 
-/* A fault whose place is seen, or not; and which alters something, as materials with the same
-   values do not where they are swapped. */
+/* Whether camera rays hit an object that has another place in the order. */
+static bool order_is_seen(const struct fault_case *item, const whit_scene *made)
+{
+    whit_image_info info;
+    whit_image_get_info(item->ids, &info);
+    const uint32_t *words = whit_image_words(item->ids);
+    uint32_t last = WHIT_NONE;
+    bool seen = false;
+    for (size_t i = 0; !seen && i < (size_t)info.width * info.height; ++i, words += 2) {
+        whit_instance_info was, is;
+        if (words[0] == last || words[0] == WHIT_NONE)
+            continue;
+        last = words[0];
+        whit_scene_get_instance(item->input.scene, last, &was);
+        whit_scene_get_instance(made, last, &is);
+        seen = was.mesh != is.mesh || strcmp(was.name, is.name) != 0;
+    }
+    return seen;
+}
+
+/* Whether a probe shows the place of a fault: half as much, of a vertex the other way, or materials
+   that glow; to say that it is not seen, a strong one. */
+static whit_result is_seen(const struct fault_case *item, whit_fault fault, bool strong,
+                           const whit_scene *made, bool *seen)
+{
+    enum fault_end end = FAULT_NONE;
+    if (fault.kind == WHIT_FAULT_ORDER) {
+        *seen = order_is_seen(item, made);
+        return WHIT_OK;
+    }
+    double half = 0.5 * amount_of(fault.kind);
+    fault.amount = strong || !(half > 0.0)           ? fault_strong(fault.kind)
+                   : fault.kind == WHIT_FAULT_VERTEX ? -half
+                                                     : half;
+    whit_result result = fault_draw(item, &fault, 1, &end, NULL);
+    *seen = end == FAULT_SEEN;
+    return result;
+}
+
+/* A fault that alters something, as materials with the same values do not where they are swapped,
+   and whose place is seen, or is not. */
 static whit_result find_place(const struct fault_case *item, whit_fault_kind kind, bool seen,
                               uint64_t *random, whit_fault *fault, bool *found)
 {
     whit_result result = WHIT_OK;
-    bool altered = false, any = true;
-    for (int i = 0; result == WHIT_OK && any && !altered && i < PLACES_MAX; ++i) {
-        whit_scene *made = NULL;
-        double amount = seen ? probe_of(kind) : fault_strong(kind);
-        result = fault_find(item, kind, amount, seen, random, fault, &any);
-        if (result != WHIT_OK || !any)
-            break;
-        fault->amount = amount_of(kind);
+    *found = false;
+    for (int i = 0; result == WHIT_OK && !*found && i < (seen ? SEEN_MAX : UNSEEN_MAX); ++i) {
+        whit_scene *made;
+        bool altered = false, shown = false;
+        *fault = (whit_fault){kind, splitmix64(random), amount_of(kind)};
         result = whit_scene_fault(item->input.scene, fault, 1, &made);
+        if (result == WHIT_ERROR_USAGE)
+            return WHIT_OK;
         if (result == WHIT_OK)
             result = is_altered(item->input.scene, made, NULL, &altered, NULL);
+        if (result == WHIT_OK && altered)
+            result = is_seen(item, *fault, !seen, made, &shown);
+        *found = altered && shown == seen;
         whit_scene_destroy(made);
     }
-    *found = altered;
     return result;
 }
 
@@ -134,24 +166,26 @@ static whit_result find_any(struct mutate *mutate, const struct fault_case *item
     return result;
 }
 
-static whit_result mutate_once(struct mutate *mutate, const struct fault_case *item, bool pair)
+/* `*pair`: with another fault beside it; false afterwards where the case has no place for that. */
+static whit_result mutate_once(struct mutate *mutate, const struct fault_case *item, bool *pair)
 {
     whit_fault faults[2];
     bool found, beside = false, right = false, any;
     char name[NAME_BYTES] = "";
     whit_result result = find_any(mutate, item, true, 0, &faults[0], &found);
-    if (result == WHIT_OK && found && pair)
+    if (result == WHIT_OK && found && *pair)
         result = find_any(mutate, item, false, 1u << faults[0].kind, &faults[1], &beside);
     if (result != WHIT_OK)
         return result;
-    if (!found || (pair && !beside)) {
+    *pair = beside;
+    if (!found) {
         ++mutate->missing;
         return WHIT_OK;
     }
-    struct mutate_class *row = &mutate->classes[pair ? PAIRS : faults[0].kind];
+    struct mutate_class *row = &mutate->classes[beside ? PAIRS : faults[0].kind];
     enum fault_end end;
     whit_scene *made;
-    result = fault_draw(item, faults, pair ? 2 : 1, &end, &made);
+    result = fault_draw(item, faults, beside ? 2 : 1, &end, &made);
     if (result == WHIT_OK && made)
         result = is_altered(item->input.scene, made, NULL, &any, name);
     if (result == WHIT_OK && end == FAULT_SEEN)
@@ -165,7 +199,7 @@ static whit_result mutate_once(struct mutate *mutate, const struct fault_case *i
     if (!right)
         printf("%s: %s of %s, seed %016" PRIx64 "%s: %s\n", item->name,
                whit_fault_kind_name(faults[0].kind), cli_shown(name), faults[0].seed,
-               pair ? ", and another" : "",
+               beside ? ", and another" : "",
                end == FAULT_SEEN ? "caught, and the cause is another" : "missed");
     fflush(stdout);
     return WHIT_OK;
@@ -174,11 +208,12 @@ static whit_result mutate_once(struct mutate *mutate, const struct fault_case *i
 whit_result mutate_case(struct mutate *mutate, const struct fault_case *item, uint32_t count)
 {
     whit_result result = WHIT_OK;
+    bool takes_pairs = true;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
-        uint32_t done = mutate->missing;
-        for (int kind = 0; kind <= PAIRS; ++kind)
-            done += mutate->classes[kind].drawn;
-        result = mutate_once(mutate, item, done % PAIR_EVERY == PAIR_EVERY - 1);
+        uint32_t pairs = ++mutate->begun / PAIR_EVERY;
+        bool asked = takes_pairs && mutate->classes[PAIRS].drawn < pairs, pair = asked;
+        result = mutate_once(mutate, item, &pair);
+        takes_pairs = takes_pairs && (pair || !asked);
     }
     return result;
 }

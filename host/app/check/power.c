@@ -35,7 +35,7 @@ whit_result power_case(uint64_t *random, const struct fault_case *item)
         whit_fault fault;
         bool found;
         double smallest = 0.0;
-        result = fault_find(item, kinds[i], fault_strong(kinds[i]), true, random, &fault, &found);
+        result = fault_find(item, kinds[i], random, &fault, &found);
         if (result == WHIT_OK && found)
             result = find_smallest(item, fault, &smallest);
         /* A texel goes by whole steps. */

@@ -16,6 +16,7 @@ static whit_result try_case(struct check *check, struct studio *studio, uint32_t
     };
     if (result == WHIT_OK) {
         trial_hash(&drawing, &faulted.was);
+        faulted.ids = drawing.ids;
         result = check->power ? power_case(&mutate->random, &faulted)
                               : mutate_case(mutate, &faulted, faults);
     }
@@ -26,7 +27,7 @@ static whit_result try_case(struct check *check, struct studio *studio, uint32_t
 int strength_run(struct check *check)
 {
     struct studio studio;
-    struct mutate mutate = {.random = check->seed, .wanted = check->mutate};
+    struct mutate mutate = {.random = check->seed};
     uint32_t count = 0, at = 0;
     for (uint32_t i = 0; i < check->suite.count; ++i)
         count += check->wanted[i];

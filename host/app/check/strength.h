@@ -14,7 +14,7 @@ struct mutate_class {
 };
 struct mutate {
     uint64_t random;                                   /* state of the stream */
-    uint32_t wanted;                                   /* faults */
+    uint32_t begun;                                    /* faults */
     struct mutate_class classes[WHIT_FAULT_KINDS + 1]; /* the last: of two faults, one is seen */
     uint32_t missing;                                  /* for which no place was found */
 };
