@@ -96,21 +96,25 @@ static bool order_is_seen(const struct fault_case *item, const whit_scene *made)
     return seen;
 }
 
-/* Whether a probe shows the place of a fault: half as much, of a vertex the other way, or materials
-   that glow; to say that it is not seen, a strong one. */
+/* Whether a probe shows the place of a fault: half as much, of a vertex both ways, or materials
+   that glow, or objects that are hit. `strong`: for a fault that nobody is to see, as much as can
+   be. */
 static whit_result is_seen(const struct fault_case *item, whit_fault fault, bool strong,
                            const whit_scene *made, bool *seen)
 {
-    enum fault_end end = FAULT_NONE;
-    if (fault.kind == WHIT_FAULT_ORDER) {
-        *seen = order_is_seen(item, made);
-        return WHIT_OK;
-    }
+    enum fault_end end = FAULT_SEEN;
     double half = 0.5 * amount_of(fault.kind);
-    fault.amount = strong || !(half > 0.0)           ? fault_strong(fault.kind)
-                   : fault.kind == WHIT_FAULT_VERTEX ? -half
-                                                     : half;
+    bool order = fault.kind == WHIT_FAULT_ORDER;
+    fault.amount = strong || !(half > 0.0) ? fault_strong(fault.kind) : half;
+    *seen = order && order_is_seen(item, made);
+    if (order && (*seen || !strong))
+        return WHIT_OK;
     whit_result result = fault_draw(item, &fault, 1, &end, NULL);
+    *seen = end == FAULT_SEEN;
+    if (result != WHIT_OK || !*seen || strong || fault.kind != WHIT_FAULT_VERTEX)
+        return result;
+    fault.amount = -half;
+    result = fault_draw(item, &fault, 1, &end, NULL);
     *seen = end == FAULT_SEEN;
     return result;
 }
