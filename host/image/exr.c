@@ -86,7 +86,8 @@ static int64_t on_write(exr_const_context_t context, void *user, const void *fro
         if (fseeko(file->stream, (off_t)offset, SEEK_SET) == 0 &&
             fwrite(from, 1, size_bytes, file->stream) == size_bytes)
             return (int64_t)size_bytes;
-        error(context, EXR_ERR_WRITE_IO, "%s", strerror(errno));
+        snprintf(file->reason, sizeof file->reason, "cannot write: %s", strerror(errno));
+        error(context, EXR_ERR_WRITE_IO, "%s", file->reason);
         return -1;
     }
     if (offset > SIZE_MAX / 4 || size_bytes > SIZE_MAX / 4 || !grow(file, offset + size_bytes)) {
@@ -126,7 +127,7 @@ static exr_result_t finish(exr_context_t *context)
 static whit_result report(const whit_log *log, const char *path, const struct memory_file *file,
                           exr_result_t code, whit_result result)
 {
-    log_error(log, "%s: EXR: %s", path,
+    log_error(log, "%s: %s%s", path, file->stream && ferror(file->stream) ? "" : "EXR: ",
               file->no_memory   ? "out of memory"
               : file->reason[0] ? file->reason
                                 : exr_get_default_error_message(code));
