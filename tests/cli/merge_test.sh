@@ -74,7 +74,7 @@ tiles png 4 cube "$CUBE" --size 90x120
 tiles pfm 7 balls "$SCENES/balls.json" --size 60x120 --aa 2
 tiles exr 3 lens "$SCENES/lens.json" --size 60x40 --aa 4
 samples exr 4 balls "$SCENES/balls.json" --size 60x40 --aa 16
-samples pfm 4 lens "$SCENES/lens.json" --size 60x40 --aa 4 --numerics fast
+samples pfm 4 balls "$SCENES/balls.json" --size 60x40 --aa 4
 
 # Both at once, by three processes, in any order.
 both="$SCENES/lens.json --size 60x40 --aa 16"
