@@ -48,7 +48,7 @@ check "the counts" grep -qx "3 cases, 1 ok, 2 differs" stdout
 cp looks.golden before
 check "JSON: what is, and what was" jq -e '.exit_code == 1 and (.cases | length) == 3 and (.cases[1] | .verdict ==
     "differs" and .is.rays.reflected < .was.rays.reflected and .is.ids == .was.ids and .line == 3 and
-    (.command | startswith("whit render balls.json --size 64x48 --depth 1 --numerics fast -o")))' ci/report.json >jq.out
+    (.command | startswith("whit render balls.json --size 64x48 --depth 1 --portable on --numerics fast -o")))' ci/report.json >jq.out
 check "JUnit: three cases, two failures" grep -q 'tests="3" failures="2" errors="0"' ci/junit.xml
 check "JUnit: why" grep -q 'failure type="differs" message="differs: colours other' ci/junit.xml
 cp looks.golden before
