@@ -184,9 +184,8 @@ char *document_lines(json_t *value)
     return dump(value, JSON_INDENT(2));
 }
 
-whit_result document_save(json_t *value, const char *path)
+whit_result document_save_text(char *text, const char *path)
 {
-    char *text = document_lines(value);
     if (!text) {
         cli_error("out of memory");
         return WHIT_ERROR_MEMORY;
@@ -195,6 +194,11 @@ whit_result document_save(json_t *value, const char *path)
     whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
     free(text);
     return result;
+}
+
+whit_result document_save(json_t *value, const char *path)
+{
+    return document_save_text(document_lines(value), path);
 }
 
 char *document_line(json_t *value)

@@ -32,6 +32,8 @@ void document_floats(json_t *object, const char *key, const float *values, uint3
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
 /* Writes it to a file, indented. Takes over `value`. */
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
+/* Writes a text that is free()d; NULL: memory ran out for it. Failures were said. */
+WHIT_CHECK whit_result document_save_text(char *text, const char *path);
 /* In one line, and as what is saved; free() it. NULL: memory ran out. Takes over `value`. */
 char *document_line(json_t *value);
 char *document_lines(json_t *value);

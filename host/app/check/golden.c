@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/cli.h"
+#include "app/document.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -424,13 +425,5 @@ char *golden_case_text(const struct golden *golden, const char *name)
 
 whit_result golden_save(const struct golden *golden, const char *path)
 {
-    char *text = golden_text(golden);
-    if (!text) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
-    cli_set_saving();
-    whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
-    free(text);
-    return result;
+    return document_save_text(golden_text(golden), path);
 }
