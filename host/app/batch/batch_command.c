@@ -66,7 +66,8 @@ static bool split(struct cli_reader *reader, char *text, char *argv[WORDS_MAX + 
     return true;
 }
 
-/* What is of the process, or chooses settings by measuring, is no line's. */
+/* Refuses options in a line that hold for the whole process, and those that choose settings by
+   measuring. */
 static bool check_line(struct cli_reader *reader, const struct batch *batch)
 {
     const struct batch_line *line = &batch->line;

@@ -33,7 +33,7 @@ static bool put_parts(struct golden *golden, const struct golden *found)
     return true;
 }
 
-/* What is as it was keeps the reason for which it was accepted. */
+/* A case whose picture did not change keeps the reason for which it was accepted. */
 static bool put_case(struct check *check, const struct check_result *result)
 {
     struct golden_case item = result->found.cases[0];

@@ -1,4 +1,4 @@
-/* What reports of other runs, as of CI, say that cases show. */
+/* Takes into the golden what the JSON reports of other runs, such as those of CI, say of cases. */
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum { REPORT_BYTES_MAX = 256 << 20 };
 
-/* What document_text made of a backslash before an x becomes one again. */
+/* Undoes in place how document_text writes a backslash that stands before an x. */
 static void restore_text(char *text)
 {
     char *to = text;

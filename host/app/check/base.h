@@ -1,4 +1,4 @@
-/* What a suite drew at another revision of its repository, to say why its pictures are other. */
+/* Draws a suite as another revision of its repository has it, to find why its pictures differ. */
 #ifndef APP_CHECK_BASE_H
 #define APP_CHECK_BASE_H
 

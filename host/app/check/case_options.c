@@ -20,7 +20,8 @@ static const char writes[] = "writes a file, which no case may",
                   a_part[] = "makes a part: a case is a whole picture",
                   by_time[] = "goes by measured time: no two runs need to agree";
 
-/* What no case may say, with the reason; the other rows are those of `whit render`. */
+/* Options that a case may not have, each with the reason; a case has the other settings of `whit
+   render`. */
 static const struct setting refused[] = {
     {.name = "output", .letter = 'o', .help = writes, .kind = SETTING_GONE},
     REFUSED("ids", writes),

@@ -20,7 +20,8 @@ static bool add_change(struct cause *cause, struct cause_change change)
     return ARRAY_PUSH(cause->changes, cause->count, cause->capacity, change);
 }
 
-/* What is made of parts, or changes no picture, is no setting of its own. */
+/* Adds the settings that differ as possible causes, but for those that stand for parts of the scene
+   and those that change no picture. */
 static bool add_settings(struct cause *cause)
 {
     bool good = true;
@@ -107,7 +108,8 @@ static bool take_back(const struct cause *cause, const bool *back, struct trial_
     return any;
 }
 
-/* What cannot be made or drawn is not the old picture, and nothing is said of it. */
+/* Draws with some changes taken back. A mixture that cannot be made or drawn counts as another
+   picture than the old one, without a message. */
 static whit_result draw(void *user, const bool *back, bool *same)
 {
     const struct cause *cause = user;
