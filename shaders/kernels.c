@@ -4,8 +4,8 @@
 #include "kernel_closest_hooks.h"
 #include "kernel_miss_hooks.h"
 #include "kernel_portable.h"
+#include "kernel_post_hooks.h"
 #include "kernel_resolve.h"
-#include "kernel_resolve_hooks.h"
 #include "kernel_shade.h"
 #include "kernel_shade_hooks.h"
 #include "kernel_shadow.h"
@@ -25,8 +25,9 @@ const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
     [HOOK_KERNEL_CLOSEST] = {"closest", kernel_closest_hooks, sizeof kernel_closest_hooks},
     [HOOK_KERNEL_SHADE] = {"shade", kernel_shade_hooks, sizeof kernel_shade_hooks},
     [HOOK_KERNEL_SHADOW] = {"shadow", kernel_shadow_hooks, sizeof kernel_shadow_hooks},
-    [HOOK_KERNEL_RESOLVE] = {"resolve", kernel_resolve_hooks, sizeof kernel_resolve_hooks},
+    [HOOK_KERNEL_RESOLVE] = {"resolve", NULL, 0},
     [HOOK_KERNEL_MISS] = {"miss", kernel_miss_hooks, sizeof kernel_miss_hooks},
+    [HOOK_KERNEL_POST] = {"post", kernel_post_hooks, sizeof kernel_post_hooks},
     [HOOK_KERNEL_TEST] = {"test", kernel_test_hooks, sizeof kernel_test_hooks},
 };
 

@@ -32,7 +32,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     slots = slots > QUEUED_SLOTS_MAX ? QUEUED_SLOTS_MAX : slots;
     p->levels = pixels_levels(&renderer->params);
     /* The sums of samples are in the same buffer, behind the pixels. */
-    uint64_t max_pixels = limit / 16 - slots * p->levels;
+    bool posts = shader_has(renderer->params.shader, SHADER_HOOK_POST);
+    uint64_t max_pixels = (limit / 16 - slots * p->levels) / (posts ? 2 : 1);
     uint32_t aovs = hooks_aov_count(target);
     if (aovs && limit / 16 / aovs - slots < max_pixels)
         max_pixels = limit / 16 / aovs - slots;
@@ -47,6 +48,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
     uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
+    p->unposted = posts ? (uint32_t)(pixels + sums) : 0;
     /* What nothing is bound to has no bytes, and is not created. */
     bool lists = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     uint64_t before = renderer->scene_buffers.bytes;
@@ -57,7 +59,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
         uint32_t uses;
         const char *name;
     } all[] = {
-        {&p->pixels, (pixels + sums) * 16, BUFFER_STORAGE | BUFFER_HOST, "pixels"},
+        {&p->pixels, (pixels + sums + (posts ? pixels : 0)) * 16, BUFFER_STORAGE | BUFFER_HOST,
+         "pixels"},
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
         {&p->aovs, (p->chunk_slots + pixels) * 16 * aovs, BUFFER_STORAGE | BUFFER_HOST,
          "values of functions"},
@@ -96,6 +99,7 @@ static void pixels_finish(struct pixel_buffers *p)
 void target_drop_pixels(struct target *target)
 {
     struct buffer *status = target->buffers.status;
+    target->renderer->unposted.whole &= target->probed;
     stages_unbind(&target->stages);
     target->buffers.status = NULL;
     target->renderer->scene_buffers.bytes -= target->buffers.bytes;

@@ -42,7 +42,9 @@ struct queue_buffers {
 
 /* The pixels of one band of rows, and the rays of one chunk. */
 struct pixel_buffers {
-    struct buffer *pixels; /* and behind them partial sums of samples: `levels` for each slot */
+    struct buffer
+        *pixels; /* behind them partial sums of samples, `levels` for each slot; last, from
+                    `unposted` on, what a user's post() is given: all pixels once more */
     struct buffer *ids;
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
@@ -53,7 +55,8 @@ struct pixel_buffers {
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that the queues hold */
     uint32_t levels;
-    uint64_t bytes; /* of all of them, also counted in scene_buffers.bytes */
+    uint32_t unposted; /* 0: there is no post() */
+    uint64_t bytes;    /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* A kernel, and where rays may wait (SPEC_SETTLES) the one that takes what the first has put on the
@@ -76,6 +79,7 @@ enum stage {
     STAGE_RESOLVE, /* into pixels */
     STAGE_RESOLVE_LATER,
     STAGE_MISS, /* of a user's function */
+    STAGE_POST, /* likewise, of pixels that have all samples */
     STAGE_COUNT
 };
 
@@ -87,7 +91,7 @@ struct stage_set {
     uint32_t classes;           /* of materials, each with a shading kernel of its own */
     bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
     bool asks;                  /* whether hits ask lights, for stages of their own */
-    bool misses;                /* whether a stage of its own says what misses see */
+    bool misses, posts; /* whether stages of their own say what misses see, and what pixels show */
 };
 
 /* How long each stage of the tile being drawn takes, see stage_times.c. */
@@ -164,6 +168,15 @@ struct target {
     struct buffer *dbg;     /* of a probe with dbg(x): as hook/record.glsl; NULL before the first */
 };
 
+/* What the pixels on the device without post() are of. */
+struct unposted {
+    bool whole; /* false: of nothing any more */
+    struct gpu_frame frame;
+    float sliders[SLIDERS_MAX];
+    double time_s;
+    uint32_t samples, first_sample, first_row, rows;
+};
+
 struct renderer {
     whit_log log;
     struct device *device;
@@ -179,6 +192,7 @@ struct renderer {
     uint32_t packet_rays; /* of a lane, in these */
     bool few_kernels;     /* one for several stages and materials, since the renderer was made */
     bool wide;            /* there are such nodes on the device */
+    struct unposted unposted;
     struct trace_state trace;
     struct async_state async;
     struct commands *commands;
@@ -352,7 +366,7 @@ void passes_finish(struct renderer *renderer);
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
-    bool asks, misses;          /* as of a set */
+    bool asks, misses, posts;   /* as of a set */
     bool wanted[STAGE_COUNT];   /* a kernel of its own */
     enum stage of[STAGE_COUNT]; /* as of a set */
     struct variant_job stages[STAGE_COUNT];
@@ -475,8 +489,17 @@ struct lattice lattice_whole(const whit_renderer_params *params);
 /* gpu_chunk.lattice */
 uint32_t lattice_word(const struct lattice *lattice);
 bool steps_are_wanted(const struct renderer *renderer);
+/* Shows what is drawn of the picture, every `spacing`-th pixel of rows and columns. */
+WHIT_CHECK whit_result steps_give(const struct renderer *renderer, uint32_t spacing);
 /* The picture in steps, with params.step after each but the last. */
 WHIT_CHECK whit_result steps_render(struct renderer *renderer, struct progress *progress);
+
+/* post.c: post() of a user's file over the pixels that the last picture has without it. Whether
+   they are those of the picture that is asked for. */
+bool post_can_reuse(const struct renderer *renderer);
+WHIT_CHECK whit_result post_render(struct renderer *renderer);
+/* The picture is drawn: notes what it is of. */
+void post_keep(struct renderer *renderer);
 
 /* tiles.c: `samples` of all pixels of progress->lattice, or of those of them that progress->levels
    gives so many. */

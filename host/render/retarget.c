@@ -15,6 +15,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.step_spacing = from->step_spacing;
     params.step_aov = from->step_aov;
     params.light_samples = from->light_samples;
+    params.reuse_rays = from->reuse_rays;
     params.bailout = from->bailout;
     params.depth = from->depth;
     return params;

@@ -47,13 +47,14 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     /* A shading function of the user's has asked them itself, as all but catchers do. */
     job->asks = !shader_has(renderer->params.shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->misses = shader_has(renderer->params.shader, SHADER_HOOK_MISS);
+    job->posts = shader_has(renderer->params.shader, SHADER_HOOK_POST);
     job->classes = own ? variant_classes(target) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
         bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
-                         (i != STAGE_MISS || job->misses) &&
+                         (i != STAGE_MISS || job->misses) && (i != STAGE_POST || job->posts) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
@@ -86,7 +87,8 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){.classes = job->classes, .asks = job->asks, .misses = job->misses};
+    *out = (struct stage_set){
+        .classes = job->classes, .asks = job->asks, .misses = job->misses, .posts = job->posts};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
@@ -169,6 +171,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     struct stages_job was, job;
     struct gpu_spec spec;
     bool few = variant_few_kernels(target);
+    renderer->unposted.whole &= stages_are_made(target);
     if (!stages_are_made(target))
         return WHIT_OK;
     renderer->params.shader = before;
@@ -181,6 +184,8 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     for (int i = 0; i < STAGE_COUNT; ++i)
         job.wanted[i] =
             job.wanted[i] && (!same || !was.wanted[i] || is_other(&was.stages[i], &job.stages[i]));
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        renderer->unposted.whole &= !job.wanted[i] || i == STAGE_POST;
     whit_result result = stages_job_run(renderer->device, &job, &made);
     if (result != WHIT_OK || !same)
         stage_set_finish(set);
@@ -293,6 +298,7 @@ static uint32_t row_of(enum stage stage, uint32_t list)
         [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
         [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,
         [STAGE_RESOLVE_LATER] = RENDER_STAGE_RESOLVE,
+        [STAGE_POST] = RENDER_STAGE_RESOLVE,
     };
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
@@ -406,7 +412,10 @@ static whit_result record_resolve(struct tile_run *run, uint32_t count)
                 result = dispatch(run, STAGE_RESOLVE_LATER, LIST_HITS + i);
         }
     }
-    return result == WHIT_OK ? dispatch(run, STAGE_RESOLVE, LIST_RAYS) : result;
+    if (result == WHIT_OK)
+        result = dispatch(run, STAGE_RESOLVE, LIST_RAYS);
+    bool last = run->chunk.summed + 1 == run->chunk.samples;
+    return result == WHIT_OK && set->posts && last ? dispatch(run, STAGE_POST, LIST_RAYS) : result;
 }
 
 static void clear_queues(struct target *target)

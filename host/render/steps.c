@@ -86,7 +86,7 @@ static whit_result read_step(const struct renderer *renderer, const whit_step *s
     return result;
 }
 
-static whit_result give_step(const struct renderer *renderer, uint32_t spacing)
+whit_result steps_give(const struct renderer *renderer, uint32_t spacing)
 {
     const whit_renderer_params *params = &renderer->params;
     whit_step step = {
@@ -139,7 +139,7 @@ whit_result steps_render(struct renderer *renderer, struct progress *progress)
     const struct lattice begin = make_lattice(&renderer->params, first, first, spacing, spacing);
     whit_result result = draw_lattice(renderer, progress, &begin);
     for (; result == WHIT_OK && spacing > 1; spacing /= 2) {
-        result = give_step(renderer, spacing);
+        result = steps_give(renderer, spacing);
         if (result == WHIT_OK)
             result = draw_between(renderer, progress, spacing);
     }

@@ -193,6 +193,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
     chunk->samples = samples;
     chunk->sums_row = renderer->params.width * p->band_rows;
     chunk->sums_step = p->chunk_slots;
+    chunk->unposted = p->unposted;
 }
 
 static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
@@ -326,6 +327,16 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
     return render_pass(renderer, params->sampling.count, progress);
 }
 
+/* What is shown of it on the way is all of it. */
+static whit_result render_from_rays(struct renderer *renderer)
+{
+    whit_result result = post_render(renderer);
+    if (result == WHIT_OK && steps_are_wanted(renderer))
+        result = steps_give(renderer, 1);
+    renderer->rendered = result == WHIT_OK;
+    return result;
+}
+
 whit_result renderer_render(struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -344,6 +355,9 @@ whit_result renderer_render(struct renderer *renderer)
     whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK)
         result = renderer_compile(renderer);
+    if (result == WHIT_OK && post_can_reuse(renderer))
+        return render_from_rays(renderer);
+    renderer->unposted.whole = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->color, params->width, rows, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))
@@ -374,6 +388,8 @@ whit_result renderer_render(struct renderer *renderer)
         result = deferred_read(&renderer->picture, &renderer->picture.stats.deferred);
     renderer->picture.stats.render_ms = clock_ms() - progress.start_ms;
     renderer->rendered = result == WHIT_OK;
+    if (renderer->rendered)
+        post_keep(renderer);
     return result;
 }
 

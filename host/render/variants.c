@@ -463,6 +463,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_RESOLVE] = {&kernels[KERNEL_RESOLVE], "resolve", false, 1},
         [STAGE_RESOLVE_LATER] = {&kernels[KERNEL_RESOLVE], "resolve later", false, 2},
         [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
+        [STAGE_POST] = {&hook_kernels[HOOK_KERNEL_POST], "post", false, 1},
     };
     struct bindings bindings = bind_stages(target);
     *job = (struct variant_job){.spec = *set_spec};
@@ -577,6 +578,7 @@ void pass_finish(struct pass *pass)
 
 void passes_finish(struct renderer *renderer)
 {
+    renderer->unposted.whole = false;
     renderer->async.general = false;
     stage_set_finish(&renderer->picture.stages.set);
     stage_set_finish(&renderer->probe.stages.set);

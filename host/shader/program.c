@@ -32,12 +32,13 @@ static const struct {
     [SHADER_KERNEL_SHADE] = {"kernel/shade.comp", BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) |
                                                       BIT(SCATTER) | BIT(AOV) | BIT(INTERSECT)},
     [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA) | BIT(INTERSECT)},
-    [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", BIT(POST)},
+    [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", 0},
     [SHADER_KERNEL_MISS] = {"kernel/miss.comp", BIT(MISS)},
+    [SHADER_KERNEL_POST] = {"kernel/post.comp", BIT(POST)},
     [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
 };
 _Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
-                   (int)SHADER_KERNEL_RESOLVE == (int)HOOK_KERNEL_RESOLVE,
+                   (int)SHADER_KERNEL_POST == (int)HOOK_KERNEL_POST,
                "the same kernels");
 
 const char *shader_hook_name(enum shader_hook hook)
@@ -341,7 +342,7 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
         if (kernel_table[i].hooks & shader->hooks)
             result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
-        else if (shader->stages && i != SHADER_KERNEL_TEST && i != SHADER_KERNEL_MISS)
+        else if (shader->stages && i < SHADER_KERNEL_MISS)
             result = compile_stage(compiler, shader, (enum shader_kernel)i, false,
                                    &shader->codes[i], errors);
     }

@@ -26,7 +26,8 @@ enum shader_kernel {
     SHADER_KERNEL_SHADE,
     SHADER_KERNEL_SHADOW,
     SHADER_KERNEL_RESOLVE,
-    SHADER_KERNEL_MISS,
+    SHADER_KERNEL_MISS, /* from here on: of functions alone */
+    SHADER_KERNEL_POST,
     SHADER_KERNEL_TEST, /* of no picture: see tests.h */
     SHADER_KERNEL_COUNT
 };
@@ -99,7 +100,7 @@ static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
 {
     return shader && (shader->hooks >> hook & 1);
 }
-/* Its code of kernel "closest", "shade", "shadow" or "resolve"; NULL: whit's own serves. */
+/* Its code of the kernel of that name, "shade" for example; NULL: whit's own serves. */
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
 /* The code of that kernel for a probe, which records the value of each dbg(x); NULL: none. */
 const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel);

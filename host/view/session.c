@@ -280,6 +280,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
         params.shader = session->shader->shader;
         params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
         params.step_spacing = FIRST_STEP;
+        params.reuse_rays = true;
         params.step_aov = shader_ref_find_aov(session->shader, session->settings.aov) + 1;
         result = draw_step(session, &params);
     }

@@ -101,6 +101,9 @@ typedef struct whit_renderer_params {
     /* The renderer is for many pictures: kernels that take longer to make are right where they draw
        faster. */
     bool many_pictures;
+    /* Where nothing but what post() of `shader` does is another since the last picture, that one's
+       rays are taken, and its times stand in whit_stats. The picture is the same. */
+    bool reuse_rays;
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */

@@ -201,7 +201,8 @@ struct gpu_chunk {
                          distance of the focus */
     gpu_uint listed;  /* camera rays of so many slots, which are listed; 0: of all */
     gpu_uint deferred; /* 1: of what is on the list of deferred rays */
-    gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty */
+    gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty, or
+                         GENERATION_NONE */
     gpu_uint generation;                 /* of rays */
     gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
     gpu_uint list;                       /* LIST_* that the dispatch works on */
@@ -210,8 +211,11 @@ struct gpu_chunk {
     gpu_uint sums_row, sums_step; /* of the pixels: slot 0's first partial sum, from one to the next */
     gpu_uint blocks_x; /* in a row of what is drawn */
     gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
+    gpu_uint unposted; /* HOOK_POST: of the pixels, the first one as it is without post() */
 };
-GPU_ASSERT_SIZE(gpu_chunk, 96)
+GPU_ASSERT_SIZE(gpu_chunk, 100)
+
+#define GENERATION_NONE 0xffffffffu
 
 /* Every so-many-th pixel of rows, in the low bits, and of columns, as powers of two, and the first
    one; 0: all. */

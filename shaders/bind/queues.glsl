@@ -282,6 +282,15 @@ uvec2 fetch_counts(uint generation, uint list)
     return uvec2(items.front, items.back);
 }
 
+// Whether the generation behind the last one that was traced has no rays.
+bool is_tile_done()
+{
+    if (chunk.light == GENERATION_NONE)
+        return true;
+    uvec2 left = fetch_counts(chunk.light, LIST_RAYS);
+    return left.x + left.y == 0u;
+}
+
 // Items of the lists of hits of the generation. Those of camera rays have no more room than they need: later
 // generations list theirs behind them.
 uint hit_capacity()

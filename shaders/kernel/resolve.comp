@@ -11,10 +11,6 @@
 #include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
 
-#ifdef HOOKS
-#include "../hook/declare.glsl"
-#endif
-
 layout(local_size_x_id = 0) in;
 
 vec3 child_sum(uint id)
@@ -113,36 +109,19 @@ void resolve_pixel(uint id)
             total.rgb += pixels[row].rgb;
         row += chunk.sums_step;
     }
-#ifdef HOOKS
-    if ((SPEC_HOOKS & HOOK_POST) != 0u && last) {
-        hook_pixel = at;
-        hook_records = true; // it is called for all samples together
-        hook_id = id;
-        begin_hook();
-        total.rgb = post(ivec2(at), total.rgb);
-        end_hook(true);
-    }
-#endif
-    if (last && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
+    bool posted = (SPEC_HOOKS & HOOK_POST) != 0u; // by a kernel that comes behind this one
+    if (last && !posted && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
-    pixels[last ? pixel : row] = total;
+    pixels[last ? (posted ? chunk.unposted : 0u) + pixel : row] = total;
 }
 
 void main()
 {
     load_frame();
-#ifdef HOOKS
-    begin_user();
-#endif
-    uvec2 left = fetch_counts(chunk.light, LIST_RAYS); // of the generation behind the last one
-    bool done = left.x + left.y == 0u;
+    bool done = is_tile_done();
     uint item = is_primary() ? camera_item(0u) : own_item(0u, chunk.ray_capacity);
     if (is_primary())
         resolve_pixel(done ? item : ITEM_NONE);
     else if (done && item != ITEM_NONE)
         resolve_hit(item);
-#ifdef HOOKS
-    report_hooks();
-    tally_traced(hook_traced);
-#endif
 }

@@ -156,45 +156,126 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
     whit_shader_destroy(shader);
 }
 
+static void count_call(void *user, double done)
+{
+    (void)done;
+    ++*(uint32_t *)user;
+}
+
+/* The picture that a renderer makes in the place of the last one; whether it traced rays for it. */
+static bool draw_in_place(whit_renderer *renderer, const uint32_t *calls, whit_image **out)
+{
+    uint32_t before = *calls;
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, out), WHIT_OK);
+    return *calls > before;
+}
+
+static void assert_same(const whit_image *a, const whit_image *b)
+{
+    assert_memory_equal(whit_image_floats(a), whit_image_floats(b), PIXELS * 4 * sizeof(float));
+}
+
 /* A version in the place of the one before draws what a renderer of its own draws, and its sliders
    are its own. */
-TEST(a_version_in_place_draws_the_same)
+static void draw_versions(const char *const *versions, const bool *traces, size_t count)
 {
-    static const char *const versions[] = {
-        "//@ slider k 0 1 0.25\n" SHADE "s.ns * k; }\n"
-        "vec3 post(ivec2 at, vec3 c) { return c; }\n",
-        "//@ slider k 0 1 0.25\n" SHADE "s.ns * k; }\n"
-        "vec3 post(ivec2 at, vec3 c) { return c.bgr; }\n",
-        "//@ slider l 0 1 0.5\n//@ slider k 0 1 0.75\n" SHADE "s.ns * k + l; }\n"
-        "vec3 post(ivec2 at, vec3 c) { return c.bgr; }\n",
-    };
+    uint32_t calls = 0, kernels;
+    uint64_t compiled;
     whit_shader *before = load(versions[0]);
     whit_renderer_params params = whit_renderer_defaults();
     whit_renderer *renderer;
+    whit_image *in_place;
     params.width = WIDTH;
     params.height = HEIGHT;
     params.shader = before;
+    params.reuse_rays = true;
+    params.progress = count_call;
+    params.progress_user = &calls;
     assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    for (size_t i = 1; i < sizeof versions / sizeof *versions; ++i) {
-        uint64_t compiled;
-        uint32_t kernels;
-        whit_image *in_place;
+    assert_true(draw_in_place(renderer, &calls, &in_place));
+    whit_image_destroy(in_place);
+    for (size_t i = 1; i < count; ++i) {
         whit_shader *shader = load(versions[i]);
         params.shader = shader;
         assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
         whit_shader_destroy(before);
         before = shader;
-        assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &in_place), WHIT_OK);
+        if (draw_in_place(renderer, &calls, &in_place) != traces[i])
+            fail_msg("%s", versions[i]);
         whit_image *alone = draw(shader, 0, &compiled, &kernels);
-        assert_memory_equal(whit_image_floats(in_place), whit_image_floats(alone),
-                            PIXELS * 4 * sizeof(float));
+        assert_same(in_place, alone);
         whit_image_destroy(in_place);
         whit_image_destroy(alone);
     }
     whit_renderer_destroy(renderer);
     whit_shader_destroy(before);
+}
+
+#define POST(value)   "vec3 post(ivec2 at, vec3 c) { return " value "; }\n"
+#define SLIDER(value) "//@ slider k 0 1 " value "\n"
+TEST(a_version_in_place_draws_the_same)
+{
+    static const char *const versions[] = {
+        SLIDER("0.25") SHADE "s.ns * k; }\n" POST("c"),
+        SLIDER("0.5") SHADE "s.ns * k; }\n" POST("c"),
+        "//@ slider l 0 1 0.5\n" SLIDER("0.75") SHADE "s.ns * k + l; }\n" POST("c.bgr"),
+        "//@ slider l 0 1 0.5\n" SLIDER("0.75") SHADE "s.ns * k - l; }\n" POST("c.bgr"),
+    };
+    static const bool traces[] = {true, true, true, true};
+    draw_versions(versions, traces, sizeof versions / sizeof *versions);
+}
+
+/* Where nothing but what post() does is another no ray is traced for it. */
+TEST(another_post_needs_no_rays)
+{
+    static const char *const versions[] = {
+        SLIDER("0.25") POST("c"),
+        SLIDER("0.25") POST("c.bgr * k"),
+        SLIDER("0.25") POST("c.brg"),
+        SLIDER("0.5") POST("c.bgr * k"),
+    };
+    static const bool traces[] = {true, false, false, true};
+    draw_versions(versions, traces, sizeof versions / sizeof *versions);
+}
+
+/* The rays of the last picture serve the same view alone, and only who asks for that. */
+TEST(rays_are_taken_again_for_the_same_view)
+{
+    uint32_t calls = 0;
+    whit_shader *shader = load(POST("c.bgr"));
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    whit_image *first, *again;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    params.progress = count_call;
+    params.progress_user = &calls;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_true(draw_in_place(renderer, &calls, &first));
+    assert_true(draw_in_place(renderer, &calls, &again));
+    assert_same(first, again);
+    whit_image_destroy(again);
+    params.reuse_rays = true;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    assert_false(draw_in_place(renderer, &calls, &again));
+    assert_same(first, again);
+    whit_image_destroy(again);
+    params.sampling.first = 1;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    assert_true(draw_in_place(renderer, &calls, &again));
+    whit_image_destroy(again);
+    params.sampling.first = 0;
+    params.depth = 0;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    assert_true(draw_in_place(renderer, &calls, &again));
+    assert_memory_not_equal(whit_image_floats(first), whit_image_floats(again),
+                            PIXELS * 4 * sizeof(float));
+    whit_image_destroy(again);
+    whit_image_destroy(first);
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(shader);
 }
 
 /* The picture without the shader has the lights that the shader does not ask for. */

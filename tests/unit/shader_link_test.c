@@ -97,8 +97,8 @@ TEST_IN(kernels_have_what_is_called_alone, compiler_begin, compiler_end)
     whit_shader *more = make("float f(float x) { return x; }\nfloat g(float x) { return f(x); }\n"
                              "vec3 post(ivec2 at, vec3 c) { return c * g(c.x); }\n"
                              "float h(float x) { return f(x); }\n");
-    const struct shader_code *a = &plain->codes[SHADER_KERNEL_RESOLVE];
-    const struct shader_code *b = &more->codes[SHADER_KERNEL_RESOLVE];
+    const struct shader_code *a = &plain->codes[SHADER_KERNEL_POST];
+    const struct shader_code *b = &more->codes[SHADER_KERNEL_POST];
     assert_int_equal(count_functions(b), count_functions(a) + 2);
     shader_program_destroy(plain);
     shader_program_destroy(more);

@@ -1,0 +1,40 @@
+// What a user's function makes of the colour of a pixel, where all samples are in it: in a kernel of its own, so
+// that the file's next version is soon made, and draws the last picture's pixels again without its rays.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/probe.glsl"
+#include "../bind/queues.glsl"
+#include "../hook/declare.glsl"
+
+layout(local_size_x_id = 0) in;
+
+void main()
+{
+    load_frame();
+    begin_user();
+    uint id = camera_item(0u);
+    uint slot = slot_of(id == ITEM_NONE ? 0u : id);
+    uvec2 at = slot_pixel(slot);
+    bool alive = id != ITEM_NONE && is_tile_done() && is_in_picture(at);
+    uint pixel = alive ? (at.y - chunk.band_y) * frame.width + at.x : 0u;
+    hook_pixel = at;
+    hook_records = alive; // it is called for all samples together
+    hook_id = id;
+    begin_hook();
+    vec3 color = post(ivec2(at), pixels[chunk.unposted + pixel].rgb);
+    end_hook(alive);
+    if (alive) {
+        if (any(isnan(color)) || any(isinf(color)))
+            report_status(STATUS_NON_FINITE);
+        pixels[pixel] = vec4(color, 1.0);
+        report_status(hook_status);
+        tally_traced(hook_traced);
+    }
+    report_hooks();
+}
