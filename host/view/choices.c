@@ -132,9 +132,9 @@ static void say_shader(const struct settings *settings, char text[CHOICE_WORDS])
              !settings->shader[0] ? "none"
              : slash              ? slash + 1
                                   : settings->shader,
-             settings->shader_reload ? ", read again"
-             : settings->stages[0]   ? ", other stages"
-                                     : "");
+             settings->shader[0] && settings->shader_reload ? ", read again"
+             : settings->stages[0]                          ? ", other stages"
+                                                            : "");
 }
 
 /* Effects have a panel of their own, and the shader is told above. */

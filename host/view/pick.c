@@ -259,8 +259,8 @@ static void draw_panel(struct view *view)
         ui_separator();
         draw_calls(r);
         ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME,
-                      "%u rays, the twin differs at %u; %.0f ms", r->ray_count, r->differing,
-                      view->probe.ms);
+                      "%u ray%s, the twin differs at %u; %.0f ms", r->ray_count,
+                      r->ray_count == 1 ? "" : "s", r->differing, view->probe.ms);
         if (has_moved_on(view))
             ui_text_dim("of a picture before this one");
         draw_tree(view);
