@@ -26,7 +26,8 @@ struct render_request {
     struct frames frames; /* with them `output` and `ids` are patterns */
     struct part part;
     bool resume;        /* what is finished is kept */
-    bool many;          /* one of many pictures by one renderer */
+    bool many;          /* one of many pictures by one device */
+    bool scene_stays;   /* whole, for another renderer */
     bool leaves;        /* with `resume`: a picture that another process draws is not waited for */
     uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */
 };
@@ -39,7 +40,9 @@ int kernels_run(struct job *job, bool json);
 void settings_describe(const struct settings *settings, enum settings_command command,
                        json_t *object);
 
-/* From the scene to a renderer on a device; failures were said (render_command.c). */
+/* From the scene to a renderer on a device; what the job has already is taken as it is, and a
+   renderer that is there, of the same kernels, becomes one of this picture. Failures were said
+   (render_command.c). */
 WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
 
@@ -47,10 +50,6 @@ WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_reque
    (render_command.c). */
 bool render_read(struct job *job, struct cli_reader *reader, struct render_request *request,
                  int argc, char **argv);
-/* Makes the renderer of another picture, of the same kernels, one of what `request` and the job's
-   settings say (render_command.c). */
-WHIT_CHECK whit_result render_retarget(struct job *job, const struct render_request *request,
-                                       whit_renderer *renderer);
 /* Draws and saves what `request` says, and tells of it; gives the exit code. `sequence`: zeroed,
    for sequence_finish (render_command.c). */
 int render_draw(struct job *job, const struct render_request *request, whit_renderer *renderer,

@@ -54,6 +54,8 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
     bool listed = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE,
          had_secondary = renderer->has_secondary;
     renderer->rendered = false;
+    stats_clear(&renderer->picture);
+    renderer->picture.stats.compile_ms = 0.0;
     renderer->params = wanted;
     renderer->has_secondary = renderer_bounces(renderer);
     uint32_t camera = variant_camera(renderer);

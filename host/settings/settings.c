@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "settings/quote.h"
 
 /* ---- The table ---- */
@@ -273,6 +274,37 @@ bool settings_same(const struct settings *a, const struct settings *b)
 {
     return settings_same_scene(a, b) && same_rows(a, b, is_of_picture) &&
            settings_same_shader(a, b) && a->boxes == b->boxes && a->boxes_level == b->boxes_level;
+}
+
+static uint64_t hash_rows(uint64_t hash, const struct settings *settings, row_filter *wanted)
+{
+    char text[SETTING_VALUE_BYTES];
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        uint32_t entries = row->kind == SETTING_FOLDERS ? SETTING_FOLDERS_MAX : 1;
+        for (uint32_t i = 0; wanted(row) && i < entries; ++i) {
+            if (!setting_write(row, settings, i, text))
+                continue;
+            hash = hash_bytes(hash, row->name, strlen(row->name));
+            hash = hash_bytes(hash, text, strlen(text));
+        }
+    }
+    return hash;
+}
+
+uint64_t settings_hash_scene(const struct settings *settings)
+{
+    uint64_t hash = hash_bytes(HASH_START, settings->scene, strlen(settings->scene));
+    return hash_rows(hash_bytes(hash, &settings->reload, sizeof settings->reload), settings,
+                     is_of_scene);
+}
+
+uint64_t settings_hash_kernel(const struct settings *settings)
+{
+    const whit_renderer_params picture = settings_picture(settings);
+    const uint32_t own[] = {picture.count, picture.depth == 0, picture.sampling.kind,
+                            settings->shader_reload};
+    return hash_rows(hash_bytes(settings_hash_scene(settings), own, sizeof own), settings,
+                     is_of_kernel);
 }
 
 /* ---- Writing ---- */

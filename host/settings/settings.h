@@ -112,6 +112,10 @@ whit_load_params settings_load(const struct settings *settings,
 bool settings_same_kernel(const struct settings *a, const struct settings *b);
 /* Whether the scene of `a` is that of `b`. */
 bool settings_same_scene(const struct settings *a, const struct settings *b);
+/* The same number wherever settings_same_scene and settings_same_kernel hold, and hardly ever
+   elsewhere: to find in long lists what may be shared. */
+uint64_t settings_hash_scene(const struct settings *settings);
+uint64_t settings_hash_kernel(const struct settings *settings);
 /* Whether the trees of `a` are those of `b`. */
 bool settings_same_trees(const struct settings *a, const struct settings *b);
 /* Camera, time and size alone, of whatever scenes. */

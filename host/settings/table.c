@@ -430,10 +430,10 @@ const struct setting settings_table[] = {
      .trusted = true},
 
     {"device", 0, "auto|N|NAME", "Vulkan device; see `whit devices`", "auto", AT(TEXT, device),
-     .commands = IN_SCENES | IN_BENCH | IN_SHADER | IN_CHECK, .change = SETTING_COST,
+     .commands = IN_SCENES | IN_BATCH | IN_BENCH | IN_SHADER | IN_CHECK, .change = SETTING_COST,
      .need = SETTING_NEEDS_KERNEL, .of_machine = true},
     {"no-cache", 0, NULL, "keep nothing for the next run, and use nothing that was kept",
-     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BENCH | IN_SHADER | IN_CHECK},
+     AT(FLAG, no_cache), .commands = IN_SCENES | IN_BATCH | IN_BENCH | IN_SHADER | IN_CHECK},
     {"fps-goal", 0, "F",
      "pictures a second to hold while something moves, by\n"
      "smaller ones",
@@ -449,7 +449,7 @@ const struct setting settings_table[] = {
      AT(NUMBER, time_limit_s), .min = 1e-3, .max = 1e6,
      .commands = IN_LIMITED | IN_BATCH | IN_CHECK},
     {"validation", 0, NULL, "run with the Vulkan validation layers", AT(FLAG, validation),
-     .commands = (IN_SCENES & ~IN_SCENE) | IN_SHADER | IN_CHECK},
+     .commands = (IN_SCENES & ~IN_SCENE) | IN_BATCH | IN_SHADER | IN_CHECK},
     {"quiet", 'q', NULL, "no notes, no progress, only errors", AT(FLAG, quiet),
      .commands = IN_SCENES | IN_COMPARE | IN_MERGE | IN_BATCH | IN_BENCH | IN_CHECK},
 

@@ -84,10 +84,33 @@ sed 's/96x72/0x72/;6q' lines >wrong
 refuse 2 "a wrong line" "wrong:2: --size \`0x72\`" batch wrong
 echo "'$SWARM' -o x.png --time-limit 1" >wrong
 refuse 2 "a limit of a line" "wrong:1: --time-limit is of all lines" batch wrong
+echo "'$SWARM' -o x.png --counters" >wrong
+refuse 2 "costs of a line" "wrong:1: --counters is for .whit render" batch wrong
 echo "'$SWARM' -o x.png 'x" >wrong
 refuse 2 "a quote without end" "wrong:1: a quote has no end" batch wrong
 expect 5 "a time limit" batch lines --time-limit 0.001
 check "says how lines go on" grep -q "^whit: to go on: whit batch lines --time-limit 0.001 --resume$" "$OUT/stderr"
+
+# Lines of one scene share it wherever they stand, and those of the same kernels these, whatever is drawn between.
+cat >mixed <<LINES
+'$CUBE' --size 32x24 -o m1.png
+'$SWARM' --size 32x24 -o m2.png
+'$CUBE' --size 32x24 --shadows none -o m3.png
+'$SWARM' --size 24x24 --time 1 -o m4.png
+'$CUBE' --size 48x24 --leaf 2 -o m5.png
+'$CUBE' --size 24x24 -o m6.png
+'$CUBE' --size 32x24 --frames 0-1 -o m7.#.png
+LINES
+expect 0 "lines in any order" batch mixed --stats json
+check "each scene, tree and kernel is made once" jq -e '[.lines, .written, .scenes, .trees, .renderers] == [7, 8, 2, 3, 4]' "$OUT/stdout"
+check "rays are those of all pictures" jq -e '.rays.primary == 32*24*5 + 24*24*2 + 48*24' "$OUT/stdout"
+for i in 1 2 3 4 5 6; do
+    eval "\"\$WHIT\" render $(sed -n ${i}p mixed | sed "s/-o m$i/-o n$i/") -q"
+    check "line $i is the picture that it is alone" cmp "n$i.png" "m$i.png"
+done
+rm m1.png m4.png m7.1.png
+expect 0 "some of them again" batch mixed --resume --stats json
+check "they alone are drawn" jq -e '.written == 3 and .kept == 5 and .rays.primary == 32*24*2 + 24*24' "$OUT/stdout"
 
 # A tile, in a PFM with its recipe beside it.
 expect 0 "one picture" render "$CUBE" --size 64x130 --aa 4 -o one.pfm -q

@@ -200,6 +200,7 @@ static whit_result render_frame(struct job *job, const struct render_request *si
     double save_ms = whit_clock_ms() - start_ms;
     ++sequence->written;
     sequence->save_ms += save_ms;
+    sequence->stats.compile_ms += stats.compile_ms;
     whit_stats_add(&stats, &sequence->stats);
     if (job->settings.stats == STATS_NONE)
         return WHIT_OK;
@@ -284,6 +285,7 @@ whit_result frames_render(struct job *job, const struct render_request *request,
         return WHIT_ERROR_MEMORY;
     }
     whit_renderer_get_stats(renderer, &sequence->stats);
+    sequence->stats.compile_ms = 0.0; /* kernels are made for the first frame */
     sequence->stats.render_device_ms = sequence->stats.bailout_bound = 0.0;
     whit_result result = take_frames(job, request, renderer, progress, sequence, left);
     free(left);

@@ -28,7 +28,7 @@ struct sequence {
     uint32_t written, kept; /* frames; kept: they were finished before */
     bool left;              /* another process draws it: render_request.leaves */
     double save_ms;
-    whit_stats stats; /* summed up; upload and compile: before the first frame */
+    whit_stats stats; /* summed up; upload: before the first frame */
 };
 
 /* setting.read of --frames, into a render_request. */

@@ -282,29 +282,51 @@ static bool expects_something(const whit_shader *shader)
     return info.expectation_count > 0;
 }
 
+/* Scene and trees, and a device for them. */
+static whit_result make_missing(struct job *job, const struct render_request *request)
+{
+    bool loads = !job->scene, opens = !job->device;
+    if (opens)
+        job_begin_device(job);
+    whit_result result = loads ? job_load(job) : job_take_scene(job);
+    if (result == WHIT_OK)
+        result = render_check_camera(job);
+    if (result == WHIT_OK && loads)
+        job_print_notes(job, true);
+    if (result == WHIT_OK && !job->accel)
+        result = job_build(job);
+    if (result != WHIT_OK || !opens)
+        return result;
+    result = job_open_device(job);
+    if (result == WHIT_OK && request->many)
+        whit_device_keep_kernels(job->device);
+    return result;
+}
+
+static whit_result retarget(const struct job *job, const struct render_request *request,
+                            whit_renderer *renderer)
+{
+    whit_renderer_params params = job_picture(job);
+    part_take(&request->part, &params);
+    return whit_renderer_set_view(renderer, &params);
+}
+
 whit_result render_prepare(struct job *job, const struct render_request *request,
                            struct frames_progress *progress, whit_renderer **renderer)
 {
-    whit_result result = job_load_shader(job);
+    whit_result result = job->shader ? WHIT_OK : job_load_shader(job);
     if (result == WHIT_OK && (!layers_check(job) || !part_check_shader(job, request)))
         result = WHIT_ERROR_USAGE;
-    if (result == WHIT_OK) {
-        job_begin_device(job);
-        result = job_load(job);
-    }
     if (result == WHIT_OK)
-        result = render_check_camera(job);
-    if (result == WHIT_OK) {
-        job_print_notes(job, true);
-        result = job_build(job);
-    }
-    if (result == WHIT_OK)
-        result = job_open_device(job);
+        result = make_missing(job, request);
+    if (result != WHIT_OK)
+        return result;
+    if (*renderer)
+        return retarget(job, request, *renderer);
     bool chooses = job->settings.budget_ms > 0.0 || job->settings.max_error > 0.0;
-    if (result == WHIT_OK)
-        result = chooses ? render_choose(job, request, progress, renderer)
-                         : render_create(job, request, progress, renderer);
-    if (result == WHIT_OK && !expects_something(job->shader))
+    result = chooses ? render_choose(job, request, progress, renderer)
+                     : render_create(job, request, progress, renderer);
+    if (result == WHIT_OK && !request->scene_stays && !expects_something(job->shader))
         whit_scene_drop_pictures(job->scene);
     return result;
 }
@@ -463,19 +485,6 @@ static int work(struct job *job, const struct render_request *request)
     sequence_finish(&sequence);
     whit_renderer_destroy(renderer);
     return status;
-}
-
-whit_result render_retarget(struct job *job, const struct render_request *request,
-                            whit_renderer *renderer)
-{
-    whit_result result = job_take_scene(job);
-    if (result == WHIT_OK)
-        result = render_check_camera(job);
-    if (result != WHIT_OK || !part_check_shader(job, request) || !layers_check(job))
-        return result == WHIT_OK ? WHIT_ERROR_USAGE : result;
-    whit_renderer_params params = job_picture(job);
-    part_take(&request->part, &params);
-    return whit_renderer_set_view(renderer, &params);
 }
 
 static bool check_choice(struct cli_reader *reader, const struct settings *settings,

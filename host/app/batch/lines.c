@@ -1,0 +1,190 @@
+#include "app/batch/lines.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/file.h"
+
+enum { WORDS_MAX = 256, FILE_BYTES_MAX = 256 << 20 };
+
+/* ---- A line ---- */
+
+/* Words of the line, without `whit render` in front: argv[0] is the command. */
+static bool split(struct cli_reader *reader, char *text, char *argv[WORDS_MAX + 1])
+{
+    bool whole = true;
+    char *word;
+    int count = 1;
+    while (whole && count < WORDS_MAX && (word = cli_next_word(&text, &whole)) != NULL)
+        argv[count++] = word;
+    argv[count] = NULL;
+    if (!whole || count == WORDS_MAX)
+        return cli_misuse(reader, whole ? "too many words" : "a quote has no end");
+    if (count > 2 && strcmp(argv[1], "whit") == 0 && strcmp(argv[2], "render") == 0) {
+        memmove(argv + 1, argv + 3, (size_t)(count - 2) * sizeof *argv);
+        count -= 2;
+    }
+    reader->argc = count;
+    reader->argv = argv;
+    return true;
+}
+
+/* Refuses options in a line that hold for the whole process, and those that are of one picture
+   alone or choose settings by measuring. */
+static bool check(struct cli_reader *reader, const struct line *line)
+{
+    const struct settings *settings = &line->job.settings;
+    const char *const of_process[] = {"time-limit", "device", "validation", "no-cache", "stats"};
+    for (size_t i = 0; i < sizeof of_process / sizeof *of_process; ++i) {
+        if (settings_given(settings, of_process[i]))
+            return cli_misuse(reader, "--%s is of all lines, or of none", of_process[i]);
+    }
+    const char *other = refine_is_wanted(&line->request.refine) ? "--refine"
+                        : settings->budget_ms > 0.0             ? "--budget-ms"
+                        : settings->max_error > 0.0             ? "--max-error"
+                        : line->request.counters                ? "--counters"
+                                                                : NULL;
+    return !other || cli_misuse(reader, "%s is for `whit render`", other);
+}
+
+static void take_own(struct settings *settings, const struct settings *own)
+{
+    memcpy(settings->device, own->device, sizeof settings->device);
+    settings->validation = own->validation;
+    settings->no_cache = own->no_cache;
+    settings->quiet |= own->quiet;
+}
+
+bool line_read(struct line *line, const struct lines *lines, const struct line_place *place)
+{
+    static char name[] = "render";
+    char *argv[WORDS_MAX + 1] = {name}, said[SETTING_WHY_BYTES + SETTING_PATH_BYTES];
+    struct cli_reader reader;
+    snprintf(line->where, sizeof line->where, "%.1000s:%u", lines->path, place->number);
+    cli_reader_init(&reader, &command_render, 1, argv);
+    reader.where = line->where;
+    reader.trusted = true;
+    reader.said = said;
+    reader.said_bytes = sizeof said;
+    said[0] = '\0';
+    if (place->bytes >= sizeof line->text) {
+        cli_misuse(&reader, "the line is too long");
+    } else {
+        memcpy(line->text, lines->text + place->at, place->bytes);
+        line->text[place->bytes] = '\0';
+        line->request =
+            (struct render_request){.many = true, .leaves = true, .resume = lines->resume};
+        job_init(&line->job, &command_render);
+        if (split(&reader, line->text, argv) &&
+            render_read(&line->job, &reader, &line->request, reader.argc, argv) &&
+            check(&reader, line)) {
+            take_own(&line->job.settings, lines->own);
+            return true;
+        }
+    }
+    if (said[0])
+        cli_error("%s", said);
+    else
+        cli_note("%s: this line", line->where);
+    return false;
+}
+
+/* ---- All lines ---- */
+
+static bool is_blank(const char *text, size_t bytes)
+{
+    size_t blank = strspn(text, " \t\r");
+    return blank >= bytes || text[blank] == '#';
+}
+
+static whit_result find_places(struct lines *lines)
+{
+    uint32_t number = 0;
+    for (size_t at = 0; lines->text[at];) {
+        const char *text = lines->text + at;
+        struct line_place place = {.at = at, .bytes = strcspn(text, "\n"), .left = true};
+        place.number = ++number;
+        at += place.bytes + (text[place.bytes] == '\n');
+        if (is_blank(text, place.bytes) ||
+            ARRAY_PUSH(lines->places, lines->count, lines->capacity, place))
+            continue;
+        cli_error("out of memory");
+        return WHIT_ERROR_MEMORY;
+    }
+    return WHIT_OK;
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct line_place *x = a, *y = b;
+    for (int i = 0; i < LINE_GROUPS; ++i) {
+        if (x->group[i] != y->group[i])
+            return x->group[i] < y->group[i] ? -1 : 1;
+    }
+    return x->number < y->number ? -1 : 1;
+}
+
+static void sort(struct lines *lines)
+{
+    if (lines->count)
+        qsort(lines->places, lines->count, sizeof *lines->places, compare_places);
+}
+
+/* In place of a hash, in lines that have this one and those before it: the first line's number. */
+static void number_group(struct lines *lines, int group)
+{
+    struct line_place *places = lines->places;
+    sort(lines);
+    for (uint32_t i = 0, end = 0; i < lines->count; i = end) {
+        uint64_t hashes[LINE_GROUPS], least = places[i].number;
+        size_t bytes = ((size_t)group + 1) * sizeof *hashes;
+        memcpy(hashes, places[i].group, sizeof hashes);
+        for (; end < lines->count && memcmp(places[end].group, hashes, bytes) == 0; ++end)
+            least = places[end].number < least ? places[end].number : least;
+        for (uint32_t k = i; k < end; ++k)
+            places[k].group[group] = least;
+    }
+}
+
+int lines_init(struct lines *lines, struct line *line)
+{
+    uint8_t *text = NULL;
+    size_t bytes;
+    whit_result result = file_read(&cli_log, NULL, lines->path, FILE_BYTES_MAX, &text, &bytes);
+    lines->text = (char *)text;
+    if (result == WHIT_OK)
+        result = find_places(lines);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    for (uint32_t i = 0; i < lines->count; ++i) {
+        struct line_place *place = &lines->places[i];
+        if (!line_read(line, lines, place))
+            return EXIT_USAGE;
+        place->group[LINE_SCENE] = settings_hash_scene(&line->job.settings);
+        place->group[LINE_KERNEL] = settings_hash_kernel(&line->job.settings);
+        lines->compile |= settings_compiles(&line->job.settings);
+    }
+    number_group(lines, LINE_SCENE);
+    number_group(lines, LINE_KERNEL);
+    sort(lines);
+    return EXIT_FINE;
+}
+
+bool lines_share_scene(const struct lines *lines, const struct line_place *place)
+{
+    const uint64_t *own = place->group;
+    for (uint32_t i = 0; i < lines->count; ++i) {
+        const uint64_t *other = lines->places[i].group;
+        if (other[LINE_SCENE] == own[LINE_SCENE] && other[LINE_KERNEL] != own[LINE_KERNEL])
+            return true;
+    }
+    return false;
+}
+
+void lines_finish(struct lines *lines)
+{
+    free(lines->places);
+    free(lines->text);
+    *lines = (struct lines){0};
+}
