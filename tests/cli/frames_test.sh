@@ -4,6 +4,7 @@
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 TURNED=$3
+needs script
 mkdir "$OUT/frames"
 cd "$OUT/frames" || exit 1
 SWARM=$SCENES/swarm.json
@@ -107,6 +108,12 @@ expect 5 "--time-limit" render "$SWARM" --frames 0-9999 -o late/f.####.png --siz
 WHIT=$REAL
 check "holds over the sequence, with frames finished: $(count late)" test "$(count late)" -eq 10
 check "says how many" grep -q "$(count late) of 10000 frames were written" "$OUT/stderr"
+
+for time in 1 2 3; do
+    echo "'$SWARM' --time $time --size 64x48 -o late/$time.png"
+done >lines
+TERM=xterm script -qec "'$TURNED' batch lines" /dev/null >bar
+check "a bar over all lines" test "$(tr '\r' '\n' <bar | sed -n '/2.png/,$p' | grep -c ' 99 % .* s left')" -ge 1
 
 mkdir stop
 "$WHIT" render "$SWARM" --frames 0-9999 -o stop/f.####.png --size 64x48 2>"$OUT/stderr" &

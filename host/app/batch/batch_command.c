@@ -26,6 +26,7 @@ struct batch {
     whit_stats stats; /* of all lines */
     double start_ms, compile_ms, save_ms;
     uint32_t done, written, kept;
+    uint32_t lines_kept; /* of `done`: nothing of them was drawn */
 };
 
 static const struct setting_value values_stats[] = {{"json", 1, NULL}, {0}};
@@ -120,12 +121,22 @@ static whit_result prepare(struct batch *batch, const struct line_place *place)
     return result;
 }
 
+/* A bar over all lines: it ends with each, to say what was drawn. */
+static void show_progress(struct batch *batch)
+{
+    struct frames_progress *progress = &batch->progress;
+    cli_progress_init(&progress->bar, batch->lines.own->quiet);
+    progress->bar.start_ms = batch->start_ms;
+    progress->line = batch->done - batch->lines_kept; /* what was kept took no time */
+    progress->lines = batch->lines.count - batch->lines_kept;
+}
+
 static int draw_line(struct batch *batch, struct line_place *place)
 {
     struct sequence sequence = {0};
     const struct render_request *request = &batch->line.request;
     int status;
-    batch->progress.line = batch->done;
+    show_progress(batch);
     cli_set_kept(batch->done, batch->lines.count, "lines were drawn");
     whit_result result = job_still_wanted();
     if (result == WHIT_OK)
@@ -140,6 +151,7 @@ static int draw_line(struct batch *batch, struct line_place *place)
         place->left = false;
         ++batch->done;
         batch->kept += sequence.kept;
+        batch->lines_kept += sequence.kept && !sequence.written;
         batch->written += request->frames.given ? sequence.written : !sequence.kept;
         batch->save_ms += sequence.save_ms;
         batch->compile_ms += sequence.stats.compile_ms;
@@ -206,9 +218,6 @@ static int work(struct batch *batch, const struct settings *own)
     if (status != EXIT_FINE)
         return status;
     job_start(&clock);
-    batch->progress.lines = batch->lines.count;
-    cli_progress_init(&batch->progress.bar, own->quiet);
-    batch->progress.bar.start_ms = whit_clock_ms();
     status = draw(batch);
     cli_progress_finish(&batch->progress.bar);
     if (status != EXIT_FINE && !cli_cancel && !own->quiet)
