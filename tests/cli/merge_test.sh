@@ -7,13 +7,30 @@ mkdir "$OUT/parts"
 cd "$OUT/parts" || exit 1
 PARTS=$3
 
-# draw EXTENSION N OPTION...: tiles 1 to N, with their hit identities; all at once.
-draw_tiles() {
-    extension=$1 count=$2
+# spread N DRAW ARGUMENT...: DRAW I ARGUMENT... for each I, the last first, by three processes.
+spread() {
+    parts=$1 draw=$2
     shift 2
-    for i in $(seq "$count"); do
-        "$WHIT" render "$@" --tile "$i/$count" -o "t$i.$extension" --ids "i$i.exr" -q || echo "tile $i failed"
+    for process in 0 1 2; do
+        for i in $(seq "$parts" -1 1); do
+            [ $((i % 3)) -ne $process ] || "$draw" "$i" "$@" || echo "part $i failed"
+        done &
     done
+    wait
+}
+
+# draw_tile I EXTENSION N OPTION...: with its hit identities.
+draw_tile() {
+    i=$1 extension=$2 count=$3
+    shift 3
+    "$WHIT" render "$@" --tile "$i/$count" -o "t$i.$extension" --ids "i$i.exr" -q
+}
+
+# draw_samples I EXTENSION N OPTION...
+draw_samples() {
+    i=$1 extension=$2 count=$3
+    shift 3
+    "$WHIT" render "$@" --samples-part "$i/$count" -o "s$i.$extension" -q
 }
 
 # tiles EXTENSION N WHAT OPTION...: are the picture, and their identities its.
@@ -22,12 +39,17 @@ tiles() {
     shift 3
     rm -f t*.* i*.exr
     "$WHIT" render "$@" -o "one.$extension" --ids one-ids.exr -q
-    draw_tiles "$extension" "$count" "$@"
+    spread "$count" draw_tile "$extension" "$count" "$@"
     files=$(seq "$count" | sort -k1.1r | sed "s/.*/t&.$extension/")
     expect 0 "$what: $count tiles" merge $files -o "merged.$extension"
     check "$what: $count tiles are the $extension of one run" cmp "one.$extension" "merged.$extension"
     expect 0 "$what: identities of $count tiles" merge $(seq "$count" | sed 's/.*/i&.exr/') -o merged-ids.exr
     check "$what: so are their identities" cmp one-ids.exr merged-ids.exr
+}
+
+# bound NAME: by its recipe; -1 of what is unknown.
+bound() {
+    grep -a -o '"bailout_bound":[-0-9.e]*' "$1.$extension" | cut -d : -f 2 | grep . || echo -1
 }
 
 # samples EXTENSION N WHAT OPTION...
@@ -36,12 +58,11 @@ samples() {
     shift 3
     rm -f s*.*
     "$WHIT" render "$@" -o "one.$extension" -q
-    for i in $(seq "$count"); do
-        "$WHIT" render "$@" --samples-part "$i/$count" -o "s$i.$extension" -q
-    done
+    spread "$count" draw_samples "$extension" "$count" "$@"
     files=$(seq "$count" | sort -k1.1r | sed "s/.*/s&.$extension/")
     expect 0 "$what: $count runs of samples" merge $files -o "merged.$extension"
     expect 0 "$what: they are compared" compare "one.$extension" "merged.$extension" --metric differing --tolerance 0
+    check "$what: what may be missing for --bailout is no less than in one run" holds "$(bound merged) >= $(bound one)"
 }
 
 # large SIDE TILES EXTENSION MIB: parts of a large picture are merged within so much memory, of which the
@@ -106,7 +127,7 @@ large 2048 32 png 32
 
 # What is no whole set is refused, and nothing is written.
 rm -f merged*
-draw_tiles png 4 "$CUBE" --size 64x64
+spread 4 draw_tile png 4 "$CUBE" --size 64x64
 refuse 2 "a part that is missing" "1 of 4 parts are missing: tile 3/4" merge t1.png t2.png t4.png -o merged.png
 refuse 2 "a part that is doubled" "are both tile 2/4" merge t1.png t2.png t2.png t3.png t4.png -o merged.png
 "$WHIT" render "$CUBE" --size 64x64 --depth 3 --tile 3/4 -o other.png -q

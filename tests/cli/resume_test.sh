@@ -1,6 +1,6 @@
 #!/bin/sh
 # Work that is stopped anywhere goes on to the same bytes, and processes share it. With `all` it is killed at twenty
-# moments of 50 frames, and in each of 8 tiles.
+# random moments of 50 frames, and at one of each of 8 tiles.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/work"
@@ -9,10 +9,12 @@ SWARM=$SCENES/swarm.json
 moments="1 4"
 last=11
 tiles=2
+random=
 if [ "${3:-}" = all ]; then
     moments=$(seq 2 2 40)
     last=49
     tiles=8
+    random=yes
 fi
 frames="$SWARM --frames 0-$last --size 96x72 --aa 4"
 
@@ -21,9 +23,11 @@ files() {
     test "$(find . -name 'a.*.png' | wc -l)" -ge "$1"
 }
 
-# killed COMMAND...: whit in the background is killed once the command succeeds.
+# killed COMMAND...: whit in the background is killed once the command succeeds, with `all` at any moment of the next
+# fifth of a second.
 killed() {
     wait_for "$pid" "$@"
+    [ -z "$random" ] || sleep "0.$(shuf -i 0-199 -n 1 | awk '{ printf "%03d", $1 }')"
     kill -9 "$pid" 2>/dev/null
     wait "$pid" 2>/dev/null
 }
