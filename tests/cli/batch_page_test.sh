@@ -1,0 +1,34 @@
+#!/bin/sh
+# docs/batch.md (the third argument) as a user follows it: each of its commands in turn, typed as it stands there, and
+# its Makefile. What needs a cluster is in slurm_test.sh. Long.
+. "$(dirname "$0")/common.sh"
+PAGE=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
+needs parallel
+needs make
+mkdir "$OUT/here" && cd "$OUT/here" && ln -s "$SCENES" scenes || exit 1
+PATH=$(dirname "$WHIT"):$PATH
+export PATH
+
+sed -n '/^```make$/,/^```$/p' "$PAGE" | grep -v '^```' >Makefile
+sed -n 's/^    //p' "$PAGE" | grep -v -e '^sbatch' -e '^tools/slurm' >commands
+check "there are ten commands or more" test "$(grep -c . commands)" -ge 10
+while read -r line; do
+    check "$line" sh -c "$line" >said 2>&1 </dev/null
+    cat said >>"$OUT/stderr"
+    grep -E "^(ok|FAILED)" said
+    grep -q "^FAILED" said && FAILED=1
+done <commands
+
+# What they have made is what one run makes.
+run render scenes/room.json -o one.exr --size 1024x1024 -q
+check "tiles" cmp one.exr room.exr
+run render scenes/room.json -o one.exr --aa 16 -q
+expect 0 "runs of samples" compare one.exr smooth.exr --metric differing --tolerance 0
+run render scenes/room.json -o one.exr -q
+check "tiles by GNU parallel" cmp one.exr parallel.exr
+check "tiles by make" cmp one.exr all.exr
+run render scenes/cube.json -o one.png --shadows none -q
+check "lines" cmp one.png bright.png
+run render scenes/swarm.json -o one.png --frame 149 -q
+check "frames" cmp one.png swarm.0149.png
+finish
