@@ -1,10 +1,11 @@
 # No function of libm whose last bits depend on its version or on the processor, in what is computed
-# before it is uploaded: host/base/same.h has those that give the same bits everywhere.
+# before it is uploaded, nor in what the reference draws: host/base/same.h has those that give the
+# same bits everywhere.
 #     cmake -DROOT=<repository> -P same.cmake
 cmake_minimum_required(VERSION 3.25)
 set(functions "a?sin|a?cos|a?tan|atan2|sincos|sinh|cosh|tanh|exp|exp2|exp10|expm1|log|log2|log10|log1p|pow|cbrt|hypot|fma|tgamma|lgamma")
 set(checked 0)
-foreach(folder accel base bvh load picture render scene)
+foreach(folder accel base bvh load oracle picture reference render scene)
   file(GLOB files ${ROOT}/host/${folder}/*.[ch])
   foreach(file ${files})
     math(EXPR checked "${checked} + 1")

@@ -337,6 +337,16 @@ static double exp_of(struct pair x)
     return ldexp(of->hi + (of->hi * p + of->lo), (whole - (whole & 31)) / 32);
 }
 
+static double exp_pair(struct pair x)
+{
+    return x.hi > 710.0 ? INFINITY : x.hi < -746.0 ? 0.0 : exp_of(x);
+}
+
+double same_exp(double x)
+{
+    return isnan(x) ? NAN : exp_pair((struct pair){x, 0.0});
+}
+
 double same_pow(double x, double y)
 {
     if (y == 0.0 || x == 1.0)
@@ -347,6 +357,5 @@ double same_pow(double x, double y)
         return (x == 0.0) == (y < 0.0) ? INFINITY : 0.0;
     double bounded = fmax(-1e20, fmin(1e20, y));
     struct pair l = log_pair(x), p = product(l.hi, bounded);
-    p = sum(p.hi, p.lo + l.lo * bounded);
-    return p.hi > 710.0 ? INFINITY : p.hi < -746.0 ? 0.0 : exp_of(p);
+    return exp_pair(sum(p.hi, p.lo + l.lo * bounded));
 }

@@ -20,6 +20,7 @@ double same_atan2(double y, double x);
 double same_log(double x);
 double same_log2(double x);
 double same_log10(double x);
+double same_exp(double x);
 /* NaN for x < 0. */
 double same_pow(double x, double y);
 

@@ -1,13 +1,14 @@
 /* Where the ray tree of a pixel starts: the kernels' cameras and patterns of samples, in double. */
+#include "base/same.h"
 #include "base/vec.h"
 #include "reference/inside.h"
 
 static struct dvec3 in_panorama(const struct gpu_frame *frame, double x, double y)
 {
     double longitude = PI * x, latitude = -0.5 * PI * y;
-    struct dvec3 level = d3_along(d3_scale(d3_load(frame->forward), cos(longitude)),
-                                  d3_load(frame->right), sin(longitude));
-    return d3_along(d3_scale(level, cos(latitude)), d3_load(frame->up), sin(latitude));
+    struct dvec3 level = d3_along(d3_scale(d3_load(frame->forward), same_cos(longitude)),
+                                  d3_load(frame->right), same_sin(longitude));
+    return d3_along(d3_scale(level, same_cos(latitude)), d3_load(frame->up), same_sin(latitude));
 }
 
 /* x and y: -1..1 from left to right and from top to bottom. */
@@ -66,8 +67,8 @@ double camera_texel_area(const struct reference *reference, uint32_t x, uint32_t
     if (reference->camera == CAMERA_ORTHOGRAPHIC)
         return area;
     if (reference->camera == CAMERA_PANORAMA)
-        return area * way * way * cos(0.5 * PI * at_y);
+        return area * way * way * same_cos(0.5 * PI * at_y);
     double aside_x = at_x * d3_length(d3_load(frame->right));
     double aside_y = at_y * d3_length(d3_load(frame->up));
-    return area * way * way / pow(1.0 + aside_x * aside_x + aside_y * aside_y, 1.5);
+    return area * way * way / same_pow(1.0 + aside_x * aside_x + aside_y * aside_y, 1.5);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "accel/hit_order.h"
+#include "base/same.h"
 #include "oracle/conservative.h"
 #include "reference/inside.h"
 
@@ -81,7 +82,7 @@ static double stops_of(const struct reference *reference, double kept)
 {
     if (!(kept > 0.0))
         return reference->params.whole_stops ? 65535.0 : INFINITY;
-    double stops = fmax(-SHADOW_DEPTH_SCALE * log2(kept), 0.0);
+    double stops = fmax(-SHADOW_DEPTH_SCALE * same_log2(kept), 0.0);
     return reference->params.whole_stops ? floor(stops + 0.5) : stops;
 }
 

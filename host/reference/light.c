@@ -1,6 +1,7 @@
 /* Where light comes from: lights, flat emitters by exact integrals, the sky. */
 #include <float.h>
 
+#include "base/same.h"
 #include "base/vec.h"
 #include "reference/inside.h"
 
@@ -90,7 +91,7 @@ static double edge_term(struct dvec3 n, struct dvec3 a, struct dvec3 b)
 {
     struct dvec3 normal = dvec3_cross(a, dvec3_sub(b, a));
     double size = d3_length(normal);
-    return size > 0.0 ? atan2(size, dvec3_dot(a, b)) * dvec3_dot(n, normal) / size : 0.0;
+    return size > 0.0 ? same_atan2(size, dvec3_dot(a, b)) * dvec3_dot(n, normal) / size : 0.0;
 }
 
 /* What is above the horizon of n, by Sutherland and Hodgman; the number of its corners. */

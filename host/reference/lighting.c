@@ -1,6 +1,7 @@
 /* Light that reaches a surface straight from the lights, with shadows. */
 #include <string.h>
 
+#include "base/same.h"
 #include "reference/inside.h"
 
 #define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: beyond it a mesh is no smooth surface */
@@ -55,7 +56,7 @@ static struct dvec3 share_of(const struct reference *reference, const struct rec
         if (reference->params.whole_stops)
             stops = floor(stops + 0.5);
         stops = fmax(shadow->stops[c] + stops, 0.0);
-        share[c] = exp2(-stops / SHADOW_DEPTH_SCALE);
+        share[c] = same_pow(2.0, -stops / SHADOW_DEPTH_SCALE);
     }
     return d3(share[0], share[1], share[2]);
 }

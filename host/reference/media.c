@@ -1,5 +1,6 @@
 /* Nested media (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images"), and
    surfaces of several of them that a ray crosses at one place. */
+#include "base/same.h"
 #include "reference/inside.h"
 
 #include "picture/bodies.h"
@@ -62,7 +63,7 @@ static bool have(const struct media *media, uint32_t entry)
 
 static double transmitted(double absorption, double t)
 {
-    return absorption > 0.0 ? exp(-absorption * t) : 1.0;
+    return absorption > 0.0 ? same_exp(-absorption * t) : 1.0;
 }
 
 struct dvec3 media_transmittance(const struct reference *reference, const struct media *media,

@@ -1,5 +1,6 @@
 /* Reflection, refraction and highlights of a surface, after its textures (docs/effects.md, "The
    model" and "glTF metallic-roughness"). */
+#include "base/same.h"
 #include "reference/inside.h"
 
 #define SCHLICK_POWER 5.0
@@ -13,7 +14,7 @@ static double refracted_cos2(double cos_in, double eta)
 
 static double schlick_weight(double cos_in)
 {
-    return pow(clamp_unit(1.0 - cos_in), SCHLICK_POWER);
+    return same_pow(clamp_unit(1.0 - cos_in), SCHLICK_POWER);
 }
 
 /* By the angles (Fresnel's sine and tangent laws), where they are not too small to divide by. */
@@ -24,12 +25,13 @@ double optics_fresnel(double cos_in, double eta)
         return 0.0;
     if (!(cos2 > 0.0))
         return 1.0;
-    double in = acos(cos_in), out = acos(sqrt(cos2));
+    double in = same_acos(cos_in), out = same_acos(sqrt(cos2));
     if (in < 1e-3) { /* head-on, and flat there */
         double r = (eta - 1.0) / (eta + 1.0);
         return r * r;
     }
-    double sine = sin(in - out) / sin(in + out), tangent = tan(in - out) / tan(in + out);
+    double sine = same_sin(in - out) / same_sin(in + out);
+    double tangent = same_tan(in - out) / same_tan(in + out);
     return 0.5 * (sine * sine + tangent * tangent);
 }
 
@@ -78,7 +80,7 @@ struct dvec3 optics_highlight(const struct optics *o, struct dvec3 n, struct dve
         double cos_view = fmax(dvec3_dot(view, n), 0.0);
         return d3_scale(o->highlight, cos_light * ggx(cos_half, cos_light, cos_view, o->alpha));
     }
-    return d3_scale(o->highlight, cos_half > 0.0 ? pow(cos_half, o->shininess) : 0.0);
+    return d3_scale(o->highlight, cos_half > 0.0 ? same_pow(cos_half, o->shininess) : 0.0);
 }
 
 /* What textures and colours of vertices make of a material. */

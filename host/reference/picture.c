@@ -13,8 +13,11 @@ enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
 static whit_result check_params(const whit_log *log, const struct scene *scene,
                                 whit_renderer_params *params)
 {
-    if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE || params->effects_removed) {
-        log_error(log, "a reference picture has all effects, and as many samples in every pixel");
+    if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE || params->effects_removed ||
+        params->shader) {
+        log_error(log,
+                  "a reference picture has all effects, as many samples in every pixel, and no "
+                  "functions of users");
         return WHIT_ERROR_USAGE;
     }
     if (scene->pictures_dropped) {

@@ -47,7 +47,7 @@ struct reference;
 
 /* `accel` (with its scene) is borrowed until reference_destroy, and posed at picture.time_s: no
    renderer may be at work on it. WHIT_ERROR_USAGE, logged, for parameters that a renderer refuses,
-   for adaptive samples, and for effects left out. */
+   for adaptive samples, for effects left out, and for a shader. */
 WHIT_CHECK whit_result reference_create(const whit_log *log, struct accel *accel,
                                         const struct reference_params *params,
                                         struct reference **out);

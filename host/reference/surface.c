@@ -1,4 +1,5 @@
 /* From a hit to what shading needs: point, normals, texture coordinates, material. */
+#include "base/same.h"
 #include "base/vec.h"
 #include "reference/inside.h"
 
@@ -73,9 +74,9 @@ static void take_colors(struct surface *s)
 /* u once around y from +x towards -z, v from the top down. */
 static void take_sphere_uv(struct surface *s, struct dvec3 n)
 {
-    double around = atan2(-n.z, n.x) / (2.0 * PI);
+    double around = same_atan2(-n.z, n.x) / (2.0 * PI);
     s->u = around < 0.0 ? around + 1.0 : around;
-    s->v = atan2(hypot(n.x, n.z), n.y) / PI;
+    s->v = same_atan2(sqrt(n.x * n.x + n.z * n.z), n.y) / PI;
 }
 
 static struct surface begin_surface(const struct reference *reference, uint32_t instance,
@@ -120,7 +121,7 @@ static void take_triangle(const struct gpu_triangle *record, const struct hit *h
 static void take_sphere(const struct gpu_triangle *record, const struct hit *hit, struct surface *s)
 {
     struct dvec3 n = hit->normal;
-    double radius = (double)record->v1[0], ring = hypot(n.x, n.z);
+    double radius = (double)record->v1[0], ring = sqrt(n.x * n.x + n.z * n.z);
     struct dvec3 around = ring > 0.0 ? d3(n.z / ring, 0.0, -n.x / ring) : d3_all(0.0);
     s->p = d3_along(d3_load(record->v0), n, radius);
     s->ng = n;

@@ -55,6 +55,12 @@ static double logarithm_10(double x, double y)
     return same_log10(x);
 }
 
+static double exponential(double x, double y)
+{
+    (void)y;
+    return same_exp(x);
+}
+
 static long double sine_long(long double x, long double y)
 {
     (void)y;
@@ -97,6 +103,12 @@ static long double logarithm_10_long(long double x, long double y)
     return log10l(x);
 }
 
+static long double exponential_long(long double x, long double y)
+{
+    (void)y;
+    return expl(x);
+}
+
 /* Arguments: from -size to size, or 2^-size to 2^size. */
 static const struct row {
     const char *name;
@@ -117,6 +129,7 @@ static const struct row {
     {"log near 1", logarithm, logarithm_long, 0.1, 0.0, true, false, 0.55L},
     {"log2", logarithm_2, logarithm_2_long, 1000.0, 0.0, true, false, 0.55L},
     {"log10", logarithm_10, logarithm_10_long, 1000.0, 0.0, true, false, 0.55L},
+    {"exp", exponential, exponential_long, 700.0, 0.0, false, false, 0.55L},
     {"pow", same_pow, powl, 8.0, 60.0, true, false, 0.55L},
     {"pow of sRGB", same_pow, powl, 5.0, 2.5, true, false, 0.55L},
 };
@@ -172,6 +185,7 @@ TEST(special_values_are_those_of_c)
         assert_true((!special && x > 0.0) || is_same(same_log(x), log(x)));
         assert_true((!special && x > 0.0) || is_same(same_log2(x), log2(x)));
         assert_true((!special && x > 0.0) || is_same(same_log10(x), log10(x)));
+        assert_true(!special || is_same(same_exp(x), exp(x)));
         for (int j = 0; j < COUNT; ++j) {
             double y = j % 2 ? -values[j / 2] : values[j / 2];
             bool either = special || y == 0.0 || !isfinite(y);
@@ -191,11 +205,11 @@ TEST(bits_are_the_same_everywhere)
     random_state = 7;
     for (int i = 0; i < 20000; ++i) {
         double x = argument(20.0, false), y = argument(20.0, false), of = argument(20.0, true);
-        const double found[] = {same_sin(x),         same_cos(x),      same_tan(x),
-                                same_acos(x / 20.0), same_atan2(x, y), same_log(of),
-                                same_log2(of),       same_log10(of),   same_pow(of, y)};
+        const double found[] = {same_sin(x),      same_cos(x),  same_tan(x),   same_acos(x / 20.0),
+                                same_atan2(x, y), same_log(of), same_log2(of), same_log10(of),
+                                same_pow(of, y),  same_exp(x)};
         hash = hash_bytes(hash, found, sizeof found);
     }
     print_message("%016llx\n", (unsigned long long)hash);
-    assert_true(hash == UINT64_C(0xcd21947987d662da));
+    assert_true(hash == UINT64_C(0x52de27c7070b9709));
 }
