@@ -10,6 +10,7 @@ struct whit_reference {
     whit_renderer_params params; /* its strings are not read again */
     const struct accel *accel;   /* borrowed */
     whit_log log;
+    struct reference_stats stats; /* of the picture rendered last */
 };
 
 whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params *params,
@@ -53,7 +54,7 @@ whit_result whit_reference_render(whit_reference *reference, whit_image **color,
         log_error(&reference->log, "out of memory");
     else
         result = reference_render(reference->reference, &to_color->image,
-                                  to_ids ? &to_ids->image : NULL, NULL);
+                                  to_ids ? &to_ids->image : NULL, &reference->stats);
     if (result != WHIT_OK) {
         free(to_color);
         free(to_ids);
@@ -65,6 +66,24 @@ whit_result whit_reference_render(whit_reference *reference, whit_image **color,
     if (ids)
         *ids = to_ids;
     return result;
+}
+
+void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats)
+{
+    const struct reference_stats *from = &reference->stats;
+    *stats = (whit_stats){.render_ms = from->render_ms,
+                          .render_device_ms = -1.0,
+                          .rays_primary = from->rays[RAY_PRIMARY],
+                          .rays_shadow = from->rays[RAY_SHADOW],
+                          .rays_reflected = from->rays[RAY_REFLECTED],
+                          .rays_refracted = from->rays[RAY_REFRACTED],
+                          .rays_cut_depth = from->cut_depth,
+                          .rays_cut_bailout = from->cut_bailout,
+                          .weight_cut_depth = -1.0,
+                          .weight_cut_bailout = -1.0,
+                          .bailout_bound = -1.0};
+    if (from->render_ms > 0.0)
+        stats->mrays_per_s = (double)whit_stats_rays(stats) / from->render_ms * 1e-3;
 }
 
 static void to_floats(const double from[3], float to[3])

@@ -59,7 +59,7 @@ TEST(text_is_read_again)
     assert_string_equal(written, text);
     golden_finish(&golden);
     memcpy(copy, text, sizeof text);
-    assert_true(golden_read_text(&again, "x.golden", copy));
+    assert_true(golden_read_text(&again, "x.golden", copy, GOLDEN_OF_DEVICE));
     free(written);
     written = golden_text(&again);
     assert_string_equal(written, text);
@@ -82,7 +82,7 @@ TEST(another_whit_is_no_reason_to_refuse)
 {
     struct golden golden;
     char other[] = "whit check golden 1, whit 99.0.1-rc2\r\n";
-    assert_true(golden_read_text(&golden, "x.golden", other));
+    assert_true(golden_read_text(&golden, "x.golden", other, GOLDEN_OF_DEVICE));
     assert_string_equal(golden.by, "99.0.1-rc2");
     golden_finish(&golden);
 }
@@ -101,7 +101,7 @@ TEST(paths_are_beside_the_suite)
                                            {".whit", ".whit.golden"},
                                            {"a/whit.suite", "a/whit.golden"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
-        char *path = golden_path(pairs[i][0]);
+        char *path = golden_path(pairs[i][0], GOLDEN_OF_DEVICE);
         assert_string_equal(path, pairs[i][1]);
         free(path);
     }
@@ -135,7 +135,7 @@ TEST(damage_is_told_by_its_line)
         char copy[1024];
         snprintf(copy, sizeof copy, "%s", damaged[i].text);
         cli_errors_of("test");
-        assert_false(golden_read_text(&golden, "x.golden", copy));
+        assert_false(golden_read_text(&golden, "x.golden", copy, GOLDEN_OF_DEVICE));
         if (strncmp(cli_said(), damaged[i].told, strlen(damaged[i].told)) != 0)
             fail_msg("`%s` says `%s`", damaged[i].told, cli_said());
         golden_finish(&golden);

@@ -32,7 +32,7 @@ static bool read_lines(struct golden *found, const char *where, const char *line
         return false;
     }
     restore_text(text);
-    bool read = golden_read_text(found, where, text);
+    bool read = golden_read_text(found, where, text, GOLDEN_OF_DEVICE);
     if (read && found->count != 1)
         cli_error("%s: its lines of a golden are not those of one case", where);
     read = read && found->count == 1;
@@ -115,6 +115,18 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
 
 /* ---- Files ---- */
 
+/* A report without the word is of a device. */
+static bool is_of_kind(const struct check *check, const char *path, const json_t *root)
+{
+    const char *on = json_string_value(json_object_get(root, "on"));
+    const char *wanted = golden_kind_word(check->golden.kind);
+    on = on ? on : golden_kind_word(GOLDEN_OF_DEVICE);
+    if (strcmp(on, wanted) == 0)
+        return true;
+    cli_error("%s: its pictures are by the %s, not by the %s", path, cli_shown(on), wanted);
+    return false;
+}
+
 static bool read_report(struct check *check, const char *path)
 {
     uint8_t *data = NULL;
@@ -131,6 +143,7 @@ static bool read_report(struct check *check, const char *path)
         cli_error("%s:%d: %s", path, error.line, error.text);
     else if (!read)
         cli_error("%s: no report of `whit check --json`", path);
+    read = read && is_of_kind(check, path, root);
     json_array_foreach(cases, index, item)
     {
         if (!read)

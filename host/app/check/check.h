@@ -19,6 +19,7 @@ struct check {
     const char *json, *junit, *report; /* or NULL */
     struct check_names accept, only;
     bool list, prune, thumbnails, power;
+    uint32_t on;     /* enum golden_kind: what draws */
     uint32_t mutate; /* faults that are put into the suite's scenes; 0: none */
     uint32_t seed;   /* of them */
 

@@ -28,6 +28,9 @@ static bool read_only(const struct setting *setting, const char *value, void *re
     return add_names(value, &((struct check *)record)->only, why);
 }
 
+static const struct setting_value values_on[] = {
+    {"device", GOLDEN_OF_DEVICE, NULL}, {"reference", GOLDEN_OF_REFERENCE, NULL}, {0}};
+
 static const struct setting options[] = {
     {"only", 0, "NAME", "those cases alone; * and ? stand for letters; may be given again",
      .kind = SETTING_OWN, .read = read_only},
@@ -43,6 +46,10 @@ static const struct setting options[] = {
      "the same with what a report of --json, or all in a folder,\n"
      "say that they show; nothing is drawn",
      SETTING_AT_NAME(struct check, accept_from)},
+    {"on", 0, NULL,
+     "what draws: Vulkan, or the reference in double on the CPU,\n"
+     "which has goldens of its own, SUITE.reference.golden (device)",
+     SETTING_AT_CHOICE(struct check, on), .values = values_on},
     {"json", 0, "FILE", "also write what came of each case as JSON",
      SETTING_AT_NAME(struct check, json)},
     {"junit", 0, "FILE", "the same as JUnit XML, which CI services show",
@@ -122,6 +129,10 @@ static bool check_request(struct cli_reader *reader, struct check *check)
                           check->power ? "power" : "mutate");
     if (check->power && check->mutate)
         return cli_misuse(reader, "--power and --mutate: one of them");
+    if (check->on == GOLDEN_OF_REFERENCE &&
+        (check->settings.device[0] || check->settings.validation))
+        return cli_misuse(reader, "--on reference uses no device: --%s is of one",
+                          check->settings.device[0] ? "device" : "validation");
     if (!check_outputs(reader, check))
         return false;
     if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
@@ -293,7 +304,8 @@ static void print_result(const struct check *check, const struct check_result *r
 static whit_result run_cases(struct check *check)
 {
     struct studio studio;
-    whit_result result = studio_open(&studio, &check->settings, &check->suite, check->wanted);
+    whit_result result = studio_open(&studio, (enum golden_kind)check->on, &check->settings,
+                                     &check->suite, check->wanted);
     for (uint32_t i = 0; result == WHIT_OK && i < check->suite.count; ++i) {
         if (!check->wanted[i])
             continue;
@@ -303,6 +315,8 @@ static whit_result run_cases(struct check *check)
     }
     if (studio.job.device)
         whit_device_get_info(studio.job.device, &check->device);
+    else if (check->on == GOLDEN_OF_REFERENCE)
+        snprintf(check->device.name, sizeof check->device.name, "the reference in double");
     if (result == WHIT_OK && job_check_validation(&studio.job) != EXIT_FINE)
         result = WHIT_ERROR_FAILED;
     studio_close(&studio);
@@ -421,12 +435,13 @@ static int run(const struct cli_command *command, int argc, char **argv)
     cli_reader_init(&reader, command, argc, argv);
     if (!cli_read(&reader, &check, &check.settings) || !check_request(&reader, &check))
         return reader.status;
-    check.golden_path = golden_path(reader.positional);
+    check.golden_path = golden_path(reader.positional, (enum golden_kind)check.on);
     int status = EXIT_USAGE;
     common.settings = check.settings;
     if (suite_read(&check.suite, reader.positional, check.root, say_wrong, NULL) &&
-        check.golden_path && golden_read(&check.golden, check.golden_path) &&
-        golden_read(&check.old, check.golden_path) && choose(&check)) {
+        check.golden_path &&
+        golden_read(&check.golden, check.golden_path, (enum golden_kind)check.on) &&
+        golden_read(&check.old, check.golden_path, (enum golden_kind)check.on) && choose(&check)) {
         job_start(&common);
         status = check.list ? list(&check) : work_with_base(&check);
     }

@@ -65,25 +65,30 @@ void difference_write(const struct difference *difference, char *text, size_t by
 
 struct seen {
     whit_probe_hit hit;
-    float color[4];
+    char value[80]; /* of the pixel: its colour, or a count */
     char name[256];
 };
 
 static bool probe(const struct drawing *drawing, const struct difference *at, struct seen *out)
 {
-    whit_probe_report *report;
+    whit_probe_ray ray;
+    whit_image_info info;
     whit_instance_info instance = {.name = ""};
-    if (whit_probe(drawing->renderer, at->x, at->y, 1, &report) != WHIT_OK)
+    if (drawing_probe(drawing, at->x, at->y, &ray) != WHIT_OK)
         return false;
-    bool known = report->ray_count > 0;
-    if (known)
-        out->hit = report->rays[0].device;
-    memcpy(out->color, report->color, sizeof out->color);
-    if (known && out->hit.instance != WHIT_NONE)
+    out->hit = ray.device;
+    whit_image_get_info(drawing->color, &info);
+    size_t pixel = (size_t)at->y * info.width + at->x;
+    const float *value = whit_image_floats(drawing->color) + pixel * info.channels;
+    if (info.channels < 3)
+        snprintf(out->value, sizeof out->value, "%.6g", (double)value[0]);
+    else
+        snprintf(out->value, sizeof out->value, "%.6g %.6g %.6g", (double)value[0],
+                 (double)value[1], (double)value[2]);
+    if (out->hit.instance != WHIT_NONE)
         whit_scene_get_instance(drawing->job.scene, out->hit.instance, &instance);
     snprintf(out->name, sizeof out->name, "%s", instance.name);
-    whit_probe_report_destroy(report);
-    return known;
+    return true;
 }
 
 /* "ball 5532 at 4.1021" */
@@ -111,8 +116,6 @@ void difference_write_pixel(const struct difference *difference, const struct dr
         snprintf(text, bytes, "pixel %u,%u: was %s, is %s", difference->x, difference->y,
                  hit_before, hit_after);
     else
-        snprintf(text, bytes, "pixel %u,%u: %s, was %.6g %.6g %.6g, is %.6g %.6g %.6g",
-                 difference->x, difference->y, hit_after, (double)was.color[0],
-                 (double)was.color[1], (double)was.color[2], (double)is.color[0],
-                 (double)is.color[1], (double)is.color[2]);
+        snprintf(text, bytes, "pixel %u,%u: %s, was %s, is %s", difference->x, difference->y,
+                 hit_after, was.value, is.value);
 }

@@ -28,11 +28,13 @@ static bool any_compiles(const struct studio *studio)
     return false;
 }
 
-whit_result studio_open(struct studio *studio, const struct settings *common,
+whit_result studio_open(struct studio *studio, enum golden_kind kind, const struct settings *common,
                         const struct suite *suite, const bool *wanted)
 {
     *studio = (struct studio){.suite = suite, .wanted = wanted, .job = {.settings = *common}};
     whit_result result = WHIT_OK;
+    if (kind == GOLDEN_OF_REFERENCE)
+        return WHIT_OK;
     /* The compiler's process has the memory that this one has now. */
     if (any_compiles(studio))
         result = job_begin_compiler(&studio->job, &cli_log);
@@ -150,6 +152,15 @@ static whit_result take_shader(struct studio *studio, struct job *job)
 
 /* ---- A picture ---- */
 
+whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer)
+{
+    const struct job *job = &drawing->job;
+    return job->device
+               ? whit_renderer_create(job->device, job->accel, &drawing->params, renderer)
+               : whit_reference_create(job->accel, &drawing->params, 0, &drawing->reference);
+}
+
+/* What is drawn now, by the renderer of the case before where that can be. */
 static whit_result make_renderer(struct studio *studio, struct drawing *drawing, bool counts)
 {
     const struct job *job = &drawing->job;
@@ -162,7 +173,7 @@ static whit_result make_renderer(struct studio *studio, struct drawing *drawing,
         result = whit_renderer_set_view(studio->renderer, &drawing->params);
     } else {
         drop_renderer(studio);
-        result = whit_renderer_create(job->device, job->accel, &drawing->params, &studio->renderer);
+        result = drawing_make(drawing, &studio->renderer);
     }
     studio->counted = drawing->params.count;
     studio->drawn_as = job->settings;
@@ -200,8 +211,17 @@ static whit_result check_expected(struct drawing *drawing)
     return result == WHIT_OK && !held ? WHIT_ERROR_FAILED : result;
 }
 
+static whit_result render_by_reference(struct drawing *drawing)
+{
+    whit_result result = whit_reference_render(drawing->reference, &drawing->color, &drawing->ids);
+    whit_reference_get_stats(drawing->reference, &drawing->stats);
+    return result;
+}
+
 whit_result drawing_render(struct drawing *drawing)
 {
+    if (drawing->reference)
+        return render_by_reference(drawing);
     whit_result result = whit_renderer_render(drawing->renderer);
     if (result == WHIT_OK)
         result = check_expected(drawing);
@@ -232,15 +252,17 @@ whit_result studio_draw(struct studio *studio, uint32_t index, bool counts, stru
     *drawing = (struct drawing){
         .job = {.settings = studio_settings(studio, &studio->suite->cases[index])}};
     struct job *job = &drawing->job;
+    job->device = studio->job.device;
     drop_scenes(studio, index);
-    whit_result result = take_shader(studio, job);
+    whit_result result = reference_check(job);
+    if (result == WHIT_OK)
+        result = take_shader(studio, job);
     if (result == WHIT_OK)
         result = take_scene(studio, job, &scene);
     if (result == WHIT_OK)
         result = render_check_camera(job);
     if (result == WHIT_OK)
         result = take_trees(job, scene);
-    job->device = studio->job.device;
     if (result == WHIT_OK)
         result = make_renderer(studio, drawing, counts);
     if (result == WHIT_OK)
@@ -254,6 +276,7 @@ void drawing_finish(struct drawing *drawing)
 {
     whit_image_destroy(drawing->color);
     whit_image_destroy(drawing->ids);
+    whit_reference_destroy(drawing->reference);
     *drawing = (struct drawing){.renderer = NULL};
 }
 

@@ -1,5 +1,5 @@
-/* The pictures of a suite, drawn one after the other in one process: one device, each scene, tree
-   and shader loaded once for all cases that share it. */
+/* The pictures of a suite, drawn one after the other in one process: one device, or the double
+   reference in its place, each scene, tree and shader loaded once for all cases that share it. */
 #ifndef APP_CHECK_DRAW_H
 #define APP_CHECK_DRAW_H
 
@@ -13,7 +13,8 @@ struct studio_scene;
 struct studio {
     const struct suite *suite;
     const bool *wanted; /* of each case of the suite: it will be drawn */
-    struct job job;     /* with the settings of the command line; its device and compiler */
+    struct job job;     /* with the settings of the command line; its device, NULL where the
+                           reference draws, and compiler */
     struct studio_scene *scenes;
     uint32_t scene_count, scene_capacity;
     whit_renderer *renderer; /* of the case before, with its settings: the next may take it over */
@@ -24,16 +25,19 @@ struct studio {
 /* What one case came to. */
 struct drawing {
     struct job job;          /* with scene, accel and device, which are the studio's */
-    whit_renderer *renderer; /* likewise, up to the next case */
+    whit_renderer *renderer; /* likewise, up to the next case; NULL: the reference draws */
+    whit_reference *reference;
     whit_renderer_params params;
     whit_stats stats;
     whit_image *color, *ids; /* linear floats, as they are hashed; instance and primitive */
 };
 
-/* Opens the device. `common`: the settings of the command line, whose device and limits stand for
-   all cases. What fails was said. studio_close() it either way. */
-WHIT_CHECK whit_result studio_open(struct studio *studio, const struct settings *common,
-                                   const struct suite *suite, const bool *wanted);
+/* Opens the device, unless `kind` is of the reference. `common`: the settings of the command line,
+   whose device and limits stand for all cases. What fails was said. studio_close() it either way.
+ */
+WHIT_CHECK whit_result studio_open(struct studio *studio, enum golden_kind kind,
+                                   const struct settings *common, const struct suite *suite,
+                                   const bool *wanted);
 /* Draws case `index`; `counts`: with what traversals cost. What fails was said.
    drawing_finish() it either way, before the next. */
 WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool counts,
@@ -41,8 +45,18 @@ WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool c
 void drawing_finish(struct drawing *drawing);
 /* The case's own settings, with what the command line says for all cases. */
 struct settings studio_settings(const struct studio *studio, const struct check_case *item);
-/* Renders by the drawing's renderer, and reads what its settings ask for. */
+/* Makes of the drawing's job and parameters a renderer, the caller's, or the drawing's reference
+   where the job has no device. */
+WHIT_CHECK whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer);
+/* Renders, and reads what the drawing's settings ask for. */
 WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
+/* probe.c: the first ray of a pixel's first sample, of which `device` is what it met; nothing,
+   where a shader's camera() sends none. */
+WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
+                                     whit_probe_ray *ray);
+/* on_reference.c: WHIT_ERROR_USAGE, said, where the job has no device and its settings ask for what
+   the reference cannot draw. */
+WHIT_CHECK whit_result reference_check(const struct job *job);
 void studio_close(struct studio *studio);
 
 /* Hashes of colours, or whatever is painted in floats, and of hit identities. Devices give NaN any

@@ -141,10 +141,19 @@ static whit_result read_cut_bailout(drawing_t *drawing, expectation_t *one,
     return WHIT_OK;
 }
 
+/* Whether a device drew it; where not, the case is one that cannot be drawn. */
+static bool by_device(drawing_t *drawing, expectation_t *one)
+{
+    if (drawing->reference)
+        cli_error("line %u expects %s, of which the reference knows nothing", one->line, one->text);
+    return !drawing->reference;
+}
+
 static whit_result read_max_stack(drawing_t *drawing, expectation_t *one,
                                   struct expect_value *value)
 {
-    (void)one;
+    if (!by_device(drawing, one))
+        return WHIT_ERROR_USAGE;
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
         value->numbers[0] = fmax(value->numbers[0], (double)drawing->stats.costs[kind].stack);
     return WHIT_OK;
@@ -161,7 +170,8 @@ static whit_result read_leaks(drawing_t *drawing, expectation_t *one, struct exp
                                           .instances = drawing->job.settings.trees.instances};
     uint64_t wrong = 0, other = 0;
     whit_image *image = NULL;
-    (void)one;
+    if (!by_device(drawing, one))
+        return WHIT_ERROR_USAGE;
     whit_result result = whit_hard_view(drawing->job.device, drawing->job.scene, &params, &cli_log,
                                         &wrong, &other, &image);
     whit_image_destroy(image);
@@ -206,31 +216,19 @@ static whit_result read_primitive(drawing_t *drawing, expectation_t *one,
     return primitive == WHIT_NONE ? WHIT_ERROR_FAILED : WHIT_OK;
 }
 
-static whit_result probe(drawing_t *drawing, expectation_t *one, whit_probe_ray *ray)
-{
-    whit_probe_report *report;
-    whit_result result = whit_probe(drawing->renderer, one->x, one->y, 1, &report);
-    if (result != WHIT_OK)
-        return result;
-    if (report->ray_count)
-        *ray = report->rays[0];
-    whit_probe_report_destroy(report);
-    return WHIT_OK;
-}
-
 static whit_result read_t(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
-    whit_probe_ray ray = {.device = {.t = (double)INFINITY}};
-    whit_result result = probe(drawing, one, &ray);
+    whit_probe_ray ray;
+    whit_result result = drawing_probe(drawing, one->x, one->y, &ray);
     value->numbers[0] = ray.device.t;
     return result == WHIT_OK && !isfinite(ray.device.t) ? WHIT_ERROR_FAILED : result;
 }
 
 static whit_result read_material(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
-    whit_probe_ray ray = {.material = WHIT_NONE};
+    whit_probe_ray ray;
     whit_material_info info = {.name = NULL};
-    whit_result result = probe(drawing, one, &ray);
+    whit_result result = drawing_probe(drawing, one->x, one->y, &ray);
     if (result == WHIT_OK && ray.material != WHIT_NONE)
         whit_scene_get_material(drawing->job.scene, ray.material, &info);
     value->word = info.name;

@@ -13,7 +13,14 @@
 
 enum { GOLDEN_BYTES_MAX = 64 << 20, FORMAT = 1 };
 
-static const char head[] = "whit check golden";
+/* What the first line begins with. */
+static const char *const heads[] = {[GOLDEN_OF_DEVICE] = "whit check golden",
+                                    [GOLDEN_OF_REFERENCE] = "whit check reference golden"};
+
+const char *golden_kind_word(enum golden_kind kind)
+{
+    return kind == GOLDEN_OF_REFERENCE ? "reference" : "device";
+}
 
 /* ---- Cases and parts ---- */
 
@@ -284,20 +291,26 @@ static bool read_head(struct reading *reading, const char *line)
 {
     unsigned format = 0;
     int length = -1;
+    enum golden_kind kind = reading->golden->kind;
+    const char *head = heads[kind], *other = heads[!kind];
     size_t prefix = strlen(head);
     if (strncmp(line, head, prefix) == 0)
         (void)sscanf(line + prefix, " %9u, whit %31s%n", &format, reading->golden->by, &length);
+    if (length < 0 && strncmp(line, other, strlen(other)) == 0)
+        return refuse(reading,
+                      "a golden of pictures by the %s: those by the %s have one of their own",
+                      golden_kind_word(!kind), golden_kind_word(kind));
     if (length < 0)
         return refuse(reading, "`%s %d, whit VERSION` is needed", head, FORMAT);
     return format == FORMAT ||
            refuse(reading, "a golden of format %u: this whit reads %d", format, FORMAT);
 }
 
-bool golden_read_text(struct golden *golden, const char *where, char *text)
+bool golden_read_text(struct golden *golden, const char *where, char *text, enum golden_kind kind)
 {
     struct reading reading = {.golden = golden, .where = where};
     bool whole = true;
-    *golden = (struct golden){.exists = true};
+    *golden = (struct golden){.exists = true, .kind = kind};
     for (char *line = text, *end; whole && line; line = end) {
         end = strchr(line, '\n');
         if (end)
@@ -311,11 +324,11 @@ bool golden_read_text(struct golden *golden, const char *where, char *text)
     return whole;
 }
 
-bool golden_read(struct golden *golden, const char *path)
+bool golden_read(struct golden *golden, const char *path, enum golden_kind kind)
 {
     uint8_t *data = NULL;
     size_t size_bytes = 0;
-    *golden = (struct golden){0};
+    *golden = (struct golden){.kind = kind};
     if (!file_exists(path))
         return true;
     if (file_read(&cli_log, NULL, path, GOLDEN_BYTES_MAX, &data, &size_bytes) != WHIT_OK)
@@ -323,14 +336,14 @@ bool golden_read(struct golden *golden, const char *path)
     bool whole = strlen((const char *)data) == size_bytes;
     if (!whole)
         cli_error("%s: not a golden: it has bytes that are 0", path);
-    whole = whole && golden_read_text(golden, path, (char *)data);
+    whole = whole && golden_read_text(golden, path, (char *)data, kind);
     free(data);
     return whole;
 }
 
 /* ---- Writing ---- */
 
-char *golden_path(const char *suite)
+char *golden_path(const char *suite, enum golden_kind kind)
 {
     static const char *const endings[] = {".whit", ".suite"};
     size_t length = strlen(suite), name = strlen(path_name(suite));
@@ -339,7 +352,8 @@ char *golden_path(const char *suite)
         if (name > bytes && strcmp(suite + strlen(suite) - bytes, endings[i]) == 0)
             length -= bytes;
     }
-    return string_format("%.*s.golden", (int)length, suite);
+    return string_format("%.*s%s.golden", (int)length, suite,
+                         kind == GOLDEN_OF_REFERENCE ? ".reference" : "");
 }
 
 static void put_case(FILE *to, const struct golden_case *item)
@@ -401,7 +415,7 @@ static char *text_of(const struct golden *golden, const struct golden_case *case
     if (!to)
         return NULL;
     if (whole)
-        fprintf(to, "%s %d, whit %s\n\n", head, FORMAT, WHIT_VERSION);
+        fprintf(to, "%s %d, whit %s\n\n", heads[golden->kind], FORMAT, WHIT_VERSION);
     for (uint32_t i = 0; i < count; ++i)
         put_case(to, &cases[i]);
     put_parts(to, golden, cases, count);

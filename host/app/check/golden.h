@@ -11,6 +11,9 @@
 
 enum { GOLDEN_REASON_MAX = 120 };
 
+/* What drew the pictures: the double reference gives other bits than devices do. */
+enum golden_kind { GOLDEN_OF_DEVICE, GOLDEN_OF_REFERENCE };
+
 /* What a picture was made of: a mesh, a material, a light of a scene. */
 struct golden_part {
     char *key;     /* `mesh ball of room.json`: what and where it is */
@@ -32,6 +35,7 @@ struct golden_case {
 
 struct golden {
     bool exists;
+    enum golden_kind kind;
     char by[32]; /* the whit that wrote it last; it is for people alone */
     struct golden_case *cases;
     uint32_t count, capacity; /* sorted by name */
@@ -39,14 +43,14 @@ struct golden {
     uint32_t part_count, part_capacity; /* sorted by key */
 };
 
-/* Beside the suite, with .golden in the place of .whit or .suite; release with free(). NULL: out of
- * memory. */
-char *golden_path(const char *suite);
+/* Beside the suite, with .golden in the place of .whit or .suite, or .reference.golden; release
+   with free(). NULL: out of memory. */
+char *golden_path(const char *suite, enum golden_kind kind);
 /* An empty one where there is no file. False, with an error that names file and line, where the
-   file is damaged or cannot be read. golden_finish() it either way. */
-bool golden_read(struct golden *golden, const char *path);
+   file is damaged, cannot be read, or is of the other kind. golden_finish() it either way. */
+bool golden_read(struct golden *golden, const char *path, enum golden_kind kind);
 /* Likewise of text; `where` stands for the path in messages. Changes the text. */
-bool golden_read_text(struct golden *golden, const char *where, char *text);
+bool golden_read_text(struct golden *golden, const char *where, char *text, enum golden_kind kind);
 void golden_finish(struct golden *golden);
 
 /* NULL: there is none. */
@@ -60,6 +64,8 @@ bool golden_put(struct golden *golden, const struct golden_case *item);
 bool golden_put_part(struct golden *golden, const char *key, uint32_t hash);
 void golden_remove(struct golden *golden, uint32_t index);
 
+/* "device", "reference": also of reports. */
+const char *golden_kind_word(enum golden_kind kind);
 /* The file's text, with those parts alone that cases name; free() it. NULL: out of memory. */
 char *golden_text(const struct golden *golden);
 /* The lines of one case and of its parts, without the first line of a file. */

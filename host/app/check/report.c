@@ -4,6 +4,7 @@
 #include "app/check/check.h"
 #include "app/commands.h"
 #include "app/document.h"
+#include "settings/quote.h"
 
 enum { COMMAND_BYTES = 16384 };
 
@@ -32,12 +33,37 @@ static json_t *picture_document(const struct golden_case *item)
     return out;
 }
 
-/* What draws the picture again. */
-static void put_command(json_t *object, const struct check_case *item)
+static void put_text(void *user, const char *part)
 {
-    char *text = malloc(COMMAND_BYTES), output[CHECK_NAME_MAX + 8];
+    fputs(part, user);
+}
+
+/* The command that checks one case again: `whit render` has no reference. NULL: out of memory. */
+static char *check_command(const struct check *check, const struct check_case *item)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *to = open_memstream(&text, &size);
+    if (!to)
+        return NULL;
+    fputs("whit check ", to);
+    quote_word(check->suite.path, put_text, to);
+    if (check->root) {
+        fputs(" --root ", to);
+        quote_word(check->root, put_text, to);
+    }
+    fprintf(to, " --on %s --only %s", golden_kind_word((enum golden_kind)check->on), item->name);
+    return fclose(to) == 0 ? text : NULL;
+}
+
+/* What draws the picture again. */
+static void put_command(json_t *object, const struct check *check, const struct check_case *item)
+{
+    bool device = check->on == GOLDEN_OF_DEVICE;
+    char *text = device ? malloc(COMMAND_BYTES) : check_command(check, item);
+    char output[CHECK_NAME_MAX + 8];
     snprintf(output, sizeof output, "%s.png", item->name);
-    if (text)
+    if (text && device)
         settings_write_render(item->settings, SETTINGS_LINE, output, text, COMMAND_BYTES);
     document_text(object, "command", text);
     free(text);
@@ -56,7 +82,7 @@ static json_t *case_document(const struct check *check, uint32_t index)
     document_text(out, "changed", result->changed);
     document_text(out, "cause", result->cause);
     document_ms(out, "time_ms", result->time_ms);
-    put_command(out, result->item);
+    put_command(out, check, result->item);
     document_put(out, "is", picture_document(found));
     document_put(out, "was", picture_document(golden_find(&check->old, result->item->name)));
     document_text(out, "golden", lines);
@@ -68,10 +94,11 @@ json_t *check_document(const struct check *check, int status)
 {
     json_t *root = document_root(), *cases = document_array();
     document_text(root, "suite", check->suite.path);
+    document_text(root, "on", golden_kind_word((enum golden_kind)check->on));
     document_text(root, "golden", check->golden_path);
     document_text(root, "golden_by", check->old.exists ? check->old.by : NULL);
     document_text(root, "device", check->device.name);
-    document_text(root, "driver", check->device.driver);
+    document_text(root, "driver", check->device.driver[0] ? check->device.driver : NULL);
     document_count(root, "exit_code", (uint64_t)status);
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         if (check->results[i].verdict != CHECK_NOT_RUN)

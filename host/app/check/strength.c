@@ -31,7 +31,8 @@ int strength_run(struct check *check)
     uint32_t count = 0, at = 0;
     for (uint32_t i = 0; i < check->suite.count; ++i)
         count += check->wanted[i];
-    whit_result result = studio_open(&studio, &check->settings, &check->suite, check->wanted);
+    whit_result result = studio_open(&studio, (enum golden_kind)check->on, &check->settings,
+                                     &check->suite, check->wanted);
     for (uint32_t i = 0; result == WHIT_OK && i < check->suite.count; ++i) {
         if (!check->wanted[i])
             continue;

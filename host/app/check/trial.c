@@ -11,15 +11,16 @@ whit_result trial_draw(struct trial *trial, const struct trial_input *input)
                         .scene = input->scene,
                         .device = input->device,
                         .shader = input->shader};
-    whit_result result = job_take_scene(job);
+    whit_result result = reference_check(job);
+    if (result == WHIT_OK)
+        result = job_take_scene(job);
     if (result == WHIT_OK)
         result = render_check_camera(job);
     if (result == WHIT_OK)
         result = job_build(job);
     if (result == WHIT_OK) {
         drawing->params = job_picture(job);
-        result =
-            whit_renderer_create(job->device, job->accel, &drawing->params, &drawing->renderer);
+        result = drawing_make(drawing, &drawing->renderer);
     }
     if (result == WHIT_OK)
         result = drawing_render(drawing);

@@ -9,7 +9,7 @@ struct trial_input {
     struct settings settings;
     whit_scene *scene;
     whit_shader *shader; /* NULL: none */
-    whit_device *device;
+    whit_device *device; /* NULL: the reference */
 };
 
 /* The picture, with the trees and the renderer that it needed. */
