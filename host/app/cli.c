@@ -312,8 +312,9 @@ void cli_limit_time(double seconds)
     if (!(seconds > 0.0))
         return;
     limit_end_ms = whit_clock_ms() + seconds * 1e3;
-    /* Rendering stops by itself; whatever does not is ended a little later. */
-    (void)set_timer((long)(seconds * 1050.0 + 250.0));
+    /* Rendering stops by itself; whatever does not is ended a little later, and what keeps
+       something when it is interrupted as much later as that may take. */
+    (void)set_timer((long)(seconds * 1050.0 + 250.0) + grace_ms - GRACE_MS);
     if (interrupt_signal) /* The timer was the interrupt's already. */
         (void)set_timer(grace_ms);
 }

@@ -27,6 +27,10 @@ check "two of them" grep -qx "2 cases, 2 ok" stdout
 expect 0 "quiet" check looks.whit -q
 check "quiet: the counts alone" test "$(wc -l <stdout)" -eq 1
 shows "list" "^balls-fast$" check looks.whit --list
+mkdir bare && cp looks.whit bare/
+shows "list without the scenes" "^balls-fast$" check bare/looks.whit --list
+expect 2 "which are needed to draw" check bare/looks.whit --only cube
+check "each is told" grep -q "bare/looks.whit:2: the scene .cube.json.: " stderr
 sed -i '1s/.*/whit check golden 1, whit 99.9/' looks.golden
 expect 0 "a golden of another whit" check looks.whit
 
@@ -133,7 +137,35 @@ printf 'mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >tri.obj
 printf 'one tri.obj --size 16x12\ntwo tri.obj --size 16x12 --depth 0\n' >models.whit
 expect 4 "a model without its materials" check models.whit
 check "is drawn with a warning, once" test "$(grep -c "^whit: warning: .*nowhere.mtl" stderr)" -eq 1
+
+# Reports of what ends before its time: what is known, and what is not as such.
+printf 'small cube.json --size 16x12\nlarge cube.json --size 4000x3000 --aa 64\nother cube.json\n' >slow.whit
+undrawn() {
+    check "JSON: $1" jq -e ".exit_code == $2 and ([.cases[] | .verdict] == $3) and .cases[2].golden == null and
+        .cases[2].text == \"not drawn: $4\"" cut/r.json
+    check "JUnit: $1" grep -q "<error type=\"undrawn\" message=\"not drawn: $4\"/>" cut/r.xml
+    check "page: $1" grep -q "not drawn: $4" cut/r.html
+    rm cut/r.xml cut/r.html
+}
+mkdir cut
+set -- check slow.whit --on reference --json cut/r.json --junit cut/r.xml --report cut/r.html
+expect 5 "a time limit" "$@" --time-limit 0.3
+undrawn "a time limit" 5 '["new", "undrawn", "undrawn"]' "the time limit passed"
+check "all are counted" grep -qx "1 case, 1 new, 2 undrawn" stdout
+"$WHIT" "$@" >stdout 2>stderr &
+interrupted $! grep -q "^small: " stdout
+check "says how far it came" grep -qx "whit: interrupted, 1 of 3 cases were drawn" stderr
+undrawn "Ctrl+C" 130 '["new", "undrawn", "undrawn"]' "the run was interrupted"
+expect 1 "what was not drawn" check slow.whit --on reference --accept-from cut
+check "is not accepted" grep -qx "1 case, 1 accepted, 2 undrawn" stdout
+check "but what was" test "$(grep -c ^case slow.reference.golden)" -eq 1
+sed -i 's/4000x3000 --aa 64/16x12/' slow.whit
+expect 4 "drawn elsewhere" check slow.whit --on reference --only large --only other --json cut/s.json
+sed -i 's/4000x3000 --aa 64/16x12/' cut/r.json
+expect 0 "one run has what another has not" check slow.whit --on reference --accept-from cut
+check "all are accepted" grep -qx "3 cases, 1 ok, 2 accepted" stdout
 expect 5 "a time limit" check looks.whit --time-limit 0.001
 export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
-refuse 3 "no device" "no Vulkan driver" check looks.whit
+refuse 3 "no device" "no Vulkan driver" check slow.whit --json cut/r.json --junit cut/r.xml --report cut/r.html
+undrawn "no device" 3 '["undrawn", "undrawn", "undrawn"]' "there is no device"
 finish

@@ -101,8 +101,11 @@ check "three differ" test "$(grep -c ": differs: colours other, and what pixels 
 check "one is new" grep -q "^under: no golden" stderr
 
 # What cannot be listed.
-echo 'lost nowhere.stl' >>part/looks.whit
-check "a suite that is wrong" without "looks.whit:6: the scene .nowhere.stl.: there is no such file" configure build
+echo 'lost nowhere.stl --sise 9x9' >>part/looks.whit
+check "a suite that is wrong" without "looks.whit:6: .*--sise" configure build
+sed -i 's/ --sise 9x9//' part/looks.whit
+check "a scene that is made later" with "Configuring done" configure build
+check "or never" without "looks.whit:6: the scene .nowhere.stl.: " tests -R lost
 sed -i '$d' part/looks.whit
 sed -i 's/ROOT/ROUTE/' part/CMakeLists.txt
 check "no keyword" without "  no keyword, or one without its value: ROUTE" configure build

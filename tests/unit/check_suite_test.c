@@ -32,7 +32,7 @@ static bool read_text(struct suite *suite, const char *text, const char *root)
     put_file(path_of("sky.hdr"), "", 0);
     (void)mkdir(path_of("sub"), 0777);
     put_file(path_of("sub/b.json"), "", 0);
-    return suite_read(suite, path, root, say, NULL);
+    return suite_read(suite, path, root, false, say, NULL);
 }
 
 TEST_IN(lines_become_cases, folder_begin, folder_end)
@@ -182,7 +182,7 @@ TEST_IN(no_suite_is_told, folder_begin, folder_end)
     char path[512];
     snprintf(path, sizeof path, "%s", path_of("z.whit"));
     said[0] = '\0';
-    assert_false(suite_read(&suite, path, NULL, say, NULL));
+    assert_false(suite_read(&suite, path, NULL, false, say, NULL));
     assert_string_equal(said, "z.whit: not a suite: it has bytes that are 0\n");
     suite_finish(&suite);
 }

@@ -8,7 +8,7 @@
 # further ones of `whit check`. Names of the tests are left in whit_CHECKS.
 #
 # The cases are those that the suite has when CMake runs, which it does again where the suite is other; what its cases
-# name has to be there.
+# name need not be there by then: a test that others depend on, a fixture, may make it.
 function(whit_add_checks suite)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "PREFIX;ROOT;WORKING_DIRECTORY;TIMEOUT" "LABELS;OPTIONS")
   if(DEFINED ARG_UNPARSED_ARGUMENTS OR DEFINED ARG_KEYWORDS_MISSING_VALUES)

@@ -85,7 +85,7 @@ static bool take_lines(struct check *check, struct check_result *result, const c
     return verdict_find(result, &check->old);
 }
 
-/* Cases that were refused, or not drawn, stay what they are. */
+/* Cases that were refused stay what they are; what one run did not come to, another may have. */
 static bool take_case(struct check *check, const char *path, const json_t *item)
 {
     const char *name = json_string_value(json_object_get(item, "name"));
@@ -101,11 +101,12 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
     snprintf(where, sizeof where, "%.800s: %.100s", path, name);
     if (!result || !check_names_match(&check->accept, name))
         return true;
-    for (uint32_t bad = CHECK_UNMET; bad <= CHECK_BROKEN; ++bad) {
-        if (strcmp(verdict, verdict_word((enum check_verdict)bad)) == 0)
-            verdict_set(result, (enum check_verdict)bad, string_copy(text));
-    }
-    if (result->verdict >= CHECK_UNMET)
+    enum check_verdict bad = CHECK_UNMET;
+    while (bad < CHECK_VERDICTS && strcmp(verdict, verdict_word(bad)) != 0)
+        ++bad;
+    if (bad < CHECK_UNDRAWN || (bad == CHECK_UNDRAWN && result->verdict == CHECK_NOT_RUN))
+        verdict_set(result, bad, string_copy(text));
+    if (bad < CHECK_VERDICTS || (result->verdict >= CHECK_UNMET && result->verdict < CHECK_UNDRAWN))
         return true;
     if (lines)
         return take_lines(check, result, lines, where);

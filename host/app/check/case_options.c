@@ -76,6 +76,8 @@ static bool find_file(const struct suite *suite, const char *option, char *name,
     enum reach reach = path ? roots_reach(&suite->roots, path) : REACH_MISSING;
     bool fits = path && strlen(path) < name_bytes;
     bool good = false;
+    if (suite->names && reach == REACH_MISSING)
+        reach = REACH_FILE;
     if (!path)
         cli_misuse(reader, "out of memory");
     else if (is_input(name))

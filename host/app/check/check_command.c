@@ -5,6 +5,10 @@
 #include "app/commands.h"
 #include "base/array.h"
 
+/* A driver that makes a kernel, which nothing stops, has this long before a run ends without the
+   reports that it was to write. */
+enum { GRACE_MS = 20000 };
+
 /* ---- Options ---- */
 
 static bool add_names(const char *value, struct check_names *names, char *why)
@@ -285,6 +289,10 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
     drawing_finish(&drawing);
     result->time_ms = whit_clock_ms() - start_ms;
     result->error = drawn;
+    if (ends_all(drawn)) { /* it may be that half of it is known */
+        verdict_finish(result);
+        *result = (struct check_result){.item = result->item, .error = drawn};
+    }
     if (drawn != WHIT_OK && !ends_all(drawn)) {
         const char *why = cli_said()[0] ? cli_said() : whit_result_name(drawn);
         verdict_set(result, CHECK_BROKEN, string_format("cannot be drawn: %s", why));
@@ -299,6 +307,29 @@ static void print_result(const struct check *check, const struct check_result *r
         return;
     printf("%s: %s\n", result->item->name, cli_shown(result->text));
     fflush(stdout);
+}
+
+static const char *why_undrawn(whit_result result)
+{
+    return cli_cancel                       ? "the run was interrupted"
+           : cli_time_over()                ? "the time limit passed"
+           : result == WHIT_ERROR_NO_DEVICE ? "there is no device"
+           : result == WHIT_ERROR_DEVICE    ? "the device was lost"
+                                            : whit_result_name(result);
+}
+
+/* Says of cases that a run which has failed was still to draw that nothing is known of them. */
+static void mark_undrawn(struct check *check, whit_result result)
+{
+    uint32_t wanted = 0, drawn = 0;
+    for (uint32_t i = 0; i < check->suite.count; ++i) {
+        struct check_result *one = &check->results[i];
+        wanted += check->wanted[i];
+        drawn += one->verdict != CHECK_NOT_RUN;
+        if (check->wanted[i] && one->verdict == CHECK_NOT_RUN)
+            verdict_set(one, CHECK_UNDRAWN, string_format("not drawn: %s", why_undrawn(result)));
+    }
+    cli_set_kept(drawn, wanted, "cases were drawn");
 }
 
 static whit_result run_cases(struct check *check)
@@ -330,7 +361,7 @@ static void print_counts(const struct check *check)
     uint32_t counts[CHECK_VERDICTS] = {0}, drawn = 0;
     for (uint32_t i = 0; i < check->suite.count; ++i)
         ++counts[check->results[i].verdict];
-    drawn = check->suite.count - counts[CHECK_NOT_RUN];
+    drawn = check->suite.count - counts[CHECK_NOT_RUN] - counts[CHECK_UNDRAWN];
     printf("%u case%s", drawn, drawn == 1 ? "" : "s");
     for (uint32_t verdict = CHECK_OK; verdict < CHECK_VERDICTS; ++verdict) {
         if (counts[verdict])
@@ -392,33 +423,49 @@ static whit_result save_reports(const struct check *check, int status)
     return result;
 }
 
+/* Draws, or reads reports. *read: false where a report, or the suite of --base, is damaged; said.
+ */
+static whit_result find_results(struct check *check, bool *read)
+{
+    *read = !check->accept_from || take_reports(check);
+    if (check->accept_from)
+        return WHIT_OK;
+    whit_result result = check->base
+                             ? base_open(&check->past, check->suite.path, check->root, check->base)
+                             : WHIT_OK;
+    *read = result == WHIT_OK || result == WHIT_ERROR_CANCELLED;
+    if (result == WHIT_OK)
+        result = run_cases(check);
+    if (check->base)
+        base_close(&check->past);
+    return result;
+}
+
+static int judge(struct check *check)
+{
+    int accepted = check->accept.count ? check_accept(check) : EXIT_FINE;
+    print_counts(check);
+    return cli_finish_stdout(accepted == EXIT_FINE ? sum_up(check) : accepted);
+}
+
+/* Reports are written also where the run could not go on: with what was known by then. */
 static int work(struct check *check)
 {
+    bool read;
     if (check->mutate || check->power)
         return strength_run(check);
     if (check->prune && !check->accept.count)
         return check_prune(check);
-    if (check->accept_from && !take_reports(check))
-        return EXIT_USAGE;
-    whit_result result = check->accept_from ? WHIT_OK : run_cases(check);
-    if (result != WHIT_OK)
-        return cli_exit_of(result);
-    int accepted = check->accept.count ? check_accept(check) : EXIT_FINE;
-    print_counts(check);
-    int status = cli_finish_stdout(accepted == EXIT_FINE ? sum_up(check) : accepted);
-    result = save_reports(check, status);
-    return result == WHIT_OK ? status : cli_exit_of(result);
-}
-
-static int work_with_base(struct check *check)
-{
-    whit_result result = check->base
-                             ? base_open(&check->past, check->suite.path, check->root, check->base)
-                             : WHIT_OK;
-    int status = result == WHIT_OK ? work(check) : cli_exit_of(result);
-    if (check->base)
-        base_close(&check->past);
-    return status;
+    whit_result result = find_results(check, &read);
+    if (!read)
+        return result == WHIT_OK ? EXIT_USAGE : cli_exit_of(result);
+    if (result != WHIT_OK) {
+        mark_undrawn(check, result);
+        print_counts(check);
+    }
+    int status = result == WHIT_OK ? judge(check) : cli_exit_of(result);
+    whit_result saved = save_reports(check, status);
+    return saved == WHIT_OK || result != WHIT_OK ? status : cli_exit_of(saved);
 }
 
 static void say_wrong(void *user, const char *text)
@@ -438,12 +485,14 @@ static int run(const struct cli_command *command, int argc, char **argv)
     check.golden_path = golden_path(reader.positional, (enum golden_kind)check.on);
     int status = EXIT_USAGE;
     common.settings = check.settings;
-    if (suite_read(&check.suite, reader.positional, check.root, say_wrong, NULL) &&
+    if (suite_read(&check.suite, reader.positional, check.root, check.list, say_wrong, NULL) &&
         check.golden_path &&
         golden_read(&check.golden, check.golden_path, (enum golden_kind)check.on) &&
         golden_read(&check.old, check.golden_path, (enum golden_kind)check.on) && choose(&check)) {
+        if (check.json || check.junit || check.report)
+            cli_keep_what_is_done(GRACE_MS);
         job_start(&common);
-        status = check.list ? list(&check) : work_with_base(&check);
+        status = check.list ? list(&check) : work(&check);
     }
     for (uint32_t i = 0; check.results && i < check.suite.count; ++i)
         verdict_finish(&check.results[i]);

@@ -20,7 +20,7 @@ static void put_text(FILE *to, const char *text)
 
 static void put_case(FILE *to, const struct check *check, const struct check_result *result)
 {
-    bool broken = result->verdict == CHECK_BROKEN;
+    bool broken = result->verdict >= CHECK_BROKEN;
     fputs("  <testcase classname=\"", to);
     put_text(to, check->suite.path);
     fprintf(to, "\" name=\"%s\" time=\"%.3f\"", result->item->name, result->time_ms * 1e-3);
@@ -41,8 +41,8 @@ static void put_all(FILE *to, const struct check *check)
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         const struct check_result *result = &check->results[i];
         tests += result->verdict != CHECK_NOT_RUN;
-        errors += result->verdict == CHECK_BROKEN;
-        failures += result->verdict >= CHECK_NEW && result->verdict != CHECK_BROKEN;
+        errors += result->verdict >= CHECK_BROKEN;
+        failures += result->verdict >= CHECK_NEW && result->verdict < CHECK_BROKEN;
         time_ms += result->time_ms;
     }
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"", to);

@@ -97,7 +97,7 @@ json_t *check_document(const struct check *check, int status)
     document_text(root, "on", golden_kind_word((enum golden_kind)check->on));
     document_text(root, "golden", check->golden_path);
     document_text(root, "golden_by", check->old.exists ? check->old.by : NULL);
-    document_text(root, "device", check->device.name);
+    document_text(root, "device", check->device.name[0] ? check->device.name : NULL);
     document_text(root, "driver", check->device.driver[0] ? check->device.driver : NULL);
     document_count(root, "exit_code", (uint64_t)status);
     for (uint32_t i = 0; i < check->suite.count; ++i) {

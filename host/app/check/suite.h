@@ -25,15 +25,17 @@ struct suite {
     struct check_case *cases; /* in the order of the file */
     uint32_t count, capacity;
     uint32_t wrong; /* lines */
+    bool names;     /* files need not be there */
     /* Gets "FILE:LINE: reason" for each wrong line. */
     void (*say)(void *user, const char *text);
     void *user;
 };
 
 /* Reads all lines. `root`: the folder that files lie below and are named from; NULL: the suite's
-   own. Nothing but names of files is looked up on the disk. False, with something said, where a
-   line is wrong or the file cannot be read. suite_finish() it either way. */
-bool suite_read(struct suite *suite, const char *path, const char *root,
+   own. Nothing but names of files is looked up on the disk; `names`: not even these, where only the
+   names of cases are wanted. False, with something said, where a line is wrong or the file cannot
+   be read. suite_finish() it either way. */
+bool suite_read(struct suite *suite, const char *path, const char *root, bool names,
                 void (*say)(void *user, const char *text), void *user);
 void suite_finish(struct suite *suite);
 /* NULL: there is none. */

@@ -16,6 +16,7 @@ const char *verdict_word(enum check_verdict verdict)
         [CHECK_NOT_RUN] = "not run",   [CHECK_OK] = "ok",           [CHECK_SAME] = "same",
         [CHECK_ACCEPTED] = "accepted", [CHECK_DIFFERS] = "differs", [CHECK_UNMET] = "unmet",
         [CHECK_VACUOUS] = "refused",   [CHECK_NEW] = "new",         [CHECK_BROKEN] = "broken",
+        [CHECK_UNDRAWN] = "undrawn",
     };
     return words[verdict];
 }

@@ -16,6 +16,7 @@ enum check_verdict {
     CHECK_UNMET,   /* an expectation fails */
     CHECK_VACUOUS, /* a picture that could not fail */
     CHECK_BROKEN,  /* it cannot be drawn */
+    CHECK_UNDRAWN, /* it was to be drawn, and the run ended before */
     CHECK_VERDICTS
 };
 /* "ok", "differs": also of reports. */
