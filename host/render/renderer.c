@@ -81,8 +81,7 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
         result = accel_pose(accel, &renderer->pose);
     if (result == WHIT_OK && renderer->params.portable)
         result = portable_choose(log, device, &renderer->portable);
-    if (renderer->params.shader)
-        renderer->portable.file = renderer->params.shader->files[0];
+    renderer->portable.shader = renderer->params.shader;
     renderer->has_secondary = renderer_bounces(renderer);
     renderer->few_kernels = render_few_kernels(&renderer->params);
     renderer->node_stack_size = accel_stack_size(accel);

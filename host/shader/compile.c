@@ -348,6 +348,7 @@ static bool take_code(const struct glslang_answer *answer, const uint8_t *data,
     code->loop_count = answer->loop_count;
     code->instructions = answer->instructions;
     code->reaches = answer->reaches & SHADER_REACHES_ALL;
+    memcpy(code->opens, answer->opens, sizeof code->opens);
     return true;
 }
 

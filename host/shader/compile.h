@@ -43,6 +43,14 @@ struct shader_loop {
     uint32_t line;
 };
 
+/* An operation of the user's that has no portable form (portable.h), and where it stands first. */
+struct shader_open {
+    uint32_t number; /* of portable_lacks; 0: none */
+    uint32_t file, line;
+};
+
+enum { SHADER_OPENS_MAX = 8 }; /* of others the place is not known */
+
 /* What functions of a user may come to call of whit's; what is not among it they cannot read. */
 enum {
     SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
@@ -58,6 +66,7 @@ struct shader_code {
     uint32_t loop_count;
     uint32_t instructions; /* in all functions */
     uint32_t reaches;      /* bits SHADER_REACHES_* */
+    struct shader_open opens[SHADER_OPENS_MAX];
 };
 
 struct shader_compiler;

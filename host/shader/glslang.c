@@ -13,6 +13,7 @@
 #include "shader/link.h"
 #include "shader/messages.h"
 #include "shader/module.h"
+#include "shader/portable.h"
 #include "shader/reach.h"
 #include "shader/refuse.h"
 #include "shader/returns.h"
@@ -120,6 +121,16 @@ static void begin_variables(struct compilation *c, struct spv_module *m, const u
     c->unset.count = 0;
 }
 
+/* Keeps where an operation without a portable form stands first. */
+static void note_open(struct compilation *c, struct spv_place place, uint32_t number)
+{
+    uint32_t i = 0;
+    while (i < SHADER_OPENS_MAX && c->answer.opens[i].number && c->answer.opens[i].number != number)
+        ++i;
+    if (number && i < SHADER_OPENS_MAX && !c->answer.opens[i].number)
+        c->answer.opens[i] = (struct shader_open){number, place.file, place.line};
+}
+
 /* Copies what stands in functions, and what users wrote with fuel and bounds. */
 static void take_instruction(struct compilation *c, struct spv_module *m, const uint32_t *words)
 {
@@ -133,6 +144,8 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         why = called;
     if (why)
         report(c, m->place, why);
+    if (user)
+        note_open(c, m->place, portable_lacks(words));
     if (m->user_function && op == SPV_FUNCTION_CALL)
         c->answer.reaches |= reach_of(spv_name(m, words[3]));
     begin_variables(c, m, words);

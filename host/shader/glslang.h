@@ -31,6 +31,7 @@ struct glslang_answer {
     uint32_t error_count, more;
     uint64_t word_count;
     uint32_t loop_count, instructions, reaches;
+    struct shader_open opens[SHADER_OPENS_MAX];
 };
 
 /* What glslang takes long for once in a process. Called by what is then forked, or not at all. */

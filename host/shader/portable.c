@@ -124,6 +124,25 @@ static const struct stand_in *find_stand_in(const uint32_t *words)
     return NULL;
 }
 
+uint32_t portable_lacks(const uint32_t *words)
+{
+    const struct stand_in *row = find_stand_in(words);
+    return !row || row->function ? 0 : spv_op(words) << 16 | row->number;
+}
+
+/* "none.glsl:7: determinant has no portable form" */
+static void refuse(struct portable *p, const struct stand_in *row, const uint32_t *words)
+{
+    const whit_shader *shader = p->params->shader;
+    const char *file = shader && shader->file_count ? shader->files[0] : NULL;
+    uint32_t line = 0;
+    char number[16] = "";
+    if (shader && shader_find_open(shader, portable_lacks(words), &file, &line))
+        snprintf(number, sizeof number, ":%u", line);
+    snprintf(p->why, PORTABLE_WHY_BYTES, "%.100s%s%s%s has no portable form", file ? file : "",
+             number, file ? ": " : "", row->name ? row->name : row->function);
+}
+
 /* --- names -------------------------------------------------------------------------------------
  */
 
@@ -248,9 +267,7 @@ static bool replace(struct portable *p, const struct stand_in *row, const uint32
     uint32_t first = spv_op(words) == SPV_EXT_INST ? 5 : 3, count = spv_length(words) - first;
     uint32_t function = row->function ? find_function(p, row, words) : 0;
     if (!function) {
-        const char *file = p->params->file;
-        snprintf(p->why, PORTABLE_WHY_BYTES, "%.100s%s%s has no portable form", file ? file : "",
-                 file ? ": " : "", row->name ? row->name : row->function);
+        refuse(p, row, words);
         return false;
     }
     want(p, function);

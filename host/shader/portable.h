@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "shader/program.h"
 #include "whit/whit_base.h"
 
 struct portable_params {
@@ -14,7 +15,7 @@ struct portable_params {
     /* What kernels ask of the device, which has to offer it: sums rounded to nearest; NaN, infinity
        and the sign of 0 kept; denormals kept. */
     bool asks_nearest, asks_special, asks_denormals;
-    const char *file; /* of users' functions in the kernel, for messages; NULL: there are none */
+    const whit_shader *shader; /* with users' functions of the kernel, for messages; or NULL */
 };
 
 enum { PORTABLE_WHY_BYTES = 160 };
@@ -26,5 +27,9 @@ WHIT_CHECK whit_result shader_make_portable(const struct portable_params *params
                                             const uint32_t *words, size_t word_count,
                                             uint32_t **out, size_t *out_words,
                                             char why[PORTABLE_WHY_BYTES]);
+
+/* Which operation without such a function, whatever its arguments, an instruction is, as a number;
+   0: none. */
+uint32_t portable_lacks(const uint32_t *words);
 
 #endif

@@ -100,6 +100,20 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
     return true;
 }
 
+bool shader_find_open(const whit_shader *shader, uint32_t number, const char **file, uint32_t *line)
+{
+    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT * SHADER_OPENS_MAX; ++i) {
+        const struct shader_open *open =
+            &shader->codes[i / SHADER_OPENS_MAX].opens[i % SHADER_OPENS_MAX];
+        if (!number || open->number != number || open->file >= shader->text.file_count)
+            continue;
+        *file = shader->text.files[open->file].name;
+        *line = open->line;
+        return true;
+    }
+    return false;
+}
+
 #define HOOK_TEXT "kernel/hook.comp"
 
 enum { AOV_BYTES = 256 };

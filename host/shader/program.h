@@ -111,6 +111,10 @@ uint32_t shader_reaches(const whit_shader *shader);
 /* Where a loop begins, by the number that a kernel reports; false: no such loop. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file,
                       uint32_t *line);
+/* Where an operation without a portable form stands first, by the number of portable_lacks; false:
+   that is not known. */
+bool shader_find_open(const whit_shader *shader, uint32_t number, const char **file,
+                      uint32_t *line);
 /* Of a text that was read already, and of stages, which both are the program's from then on, also
    where this fails. WHIT_ERROR_INPUT and others as of whit_shader_load. A text without files needs
    stages: all kernels are made of them then.
