@@ -126,6 +126,13 @@ mutation(fused_edges_in_kernels spirv RED ".* float operations may be contracted
 change(shaders/lib/intersect.glsl [[precise float ea = c.x * b.y - c.y * b.x;]]
   [[precise float ea = fma(c.x, b.y, -(c.y * b.x));]])
 
+mutation(quotient_uncorrected device_portable RED functions_are_right_within_their_bounds)
+change(shaders/lib/portable.glsl [[q += uint(off);]] [[off = 0;]])
+
+mutation(roots_left_to_drivers spirv RED ".* with .*: drivers decide .*Sqrt"
+  GREEN ": 0 of [0-9]+ float operations" TARGET kernel_dump)
+change(host/shader/portable.c [[{31, true, "sqrt", NULL},]] [[]])
+
 mutation(fused_edges hard_mesh RED no_ray_gets_through)
 change(host/twin/intersect.h shear_triangle
   [[ea = ([^ ;]+) \* ([^ ;]+) - ([^;]+);]] [[ea = fmaf(\1, \2, -(\3));]])
