@@ -30,6 +30,33 @@ const uint32_t *whit_image_words(const whit_image *image)
     return image->image.words;
 }
 
+whit_result whit_image_rows(const whit_image *image, uint32_t first, uint32_t count,
+                            whit_image **out)
+{
+    const struct image *from = &image->image;
+    *out = NULL;
+    if (count == 0 || first > from->height || count > from->height - first)
+        return WHIT_ERROR_USAGE;
+    whit_image *rows = calloc(1, sizeof *rows);
+    if (!rows)
+        return WHIT_ERROR_MEMORY;
+    struct image *to = &rows->image;
+    whit_result result = image_init(to, from->width, count, from->channels, from->words != NULL);
+    if (result != WHIT_OK) {
+        whit_image_destroy(rows);
+        return result;
+    }
+    to->display_scale = from->display_scale;
+    to->display_soft = from->display_soft;
+    size_t row = (size_t)from->width * from->channels, bytes = row * count * sizeof(uint32_t);
+    if (from->words)
+        memcpy(to->words, from->words + row * first, bytes);
+    else
+        memcpy(to->pixels, from->pixels + row * first, bytes);
+    *out = rows;
+    return WHIT_OK;
+}
+
 whit_result whit_image_create_display(uint32_t width, uint32_t height, const uint8_t *rgba,
                                       whit_image **out)
 {

@@ -118,6 +118,13 @@ whit_result whit_renderer_render(whit_renderer *renderer)
     return result == WHIT_OK ? renderer_render(renderer->renderer) : result;
 }
 
+whit_result whit_renderer_render_views(whit_renderer *renderer, const whit_camera *cameras,
+                                       uint32_t count)
+{
+    whit_result result = api_need_device(renderer);
+    return result == WHIT_OK ? renderer_render_views(renderer->renderer, cameras, count) : result;
+}
+
 whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
 {
     if (!isfinite(time_s)) {
@@ -206,6 +213,8 @@ static whit_result read_aov(struct renderer *renderer, whit_aov aov, struct imag
         return renderer_read_ids(renderer, out);
     case WHIT_AOV_CUTS:
         return renderer_read_cuts(renderer, out);
+    case WHIT_AOV_DISTANCES:
+        return renderer_read_distances(renderer, out);
     case WHIT_AOV_COLOR:
     case WHIT_AOV_SHADER:
         break;
@@ -434,7 +443,8 @@ whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay 
 {
     whit_result result = api_need_device(renderer);
     bool any = overlay->grid || overlay->edges_of_instances || overlay->edges_of_primitives;
-    if (result == WHIT_OK && any && renderer->params.row_count) {
+    bool whole = !renderer->params.row_count && !renderer_view_count(renderer->renderer);
+    if (result == WHIT_OK && any && !whole) {
         log_error(&renderer->log, "grid and edges are drawn over whole pictures");
         result = WHIT_ERROR_USAGE;
     }

@@ -1,7 +1,9 @@
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "api/handles.h"
+#include "base/array.h"
 #include "base/vec.h"
 #include "scene/small.h"
 #include "scene/viewpoint.h"
@@ -257,6 +259,52 @@ whit_result whit_scene_choose_camera(const whit_scene *handle, whit_camera *came
     copy3_double(camera->target, viewpoint.target);
     camera->fov_y_degrees = viewpoint.fov_y * DEGREES;
     return WHIT_OK;
+}
+
+/* Of an angle that is kept as a float the degrees that a file may have said; both give it back. */
+static double degrees_of(float radians)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.7g", (double)radians * DEGREES);
+    double said = strtod(text, NULL);
+    return (float)(said * PI / 180.0) == radians ? said : (double)radians * DEGREES;
+}
+
+static whit_camera camera_of(const struct scene_camera *from)
+{
+    whit_camera camera = {
+        .own = true,
+        .fov_y_degrees = degrees_of(from->fov_y),
+        .height = from->kind == SCENE_CAMERA_ORTHOGRAPHIC ? (double)from->height : 0.0,
+        .lens_radius = (double)from->lens_radius,
+        .focus_distance = (double)from->focus_distance,
+        .panorama = from->kind == SCENE_CAMERA_PANORAMA,
+    };
+    copy3_double(camera.eye, from->eye);
+    copy3_double(camera.target, from->target);
+    copy3_double(camera.up, from->up);
+    return camera;
+}
+
+whit_result whit_cameras_load(const char *path, const whit_log *log, whit_camera **cameras,
+                              uint32_t *count)
+{
+    whit_log own = log_or_silence(log);
+    struct scene *scene = scene_create(&own, path);
+    *cameras = NULL;
+    *count = 0;
+    whit_result result = scene ? load_cameras(scene, path) : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        *cameras = array_alloc(scene->camera_count, sizeof **cameras);
+    if (result == WHIT_OK && !*cameras)
+        result = WHIT_ERROR_MEMORY;
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(&own, "%s: out of memory", path);
+    for (uint32_t i = 0; result == WHIT_OK && i < scene->camera_count; ++i)
+        (*cameras)[i] = camera_of(&scene->cameras[i]);
+    *count = result == WHIT_OK ? scene->camera_count : 0;
+    scene_destroy(scene);
+    return result;
 }
 
 static void world_triangle(const struct scene_mesh *mesh, const struct affine *to_world,

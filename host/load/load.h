@@ -44,6 +44,10 @@ WHIT_CHECK whit_result load_model(struct scene *scene, const char *path, uint32_
 WHIT_CHECK whit_result load_scene_file(struct scene *scene, const char *path,
                                        const whit_load_params *params);
 
+/* The cameras of a file of nothing else into a scene: an array of what scene files have, or one of
+   them a line. WHIT_ERROR_INPUT, logged, for none, and for one that moves. */
+WHIT_CHECK whit_result load_cameras(struct scene *scene, const char *path);
+
 /* 8-bit texture from a file or from memory (`data` non-NULL; `path` then only names it). The name
    of an already loaded file gives the index it has. On failure a warning is noted in the scene and
    *index is a 1x1 magenta texture, unless `reason` is given: then nothing is noted or added,

@@ -124,3 +124,17 @@ bool reader_animation(struct reader *reader, const struct place *place, const js
     }
     return true;
 }
+
+bool reader_moving_node(struct reader *reader, const struct place *place, const json_t *object,
+                        const char *name, uint32_t *index)
+{
+    struct scene_node node;
+    *index = SCENE_NONE;
+    if (!json_object_get(object, "animation"))
+        return true;
+    scene_node_init(&node, name, SCENE_NONE);
+    *index = scene_add_node(reader->scene, node);
+    if (*index == SCENE_NONE)
+        return reader_no_memory(reader);
+    return reader_animation(reader, place, object, *index);
+}

@@ -13,21 +13,6 @@
 #define FILE_BYTES_MAX ((uint64_t)64 << 20)
 #define RADIANS        (PI / 180.0)
 
-/* What moves hangs on a node of its own; what stands still needs none. */
-static bool moving_node(struct reader *reader, const struct place *place, const json_t *object,
-                        const char *name, uint32_t *index)
-{
-    struct scene_node node;
-    *index = SCENE_NONE;
-    if (!json_object_get(object, "animation"))
-        return true;
-    scene_node_init(&node, name, SCENE_NONE);
-    *index = scene_add_node(reader->scene, node);
-    if (*index == SCENE_NONE)
-        return reader_no_memory(reader);
-    return reader_animation(reader, place, object, *index);
-}
-
 /* `position` is the centre, `u` and `v` are the sides. */
 static bool read_rectangle(struct reader *reader, const struct place *place, const json_t *object,
                            struct scene_light *out)
@@ -169,7 +154,7 @@ static bool read_light(struct reader *reader, const struct place *place, const j
         !reader_string(reader, place, object, "name", &name) ||
         !read_light_place(reader, place, object, &light) ||
         !read_light_values(reader, place, object, &light) ||
-        !moving_node(reader, place, object, name, &light.node))
+        !reader_moving_node(reader, place, object, name, &light.node))
         return false;
     light.name = scene_text(reader->scene, name);
     light.origin.file = scene_text(reader->scene, reader->path);
@@ -186,74 +171,6 @@ static bool read_lights(struct reader *reader, const struct place *place, const 
     for (size_t i = 0; i < json_array_size(value); ++i) {
         struct place here = {place, NULL, i};
         if (!read_light(reader, &here, json_array_get(value, i)))
-            return false;
-    }
-    return true;
-}
-
-/* Which keys go together: fov, height and panorama are three kinds of camera. */
-static bool read_camera_kind(struct reader *reader, const struct place *place, const json_t *object,
-                             struct scene_camera *out)
-{
-    static const char *const foreign[] = {"fov", "height", "lens", "focus"};
-    bool panorama = false, parallel = json_object_get(object, "height") != NULL;
-    if (!reader_bool(reader, place, object, "panorama", &panorama))
-        return false;
-    for (size_t i = 0; panorama && i < sizeof foreign / sizeof *foreign; ++i) {
-        struct place here = {place, foreign[i], 0};
-        if (json_object_get(object, foreign[i]))
-            return reader_fail(reader, &here, "a panorama has no `%s`", foreign[i]);
-    }
-    struct place at_height = {place, "height", 0}, at_lens = {place, "lens", 0},
-                 at_focus = {place, "focus", 0};
-    if (parallel && json_object_get(object, "fov"))
-        return reader_fail(reader, &at_height,
-                           "`height` (a parallel view) and `fov` exclude each other");
-    if (parallel && json_object_get(object, "lens"))
-        return reader_fail(reader, &at_lens, "a parallel view (`height`) has no lens");
-    if (json_object_get(object, "focus") && !json_object_get(object, "lens"))
-        return reader_fail(reader, &at_focus, "`focus` is of a camera with a `lens`");
-    out->kind = panorama   ? SCENE_CAMERA_PANORAMA
-                : parallel ? SCENE_CAMERA_ORTHOGRAPHIC
-                           : SCENE_CAMERA_PERSPECTIVE;
-    return true;
-}
-
-static bool read_camera(struct reader *reader, const struct place *place, const json_t *object)
-{
-    static const char *const keys[] = {"name", "eye",   "target",   "up",     "fov",       "height",
-                                       "lens", "focus", "panorama", "aspect", "animation", NULL};
-    const char *name = "camera";
-    double fov = 40.0;
-    struct scene_camera camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .node = SCENE_NONE};
-    if (!reader_object(reader, place, object, keys) ||
-        !reader_string(reader, place, object, "name", &name) ||
-        !reader_numbers(reader, place, object, "eye", 3, camera.eye) ||
-        !reader_numbers(reader, place, object, "target", 3, camera.target) ||
-        !reader_numbers(reader, place, object, "up", 3, camera.up) ||
-        !reader_number(reader, place, object, "fov", 0.001, 179.9, &fov) ||
-        !reader_float(reader, place, object, "height", 1e-15, 1e15, &camera.height) ||
-        !reader_float(reader, place, object, "lens", 0.0, 1e15, &camera.lens_radius) ||
-        !reader_float(reader, place, object, "focus", 1e-15, 1e15, &camera.focus_distance) ||
-        !reader_float(reader, place, object, "aspect", 0.01, 100.0, &camera.aspect) ||
-        !read_camera_kind(reader, place, object, &camera))
-        return false;
-    if (!(double3_distance(camera.eye, camera.target) > 0.0))
-        return reader_fail(reader, place, "`eye` and `target` are the same point");
-    camera.fov_y = (float)(fov * RADIANS);
-    if (!moving_node(reader, place, object, name, &camera.node))
-        return false;
-    camera.name = scene_text(reader->scene, name);
-    return scene_add_camera(reader->scene, camera) != SCENE_NONE || reader_no_memory(reader);
-}
-
-static bool read_cameras(struct reader *reader, const struct place *place, const json_t *value)
-{
-    if (!json_is_array(value))
-        return reader_fail(reader, place, "cameras in [ ] are expected");
-    for (size_t i = 0; i < json_array_size(value); ++i) {
-        struct place here = {place, NULL, i};
-        if (!read_camera(reader, &here, json_array_get(value, i)))
             return false;
     }
     return true;
@@ -327,7 +244,7 @@ static bool read_root(struct reader *reader, const json_t *root)
         bool (*read)(struct reader *reader, const struct place *place, const json_t *value);
     } parts[] = {
         {"environment", read_environment}, {"materials", reader_materials}, {"lights", read_lights},
-        {"camera", read_camera},           {"cameras", read_cameras},
+        {"camera", reader_camera},         {"cameras", reader_cameras},
     };
     const struct place place = {0};
     const char *ignored = NULL;
@@ -358,37 +275,15 @@ static void reader_finish(struct reader *reader)
     free(reader->models);
 }
 
-/* The parser names the bracket that it looked for and what it met in its place. This is what most
- * often is wrong. */
-static const char *syntax_hint(const char *error)
-{
-    if (strstr(error, "near '/"))
-        return "; JSON has no comments, but any object may have a \"comment\"";
-    if (strstr(error, "or '}' expected near '}'") || strstr(error, "unexpected token near ']'"))
-        return "; is the comma before it one too many?";
-    if (strncmp(error, "'}' expected near", 17) == 0 ||
-        strncmp(error, "']' expected near", 17) == 0)
-        return "; is a comma missing before it?";
-    return "";
-}
-
 whit_result load_scene_file(struct scene *scene, const char *path, const whit_load_params *params)
 {
     uint8_t *text = NULL;
     size_t size_bytes = 0;
-    json_error_t error;
     whit_result result =
         file_read(&scene->log, &scene->roots, path, FILE_BYTES_MAX, &text, &size_bytes);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size_bytes;
-    json_t *root = json_loadb((const char *)text, size_bytes, JSON_REJECT_DUPLICATES, &error);
-    if (!root) {
-        log_error(&scene->log, "%s:%d:%d: %s%s", path, error.line > 0 ? error.line : 1,
-                  error.column > 0 ? error.column : 1, error.text, syntax_hint(error.text));
-        free(text);
-        return WHIT_ERROR_INPUT;
-    }
     struct reader reader = {
         .scene = scene,
         .params = params,
@@ -397,7 +292,8 @@ whit_result load_scene_file(struct scene *scene, const char *path, const whit_lo
         .text_bytes = size_bytes,
         .plain_material = SCENE_NONE,
     };
-    bool read = read_root(&reader, root);
+    json_t *root = reader_parse(&reader);
+    bool read = root && read_root(&reader, root);
     result = read ? WHIT_OK : reader.result;
     reader_finish(&reader);
     json_decref(root);

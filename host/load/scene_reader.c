@@ -97,10 +97,12 @@ static const char *locate(const struct reader *reader, const struct place *place
     return value;
 }
 
-static void line_and_column(const char *text, const char *at, uint32_t *line, uint32_t *column)
+static void line_and_column(const struct reader *reader, const char *at, uint32_t *line,
+                            uint32_t *column)
 {
-    *line = *column = 1;
-    for (; text < at; ++text) {
+    *line = reader->lines_before + 1;
+    *column = 1;
+    for (const char *text = reader->text; text < at; ++text) {
         if (*text == '\n') {
             ++*line;
             *column = 1;
@@ -118,7 +120,7 @@ uint32_t reader_line(const struct reader *reader, const struct place *place)
     if (looks * reader->text_bytes > UINT64_C(300000000))
         return 0;
     (void)locate(reader, place, &marked);
-    line_and_column(reader->text, marked, &line, &column);
+    line_and_column(reader, marked, &line, &column);
     return line;
 }
 
@@ -135,6 +137,33 @@ static size_t place_text(const struct place *place, char *out, size_t out_bytes)
     return more < 0 ? used : used + (size_t)more;
 }
 
+/* The parser names the bracket that it looked for and what it met in its place. This is what most
+ * often is wrong. */
+static const char *syntax_hint(const char *error)
+{
+    if (strstr(error, "near '/"))
+        return "; JSON has no comments, but any object may have a \"comment\"";
+    if (strstr(error, "or '}' expected near '}'") || strstr(error, "unexpected token near ']'"))
+        return "; is the comma before it one too many?";
+    if (strncmp(error, "'}' expected near", 17) == 0 ||
+        strncmp(error, "']' expected near", 17) == 0)
+        return "; is a comma missing before it?";
+    return "";
+}
+
+json_t *reader_parse(struct reader *reader)
+{
+    json_error_t error;
+    json_t *root = json_loadb(reader->text, reader->text_bytes, JSON_REJECT_DUPLICATES, &error);
+    if (!root) {
+        log_error(&reader->scene->log, "%s:%d:%d: %s%s", reader->path,
+                  (int)reader->lines_before + (error.line > 0 ? error.line : 1),
+                  error.column > 0 ? error.column : 1, error.text, syntax_hint(error.text));
+        reader->result = WHIT_ERROR_INPUT;
+    }
+    return root;
+}
+
 bool reader_fail(struct reader *reader, const struct place *place, const char *format, ...)
 {
     char message[400], where[200] = "";
@@ -146,7 +175,7 @@ bool reader_fail(struct reader *reader, const struct place *place, const char *f
     va_end(args);
     (void)place_text(place, where, sizeof where);
     (void)locate(reader, place, &marked);
-    line_and_column(reader->text, marked, &line, &column);
+    line_and_column(reader, marked, &line, &column);
     log_error(&reader->scene->log, "%s:%u:%u: %s%s%s", reader->path, line, column, where,
               where[0] ? ": " : "", message);
     reader->result = WHIT_ERROR_INPUT;

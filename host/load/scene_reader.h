@@ -30,6 +30,7 @@ struct reader {
     const char *path;
     const char *text; /* ends with a zero byte */
     size_t text_bytes;
+    uint32_t lines_before; /* of the file, where the text is one line of it */
     whit_result result;
     uint32_t material_end;       /* materials below it have the names that objects refer to */
     uint32_t plain_material;     /* for objects that name none, or SCENE_NONE so far */
@@ -40,6 +41,8 @@ struct reader {
     uint32_t model_count, model_capacity;
 };
 
+/* The text as JSON, which the caller releases; NULL after an error, which says the place. */
+json_t *reader_parse(struct reader *reader);
 /* Logs `path:line:column: place: message`; always false. */
 bool reader_fail(struct reader *reader, const struct place *place, const char *format, ...)
     WHIT_PRINTF(3, 4);
@@ -108,5 +111,12 @@ void reader_quaternion(const double degrees[3], double out[4]);
 /* Channels of `object`'s "animation" for `node`. */
 bool reader_animation(struct reader *reader, const struct place *place, const json_t *object,
                       uint32_t node);
+/* What moves hangs on a node of its own; what stands still needs none: SCENE_NONE. */
+bool reader_moving_node(struct reader *reader, const struct place *place, const json_t *object,
+                        const char *name, uint32_t *index);
+
+/* scene_cameras.c: into the scene. */
+bool reader_camera(struct reader *reader, const struct place *place, const json_t *object);
+bool reader_cameras(struct reader *reader, const struct place *place, const json_t *value);
 
 #endif

@@ -40,9 +40,14 @@ static whit_result find_camera(const whit_log *log, const struct scene_pose *pos
 {
     uint32_t index = 0;
     if (wanted->own) {
-        *out = (struct scene_camera){.kind = SCENE_CAMERA_PERSPECTIVE,
+        *out = (struct scene_camera){.kind = wanted->panorama       ? SCENE_CAMERA_PANORAMA
+                                             : wanted->height > 0.0 ? SCENE_CAMERA_ORTHOGRAPHIC
+                                                                    : SCENE_CAMERA_PERSPECTIVE,
                                      .node = SCENE_NONE,
-                                     .fov_y = (float)(wanted->fov_y_degrees * PI / 180.0)};
+                                     .fov_y = (float)(wanted->fov_y_degrees * PI / 180.0),
+                                     .height = (float)wanted->height,
+                                     .lens_radius = (float)wanted->lens_radius,
+                                     .focus_distance = (float)wanted->focus_distance};
         memcpy(out->eye, wanted->eye, sizeof out->eye);
         memcpy(out->target, wanted->target, sizeof out->target);
         memcpy(out->up, wanted->up, sizeof out->up);

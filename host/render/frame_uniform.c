@@ -69,11 +69,14 @@ whit_result frame_create(struct renderer *renderer)
                         &renderer->scene_buffers.frame);
 }
 
+whit_result frame_write(const struct renderer *renderer)
+{
+    const struct frame_words words = make_words(renderer);
+    return buffer_write(renderer->scene_buffers.frame, 0, &words, sizeof words);
+}
+
 whit_result frame_upload(struct renderer *renderer)
 {
     whit_result result = frame_fill(renderer);
-    const struct frame_words words = make_words(renderer);
-    if (result == WHIT_OK)
-        result = buffer_write(renderer->scene_buffers.frame, 0, &words, sizeof words);
-    return result;
+    return result == WHIT_OK ? frame_write(renderer) : result;
 }

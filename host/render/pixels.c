@@ -64,6 +64,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
         {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
         {&p->aovs, (p->chunk_slots + pixels) * 16 * aovs, BUFFER_STORAGE | BUFFER_HOST,
          "values of functions"},
+        {&p->distances, renderer->views.count && !target->probed ? pixels * 4 : 0,
+         BUFFER_STORAGE | BUFFER_HOST, "distances"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
         {&p->listed, lists ? (uint64_t)p->chunk_slots * 4 : 0, BUFFER_STORAGE | BUFFER_HOST,
          "listed pixels"},
@@ -88,7 +90,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
 
 static void pixels_finish(struct pixel_buffers *p)
 {
-    struct buffer *all[] = {p->pixels, p->ids, p->status, p->costs, p->listed, p->aovs};
+    struct buffer *all[] = {p->pixels, p->ids,  p->status,   p->costs,
+                            p->listed, p->aovs, p->distances};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     queues_finish(&p->queues);

@@ -36,7 +36,7 @@ bool post_can_reuse(const struct renderer *renderer)
 {
     struct unposted wanted;
     describe(renderer, &wanted);
-    return renderer->params.reuse_rays && readback_is_late(renderer) &&
+    return renderer->params.reuse_rays && !renderer->views.count && readback_is_late(renderer) &&
            renderer->picture.stages.set.posts && !post_traces(renderer->params.shader) &&
            memcmp(&renderer->unposted, &wanted, sizeof wanted) == 0;
 }
@@ -53,7 +53,7 @@ static void dispatch(struct renderer *renderer, struct gpu_chunk *chunk)
 
 whit_result post_render(struct renderer *renderer)
 {
-    const struct lattice lattice = lattice_whole(&renderer->params);
+    const struct lattice lattice = lattice_whole(renderer);
     uint32_t across = pixels_blocks_across(lattice.width);
     uint32_t end = pixels_blocks_across(lattice.height) * across;
     struct gpu_chunk chunk = {.first_block = renderer->params.first_row / 8 * across,

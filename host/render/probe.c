@@ -383,7 +383,9 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
                                  .samples = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE
                                                 ? PROBE_ADAPTIVE_SAMPLES
                                                 : params->sampling.count};
-    whit_result result = check(renderer, x, y);
+    whit_result result = views_leave(renderer);
+    if (result == WHIT_OK)
+        result = check(renderer, x, y);
     if (result == WHIT_OK)
         result = params_check_loops(renderer);
     if (result == WHIT_OK)

@@ -8,7 +8,7 @@
 
 bool readback_is_late(const struct renderer *renderer)
 {
-    return renderer->picture.buffers.band_rows >= params_rows(&renderer->params) &&
+    return renderer->picture.buffers.band_rows >= views_rows(renderer) &&
            renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
@@ -30,6 +30,12 @@ static whit_result read_cuts(const struct renderer *renderer, uint32_t rows, flo
     struct buffer *sums = renderer->picture.buffers.queues.cut_sums;
     uint64_t bytes = (uint64_t)renderer->params.width * rows * 2 * sizeof *weights;
     return sums ? buffer_read(sums, 0, weights, bytes) : WHIT_OK;
+}
+
+static whit_result read_distances(const struct renderer *renderer, uint32_t rows, float *distances)
+{
+    return buffer_read(renderer->picture.buffers.distances, 0, distances,
+                       (uint64_t)renderer->params.width * rows * sizeof *distances);
 }
 
 /* All functions of `count` pixels of the band, from pixel `at` of it on. */
@@ -128,6 +134,8 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
             result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
         if (result == WHIT_OK && renderer->cuts.pixels)
             result = read_cuts(renderer, rows, &renderer->cuts.pixels[2 * first]);
+        if (result == WHIT_OK && renderer->distances.pixels)
+            result = read_distances(renderer, rows, &renderer->distances.pixels[first]);
         if (result == WHIT_OK && renderer->aovs.pixels)
             result =
                 read_aovs(renderer, 0, count,
@@ -143,8 +151,18 @@ static whit_result begin_read(const struct renderer *renderer, uint32_t channels
         log_error(&renderer->log, "no picture was rendered yet");
         return WHIT_ERROR_USAGE;
     }
-    return image_init(out, renderer->params.width, params_rows(&renderer->params), channels,
-                      integers);
+    return image_init(out, renderer->params.width, views_rows(renderer), channels, integers);
+}
+
+/* Leaves out rows between views that belong to none. */
+static void close_gaps(const struct renderer *renderer, struct image *image)
+{
+    size_t words = (size_t)image->width * image->channels, height = renderer->params.height;
+    size_t stride = views_stride(renderer);
+    uint32_t *all = image->words ? image->words : (uint32_t *)image->pixels;
+    for (size_t i = 1; height != stride && i < renderer->views.count; ++i)
+        memmove(all + words * height * i, all + words * stride * i, words * height * sizeof *all);
+    image->height = views_image_rows(renderer);
 }
 
 whit_result renderer_read_color(struct renderer *renderer, struct image *out)
@@ -153,10 +171,30 @@ whit_result renderer_read_color(struct renderer *renderer, struct image *out)
     if (result != WHIT_OK)
         return result;
     if (readback_is_late(renderer))
-        return read_pixels(renderer, out->height, out->pixels);
-    memcpy(out->pixels, renderer->color.pixels,
-           (size_t)out->width * out->height * 4 * sizeof(float));
-    return WHIT_OK;
+        result = read_pixels(renderer, out->height, out->pixels);
+    else
+        memcpy(out->pixels, renderer->color.pixels,
+               (size_t)out->width * out->height * 4 * sizeof(float));
+    close_gaps(renderer, out);
+    return result;
+}
+
+whit_result renderer_read_distances(struct renderer *renderer, struct image *out)
+{
+    if (!renderer->views.count) {
+        log_error(&renderer->log, "distances are kept of views that are drawn together");
+        return WHIT_ERROR_USAGE;
+    }
+    whit_result result = begin_read(renderer, 1, false, out);
+    if (result != WHIT_OK)
+        return result;
+    if (readback_is_late(renderer))
+        result = read_distances(renderer, out->height, out->pixels);
+    else
+        memcpy(out->pixels, renderer->distances.pixels,
+               (size_t)out->width * out->height * sizeof(float));
+    close_gaps(renderer, out);
+    return result;
 }
 
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
@@ -165,10 +203,12 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
     if (result != WHIT_OK)
         return result;
     if (readback_is_late(renderer))
-        return read_ids(renderer, out->height, out->words);
-    memcpy(out->words, renderer->ids.words,
-           (size_t)out->width * out->height * 2 * sizeof(uint32_t));
-    return WHIT_OK;
+        result = read_ids(renderer, out->height, out->words);
+    else
+        memcpy(out->words, renderer->ids.words,
+               (size_t)out->width * out->height * 2 * sizeof(uint32_t));
+    close_gaps(renderer, out);
+    return result;
 }
 
 /* The numbers of one function out of those of all, of a row. */
@@ -224,10 +264,12 @@ whit_result renderer_read_cuts(struct renderer *renderer, struct image *out)
     if (result != WHIT_OK)
         return result;
     if (readback_is_late(renderer))
-        return read_cuts(renderer, out->height, out->pixels);
-    memcpy(out->pixels, renderer->cuts.pixels,
-           (size_t)out->width * out->height * 2 * sizeof(float));
-    return WHIT_OK;
+        result = read_cuts(renderer, out->height, out->pixels);
+    else
+        memcpy(out->pixels, renderer->cuts.pixels,
+               (size_t)out->width * out->height * 2 * sizeof(float));
+    close_gaps(renderer, out);
+    return result;
 }
 
 whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,

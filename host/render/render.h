@@ -43,6 +43,11 @@ WHIT_CHECK whit_result renderer_create(const whit_log *log, struct device *devic
                                        struct renderer **out);
 void renderer_destroy(struct renderer *renderer);
 WHIT_CHECK whit_result renderer_render(struct renderer *renderer);
+/* whit_renderer_render_views */
+WHIT_CHECK whit_result renderer_render_views(struct renderer *renderer, const whit_camera *cameras,
+                                             uint32_t count);
+/* Of the last picture; 0: it has one camera. */
+uint32_t renderer_view_count(const struct renderer *renderer);
 /* Linear RGBA floats, or instance and primitive of the first sample (HIT_NONE: miss). */
 WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);
@@ -51,6 +56,8 @@ WHIT_CHECK whit_result renderer_read_aov(struct renderer *renderer, uint32_t ind
                                          struct image *out);
 /* As WHIT_AOV_CUTS has it. WHIT_ERROR_USAGE too for adaptive samples. */
 WHIT_CHECK whit_result renderer_read_cuts(struct renderer *renderer, struct image *out);
+/* As WHIT_AOV_DISTANCES has it. */
+WHIT_CHECK whit_result renderer_read_distances(struct renderer *renderer, struct image *out);
 void renderer_get_stats(const struct renderer *renderer, whit_stats *stats);
 
 /* The same of the picture that was set last, or of a smaller one of at most `max` pixels whose

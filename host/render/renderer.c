@@ -16,8 +16,8 @@ bool renderer_bounces(const struct renderer *renderer)
 static whit_result create_parts(struct renderer *renderer)
 {
     double start_ms = clock_ms();
-    whit_result result = pixels_create(&renderer->picture, params_rows(&renderer->params),
-                                       renderer->params.tile_size);
+    whit_result result =
+        pixels_create(&renderer->picture, views_rows(renderer), renderer->params.tile_size);
     if (result == WHIT_OK)
         result = upload_scene(renderer);
     if (result == WHIT_OK)
@@ -117,6 +117,7 @@ void renderer_finish(struct renderer *renderer)
     trace_finish(&renderer->trace);
     target_finish(&renderer->probe);
     target_finish(&renderer->picture);
+    views_finish(&renderer->views);
     costs_clear(renderer);
     upload_finish(&renderer->scene_buffers);
     bodies_finish(&renderer->bodies);
@@ -125,6 +126,7 @@ void renderer_finish(struct renderer *renderer)
     image_finish(&renderer->ids);
     image_finish(&renderer->cuts);
     image_finish(&renderer->aovs);
+    image_finish(&renderer->distances);
 }
 
 void renderer_destroy(struct renderer *renderer)

@@ -49,7 +49,8 @@ struct pixel_buffers {
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
     struct buffer *status;
-    struct buffer *aovs; /* see bind/queues.glsl; NULL: the shader has no functions for it */
+    struct buffer *aovs;      /* see bind/queues.glsl; NULL: the shader has no functions for it */
+    struct buffer *distances; /* NULL: the picture has one camera */
     struct queue_buffers queues;
     uint32_t band_y;      /* first row that they hold now */
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
@@ -155,6 +156,15 @@ struct async_state {
     bool general;          /* renderer->picture.stages.set is of general kernels */
 };
 
+/* Views of many cameras, which a picture has one below the other. */
+struct views {
+    uint32_t count;  /* 0: the picture has one camera */
+    uint32_t held;   /* that the buffers and kernels of the picture are made for */
+    uint32_t camera; /* CAMERA_* that kernels are made for */
+    struct gpu_view *all;
+    struct buffer *buffer; /* has them too */
+};
+
 /* The buffers that the stages read and write, the kernels bound to them, and the figures of what
    was drawn. A renderer has two: one for pictures, one for probed pixels. */
 struct target {
@@ -188,7 +198,8 @@ struct renderer {
     struct scene_buffers scene_buffers;
     struct target picture;
     struct target probe; /* a row of blocks; without buffers before the first probe */
-    bool packets;        /* rays of pictures may walk in packets, through nodes of eight children */
+    struct views views;
+    bool packets; /* rays of pictures may walk in packets, through nodes of eight children */
     uint32_t packet_rays; /* of a lane, in these */
     bool few_kernels;     /* one for several stages and materials, since the renderer was made */
     bool wide;            /* there are such nodes on the device */
@@ -203,6 +214,7 @@ struct renderer {
     struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids, cuts;      /* of the last picture, where it has more than one band */
     struct image aovs;                  /* likewise: a pixel beside itself for each function */
+    struct image distances;             /* likewise */
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
     double create_ms;
     /* What the pipelines were made for. */
@@ -455,8 +467,22 @@ void trace_finish(struct trace_state *trace);
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
 /* The buffer that holds it, and the values of sliders behind it. */
 WHIT_CHECK whit_result frame_create(struct renderer *renderer);
+/* Writes both to the device, as they are. */
+WHIT_CHECK whit_result frame_write(const struct renderer *renderer);
 /* Fills the record and writes both to the device. */
 WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
+
+/* views.c: rows that the picture has in memory; views have whole rows of blocks. */
+uint32_t views_rows(const struct renderer *renderer);
+/* Rows of one view among these. */
+uint32_t views_stride(const struct renderer *renderer);
+/* Rows that its images have. */
+uint32_t views_image_rows(const struct renderer *renderer);
+/* Where each of its lenses is met by the sample that the chunk is for. */
+WHIT_CHECK whit_result views_take_sample(struct renderer *renderer, const struct gpu_chunk *chunk);
+/* Back to the picture of one camera; nothing where it is that. */
+WHIT_CHECK whit_result views_leave(struct renderer *renderer);
+void views_finish(struct views *views);
 
 /* readback.c: a picture of one band and one pass stays on the device until it is asked for. */
 bool readback_is_late(const struct renderer *renderer);
@@ -485,7 +511,7 @@ WHIT_CHECK whit_result adaptive_list(struct target *target, const struct progres
 bool adaptive_draws(const struct progress *progress, size_t index);
 
 /* steps.c: all pixels of the rows that are drawn. */
-struct lattice lattice_whole(const whit_renderer_params *params);
+struct lattice lattice_whole(const struct renderer *renderer);
 /* gpu_chunk.lattice */
 uint32_t lattice_word(const struct lattice *lattice);
 bool steps_are_wanted(const struct renderer *renderer);
@@ -501,6 +527,9 @@ WHIT_CHECK whit_result post_render(struct renderer *renderer);
 /* The picture is drawn: notes what it is of. */
 void post_keep(struct renderer *renderer);
 
+/* retarget.c: buffers of pixels for the picture as it is now, in place of those that there are. */
+WHIT_CHECK whit_result retarget_pixels(struct renderer *renderer);
+
 /* tiles.c: `samples` of all pixels of progress->lattice, or of those of them that progress->levels
    gives so many. */
 WHIT_CHECK whit_result render_pass(struct renderer *renderer, uint32_t samples,
@@ -512,6 +541,9 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
 /* params.c: without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
    traces take more iterations of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
+
+/* tiles.c: the picture, of one camera or of many. */
+WHIT_CHECK whit_result render_all(struct renderer *renderer);
 
 /* tiles.c: what submissions are made of. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,

@@ -28,12 +28,12 @@ static bool same_buffers(const whit_renderer_params *a, const whit_renderer_para
            a->sampling.kind == b->sampling.kind;
 }
 
-static whit_result replace_pixels(struct renderer *renderer)
+whit_result retarget_pixels(struct renderer *renderer)
 {
-    const whit_renderer_params *params = &renderer->params;
     target_drop_pixels(&renderer->picture);
     target_drop_pixels(&renderer->probe);
-    whit_result result = pixels_create(&renderer->picture, params_rows(params), params->tile_size);
+    whit_result result =
+        pixels_create(&renderer->picture, views_rows(renderer), renderer->params.tile_size);
     if (result != WHIT_OK)
         target_drop_pixels(&renderer->picture);
     renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;
@@ -48,8 +48,10 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
         result = hooks_read_sliders(renderer, params->sliders);
     if (result != WHIT_OK)
         return result;
+    bool many = renderer->views.count > 0;
     bool moved = wanted.time_s != renderer->params.time_s;
-    bool same = same_buffers(&renderer->params, &wanted) && renderer->picture.buffers.pixels &&
+    bool same = !many && same_buffers(&renderer->params, &wanted) &&
+                renderer->picture.buffers.pixels &&
                 pixels_levels(&wanted) <= renderer->picture.buffers.levels;
     bool listed = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE,
          had_secondary = renderer->has_secondary;
@@ -57,17 +59,18 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
     stats_clear(&renderer->picture);
     renderer->picture.stats.compile_ms = 0.0;
     renderer->params = wanted;
+    renderer->views.count = renderer->views.held = 0;
     renderer->has_secondary = renderer_bounces(renderer);
     uint32_t camera = variant_camera(renderer);
     bool touched = media_touch(renderer->scene, &renderer->bodies, &renderer->frame);
     if (!same)
-        result = replace_pixels(renderer);
+        result = retarget_pixels(renderer);
     if (result == WHIT_OK && moved)
         result = renderer_set_time(renderer, wanted.time_s);
     else if (result == WHIT_OK)
         result = frame_upload(renderer);
     bool other_kernel =
-        variant_camera(renderer) != camera ||
+        many || variant_camera(renderer) != camera ||
         (wanted.sampling.kind == WHIT_SAMPLING_ADAPTIVE) != listed ||
         renderer->has_secondary != had_secondary ||
         media_touch(renderer->scene, &renderer->bodies, &renderer->frame) != touched;

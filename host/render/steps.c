@@ -26,10 +26,10 @@ static struct lattice make_lattice(const whit_renderer_params *params, uint32_t 
     };
 }
 
-struct lattice lattice_whole(const whit_renderer_params *params)
+struct lattice lattice_whole(const struct renderer *renderer)
 {
-    struct lattice lattice = make_lattice(params, 0, 0, 1, 1);
-    lattice.height = params->first_row + params_rows(params);
+    struct lattice lattice = make_lattice(&renderer->params, 0, 0, 1, 1);
+    lattice.height = renderer->params.first_row + views_rows(renderer);
     return lattice;
 }
 
@@ -47,7 +47,7 @@ uint32_t lattice_word(const struct lattice *lattice)
 bool steps_are_wanted(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
-    return params->step && params->step_spacing && !params->row_count &&
+    return params->step && params->step_spacing && !params->row_count && !renderer->views.count &&
            params->width >= SIDE_MIN && params->height >= SIDE_MIN && !params->count &&
            readback_is_late(renderer);
 }

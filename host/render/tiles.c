@@ -21,11 +21,17 @@ static const double SUBMISSION_LIMIT_MS = 100.0;
    weight was no number. */
 static void describe_non_finite(const struct target *target, char *text, size_t text_bytes)
 {
-    uint32_t x, y, count;
+    uint32_t x, y, count, stride = views_stride(target->renderer);
+    char view[32] = "";
     text[0] = 0;
-    if (readback_non_finite(target, &x, &y, &count) == WHIT_OK && count > 0)
-        snprintf(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u", count,
-                 count == 1 ? "" : "s", x, y);
+    if (readback_non_finite(target, &x, &y, &count) == WHIT_OK && count > 0) {
+        if (target->renderer->views.count) {
+            snprintf(view, sizeof view, " of view %u", y / stride);
+            y %= stride;
+        }
+        snprintf(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u%s", count,
+                 count == 1 ? "" : "s", x, y, view);
+    }
     hooks_describe_file(target->renderer, text, text_bytes);
 }
 
@@ -206,7 +212,9 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
         if (result != WHIT_OK)
             return result;
         render_take_sample(&renderer->picture, s, samples, chunk);
-        result = stages_sample(&renderer->picture, chunk, progress, &longest_ms);
+        result = views_take_sample(renderer, chunk);
+        if (result == WHIT_OK)
+            result = stages_sample(&renderer->picture, chunk, progress, &longest_ms);
         if (result != WHIT_OK)
             return result;
         progress->work_done += chunk->block_count;
@@ -314,7 +322,7 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
 static whit_result render_picture(struct renderer *renderer, struct progress *progress)
 {
     const whit_renderer_params *params = &renderer->params;
-    uint64_t pixels = (uint64_t)params->width * params_rows(params);
+    uint64_t pixels = (uint64_t)params->width * views_image_rows(renderer);
     renderer->picture.stats.rays_primary = pixels * params->sampling.count;
     if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return render_adaptive(renderer, progress);
@@ -339,8 +347,14 @@ static whit_result render_from_rays(struct renderer *renderer)
 
 whit_result renderer_render(struct renderer *renderer)
 {
+    whit_result result = views_leave(renderer);
+    return result == WHIT_OK ? render_all(renderer) : result;
+}
+
+whit_result render_all(struct renderer *renderer)
+{
     const whit_renderer_params *params = &renderer->params;
-    uint32_t rows = params_rows(params);
+    uint32_t rows = views_rows(renderer);
     renderer->rendered = false;
     if (renderer->between_times) {
         log_error(&renderer->log,
@@ -351,6 +365,7 @@ whit_result renderer_render(struct renderer *renderer)
     image_finish(&renderer->ids);
     image_finish(&renderer->cuts);
     image_finish(&renderer->aovs);
+    image_finish(&renderer->distances);
     costs_clear(renderer);
     whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK)
@@ -365,6 +380,8 @@ whit_result renderer_render(struct renderer *renderer)
     if (result == WHIT_OK && !readback_is_late(renderer) &&
         params->sampling.kind == WHIT_SAMPLING_FIXED)
         result = image_init(&renderer->cuts, params->width, rows, 2, false);
+    if (result == WHIT_OK && !readback_is_late(renderer) && renderer->views.count)
+        result = image_init(&renderer->distances, params->width, rows, 1, false);
     uint32_t aovs = hooks_aov_count(&renderer->picture);
     if (result == WHIT_OK && !readback_is_late(renderer) && aovs)
         result = image_init(&renderer->aovs, params->width * aovs, rows, 4, false);
@@ -372,7 +389,7 @@ whit_result renderer_render(struct renderer *renderer)
     material_shares_clear(&renderer->picture);
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
     struct progress progress = {
-        .lattice = lattice_whole(params),
+        .lattice = lattice_whole(renderer),
         .start_ms = clock_ms(),
         .tile = params->tile_size                             ? params->tile_size
                 : renderer->accel->no_trees                   ? TILE_MIN

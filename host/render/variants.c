@@ -10,6 +10,8 @@
 uint32_t variant_camera(const struct renderer *renderer)
 {
     const bool *called = renderer->effects.called;
+    if (renderer->views.count)
+        return renderer->views.camera;
     bool lens_removed = renderer->params.effects_removed >> SCENE_EFFECT_LENS & 1;
     return called[SCENE_EFFECT_ORTHOGRAPHIC]            ? CAMERA_ORTHOGRAPHIC
            : called[SCENE_EFFECT_PANORAMA]              ? CAMERA_PANORAMA
@@ -86,6 +88,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
         device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
     spec.SPEC_LISTED = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
+    spec.SPEC_VIEWS = renderer->views.count > 0;
     spec.SPEC_AOVS = hooks_aov_count(target);
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
@@ -275,6 +278,8 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);
     bind(&bindings, BIND_CUTS, BINDING_STORAGE, queues->cuts);
     bind(&bindings, BIND_AOVS, BINDING_STORAGE, pixels->aovs);
+    bind(&bindings, BIND_VIEWS, BINDING_STORAGE, renderer->views.buffer);
+    bind(&bindings, BIND_DISTANCES, BINDING_STORAGE, pixels->distances);
     bind(&bindings, BIND_CUT_SUMS, BINDING_STORAGE, queues->cut_sums);
     return bindings;
 }

@@ -59,6 +59,10 @@ WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32
  */
 WHIT_CHECK whit_result whit_image_create_display(uint32_t width, uint32_t height,
                                                  const uint8_t *rgba, whit_image **out);
+/* A copy of `count` rows from `first` on, shown as the image is. WHIT_ERROR_USAGE for rows that it
+   has not, and for none; WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_image_rows(const whit_image *image, uint32_t first, uint32_t count,
+                                       whit_image **out);
 void whit_image_destroy(whit_image *image);
 
 /* True for a path that whit_image_save can write; `integers` asks for hit identities. */

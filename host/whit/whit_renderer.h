@@ -159,6 +159,19 @@ void whit_renderer_destroy(whit_renderer *renderer);
    WHIT_ERROR_CANCELLED. May be called again: the same bytes. */
 WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 
+/* Draws `count` small pictures together: of each of `cameras`, in the renderer's size, the picture
+   that a renderer with that camera draws, byte for byte. whit_renderer_image then gives them one
+   below the other, as an image of `count` times the height, until whit_renderer_render draws a
+   picture of one camera again, or a view is set or a pixel probed. They share tiles and dispatches,
+   so that thousands of 64 x 64 take about the time of one picture of as many pixels
+   (whit_renderer_params.many_pictures makes the kernels for that; docs/batch.md); memory is that of
+   all of them, some 40 bytes a pixel. `cameras` are read during the call. WHIT_ERROR_USAGE, logged
+   with the number of the view, for no or too many cameras and for one that a renderer refuses; and
+   for params with a shader, adaptive samples, counts or some of the rows. Others as of
+   whit_renderer_render. */
+WHIT_CHECK whit_result whit_renderer_render_views(whit_renderer *renderer,
+                                                  const whit_camera *cameras, uint32_t count);
+
 /* Goes to another time of the animation: moves instances, lights and camera, keeps mesh trees and
    pipelines. The picture is that of a renderer made at that time, byte for byte. WHIT_ERROR_USAGE
    for a time that is not finite, WHIT_ERROR_INPUT for one without a finite pose;
@@ -220,11 +233,15 @@ typedef enum whit_aov {
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
     WHIT_AOV_CUTS,      /* 2 floats: weights of rays that were not traced, for params.depth and for
                            params.bailout: sums of largest channels, means over samples */
+    WHIT_AOV_DISTANCES, /* 1 float, after whit_renderer_render_views: from where the camera ray of
+                           the pixel's first sample starts to what it meets, world units; infinity:
+                           nothing. The t of whit_trace, but that cut-outs are looked through,
+                           and that at WHIT_NUMERICS_EXACT it is not rounded from the exact one */
     WHIT_AOV_SHADER = 64, /* and up: whit_shader_info.aovs by index; 4 floats, means over samples of
                              what the function gives for what the camera meets, 0 for nothing */
 } whit_aov;
-/* WHIT_ERROR_USAGE where nothing was rendered, for functions that the shader has not, and for cuts
-   of a picture of adaptive samples; WHIT_ERROR_DEVICE. */
+/* WHIT_ERROR_USAGE where nothing was rendered, for functions that the shader has not, for cuts of
+   a picture of adaptive samples, and for distances of one that is no views; WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 /* From here on an image of colours is displayed as a picture with these params is, which those of
    renderers and references are from the beginning. */

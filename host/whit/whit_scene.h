@@ -147,6 +147,13 @@ void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info
 /* Where whit looks from at a scene whose file has no camera, at time 0; WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_scene_choose_camera(const whit_scene *scene, whit_camera *camera);
 
+/* The cameras of a file, for whit_renderer_render_views: a JSON array of cameras as scene files
+   have them (docs/scenes.md), or one camera a line. Names and aspects are not read. `cameras`: one
+   block, for whit_memory_destroy. WHIT_ERROR_INPUT, logged with line and column, for what cannot be
+   read, for a camera with an animation, and for none; WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result whit_cameras_load(const char *path, const whit_log *log,
+                                         whit_camera **cameras, uint32_t *count);
+
 /* What a picture depends on, piece by piece. */
 typedef enum whit_part_kind {
     WHIT_PART_MESH = 0,

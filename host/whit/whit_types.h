@@ -31,9 +31,15 @@ typedef struct whit_shader whit_shader;     /* functions in the place of whit's 
 /* Which camera a picture is seen by. Zeroed: the first of the scene. */
 typedef struct whit_camera {
     const char *name; /* of a camera of the scene, or its number where none has that name */
-    bool own;         /* a pinhole at `eye` in place of the scene's cameras; `name` is not read */
+    bool own;         /* one at `eye` in place of the scene's cameras; `name` is not read */
     double eye[3], target[3], up[3]; /* world space */
     double fov_y_degrees;            /* vertical, between 0 and 180 */
+    /* Zero for a pinhole. World units; as the keys `height`, `lens`, `focus` and `panorama` of
+       cameras in scene files. */
+    double height;         /* above 0: a parallel view of so much; fov_y_degrees is not read */
+    double lens_radius;    /* of a thin lens */
+    double focus_distance; /* along the view, with a lens; 0: the target's */
+    bool panorama;         /* all around, equirectangular; of the others eye, target and up */
 } whit_camera;
 
 /* Whether there is one tree over the triangles of all instances, each vertex placed in the world in

@@ -51,6 +51,8 @@
 #define BIND_CUT_SUMS            36
 #define BIND_AOVS                37
 #define BIND_DBG                 38
-#define BIND_STAGES_COUNT        39
+#define BIND_VIEWS               39
+#define BIND_DISTANCES           40
+#define BIND_STAGES_COUNT        41
 
 #endif

@@ -167,6 +167,24 @@ struct gpu_frame {
 GPU_ASSERT_SIZE(gpu_frame, 208)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
+/* What a frame has of its own in each of many views (SPEC_VIEWS). The views of a picture lie one
+   below the other, each in as many rows of blocks as it needs. */
+struct gpu_view {
+    gpu_vec3 eye;
+    gpu_float texel_area;
+    gpu_vec3 right;
+    gpu_float focus_distance;
+    gpu_vec3 up;
+    gpu_uint camera; /* CAMERA_* */
+    gpu_vec3 forward;
+    gpu_float lens_radius; /* lens_xy is made from it */
+    gpu_uint eye_media0, eye_media1, eye_media2, eye_media3;
+    gpu_vec2 lens_xy; /* of the sample in hand, as gpu_chunk has it */
+    gpu_uint pad0, pad1;
+};
+GPU_ASSERT_SIZE(gpu_view, 96)
+GPU_ASSERT_AT(gpu_view, lens_xy, 80)
+
 #define SHAPE_IS_GLASS 0x80000000u
 
 /* Behind the frame stand the values of the sliders of a user's file, as floats. */

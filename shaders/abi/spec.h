@@ -15,6 +15,7 @@
 #define CAMERA_ORTHOGRAPHIC 1u
 #define CAMERA_LENS         2u /* thin lens, of a perspective camera */
 #define CAMERA_PANORAMA     3u /* equirectangular, all around */
+#define CAMERA_EACH         4u /* SPEC_VIEWS: each view has a kind of its own */
 
 #define FRESNEL_NONE    0u
 #define FRESNEL_EXACT   1u
@@ -144,7 +145,8 @@
     X(54, SPEC_HOOKS, 0)              /* HOOK_*: functions that are a user's */                    \
     X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */        \
     X(56, SPEC_CHECK_WORDS, 1)        /* that have a bit for each check of a test */             \
-    X(57, SPEC_AOVS, 0)               /* values of a user's functions beside the colour */
+    X(57, SPEC_AOVS, 0)               /* values of a user's functions beside the colour */        \
+    X(58, SPEC_VIEWS, 0)              /* views of many cameras, one below the other */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -5,13 +5,19 @@
 #include "../lib/angles.glsl"
 #include "ray.glsl"
 
+// Which camera it is.
+uint camera_kind()
+{
+    return SPEC_CAMERA == CAMERA_EACH ? view.camera : SPEC_CAMERA;
+}
+
 // Origin and direction, not of unit length, of the camera ray through `at`: -1..1 from left to right
 // and from top to bottom. `lens`: as chunk.lens_xy.
 void camera_line(vec2 at, vec2 lens, out vec3 origin, out vec3 dir)
 {
     origin = frame.eye;
     dir = frame.forward;
-    if (SPEC_CAMERA == CAMERA_PANORAMA) {
+    if (camera_kind() == CAMERA_PANORAMA) {
         float turn = at.y * -0.5; // exact
         vec2 longitude = sine_cosine_pi(at.x), latitude = sine_cosine_pi(turn);
         precise vec3 level = frame.forward * longitude.y + frame.right * longitude.x;
@@ -21,11 +27,11 @@ void camera_line(vec2 at, vec2 lens, out vec3 origin, out vec3 dir)
     }
     precise vec3 in_plane = frame.right * at.x - frame.up * at.y;
     precise vec3 moved = frame.eye + in_plane, aimed = frame.forward + in_plane;
-    if (SPEC_CAMERA == CAMERA_ORTHOGRAPHIC)
+    if (camera_kind() == CAMERA_ORTHOGRAPHIC)
         origin = moved;
     else
         dir = aimed;
-    if (SPEC_CAMERA == CAMERA_LENS) {
+    if (camera_kind() == CAMERA_LENS) {
         // All rays of a pixel's sample meet in the focus plane, at eye + focus_distance * aimed.
         precise vec3 aside = frame.right * lens.x + frame.up * lens.y;
         precise vec3 on_lens = frame.eye + aside * frame.focus_distance;
@@ -50,7 +56,8 @@ void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir);
 // all devices round alike.
 Ray camera_ray(uvec2 pixel)
 {
-    vec2 place = mirror_sample(chunk.sample_xy, pixel), lens = mirror_sample(chunk.lens_xy, pixel);
+    vec2 lens_xy = SPEC_VIEWS != 0u ? view.lens_xy : chunk.lens_xy;
+    vec2 place = mirror_sample(chunk.sample_xy, pixel), lens = mirror_sample(lens_xy, pixel);
     precise vec2 middle = vec2(pixel) * 2.0 + 1.0 - vec2(frame.width, frame.height); // exact
     precise vec2 at = (middle + place) * vec2(frame.inv_width, frame.inv_height);
     vec3 origin, dir;
@@ -93,12 +100,12 @@ float sample_share()
 float texel_area(uvec2 pixel, float way)
 {
     float area = frame.texel_area * sample_share();
-    if (SPEC_CAMERA == CAMERA_ORTHOGRAPHIC)
+    if (camera_kind() == CAMERA_ORTHOGRAPHIC)
         return area;
     vec2 middle = vec2(pixel) * 2.0 + 1.0 - vec2(frame.width, frame.height);
     vec2 at = middle * vec2(frame.inv_width, frame.inv_height);
     area *= way * way;
-    if (SPEC_CAMERA == CAMERA_PANORAMA)
+    if (camera_kind() == CAMERA_PANORAMA)
         return area * sine_cosine_pi(at.y * 0.5).y;
     float x2 = at.x * at.x * dot(frame.right, frame.right);
     float y2 = at.y * at.y * dot(frame.up, frame.up);

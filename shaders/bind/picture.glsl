@@ -16,6 +16,13 @@ layout(set = 0, binding = BIND_LISTED, std430) readonly buffer ListedBuffer
 // RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
 layout(set = 0, binding = BIND_COSTS, std430) buffer CostBuffer { gpu_cost costs[]; };
 
+layout(set = 0, binding = BIND_VIEWS, std430) readonly buffer ViewBuffer { gpu_view views[]; };
+layout(set = 0, binding = BIND_DISTANCES, std430) writeonly buffer DistanceBuffer
+{
+    float distances[]; // with SPEC_VIEWS: from where the first sample's camera ray starts to what it meets
+};
+gpu_view view; // of the slot in hand
+
 const uint BLOCK_PIXELS = 64u; // 8 x 8
 
 // Which item of the work this invocation takes; the last ones may be past its end.
@@ -29,8 +36,8 @@ uint own_slot()
     return group * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
 }
 
-// Pixel of a slot: blocks row by row over what is drawn of the picture; within a block 4 x 2 pixels a subgroup of 8.
-uvec2 slot_pixel(uint slot)
+// Place of a slot: blocks row by row over what is drawn of the picture; within a block 4 x 2 pixels a subgroup of 8.
+uvec2 slot_place(uint slot)
 {
     uint blocks_x = chunk.blocks_x, first_y = chunk.first_block / blocks_x;
     // From the start of that row less than 2^14 blocks on: floats divide them right, and lavapipe divides
@@ -46,9 +53,44 @@ uvec2 slot_pixel(uint slot)
     return ((block * 8u + uvec2(x, y)) << shift) + (first & LATTICE_FIRST_MASK);
 }
 
+// Rows that one of many views takes.
+uint view_rows()
+{
+    return (frame.height + 7u) & ~7u;
+}
+
+// Pixel of a slot: its place, in its view where there are many.
+uvec2 slot_pixel(uint slot)
+{
+    if (SPEC_VIEWS == 0u)
+        return slot_place(slot);
+    uvec2 place = slot_place(slot);
+    return uvec2(place.x, place.y % view_rows());
+}
+
+// Of a place.
 bool is_in_picture(uvec2 at)
 {
+    if (SPEC_VIEWS != 0u)
+        return at.x < frame.width && at.y % view_rows() < frame.height;
     return at.x < frame.width && at.y < min(frame.height, chunk.band_y + chunk.band_rows);
+}
+
+// Puts the camera of the slot's view into the frame, with SPEC_VIEWS. Slots of a subgroup are in one block, and
+// so in one view.
+void load_view(uint slot)
+{
+    view = views[slot_place(slot).y / view_rows()];
+    frame.eye = view.eye;
+    frame.right = view.right;
+    frame.up = view.up;
+    frame.forward = view.forward;
+    frame.texel_area = view.texel_area;
+    frame.focus_distance = view.focus_distance;
+    frame.eye_media0 = view.eye_media0;
+    frame.eye_media1 = view.eye_media1;
+    frame.eye_media2 = view.eye_media2;
+    frame.eye_media3 = view.eye_media3;
 }
 
 // Adds what the last traverse() cost to the pixel's rays of `kind`. HIT_NONE: of no pixel.

@@ -191,10 +191,15 @@ Ray fetch_ray(uint id, out uint slot)
     Ray ray;
     if (SPEC_GENERATIONS != 2u) {
         slot = slot_of(queued ? 0u : id);
+        if (SPEC_VIEWS != 0u)
+            load_view(slot);
         ray = camera_ray(slot_pixel(slot));
     }
-    if (SPEC_SECONDARY != 0u && queued)
+    if (SPEC_SECONDARY != 0u && queued) {
         ray = queued_ray(id, slot);
+        if (SPEC_VIEWS != 0u && SPEC_MINIFICATION != 0u)
+            load_view(slot);
+    }
     return ray;
 }
 

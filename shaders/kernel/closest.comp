@@ -39,7 +39,7 @@ void take_ray(uint r)
     uint id = waited ? deferred_item(r) : traced_item(r);
     bool primary = is_primary(), alive = id != ITEM_NONE;
     id = alive ? id : 0u;
-    alive = alive && (!primary || is_in_picture(slot_pixel(slot_of(id))));
+    alive = alive && (!primary || is_in_picture(slot_place(slot_of(id))));
     uint slot;
 #ifdef HOOKS
     record_for(id, alive && primary); // by the camera's function
@@ -95,8 +95,11 @@ bool leave_ray(uint r, bool alive)
     alive = alive && !deferred;
     bool met = alive && hit.primitive != HIT_NONE;
     if (alive && primary && !(SPEC_LISTED != 0u && chunk.listed != 0u) && chunk.sample_index == 0u) {
-        uvec2 at = slot_pixel(ray_slot[r]);
+        uvec2 at = slot_place(ray_slot[r]);
         ids[(at.y - chunk.band_y) * frame.width + at.x] = uvec2(hit.instance, hit.primitive);
+        if (SPEC_VIEWS != 0u)
+            distances[(at.y - chunk.band_y) * frame.width + at.x] =
+                hit.primitive != HIT_NONE ? hit.t : uintBitsToFloat(0x7f800000u);
     }
     if (met)
         store_hit(ray_id[r], hit);

@@ -20,14 +20,14 @@ void main()
     begin_user();
     uint id = camera_item(0u);
     uint slot = slot_of(id == ITEM_NONE ? 0u : id);
-    uvec2 at = slot_pixel(slot);
+    uvec2 at = slot_place(slot);
     bool alive = id != ITEM_NONE && is_tile_done() && is_in_picture(at);
     uint pixel = alive ? (at.y - chunk.band_y) * frame.width + at.x : 0u;
-    hook_pixel = at;
+    hook_pixel = slot_pixel(slot);
     hook_records = alive; // it is called for all samples together
     hook_id = id;
     begin_hook();
-    vec3 color = post(ivec2(at), pixels[chunk.unposted + pixel].rgb);
+    vec3 color = post(ivec2(hook_pixel), pixels[chunk.unposted + pixel].rgb);
     end_hook(alive);
     if (alive) {
         if (any(isnan(color)) || any(isinf(color)))

@@ -89,7 +89,7 @@ void resolve_pixel(uint id)
 {
     bool alive = id != ITEM_NONE;
     uint slot = slot_of(alive ? id : 0u);
-    uvec2 at = slot_pixel(slot);
+    uvec2 at = slot_place(slot);
     alive = alive && is_in_picture(at);
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
     if (CALLS_RAYS)

@@ -54,6 +54,23 @@ def test_ids_are_what_rays_hit(renderer):
     assert len(hits) > 3
 
 
+def test_views_of_many_cameras(renderer):
+    cameras = [((3, 2, 4 + i), (0, 0, 0), (0, 1, 0), 35) for i in range(3)] + [0, {"own": True, "eye": (3, 2, 4),
+               "up": (0, 1, 0), "height": 3.0}]
+    color = renderer.render_views(cameras)
+    ids, distances = renderer.ids(), renderer.distances()
+    assert (color.shape, ids.shape, distances.shape) == ((5, 30, 40, 4), (5, 30, 40, 2), (5, 30, 40, 1))
+    for i, camera in enumerate(cameras):
+        single = whit.Renderer(renderer.scene, camera=camera, samples=4, **SMALL)
+        assert single.render().tobytes() == color.tobytes()[i * 19200:(i + 1) * 19200]
+        assert single.ids().tobytes() == ids.tobytes()[i * 9600:(i + 1) * 9600]
+    hit = renderer.trace([((3, 2, 4), (-3, -2, -4))])[0]
+    assert abs(distances[0, 15, 20, 0] - hit.t * 29 ** 0.5) < 0.1 and distances[0, 0, 0, 0] == float("inf")
+    with pytest.raises(whit.Error, match="there must be one"):
+        renderer.render_views([])
+    assert renderer.render().shape == (30, 40, 4)
+
+
 def test_memory_of_ones_own(renderer):
     color = renderer.render()
     own = bytearray(color.nbytes)

@@ -44,6 +44,7 @@ static bool same(const struct shared *shared, const struct device *device,
     const struct pipeline_params *own = &shared->params;
     return shared->device == device && own->spirv == params->spirv &&
            own->spirv_bytes == params->spirv_bytes && own->push_bytes == params->push_bytes &&
+           own->rewrite == params->rewrite && own->rewrite_as == params->rewrite_as &&
            own->spec_count == params->spec_count && own->binding_count == params->binding_count &&
            memcmp(shared->spec, params->spec, params->spec_count * sizeof *params->spec) == 0 &&
            memcmp(shared->bindings, params->bindings,

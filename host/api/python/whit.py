@@ -51,7 +51,7 @@ LoadPath = _enumeration("whit_load_path", "AUTO STORAGE TEXEL")
 Packets = _enumeration("whit_packets", "AUTO ON OFF")
 Classes = _enumeration("whit_classes", "AUTO ONE MANY")
 TraceOn = _enumeration("whit_trace_on", "DEVICE CPU_FLOAT CPU_BRUTE")
-Aov = _enumeration("whit_aov", "COLOR IDS CUTS")
+Aov = _enumeration("whit_aov", "COLOR IDS CUTS DISTANCES")
 # What their enumerators begin with, where that is not the type's name.
 PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD",
             TraceOn: "WHIT_TRACE"}
@@ -69,7 +69,7 @@ def _struct(name, *members):
 
 Log = _struct("whit_log", ("fn", _LogFn), ("user", c_void_p), ("level", LogLevel))
 Camera = _struct("whit_camera", ("name", c_char_p), ("own", c_bool), ("eye target up", c_double * 3),
-                 ("fov_y_degrees", c_double))
+                 ("fov_y_degrees height lens_radius focus_distance", c_double), ("panorama", c_bool))
 Sampling = _struct("whit_sampling", ("kind", SamplingKind), ("count first", c_uint32), ("contrast", c_double))
 LoadParams = _struct(
     "whit_load_params", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),
@@ -128,6 +128,7 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel, const w
                                  whit_renderer **out);
 void whit_renderer_destroy(whit_renderer *renderer);
 whit_result whit_renderer_render(whit_renderer *renderer);
+whit_result whit_renderer_render_views(whit_renderer *renderer, const whit_camera *cameras, uint32_t count);
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 void whit_image_get_info(const whit_image *image, whit_image_info *info);
 const float *whit_image_floats(const whit_image *image);
@@ -354,9 +355,18 @@ class _Progress:
             self.cancel.value = True
 
 
+def _camera_of(camera):
+    """Members of whit_camera: of a name or number, of four values, or as they are."""
+    if camera is None or isinstance(camera, dict):
+        return camera or {}
+    if isinstance(camera, (str, int)):
+        return {"name": str(camera)}
+    return {"own": True, **dict(zip(("eye", "target", "up", "fov_y_degrees"), camera, strict=True))}
+
+
 class Renderer:
     """Pictures of a scene. `device`: a Device, a selector of one, None, or CPU. `camera`: the name or number of one of
-    the scene's, or (eye, target, up, vertical degrees). `samples` of a pixel. `progress`: called with the share done,
+    the scene's, (eye, target, up, vertical degrees), or a dict of members of whit_camera. `samples` of a pixel. `progress`: called with the share done,
     0 to 1. Further parameters are those of whit_renderer_params."""
 
     def __init__(self, scene, device=None, *, camera=None, samples=None, progress=None, **params):
@@ -365,13 +375,9 @@ class Renderer:
         self._hearings = [scene._hearing] + ([] if self.device is CPU else [self.device._hearing])
         self._progress = _Progress(progress)
         self._params = _library.whit_renderer_defaults()
-        if camera is not None and not isinstance(camera, (str, int)):
-            eye, target, up, degrees = camera
-            camera = {"own": True, "eye": eye, "target": target, "up": up, "fov_y_degrees": degrees}
-        elif camera is not None:
-            camera = {"name": str(camera)}
         sampling = {} if samples is None else {"count": samples}
-        _fill(self._params, {"sampling": sampling, **params, "camera": camera or {}})
+        _fill(self._params, {"sampling": sampling, **params, "camera": _camera_of(camera)})
+        self._views = ()
         self._params.progress = self._progress.fn
         self._params.cancel = ctypes.addressof(self._progress.cancel)
         on = None if self.device is CPU else self.device.handle
@@ -403,15 +409,31 @@ class Renderer:
         def copy(image):
             info = ImageInfo()
             _library.whit_image_get_info(image, ctypes.byref(info))
-            shape = (info.height, info.width, info.channels)
+            shape = (info.height // (self._views or (1,))[0], info.width, info.channels)
+            shape = self._views + shape
             source = (_library.whit_image_words if info.integers else _library.whit_image_floats)(image)
-            return _copy(source, shape[0] * shape[1] * shape[2], "I" if info.integers else "f", shape, out)
+            return _copy(source, info.height * info.width * info.channels, "I" if info.integers else "f", shape, out)
         return self._with_image(aov, copy)
 
     def render(self, out=None):
         """Draws the picture. Gives `out`, or a memoryview of float32 [y, x, 4]: linear RGB and alpha, row 0 above."""
         self._call(_library.whit_renderer_render)
+        self._views = ()
         return self._array(Aov.COLOR, out)
+
+    def render_views(self, cameras, out=None):
+        """Draws small pictures of many cameras together: float32 [view, y, x, 4]. What ids() and distances() give then
+        begins with the view too. Best with many_pictures=True."""
+        views = (Camera * len(cameras))()
+        for view, camera in zip(views, cameras):
+            _fill(view, _camera_of(camera))
+        self._call(_library.whit_renderer_render_views, views, len(views))
+        self._views = (len(views),)
+        return self._array(Aov.COLOR, out)
+
+    def distances(self, out=None):
+        """How far the views' camera rays go, in world units: float32 [view, y, x, 1]; infinity: they meet nothing."""
+        return self._array(Aov.DISTANCES, out)
 
     def ids(self, out=None):
         """What the picture's pixels hit, by their first samples: uint32 [y, x, 2], an index of scene.instances and the

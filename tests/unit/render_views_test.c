@@ -1,0 +1,204 @@
+/* Views of many cameras drawn together: each is the picture of its camera alone, byte for byte. */
+#include "picture/camera.h"
+#include "render/renderer.h"
+#include "render_scenes.h"
+#include "twin/traverse.h"
+#include "unit.h"
+
+enum { MANY = 23 };
+
+/* Around the scene; every view of another kind in `mixed` ones. */
+static void place_cameras(whit_camera cameras[MANY], bool mixed)
+{
+    for (int i = 0; i < MANY; ++i) {
+        double turn = 6.28318530718 * i / MANY, far = 4.0 + 0.3 * i;
+        cameras[i] = (whit_camera)CAMERA_AT(far * sin(turn), 1.0 + 0.1 * i, far * cos(turn), 0.1,
+                                            0.7, -0.2, 0, 1, 0, 30.0 + i);
+        cameras[i].lens_radius = mixed && i % 4 == 1 ? 0.2 : 0.0;
+        cameras[i].focus_distance = mixed && i % 8 == 1 ? 3.0 : 0.0;
+        cameras[i].height = mixed && i % 4 == 2 ? 4.0 : 0.0;
+        cameras[i].panorama = mixed && i % 4 == 3;
+    }
+}
+
+/* A view of the stack, as an image that borrows its pixels. */
+static struct image view_of(const struct image *all, uint32_t view, uint32_t height)
+{
+    struct image image = *all;
+    size_t first = (size_t)view * height * all->width * all->channels;
+    image.height = height;
+    image.pixels = all->pixels ? all->pixels + first : NULL;
+    image.words = all->words ? all->words + first : NULL;
+    return image;
+}
+
+/* What the twin meets, from camera ray by camera ray. */
+static void check_distances(const struct fixture *f, const whit_camera *camera,
+                            const struct image *view)
+{
+    const struct renderer *r = f->renderer;
+    const struct traverse_params params = {.order = (uint32_t)r->params.traversal,
+                                           .numerics = (uint32_t)r->params.numerics,
+                                           .skip_instance = HIT_NONE,
+                                           .skip_primitive = HIT_NONE};
+    bool exact = r->params.numerics == WHIT_NUMERICS_EXACT; /* of t, shading has what floats give */
+    size_t count = (size_t)view->width * view->height;
+    struct gpu_ray *rays = malloc(count * sizeof *rays);
+    assert_non_null(rays);
+    assert_int_equal(camera_all_rays(NULL, &r->pose, camera, view->width, view->height, rays),
+                     WHIT_OK);
+    for (size_t i = 0; i < count; ++i) {
+        struct gpu_hit hit;
+        uint32_t status = 0;
+        traverse_ray(f->accel, &params, &rays[i], &hit, NULL, &status);
+        double off =
+            fabs((double)hit.t - (double)view->pixels[i]); /* NaN where both are infinite */
+        if (hit.t != view->pixels[i] && !(exact && off <= 0x1p-18 * (double)hit.t))
+            fail_msg("pixel %zu is %.9g away, not %.9g", i, (double)view->pixels[i], (double)hit.t);
+    }
+    free(rays);
+}
+
+/* `single` draws the pictures that the views have to be. */
+static void check_views(const struct fixture *f, const struct fixture *single,
+                        const whit_camera *cameras, uint32_t count)
+{
+    whit_renderer_params params = f->renderer->params;
+    struct image color, ids, distances;
+    assert_int_equal(renderer_render_views(f->renderer, cameras, count), WHIT_OK);
+    assert_int_equal(renderer_read_color(f->renderer, &color), WHIT_OK);
+    assert_int_equal(renderer_read_ids(f->renderer, &ids), WHIT_OK);
+    assert_int_equal(renderer_read_distances(f->renderer, &distances), WHIT_OK);
+    assert_int_equal(color.height, count * params.height);
+    for (uint32_t i = 0; i < count; ++i) {
+        params.camera = cameras[i];
+        assert_int_equal(renderer_set_view(single->renderer, &params), WHIT_OK);
+        struct picture picture = render_picture(single);
+        struct image own_color = view_of(&color, i, params.height),
+                     own_ids = view_of(&ids, i, params.height),
+                     own_distances = view_of(&distances, i, params.height);
+        char what[64];
+        snprintf(what, sizeof what, "view %u", i);
+        assert_same_image(what, &own_color, &picture.color);
+        assert_same_image(what, &own_ids, &picture.ids);
+        check_distances(f, &cameras[i], &own_distances);
+        picture_finish(&picture);
+    }
+    image_finish(&color);
+    image_finish(&ids);
+    image_finish(&distances);
+}
+
+/* Buffers that hold some of the rows alone: in bands, which end within views. */
+static void check_bands(const struct fixture *f, const struct fixture *single,
+                        const whit_camera *cameras, uint32_t count)
+{
+    f->renderer->picture.buffers.band_rows = 24;
+    assert_false(readback_is_late(f->renderer));
+    check_views(f, single, cameras, count);
+    assert_int_equal(f->renderer->picture.buffers.band_rows, 24);
+}
+
+static void check_scene(const char *name, const whit_renderer_params *params, bool mixed,
+                        uint32_t count)
+{
+    whit_camera cameras[MANY];
+    struct fixture f = fixture_open(file_scene(name), NULL, params);
+    struct fixture single = {.device = f.device, .accel = f.accel};
+    whit_renderer_params plain = *params;
+    plain.packets = WHIT_PACKETS_OFF;
+    fixture_renew(&single, &plain);
+    assert_int_equal(f.renderer->packets, params->packets == WHIT_PACKETS_ON);
+    place_cameras(cameras, mixed);
+    check_views(&f, &single, cameras, count);
+    if (count == MANY)
+        check_bands(&f, &single, cameras, count);
+    print_message("  %s: 0 of %u views differ\n", name, count);
+    renderer_destroy(single.renderer);
+    fixture_close(&f);
+}
+
+/* Sizes are no multiples of blocks, and tiles hold several views and parts of them. */
+TEST(views_are_the_pictures_of_their_cameras)
+{
+    check_scene("whitted",
+                &(whit_renderer_params){.width = 20,
+                                        .height = 13,
+                                        .depth = 4,
+                                        .sampling.count = 4,
+                                        .tile_size = 32,
+                                        .packets = WHIT_PACKETS_ON},
+                false, MANY);
+    check_scene(
+        "spin",
+        &(whit_renderer_params){
+            .width = 9, .height = 16, .depth = 2, .time_s = 0.4, .numerics = WHIT_NUMERICS_FAST},
+        false, MANY);
+    check_scene("room",
+                &(whit_renderer_params){
+                    .width = 16, .height = 10, .depth = 3, .numerics = WHIT_NUMERICS_EXACT},
+                false, 5);
+}
+
+TEST(views_of_all_kinds_of_cameras_and_lenses)
+{
+    check_scene("whitted",
+                &(whit_renderer_params){.width = 12,
+                                        .height = 9,
+                                        .depth = 2,
+                                        .sampling.count = 16,
+                                        .portable = true,
+                                        .tile_size = 16},
+                true, MANY);
+}
+
+/* What is left of one picture says nothing in the next. */
+TEST(pictures_of_one_camera_in_between)
+{
+    const whit_renderer_params small = {.width = 12, .height = 9, .depth = 2};
+    whit_camera cameras[MANY];
+    struct fixture f = fixture_open(file_scene("spin"), NULL, &small), single = f;
+    single.renderer = NULL;
+    fixture_renew(&single, &small);
+    place_cameras(cameras, true);
+    struct picture before = render_picture(&f);
+    check_views(&f, &single, cameras, 4);
+    cameras[6] = (whit_camera)CAMERA_AT(1, 1, 1, 1, 1, 1, 0, 1, 0, 40);
+    assert_int_equal(renderer_render_views(f.renderer, cameras, MANY), WHIT_ERROR_USAGE);
+    check_views(&f, &single, cameras, 6);
+    check_views(&f, &single, cameras, 1);
+    struct picture after = render_picture(&f);
+    assert_same_picture("one camera", &before, &after);
+    struct image distances;
+    assert_int_equal(renderer_read_distances(f.renderer, &distances), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_set_time(f.renderer, 0.3), WHIT_OK);
+    assert_int_equal(renderer_set_time(single.renderer, 0.3), WHIT_OK);
+    check_views(&f, &single, cameras, 3);
+    renderer_destroy(single.renderer);
+    picture_finish(&before);
+    picture_finish(&after);
+    fixture_close(&f);
+}
+
+TEST(what_views_do_not_go_with_is_refused)
+{
+    const whit_camera camera = CAMERA_AT(0, 1, 4, 0, 0, 0, 0, 1, 0, 40);
+    const whit_renderer_params wrong[] = {
+        {.width = 16, .height = 16, .sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}},
+        {.width = 16, .height = 16, .row_count = 8},
+        {.width = 16, .height = 16, .count = true},
+    };
+    struct fixture f = fixture_open(file_scene("cube"), NULL, NULL);
+    assert_int_equal(renderer_render_views(f.renderer, &camera, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_render_views(f.renderer, &camera, UINT32_MAX), WHIT_ERROR_USAGE);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        fixture_renew(&f, &wrong[i]);
+        assert_int_equal(renderer_render_views(f.renderer, &camera, 1), WHIT_ERROR_USAGE);
+    }
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    return fixture_end(unit_run(NULL, NULL));
+}
