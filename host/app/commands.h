@@ -4,6 +4,7 @@
 
 #include "app/document.h"
 #include "app/job.h"
+#include "app/render/cameras.h"
 #include "app/render/frames.h"
 #include "app/render/layers.h"
 #include "app/render/part.h"
@@ -24,6 +25,7 @@ struct render_request {
     struct refine_goal refine;
     struct repeat repeat;
     struct frames frames; /* with them `output` and `ids` are patterns */
+    struct cameras cameras;
     struct part part;
     bool resume;        /* what is finished is kept */
     bool many;          /* one of many pictures by one device */
@@ -83,7 +85,7 @@ enum { RECIPE_TEXTS = 11 };
 struct recipe {
     whit_text texts[RECIPE_TEXTS];
     uint32_t count;
-    char *command, *options, *counters, *view, *part, *scene, *name, *driver,
+    char *command, *options, *counters, *view, *part, *camera, *scene, *name, *driver,
         *functions; /* owned */
     char hash[17];
     whit_device_info device;

@@ -22,7 +22,8 @@ static void describe(const struct renderer *renderer, struct unposted *of)
 
 void post_keep(struct renderer *renderer)
 {
-    if (renderer->picture.stages.set.posts && readback_is_late(renderer) && !renderer->params.count)
+    if (renderer->picture.stages.set.posts && readback_is_late(renderer) &&
+        !renderer->params.count && !renderer->views.count)
         describe(renderer, &renderer->unposted);
 }
 

@@ -46,6 +46,15 @@ static void write_numbers(const whit_camera *camera, char text[SETTING_TEXT_BYTE
     }
 }
 
+bool settings_name_camera(struct settings *settings, const whit_camera *camera)
+{
+    bool pinhole = !camera->panorama && !(camera->height > 0.0) && !(camera->lens_radius > 0.0);
+    settings->camera[0] = '\0';
+    if (pinhole)
+        write_numbers(camera, settings->camera);
+    return pinhole;
+}
+
 whit_result settings_choose_camera(struct settings *settings, const whit_scene *scene)
 {
     whit_camera camera;

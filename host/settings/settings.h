@@ -167,6 +167,9 @@ void effects_write(const whit_renderer_params *picture, char text[SETTING_VALUE_
 void effects_set(whit_renderer_params *picture, uint32_t index, bool called, bool on);
 /* camera.c: a camera as --camera names it; its name is borrowed. "": the scene's first. */
 whit_camera camera_of_text(const char *text);
+/* Puts the numbers of a camera of one's own in the place of --camera; false, and the scene's first,
+   where it is no pinhole. */
+bool settings_name_camera(struct settings *settings, const whit_camera *camera);
 /* Puts the numbers of whit's own camera in the place of --camera auto; where the scene's first
    camera is that, nothing. */
 WHIT_CHECK whit_result settings_choose_camera(struct settings *settings, const whit_scene *scene);

@@ -249,6 +249,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     }
     drop(batch);
     lines_finish(&batch->lines);
+    cameras_finish(&batch->line.request.cameras);
     free(batch);
     return status;
 }

@@ -73,6 +73,7 @@ bool line_read(struct line *line, const struct lines *lines, const struct line_p
     } else {
         memcpy(line->text, lines->text + place->at, place->bytes);
         line->text[place->bytes] = '\0';
+        cameras_finish(&line->request.cameras);
         line->request =
             (struct render_request){.many = true, .leaves = true, .resume = lines->resume};
         job_init(&line->job, &command_render);

@@ -76,26 +76,31 @@ char *frames_path(const char *pattern, uint32_t frame)
     return path;
 }
 
+/* An option whose file gets a number in its name; `file`: NULL where it was not given. */
+static bool check_marks(struct cli_reader *reader, const struct render_request *request,
+                        const char *option, const char *file, const char *ending)
+{
+    bool views = request->cameras.file != NULL;
+    return !file || has_marks(file) ||
+           cli_misuse(reader,
+                      "%s %s: with %s its name needs # for the number of the %s, such as "
+                      "name.####.%s",
+                      option, file, views ? "--cameras" : "--frames", views ? "view" : "frame",
+                      ending);
+}
+
 bool frames_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request)
 {
     if (!request->frames.given)
         return true;
     bool time = settings_given(&job->settings, "time");
-    if (time || settings_given(&job->settings, "frame"))
+    if (!request->cameras.file && (time || settings_given(&job->settings, "frame")))
         return cli_misuse(reader, "--frames and --%s: either all of these frames or one",
                           time ? "time" : "frame");
-    if (request->output && !has_marks(request->output))
-        return cli_misuse(reader,
-                          "-o %s: with --frames its name needs # for the number of the frame, "
-                          "such as name.####.png",
-                          request->output);
-    if (request->ids && !has_marks(request->ids))
-        return cli_misuse(reader,
-                          "--ids %s: with --frames its name needs # for the number of the frame, "
-                          "such as name.####.exr",
-                          request->ids);
-    return true;
+    return check_marks(reader, request, "-o", request->output, "png") &&
+           check_marks(reader, request, "--ids", request->ids, "exr") &&
+           check_marks(reader, request, "--distances", request->cameras.distances, "exr");
 }
 
 /* ---- Progress ---- */

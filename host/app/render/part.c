@@ -60,7 +60,7 @@ bool part_read_samples(const struct setting *setting, const char *value, void *r
 }
 
 /* The option that only a whole picture can have, or NULL. */
-static const char *of_whole(const struct settings *settings, const struct render_request *request)
+const char *part_not_of(const struct settings *settings, const struct render_request *request)
 {
     if (settings->picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return "--aa adaptive";
@@ -119,7 +119,7 @@ bool part_check(struct cli_reader *reader, const struct job *job,
     if (!part_is_given(part))
         return true;
     const char *option = part->tiles ? "tile" : "samples-part";
-    const char *other = of_whole(settings, request);
+    const char *other = part_not_of(settings, request);
     if (other)
         return cli_misuse(reader, "--%s and %s: only the whole picture can tell", option, other);
     uint32_t max = part_tiles_max(settings->picture.height);

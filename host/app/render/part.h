@@ -24,6 +24,8 @@ bool part_read_samples(const struct setting *setting, const char *value, void *r
 /* Whether the other options go with them. */
 bool part_check(struct cli_reader *reader, const struct job *job,
                 const struct render_request *request);
+/* An option that was given and is for whole pictures of one camera; NULL: none. */
+const char *part_not_of(const struct settings *settings, const struct render_request *request);
 /* Whether the functions of the job's shader do, of which a merged picture has to have all. */
 bool part_check_shader(const struct job *job, const struct render_request *request);
 

@@ -71,12 +71,12 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     snprintf(recipe->hash, sizeof recipe->hash, "%016" PRIx64, info.hash);
     recipe->command = command_line(settings, output);
     recipe->options = options_line(settings);
-    recipe->counters = recipe_counters(stats);
+    recipe->counters = stats ? recipe_counters(stats) : NULL;
     /* Other programs print what pictures hold, as it is. */
     recipe->scene = strdup(cli_shown(settings->scene));
     recipe->name = strdup(cli_shown(recipe->device.name));
     recipe->driver = strdup(cli_shown(recipe->device.driver));
-    if (!recipe->command || !recipe->options || !recipe->counters || !recipe->scene ||
+    if (!recipe->command || !recipe->options || (stats && !recipe->counters) || !recipe->scene ||
         !recipe->name || !recipe->driver) {
         cli_error("out of memory");
         recipe_finish(recipe);
@@ -89,7 +89,8 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     add(recipe, "whit:scene", recipe->scene);
     add(recipe, "whit:scene_hash", recipe->hash);
     add(recipe, "whit:options", recipe->options);
-    add(recipe, "whit:counters", recipe->counters);
+    if (stats)
+        add(recipe, "whit:counters", recipe->counters);
     if (settings->shader[0])
         add_functions(recipe, shader, output);
     return true;
@@ -123,6 +124,7 @@ bool recipe_add_part(struct recipe *recipe, const struct part *part,
 void recipe_finish(struct recipe *recipe)
 {
     free(recipe->part);
+    free(recipe->camera);
     free(recipe->scene);
     free(recipe->name);
     free(recipe->driver);

@@ -17,6 +17,15 @@ static const struct setting options[] = {
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png",
      .kind = SETTING_OWN, .read = frames_read},
+    {"cameras", 0, "FILE",
+     "small pictures of many cameras, drawn together, into files with\n"
+     "the number in place of ####; FILE: JSON, cameras in [ ] or one\n"
+     "a line, as scene files have them",
+     SETTING_AT_NAME(struct render_request, cameras.file)},
+    {"distances", 0, "FILE",
+     "of --cameras: also write how far away each pixel is, .exr or\n"
+     ".pfm, with ####",
+     SETTING_AT_NAME(struct render_request, cameras.distances)},
     {"tile", 0, "I/N",
      "tile I of N alone, rows over the whole width, with its place;\n"
      "`whit merge` puts tiles together, see docs/batch.md",
@@ -58,19 +67,28 @@ static bool can_write(const struct render_request *request, const char *name)
 
 static bool check_outputs(struct cli_reader *reader, const struct render_request *request)
 {
+    const char *distances = request->cameras.distances;
     if (!request->output)
         return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
     if (!cli_no_dash(reader, "-o", request->output,
                      "pictures go to files, whose names say how: .png, .exr or .pfm") ||
-        !cli_no_dash(reader, "--ids", request->ids, "identities go to a file, an .exr"))
+        !cli_no_dash(reader, "--ids", request->ids, "identities go to a file, an .exr") ||
+        !cli_no_dash(reader, "--distances", distances, "distances go to files"))
         return false;
     if (!request->thumbnail && !whit_image_format_known(request->output, false))
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);
     if (request->ids && !whit_image_format_known(request->ids, true))
         return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
+    if (distances && (view_is_png(distances) || !whit_image_format_known(distances, false)))
+        return cli_misuse(reader, "%s: distances are .exr or .pfm", distances);
     if (request->ids && strcmp(request->ids, request->output) == 0)
         return cli_misuse(reader, "%s: -o and --ids name the same file", request->ids);
-    if (can_write(request, request->output) && (!request->ids || can_write(request, request->ids)))
+    if (distances && (strcmp(distances, request->output) == 0 ||
+                      (request->ids && strcmp(distances, request->ids) == 0)))
+        return cli_misuse(reader, "%s: --distances names the file of another option", distances);
+    if (can_write(request, request->output) &&
+        (!request->ids || can_write(request, request->ids)) &&
+        (!distances || can_write(request, distances)))
         return true;
     reader->status = EXIT_USAGE;
     return false;
@@ -344,7 +362,8 @@ static void say_done(const struct job *job, const struct render_request *request
     whit_device_info device;
     whit_device_get_info(job->device, &device);
     if (frames->given)
-        snprintf(about, sizeof about, "frames %u to %u, ", frames->first, frames->last);
+        snprintf(about, sizeof about, "%s %u to %u, ", request->cameras.file ? "views" : "frames",
+                 frames->first, frames->last);
     if (part_is_given(&request->part))
         snprintf(about + strlen(about), sizeof about - strlen(about), "%s of ",
                  part_name(&request->part, part));
@@ -424,12 +443,12 @@ static whit_result render_one(struct job *job, const struct render_request *requ
 
 /* Says how many frames were written when a sequence ends too early. After an interrupt its handler
    says so. */
-static void say_written(const struct job *job, const struct frames_progress *progress,
-                        const struct sequence *sequence)
+static void say_written(const struct job *job, const struct render_request *request,
+                        const struct frames_progress *progress, const struct sequence *sequence)
 {
     if (!cli_cancel && !job->settings.quiet)
-        cli_note("%u of %u frames were written", sequence->written + sequence->kept,
-                 progress->count);
+        cli_note("%u of %u %s were written", sequence->written + sequence->kept, progress->count,
+                 request->cameras.file ? "views" : "frames");
 }
 
 int render_draw(struct job *job, const struct render_request *request, whit_renderer *renderer,
@@ -439,14 +458,15 @@ int render_draw(struct job *job, const struct render_request *request, whit_rend
     struct refined refined = {0};
     progress->count = frames->last - frames->first + 1;
     progress->done = 0;
-    whit_result result = frames->given
-                             ? frames_render(job, request, renderer, progress, sequence)
-                             : render_one(job, request, renderer, progress, &refined, sequence);
+    whit_result result =
+        request->cameras.file ? cameras_render(job, request, renderer, progress, sequence)
+        : frames->given       ? frames_render(job, request, renderer, progress, sequence)
+                              : render_one(job, request, renderer, progress, &refined, sequence);
     cli_progress_finish(&progress->bar);
     if (result != WHIT_OK) {
         int failed = cli_exit_of(result);
         if (frames->given)
-            say_written(job, progress, sequence);
+            say_written(job, request, progress, sequence);
         return failed;
     }
     if (sequence->left)
@@ -457,7 +477,8 @@ int render_draw(struct job *job, const struct render_request *request, whit_rend
         cli_note("%s: %u finished picture%s kept", request->output, sequence->kept,
                  sequence->kept == 1 ? " was" : "s were");
     int status = stats_print(job, request, renderer, &sequence->stats, sequence->save_ms,
-                             frames->given ? sequence : NULL, refined.samples ? &refined : NULL);
+                             frames->given && !request->cameras.file ? sequence : NULL,
+                             refined.samples ? &refined : NULL);
     bool missed = refined.samples && !refined.reached;
     if (refined.samples && (missed || is_told(job)))
         refine_say(&request->refine, &refined);
@@ -529,10 +550,10 @@ static bool read_all(struct job *job, struct cli_reader *reader, struct render_r
 bool render_read(struct job *job, struct cli_reader *reader, struct render_request *request,
                  int argc, char **argv)
 {
-    if (!read_all(job, reader, request, argc, argv) || !frames_check(reader, job, request) ||
-        !check_choice(reader, &job->settings, request) || !refine_check(reader, job, request) ||
-        !part_check(reader, job, request) || !resume_check(reader, job, request) ||
-        !check_outputs(reader, request))
+    if (!read_all(job, reader, request, argc, argv) || !cameras_check(reader, job, request) ||
+        !frames_check(reader, job, request) || !check_choice(reader, &job->settings, request) ||
+        !refine_check(reader, job, request) || !part_check(reader, job, request) ||
+        !resume_check(reader, job, request) || !check_outputs(reader, request))
         return false;
     if (request->thumbnail) {
         job->settings.picture.width = job->settings.picture.height = request->thumbnail;
@@ -540,7 +561,7 @@ bool render_read(struct job *job, struct cli_reader *reader, struct render_reque
     }
     if (request->counters && job->settings.stats == STATS_NONE)
         job->settings.stats = STATS_TEXT;
-    if (request->frames.given)
+    if (request->frames.given && !request->cameras.file)
         job->settings.picture.time_s = (double)request->frames.first / job->settings.fps;
     return true;
 }
@@ -552,13 +573,16 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct render_request request = {0};
     job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
-    if (!render_read(&job, &reader, &request, argc, argv))
+    if (!render_read(&job, &reader, &request, argc, argv)) {
+        cameras_finish(&request.cameras);
         return reader.status;
+    }
     if (resume_leaves_files(&request) && !job.settings.quiet)
         resume_keep_line(request.resume, argc, argv);
     job_start(&job);
     int status = work(&job, &request);
     job_finish(&job);
+    cameras_finish(&request.cameras);
     return status;
 }
 

@@ -240,6 +240,12 @@ static bool load(struct recipe_read *recipe, const struct job *job, struct setti
                               &recipe->text_count) != WHIT_OK)
         return false;
     const char *command = find_text(recipe->texts, recipe->text_count, "whit:command");
+    if (find_text(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY)) {
+        cli_error("%s: its camera is one that --camera has no words for; " VIEW_CAMERA_KEY
+                  " in its recipe is a line for a file of --cameras",
+                  recipe->picture);
+        return false;
+    }
     if (!command)
         cli_error("%s: a picture without a recipe of whit's in it", recipe->picture);
     return command && read_command(recipe, command, settings);

@@ -142,7 +142,8 @@ static void put(void *user, const char *part)
 
 bool resume_leaves_files(const struct render_request *request)
 {
-    bool parts = request->frames.given || part_is_given(&request->part) || request->resume;
+    bool parts = (request->frames.given && !request->cameras.file) ||
+                 part_is_given(&request->part) || request->resume;
     return parts && has_recipe(request);
 }
 

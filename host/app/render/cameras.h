@@ -1,0 +1,33 @@
+/* Small pictures of many cameras, drawn together: `whit render --cameras FILE`. */
+#ifndef APP_RENDER_CAMERAS_H
+#define APP_RENDER_CAMERAS_H
+
+#include "app/job.h"
+
+struct frames_progress;
+struct render_request;
+struct sequence;
+
+struct cameras {
+    const char *file;      /* NULL: the option was not given */
+    const char *distances; /* a pattern, or NULL */
+    whit_camera *all;      /* for cameras_finish */
+    uint32_t count;
+};
+
+/* Whether the other options go with --cameras; reads its file, and makes a sequence of
+   request->frames, a frame for each camera. */
+bool cameras_check(struct cli_reader *reader, const struct job *job,
+                   struct render_request *request);
+/* Draws and saves all views, as many together as memory should hold. What was written before a
+   failure stays. */
+WHIT_CHECK whit_result cameras_render(const struct job *job, const struct render_request *request,
+                                      whit_renderer *renderer, struct frames_progress *progress,
+                                      struct sequence *sequence);
+void cameras_finish(struct cameras *cameras);
+
+/* In the recipe of a view of a camera that --camera cannot name: the camera, as a line of a file
+   for --cameras. */
+#define VIEW_CAMERA_KEY "whit:camera"
+
+#endif
