@@ -51,9 +51,47 @@ new_behind_b() { suite a b bb c; scene bb 15; accept bb "it is new"; }
 new_last() { suite a b c d; scene d 15; accept d "it is last"; }
 b_goes() { suite a c; git rm -q b.json; "$WHIT" check looks.whit --prune >pruned 2>&1 || FAILED=1; }
 
+both_new() { suite a ab ac b c; scene ab 10; scene ac 15; }
+ab_is_new() { both_new; suite a ab b c; accept ab "it is new"; }
+ac_is_new() { both_new; suite a ac b c; accept ac; }
+a_is_another() { scene a 50; accept a "turned more"; }
+ab_is_another() { both_new; scene ab 30; suite a ab b c; accept ab; }
+
 merges "neighbours" a_is_other b_is_other
 merges "two new ones at different places" new_behind_a new_behind_b
 merges "a new one behind one that is other" a_is_other new_behind_a
 merges "the last one, and a new last one" c_is_other new_last
 merges "one that goes beside one that is other" b_goes c_is_other
+
+# Two between the same two, by the driver that git has for it. The suite itself is a text that people write.
+git checkout -q -B ours base
+printf '*.golden merge=union\n' >.gitattributes
+git add .gitattributes && git commit -qm attributes && git branch -f base
+# union WHAT OURS THEIRS: as merges, with a suite that has both.
+union() {
+    git checkout -q -B ours base && "$2" && commit ours
+    git checkout -q -B theirs base && "$3" && commit theirs
+    git checkout -q -B merged ours
+    git merge -q --no-commit theirs >merge.out 2>&1
+    check "$1: no conflict in the golden" test "$(git ls-files -u looks.golden | wc -l)" -eq 0
+}
+union "two new ones at one place" ab_is_new ac_is_new
+suite a ab ac b c
+expect 0 "both are there" check looks.whit
+check "five of them" grep -qx "5 cases, 5 ok" stdout
+cp looks.golden merged
+expect 0 "accepted as they are" check looks.whit --accept all
+check "both are in it, with the reason" test "$(sort -u merged)" = "$(sort -u looks.golden)"
+git checkout -q -f merged
+union "neighbours" a_is_other b_is_other
+git checkout -q -f theirs -- a.json b.json && git checkout -q -f ours -- a.json
+suite a b c
+expect 0 "all as accepted" check looks.whit
+git checkout -q -f merged
+union "the same one by two" a_is_other a_is_another
+refuse 2 "is told" "looks.golden:[0-9]*: a line above, from line 3 on, says something else of the case .a., which two" check looks.whit
+git checkout -q -f merged
+union "two new ones of one name" ab_is_new ab_is_another
+suite a ab b c
+refuse 2 "are told" "looks.golden:[0-9]*: .*of the case .ab., which two" check looks.whit
 finish

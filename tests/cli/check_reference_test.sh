@@ -16,7 +16,7 @@ refuse 3 "by a device" "no Vulkan driver" check looks.whit
 expect 4 "without a golden" check looks.whit --on reference
 expect 0 "accepted" check looks.whit --on reference --accept all
 check "in a golden of its own" test -e looks.reference.golden -a ! -e looks.golden
-check "its first line says so" grep -qx "whit check reference golden 1, whit .*" looks.reference.golden
+check "its first line says so" grep -qx "whit check reference golden 2, whit .*" looks.reference.golden
 mkdir ci
 expect 0 "all as it was" check looks.whit --on reference --json ci/r.json --junit junit.xml --report page.html
 check "both are" grep -qx "2 cases, 2 ok" stdout

@@ -16,7 +16,7 @@ check "they are counted" grep -qx "3 cases, 3 new" stdout
 check "nothing is written" test ! -e looks.golden
 expect 0 "accept one" check looks.whit --accept cube
 check "only that is drawn" grep -qx "1 case, 1 accepted" stdout
-check "a line a case" test "$(grep -c '^case' looks.golden)" -eq 1
+check "a case" test "$(grep -c '^case' looks.golden)" -eq 1
 expect 4 "the rest is missing" check looks.whit
 check "one is fine" grep -qx "cube: ok" stdout
 expect 0 "accept the rest" check looks.whit --accept balls-fast balls-watertight
@@ -31,7 +31,7 @@ mkdir bare && cp looks.whit bare/
 shows "list without the scenes" "^balls-fast$" check bare/looks.whit --list
 expect 2 "which are needed to draw" check bare/looks.whit --only cube
 check "each is told" grep -q "bare/looks.whit:2: the scene .cube.json.: " stderr
-sed -i '1s/.*/whit check golden 1, whit 99.9/' looks.golden
+sed -i '1s/.*/whit check golden 2, whit 99.9/' looks.golden
 expect 0 "a golden of another whit" check looks.whit
 
 # What is seen decides; what it was made of is told.
@@ -43,7 +43,7 @@ sed -i 's/--size 64x48$/--size 64x48 --leaf 2/' looks.whit
 expect 0 "another tree" check looks.whit
 check "the picture is the same" grep -q "^cube: input changed, picture same: .cube.json --size 64x48 --leaf 2" stdout
 expect 0 "it is accepted without a reason" check looks.whit --accept cube
-check "the golden has it" grep -q "of cube.json --size 64x48 --leaf 2" looks.golden
+check "the golden has it" grep -qx "case cube of cube.json --size 64x48 --leaf 2" looks.golden
 sed -i 's/--numerics {}/--numerics {} --depth 1/' looks.whit
 mkdir ci
 expect 1 "fewer bounces" check looks.whit --json ci/report.json --junit ci/junit.xml
@@ -71,8 +71,8 @@ cp ci/report.json ci/second.json
 check "nothing was written" cmp before looks.golden
 expect 0 "a report's lines" check looks.whit --accept-from ci --accept balls-watertight --reason "CI has it so"
 check "one of them" grep -qx "1 case, 1 accepted" stdout
-check "with its reason" grep -q "^ why CI has it so" looks.golden
-check "the other one stays" test "$(diff before looks.golden | grep -c '^<')" -eq 2
+check "with its reason" grep -qx " balls-watertight why CI has it so" looks.golden
+check "the other one stays" test "$(diff before looks.golden | grep -c "^<")" -eq 2
 expect 1 "that one is fine" check looks.whit
 check "the other is not" grep -qx "3 cases, 2 ok, 1 differs" stdout
 cp before looks.golden
@@ -80,10 +80,10 @@ refuse 2 "without a reason" "2 cases are other than the golden: .*--reason TEXT"
 check "nothing is written" cmp before looks.golden
 expect 0 "with a reason" check looks.whit --accept 'balls-*' --reason "two bounces less"
 check "it is shown first" grep -q "^balls-watertight: differs: " stdout
-check "it is kept" test "$(grep -c '^ why two bounces less$' looks.golden)" -eq 2
+check "it is kept" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 expect 0 "as it is now" check looks.whit
 expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
-check "what is as it was keeps its reason" test "$(grep -c '^ why two bounces less$' looks.golden)" -eq 2
+check "what is as it was keeps its reason" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 
 # What is expected.
 cat >hopes.whit <<'END'
@@ -97,7 +97,7 @@ check "is none" grep -qx "cube: no golden; line 3 expects pixel(0,0).primitive !
 sed -i 's/, pixel(0,0).primitive != 0//' hopes.whit
 expect 0 "all as expected" check hopes.whit --accept all
 expect 0 "still" check hopes.whit
-mean=$(sed -n 's/.* mean \([^ ]* [^ ]* [^ ]*\)$/\1/p' hopes.golden)
+mean=$(sed -n 's/.* mean \(.*\)$/\1/p' hopes.golden)
 cat >>hopes.whit <<END
 cube expect mean within 1e-5 of $mean
 cube expect nonfinite > 0, leaks != 0, max_stack > 24, hits == 3072, rays.shadow == 0, max < 0.1 0.1 0.1
@@ -132,7 +132,7 @@ check "with suite, case, file and line" grep -q "^whit: error: looks.whit:2: bro
 check "a camera that is not there" grep -q "^whit: error: looks.whit:3: lost: .*no camera .nobody" stderr
 check "all are counted" grep -qx "3 cases, 1 new, 2 broken" stdout
 expect 2 "nor accepted" check looks.whit --accept all
-check "the others are" grep -q "^case fine$" looks.golden
+check "the others are" grep -q "^case fine of " looks.golden
 printf 'mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >tri.obj
 printf 'one tri.obj --size 16x12\ntwo tri.obj --size 16x12 --depth 0\n' >models.whit
 expect 4 "a model without its materials" check models.whit
@@ -158,7 +158,7 @@ check "says how far it came" grep -qx "whit: interrupted, 1 of 3 cases were draw
 undrawn "Ctrl+C" 130 '["new", "undrawn", "undrawn"]' "the run was interrupted"
 expect 1 "what was not drawn" check slow.whit --on reference --accept-from cut
 check "is not accepted" grep -qx "1 case, 1 accepted, 2 undrawn" stdout
-check "but what was" test "$(grep -c ^case slow.reference.golden)" -eq 1
+check "but what was" test "$(grep -c " ids " slow.reference.golden)" -eq 1
 sed -i 's/4000x3000 --aa 64/16x12/' slow.whit
 expect 4 "drawn elsewhere" check slow.whit --on reference --only large --only other --json cut/s.json
 sed -i 's/4000x3000 --aa 64/16x12/' cut/r.json

@@ -29,26 +29,33 @@ static void fill(struct golden *golden)
     assert_true(golden_put_part(golden, "light 0 of room.json", 0x00000009)); /* nobody has it */
 }
 
-static const char text[] = "whit check golden 1, whit " WHIT_VERSION "\n"
-                           "\n"
-                           "case cube\n"
-                           " ids 123456789abcdef0 colors fedcba9876543210 size 256x192 rays 49152 "
-                           "686760 14486 12725 mean 0.251965 1e-07 -3.5\n"
-                           " of room.json --size 256x192\n"
-                           "\n"
-                           "case room\n"
-                           " ids 123456789abcdef0 colors fedcba9876543210 size 256x192 rays 49152 "
-                           "686760 14486 12725 mean 0.251965 1e-07 -3.5\n"
-                           " of room.json --size 256x192\n"
-                           " parts 00000007 deadbeef\n"
-                           " why a redder ball\n"
-                           "\n"
-                           "part light 0 of room.json\n"
-                           " 00000007\n"
-                           "\n"
-                           "part mesh ball of room.json\n"
-                           " deadbeef\n"
-                           "\n";
+#define PICTURE                                                                                    \
+    " ids 123456789abcdef0 colors fedcba9876543210 256x192 rays 49152 686760 14486 12725 "         \
+    "mean "                                                                                        \
+    "0.25196 1e-07 -3.5\n"
+#define HEAD "whit check golden 2, whit " WHIT_VERSION "\n"
+static const char text[] =
+    HEAD "\n"
+         "case cube of room.json --size 256x192\n cube" PICTURE "\n"
+         "case room of room.json --size 256x192\n room" PICTURE " room parts 00000007 deadbeef\n"
+         " room why a redder ball\n"
+         "\n"
+         "part light 0 of room.json\n"
+         " 00000007\n"
+         "\n"
+         "part mesh ball of room.json\n"
+         " deadbeef\n"
+         "\n";
+/* What merges may make of it. */
+static const char shuffled[] = HEAD "part mesh ball of room.json\n deadbeef\n"
+                                    " room why a redder ball\n room parts deadbeef 00000007\n"
+                                    "case cube of room.json --size 256x192\n"
+                                    "part light 0 of room.json\n 00000007\n cube" PICTURE
+                                    "part mesh ball of room.json\n deadbeef\n deadbeef\n"
+                                    " room why a redder ball\n room" PICTURE " room" PICTURE
+                                    "case room of room.json --size 256x192\n"
+                                    "case room of room.json --size 256x192\n"
+                                    " room parts 00000007 deadbeef\n";
 
 TEST(text_is_read_again)
 {
@@ -77,11 +84,24 @@ TEST(text_is_read_again)
     golden_finish(&again);
 }
 
+/* Lines stand for themselves, in any order, and what two have accepted alike is one. */
+TEST(order_and_repetition_mean_nothing)
+{
+    struct golden golden;
+    char copy[sizeof shuffled];
+    memcpy(copy, shuffled, sizeof shuffled);
+    assert_true(golden_read_text(&golden, "x.golden", copy, GOLDEN_OF_DEVICE));
+    char *written = golden_text(&golden);
+    assert_string_equal(written, text);
+    free(written);
+    golden_finish(&golden);
+}
+
 /* Of another whit, or with another version's number: the numbers count. */
 TEST(another_whit_is_no_reason_to_refuse)
 {
     struct golden golden;
-    char other[] = "whit check golden 1, whit 99.0.1-rc2\r\n";
+    char other[] = "whit check golden 2, whit 99.0.1-rc2\r\n";
     assert_true(golden_read_text(&golden, "x.golden", other, GOLDEN_OF_DEVICE));
     assert_string_equal(golden.by, "99.0.1-rc2");
     golden_finish(&golden);
@@ -100,6 +120,9 @@ TEST(paths_are_beside_the_suite)
                                            {"a.whit/looks", "a.whit/looks.golden"},
                                            {".whit", ".whit.golden"},
                                            {"a/whit.suite", "a/whit.golden"}};
+    char *other = golden_path("a/whit.suite", GOLDEN_OF_REFERENCE);
+    assert_string_equal(other, "a/whit.reference.golden");
+    free(other);
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
         char *path = golden_path(pairs[i][0], GOLDEN_OF_DEVICE);
         assert_string_equal(path, pairs[i][1]);
@@ -107,26 +130,32 @@ TEST(paths_are_beside_the_suite)
     }
 }
 
-#define HEAD "whit check golden 1, whit 0\n"
-#define IDS  " ids 1 colors 2 size 3x4 rays 5 6 7 8 mean 1 2 3\n"
+#define IDS " a ids 1 colors 2 3x4 rays 5 6 7 8 mean 1 2 3\n"
+#define OTHER                                                                                      \
+    "x.golden:4: a line above, from line 2 on, says something else of the case `a`, which two "
 TEST(damage_is_told_by_its_line)
 {
     static const struct {
         const char *text, *told;
     } damaged[] = {
-        {"", "x.golden:1: `whit check golden 1, whit VERSION` is needed"},
-        {"whit check golden 2, whit 9\n", "x.golden:1: a golden of format 2"},
-        {HEAD "case a\n" IDS, "x.golden:4: the case `a` above lacks a line"},
-        {HEAD "case a\n of b\ncase c\n", "x.golden:4: the case `a` above lacks a line"},
-        {HEAD "case a\n" IDS " of b\ncase a\n" IDS " of b\n", "x.golden:8: the case `a` above is "
-                                                              "there twice"},
-        {HEAD "case a\n" IDS IDS, "x.golden:4: `ids HASH"},
-        {HEAD "case a\n ids 1 colors 2\n", "x.golden:3: `ids HASH"},
-        {HEAD "case a\n parts 1 x\n", "x.golden:3: ` x` is no hash"},
-        {HEAD "case a\n of b\n of b\n", "x.golden:4: this stands there twice"},
-        {HEAD "case a\n off b\n", "x.golden:3: `off b` belongs to no case"},
-        {HEAD " of b\n", "x.golden:2: `of b` belongs to no case"},
-        {HEAD "part a\n x\n", "x.golden:3: the hash of a part is needed"},
+        {"", "x.golden:1: `whit check golden 2, whit VERSION` is needed"},
+        {"whit check golden 1, whit 0\n", "x.golden:1: a golden of format 1"},
+        {"whit check reference golden 2, whit 0\n", "x.golden:1: a golden of pictures by the ref"},
+        {HEAD "case a of b\n", "x.golden:2: the case `a` lacks a line"},
+        {HEAD "\n" IDS, "x.golden:3: the case `a` lacks a line"},
+        {HEAD IDS "\n a ids 9 colors 2 3x4 rays 5 6 7 8 mean 1 2 3\n", OTHER},
+        {HEAD IDS "\n a ids 1 colors 9 3x4 rays 5 6 7 8 mean 1 2 3\n", OTHER},
+        {HEAD "case a of b\n\ncase a of c\n", OTHER},
+        {HEAD " a parts 1\ncase b of c\n a parts 2\n", OTHER},
+        {HEAD " a parts 1\ncase b of c\n a parts 1 2\n", OTHER},
+        {HEAD " a why 1\n\n a why 2\n", OTHER},
+        {HEAD " a ids 1 colors 2\n", "x.golden:2: `ids HASH"},
+        {HEAD " a ids 1 colors 2 0x4 rays 5 6 7 8 mean 1 2 3\n", "x.golden:2: `ids HASH"},
+        {HEAD " a parts 1 x\n", "x.golden:2: ` x` is no hash"},
+        {HEAD " a off b\n", "x.golden:2: `off b`: of, ids, parts or why of the case `a`"},
+        {HEAD "case a\n", "x.golden:2: ``: of, ids, parts or why of the case `a`"},
+        {HEAD " 7\n", "x.golden:2: `7`: there is no part above"},
+        {HEAD "part a\n x\n", "x.golden:3: ``: of, ids, parts or why of the case `x`"},
         {HEAD "<<<<<<< HEAD\n", "x.golden:2: a conflict of a merge is left in it"},
         {HEAD "casea\n", "x.golden:2: `casea`: `case NAME` or `part NAME` is needed"},
     };

@@ -87,5 +87,9 @@ int check_prune(struct check *check)
         golden_remove(&check->golden, i);
     }
     whit_result result = golden_save(&check->golden, check->golden_path);
+    if (result == WHIT_OK && !check->old.exists && !check->settings.quiet)
+        cli_note("%s is new: with `*.golden merge=union` in .gitattributes git merges what two "
+                 "people accept at one place",
+                 check->golden_path);
     return result == WHIT_OK ? cli_finish_stdout(EXIT_FINE) : cli_exit_of(result);
 }

@@ -26,7 +26,8 @@ static void restore_text(char *text)
 /* The golden of one case, as its lines in a report say. */
 static bool read_lines(struct golden *found, const char *where, const char *lines)
 {
-    char *text = string_format("whit check golden 1, whit " WHIT_VERSION "\n\n%s", lines);
+    char *text =
+        string_format("whit check golden %d, whit %s\n\n%s", GOLDEN_FORMAT, WHIT_VERSION, lines);
     if (!text) {
         cli_error("out of memory");
         return false;

@@ -11,7 +11,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 
-enum { GOLDEN_BYTES_MAX = 64 << 20, FORMAT = 1 };
+enum { GOLDEN_BYTES_MAX = 64 << 20 };
 
 /* What the first line begins with. */
 static const char *const heads[] = {[GOLDEN_OF_DEVICE] = "whit check golden",
@@ -168,8 +168,6 @@ struct reading {
     struct golden *golden;
     const char *where;
     uint32_t line;
-    struct golden_case item; /* at hand; without a name there is none */
-    bool has_picture;
     char *key; /* of the part at hand; NULL: there is none */
 };
 
@@ -192,81 +190,116 @@ static char *behind(char *line, const char *word)
     return strncmp(line, word, length) == 0 && line[length] == ' ' ? line + length + 1 : NULL;
 }
 
-static bool read_picture(struct reading *reading, const char *text)
+/* Of lines that a merge has kept of both sides those that say the same are one. */
+static bool refuse_other(const struct reading *reading, const struct golden_case *item)
 {
-    struct golden_case *item = &reading->item;
+    return refuse(
+        reading,
+        "a line above, from line %u on, says something else of the case `%.64s`, which two "
+        "have accepted: one of the lines has to go",
+        item->line, item->name);
+}
+
+static bool read_picture(struct reading *reading, struct golden_case *item, const char *text)
+{
+    struct golden_case is = *item;
     int length = -1;
     (void)sscanf(text,
-                 "%16" SCNx64 " colors %16" SCNx64 " size %9ux%9u rays %19" SCNu64 " %19" SCNu64
+                 "%16" SCNx64 " colors %16" SCNx64 " %9ux%9u rays %19" SCNu64 " %19" SCNu64
                  " %19" SCNu64 " %19" SCNu64 " mean %lf %lf %lf%n",
-                 &item->ids, &item->colors, &item->width, &item->height, &item->rays[0],
-                 &item->rays[1], &item->rays[2], &item->rays[3], &item->mean[0], &item->mean[1],
-                 &item->mean[2], &length);
-    if (length < 0 || text[length] || reading->has_picture)
-        return refuse(reading, "`ids HASH colors HASH size WxH rays A B C D mean R G B` is needed");
-    reading->has_picture = true;
+                 &is.ids, &is.colors, &is.width, &is.height, &is.rays[0], &is.rays[1], &is.rays[2],
+                 &is.rays[3], &is.mean[0], &is.mean[1], &is.mean[2], &length);
+    if (length < 0 || text[length] || !is.width)
+        return refuse(reading, "`ids HASH colors HASH WxH rays A B C D mean R G B` is needed");
+    if (item->width && (is.ids != item->ids || is.colors != item->colors))
+        return refuse_other(reading, item);
+    *item = is;
     return true;
 }
 
-static bool read_parts(struct reading *reading, const char *text)
+static bool same_parts(const struct golden_case *a, const struct golden_case *b)
 {
-    uint32_t hash;
-    int length;
-    for (; sscanf(text, "%8" SCNx32 "%n", &hash, &length) == 1; text += length) {
-        if (!golden_case_add_part(&reading->item, hash))
-            return refuse(reading, "out of memory");
-    }
-    return !text[strspn(text, " ")] || refuse(reading, "`%.40s` is no hash of a part", text);
+    return a->part_count == b->part_count &&
+           memcmp(a->parts, b->parts, a->part_count * sizeof *a->parts) == 0;
 }
 
-static bool keep_text(struct reading *reading, char **place, const char *text)
+static bool read_parts(struct reading *reading, struct golden_case *item, const char *text)
+{
+    struct golden_case is = {.name = NULL};
+    uint32_t hash;
+    int length;
+    bool whole = true;
+    for (; whole && sscanf(text, "%8" SCNx32 "%n", &hash, &length) == 1; text += length)
+        whole = golden_case_add_part(&is, hash) || refuse(reading, "out of memory");
+    if (whole && text[strspn(text, " ")])
+        whole = refuse(reading, "`%.40s` is no hash of a part", text);
+    if (whole && item->part_count)
+        whole = same_parts(item, &is) || refuse_other(reading, item);
+    if (!whole || item->part_count) {
+        golden_case_finish(&is);
+        return whole;
+    }
+    item->parts = is.parts;
+    item->part_count = is.part_count;
+    item->capacity = is.capacity;
+    return true;
+}
+
+/* A text that is there once, or says the same again. */
+static bool keep_text(struct reading *reading, struct golden_case *item, char **place,
+                      const char *text)
 {
     if (*place)
-        return refuse(reading, "this stands there twice");
+        return strcmp(*place, text) == 0 || refuse_other(reading, item);
     *place = string_copy(text);
     return *place || refuse(reading, "out of memory");
 }
 
-static bool read_inner(struct reading *reading, char *line)
+/* A line of a case, from its name on. */
+static bool read_case(struct reading *reading, char *name)
 {
-    char *text;
-    uint32_t hash;
-    int length = -1;
-    if (reading->key) {
-        bool read = sscanf(line, "%8" SCNx32 "%n", &hash, &length) == 1 && !line[length];
-        if (!read)
-            return refuse(reading, "the hash of a part is needed");
-        return golden_put_part(reading->golden, reading->key, hash) ||
-               refuse(reading, "out of memory");
+    char *rest = name + strcspn(name, " "), *text;
+    if (*rest)
+        *rest++ = '\0';
+    struct golden_case *item = golden_find(reading->golden, name);
+    if (!item) {
+        struct golden_case made = {.name = string_copy(name), .line = reading->line};
+        if (!made.name || !insert(reading->golden, &made)) {
+            free(made.name);
+            return refuse(reading, "out of memory");
+        }
+        item = golden_find(reading->golden, name);
     }
-    if (reading->item.name && (text = behind(line, "ids")))
-        return read_picture(reading, text);
-    if (reading->item.name && (text = behind(line, "of")))
-        return keep_text(reading, &reading->item.made_by, text);
-    if (reading->item.name && (text = behind(line, "parts")))
-        return read_parts(reading, text);
-    if (reading->item.name && (text = behind(line, "why")))
-        return keep_text(reading, &reading->item.reason, text);
-    return refuse(reading, "`%.40s` belongs to no case and no part", line);
+    if ((text = behind(rest, "of")))
+        return keep_text(reading, item, &item->made_by, text);
+    if ((text = behind(rest, "ids")))
+        return read_picture(reading, item, text);
+    if ((text = behind(rest, "parts")))
+        return read_parts(reading, item, text);
+    if ((text = behind(rest, "why")))
+        return keep_text(reading, item, &item->reason, text);
+    return refuse(reading, "`%.40s`: of, ids, parts or why of the case `%.64s` is needed", rest,
+                  name);
 }
 
-/* The case or part above is done. */
-static bool end_block(struct reading *reading)
+/* A hash of the part at hand, or a line that says its case. */
+static bool read_inner(struct reading *reading, char *line)
 {
-    struct golden_case *item = &reading->item;
+    uint32_t hash;
+    int length = -1;
+    bool is_hash = sscanf(line, "%8" SCNx32 "%n", &hash, &length) == 1 && !line[length];
+    if (!is_hash)
+        return read_case(reading, line);
+    return reading->key ? golden_put_part(reading->golden, reading->key, hash) ||
+                              refuse(reading, "out of memory")
+                        : refuse(reading, "`%s`: there is no part above, whose hash it is", line);
+}
+
+static bool begin_part(struct reading *reading, const char *key)
+{
     free(reading->key);
-    reading->key = NULL;
-    if (!item->name)
-        return true;
-    if (!reading->has_picture || !item->made_by)
-        return refuse(reading, "the case `%.64s` above lacks a line", item->name);
-    if (golden_find(reading->golden, item->name))
-        return refuse(reading, "the case `%.64s` above is there twice", item->name);
-    if (!insert(reading->golden, item))
-        return refuse(reading, "out of memory");
-    *item = (struct golden_case){0};
-    reading->has_picture = false;
-    return true;
+    reading->key = string_copy(key);
+    return reading->key || refuse(reading, "out of memory");
 }
 
 static bool read_line(struct reading *reading, char *line)
@@ -276,15 +309,24 @@ static bool read_line(struct reading *reading, char *line)
         return true;
     if (line[0] == ' ')
         return read_inner(reading, line + 1);
-    if (!end_block(reading))
-        return false;
     if ((text = behind(line, "case")))
-        return keep_text(reading, &reading->item.name, text);
+        return read_case(reading, text);
     if ((text = behind(line, "part")))
-        return keep_text(reading, &reading->key, text);
+        return begin_part(reading, text);
     if (strncmp(line, "<<<<<<<", 7) == 0 || strncmp(line, "=======", 7) == 0)
         return refuse(reading, "a conflict of a merge is left in it");
     return refuse(reading, "`%.40s`: `case NAME` or `part NAME` is needed", line);
+}
+
+static bool are_whole(struct reading *reading)
+{
+    for (uint32_t i = 0; i < reading->golden->count; ++i) {
+        const struct golden_case *item = &reading->golden->cases[i];
+        reading->line = item->line;
+        if (!item->made_by || !item->width)
+            return refuse(reading, "the case `%.64s` lacks a line: of, or ids", item->name);
+    }
+    return true;
 }
 
 static bool read_head(struct reading *reading, const char *line)
@@ -301,9 +343,9 @@ static bool read_head(struct reading *reading, const char *line)
                       "a golden of pictures by the %s: those by the %s have one of their own",
                       golden_kind_word(!kind), golden_kind_word(kind));
     if (length < 0)
-        return refuse(reading, "`%s %d, whit VERSION` is needed", head, FORMAT);
-    return format == FORMAT ||
-           refuse(reading, "a golden of format %u: this whit reads %d", format, FORMAT);
+        return refuse(reading, "`%s %d, whit VERSION` is needed", head, GOLDEN_FORMAT);
+    return format == GOLDEN_FORMAT ||
+           refuse(reading, "a golden of format %u: this whit reads %d", format, GOLDEN_FORMAT);
 }
 
 bool golden_read_text(struct golden *golden, const char *where, char *text, enum golden_kind kind)
@@ -318,9 +360,8 @@ bool golden_read_text(struct golden *golden, const char *where, char *text, enum
         line[strcspn(line, "\r")] = '\0';
         whole = ++reading.line == 1 ? read_head(&reading, line) : read_line(&reading, line);
     }
-    whole = whole && end_block(&reading);
-    golden_case_finish(&reading.item);
     free(reading.key);
+    whole = whole && are_whole(&reading);
     return whole;
 }
 
@@ -356,22 +397,24 @@ char *golden_path(const char *suite, enum golden_kind kind)
                          kind == GOLDEN_OF_REFERENCE ? ".reference" : "");
 }
 
+/* Each line says which case it is of, so that it stands for itself wherever a merge puts it, and no
+   two cases have one that is the same. */
 static void put_case(FILE *to, const struct golden_case *item)
 {
-    fprintf(to, "case %s\n ids %016" PRIx64 " colors %016" PRIx64 " size %ux%u rays", item->name,
-            item->ids, item->colors, item->width, item->height);
+    const char *name = item->name;
+    fprintf(to, "case %s of %s\n %s ids %016" PRIx64 " colors %016" PRIx64 " %ux%u rays", name,
+            item->made_by, name, item->ids, item->colors, item->width, item->height);
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
         fprintf(to, " %" PRIu64, item->rays[kind]);
-    fprintf(to, " mean %.6g %.6g %.6g\n of %s\n", item->mean[0], item->mean[1], item->mean[2],
-            item->made_by);
+    fprintf(to, " mean %.5g %.5g %.5g\n", item->mean[0], item->mean[1], item->mean[2]);
     if (item->part_count)
-        fputs(" parts", to);
+        fprintf(to, " %s parts", name);
     for (uint32_t i = 0; i < item->part_count; ++i)
         fprintf(to, " %08" PRIx32, item->parts[i]);
     if (item->part_count)
         fputc('\n', to);
     if (item->reason)
-        fprintf(to, " why %s\n", item->reason);
+        fprintf(to, " %s why %s\n", name, item->reason);
     fputc('\n', to);
 }
 
@@ -415,7 +458,7 @@ static char *text_of(const struct golden *golden, const struct golden_case *case
     if (!to)
         return NULL;
     if (whole)
-        fprintf(to, "%s %d, whit %s\n\n", heads[golden->kind], FORMAT, WHIT_VERSION);
+        fprintf(to, "%s %d, whit %s\n\n", heads[golden->kind], GOLDEN_FORMAT, WHIT_VERSION);
     for (uint32_t i = 0; i < count; ++i)
         put_case(to, &cases[i]);
     put_parts(to, golden, cases, count);

@@ -1,6 +1,7 @@
 /* What the pictures of a suite were when they were accepted: a text beside the suite, made so that
-   what two people accept merges by itself. Each case and each part stands in lines of its own, with
-   a line before and behind them that never changes. */
+   what two people accept merges by itself. Each case and each part begins with a line that does not
+   change, and ends with an empty one; no two cases have a line that is the same, for git takes
+   equal lines of both sides for one. */
 #ifndef APP_CHECK_GOLDEN_H
 #define APP_CHECK_GOLDEN_H
 
@@ -9,7 +10,7 @@
 
 #include "whit/whit.h"
 
-enum { GOLDEN_REASON_MAX = 120 };
+enum { GOLDEN_REASON_MAX = 120, GOLDEN_FORMAT = 2 };
 
 /* What drew the pictures: the double reference gives other bits than devices do. */
 enum golden_kind { GOLDEN_OF_DEVICE, GOLDEN_OF_REFERENCE };
@@ -31,6 +32,7 @@ struct golden_case {
     uint32_t *parts;               /* hashes, ascending */
     uint32_t part_count, capacity; /* of parts */
     char *reason;                  /* for which it was accepted; NULL: none was given */
+    uint32_t line;                 /* of the file, the first of it */
 };
 
 struct golden {

@@ -137,8 +137,8 @@ static void put_rays(FILE *to, const struct golden_case *old, const struct golde
 static void put_mean(FILE *to, const struct golden_case *old, const struct golden_case *now)
 {
     char was[80], is[80];
-    snprintf(was, sizeof was, "%.6g %.6g %.6g", old->mean[0], old->mean[1], old->mean[2]);
-    snprintf(is, sizeof is, "%.6g %.6g %.6g", now->mean[0], now->mean[1], now->mean[2]);
+    snprintf(was, sizeof was, "%.5g %.5g %.5g", old->mean[0], old->mean[1], old->mean[2]);
+    snprintf(is, sizeof is, "%.5g %.5g %.5g", now->mean[0], now->mean[1], now->mean[2]);
     if (strcmp(was, is) != 0)
         fprintf(to, "; mean colour %s, was %s", is, was);
 }
