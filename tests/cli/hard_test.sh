@@ -8,7 +8,7 @@ HASH=$(sed -n 's/^#define HASH UINT64_C(0x\(.*\))$/\1/p' "$4")
 mkdir "$OUT/files"
 J=$OUT/files/hard.json
 
-expect 0 "the built-in cases" hard --rays 4000 --quiet --json "$J" # all rays: cli_hard_whole
+expect 0 "the built-in cases" hard --rays 1000 --quiet --json "$J" # all rays: cli_hard_whole
 check "a table with all levels" \
     test "$(grep -c '^all  *\(fast\|watertight\|exact\) ' "$OUT/stdout")" -eq 3
 check "no promise is broken" grep -q "^promises   0 of 105 rows broke one$" "$OUT/stdout"
@@ -20,7 +20,7 @@ sum() {
     jq "[.rows[] | select(.numerics == \"$1\") | .$2] | add" "$J"
 }
 for level in fast watertight exact; do
-    check "$level: 35 rows of 4000 rays" test "$(sum $level rays)" -eq 140000
+    check "$level: 35 rows of 1000 rays" test "$(sum $level rays)" -eq 35000
     check "$level: device and twin have the same bits" test "$(sum $level differing)" -eq 0
 done
 check "fast leaks ($(sum fast leaks))" test "$(sum fast leaks)" -gt 100

@@ -34,7 +34,11 @@ static whit_result prepare(struct job *job)
         result = job_load(job);
     if (result == WHIT_OK && job->settings.scene[0])
         job_print_notes(job, false);
-    return result == WHIT_OK ? job_open_device(job) : result;
+    if (result == WHIT_OK)
+        result = job_open_device(job);
+    if (job->device) /* a table has a hundred renderers of a few kernels */
+        whit_device_keep_kernels(job->device);
+    return result;
 }
 
 static whit_result find_out(struct hard *hard)
