@@ -152,6 +152,23 @@ TEST(views_of_all_kinds_of_cameras_and_lenses)
                 true, MANY);
 }
 
+/* From afar the glass and its hollow may be met at one place, but for rounding: then they are
+   walked for all views, and the last one is near. */
+TEST(media_touch_where_they_do_for_one_view)
+{
+    const whit_renderer_params small = {.width = 12, .height = 9, .depth = 4};
+    const whit_camera cameras[] = {CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3),
+                                   CAMERA_AT(3, 2.5, 4, 0, 0.6, 0, 0, 1, 0, 35)};
+    struct fixture f = fixture_open(file_scene("whitted"), NULL, &small), single = f;
+    single.renderer = NULL;
+    fixture_renew(&single, &small);
+    check_views(&f, &single, cameras, 2);
+    assert_true(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
+    assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &single.renderer->frame));
+    renderer_destroy(single.renderer);
+    fixture_close(&f);
+}
+
 /* What is left of one picture says nothing in the next. */
 TEST(pictures_of_one_camera_in_between)
 {
