@@ -102,6 +102,8 @@ bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
 /* Adds which part of a picture it is; false as above. */
 bool recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings);
+/* How many rays of each kind there were, as an object. */
+json_t *recipe_rays(const whit_stats *stats);
 /* whit:counters of these numbers; free() it. NULL: memory ran out. */
 char *recipe_counters(const whit_stats *stats);
 void recipe_finish(struct recipe *recipe);

@@ -94,6 +94,7 @@ fi
 tiles png 4 cube "$CUBE" --size 90x120
 tiles pfm 7 balls "$SCENES/balls.json" --size 60x120 --aa 2
 tiles exr 3 lens "$SCENES/lens.json" --size 60x40 --aa 4
+tiles png 2 "a user's functions" "$CUBE" --size 60x48 --shader "$SCENES/../shaders/examples/occlusion.glsl"
 samples exr 4 balls "$SCENES/balls.json" --size 60x40 --aa 16
 samples pfm 4 balls "$SCENES/balls.json" --size 60x40 --aa 4
 
@@ -138,7 +139,7 @@ refuse 2 "another scene" "are of different scenes" merge t1.png t2.png other.png
 refuse 2 "a whole picture" "whole.png: no part of a picture" merge t1.png t2.png whole.png t4.png -o merged.png
 head -c 700 t3.png >short.png
 refuse 2 "a part that is cut short" "short.png: " merge t1.png t2.png short.png t4.png -o merged.png
-refuse 2 "another kind of file" "a file of its parts' kind" merge t1.png t2.png t3.png t4.png -o merged.exr
+refuse 2 "another kind of file" "a file of its parts' kind, which alone" merge t1.png t2.png t3.png t4.png -o merged.exr
 refuse 2 "a part as the picture" "names one of the parts" merge t1.png t2.png t3.png t4.png -o t1.png
 "$WHIT" render "$CUBE" --size 32x32 --tile 1/2 -o p1.pfm -q
 "$WHIT" render "$CUBE" --size 32x32 --tile 2/2 -o p2.pfm -q

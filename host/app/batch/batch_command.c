@@ -188,7 +188,7 @@ static int print_stats(const struct batch *batch)
 {
     const struct batch_made *made = &batch->made;
     const whit_stats *stats = &batch->stats;
-    json_t *root = document_root(), *rays = document_object(), *times = document_object();
+    json_t *root = document_root(), *times = document_object();
     document_count(root, "lines", batch->lines.count);
     document_count(root, "written", batch->written);
     document_count(root, "kept", batch->kept);
@@ -203,11 +203,7 @@ static int print_stats(const struct batch *batch)
     document_ms(times, "save_ms", batch->save_ms);
     document_ms(times, "total_ms", whit_clock_ms() - batch->start_ms);
     document_put(root, "times", times);
-    document_count(rays, "primary", stats->rays_primary);
-    document_count(rays, "shadow", stats->rays_shadow);
-    document_count(rays, "reflected", stats->rays_reflected);
-    document_count(rays, "refracted", stats->rays_refracted);
-    document_put(root, "rays", rays);
+    document_put(root, "rays", recipe_rays(stats));
     return cli_print_json(root);
 }
 

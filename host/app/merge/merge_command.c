@@ -40,7 +40,9 @@ static bool check_request(struct cli_reader *reader, struct merge_request *reque
         return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
     for (uint32_t i = 0; i < request->count; ++i) {
         if (!same_kind(request->paths[i], request->output))
-            return cli_misuse(reader, "%s and %s: the picture is a file of its parts' kind",
+            return cli_misuse(reader,
+                              "%s and %s: the picture is a file of its parts' kind, which alone "
+                              "has all that they hold",
                               request->paths[i], request->output);
         if (strcmp(request->paths[i], request->output) == 0)
             return cli_misuse(reader, "%s: -o names one of the parts", request->output);
@@ -55,9 +57,8 @@ static bool check_request(struct cli_reader *reader, struct merge_request *reque
 
 static int print_stats(const struct merge *merge, const struct merge_request *request)
 {
-    const whit_stats *stats = &merge->stats;
     const struct part_place *place = &merge->parts[0].place;
-    json_t *root = document_root(), *picture = document_object(), *rays = document_object();
+    json_t *root = document_root(), *picture = document_object();
     document_text(picture, "file", request->output);
     document_count(picture, "width", place->width);
     document_count(picture, "height", place->height);
@@ -66,13 +67,7 @@ static int print_stats(const struct merge *merge, const struct merge_request *re
     document_count(root, "parts", merge->count);
     document_count(root, "tiles", merge->tiles);
     document_count(root, "samples_parts", merge->sets);
-    document_count(rays, "primary", stats->rays_primary);
-    document_count(rays, "shadow", stats->rays_shadow);
-    document_count(rays, "reflected", stats->rays_reflected);
-    document_count(rays, "refracted", stats->rays_refracted);
-    document_count(rays, "cut_by_depth", stats->rays_cut_depth);
-    document_count(rays, "cut_by_bailout", stats->rays_cut_bailout);
-    document_put(root, "rays", rays);
+    document_put(root, "rays", recipe_rays(&merge->stats));
     json_t *memory = document_object();
     document_count(memory, "host_peak_bytes", whit_peak_memory_bytes());
     document_put(root, "memory", memory);

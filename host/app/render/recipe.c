@@ -26,7 +26,7 @@ static char *options_line(const struct settings *settings)
     return document_line(options);
 }
 
-char *recipe_counters(const whit_stats *stats)
+json_t *recipe_rays(const whit_stats *stats)
 {
     json_t *rays = document_object();
     document_count(rays, "primary", stats->rays_primary);
@@ -37,8 +37,13 @@ char *recipe_counters(const whit_stats *stats)
         document_count(rays, "by_functions", stats->rays_by_functions);
     document_count(rays, "cut_by_depth", stats->rays_cut_depth);
     document_count(rays, "cut_by_bailout", stats->rays_cut_bailout);
+    return rays;
+}
+
+char *recipe_counters(const whit_stats *stats)
+{
     json_t *counters = document_object();
-    document_put(counters, "rays", rays);
+    document_put(counters, "rays", recipe_rays(stats));
     if (stats->bailout_bound >= 0.0)
         document_number(counters, "bailout_bound", stats->bailout_bound);
     return document_line(counters);
