@@ -156,7 +156,7 @@ static int draw_line(struct batch *batch, struct line_place *place)
         batch->save_ms += sequence.save_ms;
         batch->compile_ms += sequence.stats.compile_ms;
         whit_stats_add(&sequence.stats, &batch->stats);
-    } else if (status != EXIT_FINE && status != EXIT_INTERRUPTED && status != EXIT_TIME) {
+    } else if (status != EXIT_FINE && status != EXIT_TIME && !cli_cancel) {
         cli_note("%s: this line", batch->line.where);
     }
     sequence_finish(&sequence);
