@@ -27,7 +27,7 @@ static bool put_png(json_t *object, const char *key, const struct check_png *png
 
 static bool is_wrong(const struct check_result *result)
 {
-    return result->verdict >= CHECK_DIFFERS || result->verdict == CHECK_ACCEPTED;
+    return result->verdict >= CHECK_ACCEPTED;
 }
 
 /* First what was and what differs, then a thumbnail of each case, and in its place the picture. */
