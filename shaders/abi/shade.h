@@ -230,8 +230,9 @@ struct gpu_chunk {
     gpu_uint blocks_x; /* in a row of what is drawn */
     gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
     gpu_uint unposted; /* HOOK_POST: of the pixels, the first one as it is without post() */
+    gpu_uint pad0;
 };
-GPU_ASSERT_SIZE(gpu_chunk, 100)
+GPU_ASSERT_SIZE(gpu_chunk, 104)
 
 #define GENERATION_NONE 0xffffffffu
 
