@@ -223,6 +223,7 @@ int main(int argc, char **argv)
     const struct device_params params = {.selector = options.device};
     if (device_create(&peers_log, &params, &device) != WHIT_OK)
         return 3;
+    device_keep_pipelines(device);
     bool good = true;
     for (int i = first; i < argc; ++i)
         good = check_scene(&options, device, argv[i]) && good;

@@ -192,6 +192,7 @@ int main(int argc, char **argv)
     }
     if (device_create(&peers_log, NULL, &bench.device) != WHIT_OK)
         return 3;
+    device_keep_pipelines(bench.device);
     printf("device: %s, %s\n", device_get_info(bench.device)->name,
            device_get_info(bench.device)->driver);
     printf("%-8s%-16s%12s%12s%13s%16s%10s%12s\n", "offset", "tracer", "rays", "misses", "of rays",

@@ -28,6 +28,7 @@
 #include <string.h>
 
 #include "whit.h"
+#include "whit_program.h"
 
 enum { WIDTH = 64, HEIGHT = 48 };
 
@@ -464,6 +465,8 @@ static void check_scene(const char *path, const char *what)
                   whit_accel_create(subject.scene, NULL, &subject.accel) == WHIT_OK &&
                   whit_device_create(NULL, &messages, &subject.device) == WHIT_OK;
     check(opened, "the scene loads and the device comes up");
+    if (opened)
+        whit_device_keep_kernels(subject.device);
     bool all = strcmp(what, "all-levels") == 0;
     if (opened && (all || strcmp(what, "levels") == 0))
         check_levels(&subject, all);

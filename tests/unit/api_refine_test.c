@@ -5,6 +5,7 @@
 
 #include "unit.h"
 #include "whit.h"
+#include "whit_program.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
 
@@ -13,7 +14,10 @@ static whit_device *device;
 static int open_device(void **state)
 {
     (void)state;
-    return whit_device_create(NULL, NULL, &device) == WHIT_OK ? 0 : -1;
+    if (whit_device_create(NULL, NULL, &device) != WHIT_OK)
+        return -1;
+    whit_device_keep_kernels(device);
+    return 0;
 }
 
 static int close_device(void **state)

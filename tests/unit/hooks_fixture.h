@@ -1,9 +1,11 @@
-/* A device, the compiler of users' files, and a scene that is drawn with their functions. */
+/* A device that keeps its kernels, the compiler of users' files, and a scene that is drawn with
+ * their functions. */
 #ifndef HOOKS_FIXTURE_H
 #define HOOKS_FIXTURE_H
 
 #include "unit.h"
 #include "whit.h"
+#include "whit_program.h"
 
 static whit_device *device;
 static whit_shader_compiler *compiler;
@@ -29,7 +31,9 @@ static inline bool hooks_begin(const char *path)
                 whit_device_create(NULL, &keeps, &device) == WHIT_OK &&
                 (!path || (whit_scene_load(path, NULL, &keeps, &scene) == WHIT_OK &&
                            whit_accel_create(scene, NULL, &accel) == WHIT_OK));
-    if (!fine)
+    if (fine)
+        whit_device_keep_kernels(device);
+    else
         print_error("%s\n", logged);
     return fine;
 }

@@ -32,13 +32,15 @@ static void fixture_message(void *user, whit_log_level level, const char *messag
 static const whit_log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
 
 /* The one device of all checks of a program: layers and driver take longer to start than most
-   pictures take to draw. */
+   pictures take to draw. Checks that want the same kernel share its pipeline. */
 static struct device *fixture_shared;
 
 static inline struct device *fixture_device(void)
 {
-    if (!fixture_shared)
+    if (!fixture_shared) {
         assert_int_equal(device_create(&fixture_log, NULL, &fixture_shared), WHIT_OK);
+        device_keep_pipelines(fixture_shared);
+    }
     return fixture_shared;
 }
 

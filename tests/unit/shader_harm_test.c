@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "folder_fixture.h"
 #include "whit.h"
+#include "whit_program.h"
 
 enum { WIDTH = 16, HEIGHT = 12, PIXELS = WIDTH * HEIGHT };
 
@@ -71,6 +72,7 @@ static int begin(void **state)
         whit_scene_load(WHIT_SCENES_DIR "/cube.json", NULL, NULL, &scene) != WHIT_OK ||
         whit_accel_create(scene, NULL, &accel) != WHIT_OK)
         return -1;
+    whit_device_keep_kernels(device);
     put("good.glsl", "vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
     draw_good(good_pixels);
     reported = tried = 0;
