@@ -348,8 +348,8 @@ TEST(rays_of_functions_are_counted)
          2, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        bool by_camera = cases[i].of_hits && cases[i].of_misses;
-        for (int exact = 0; exact < 2 - by_camera; ++exact) {
+        bool settled = !cases[i].of_hits != !cases[i].of_misses;
+        for (int exact = 0; exact < 1 + settled; ++exact) {
             uint64_t hits, counted = traced_by_functions(
                                cases[i].content,
                                exact ? WHIT_NUMERICS_EXACT : WHIT_NUMERICS_WATERTIGHT, &hits);
