@@ -100,11 +100,11 @@ check "is named" grep -q "far.json: instance 0 .nose.*at 0.0416667 s" "$OUT/stde
 check "how many are there is said" grep -q "1 of 4 frames were written" "$OUT/stderr"
 check "these stay" test "$(ls -A far)" = f.0.png
 
-# By a clock that each of these pictures moves by 6 s.
+# By a clock that each of these pictures moves by 0.375 s.
 mkdir late
 REAL=$WHIT
 WHIT=$TURNED
-expect 5 "--time-limit" render "$SWARM" --frames 0-9999 -o late/f.####.png --size 320x240 --time-limit 60
+expect 5 "--time-limit" render "$SWARM" --frames 0-9999 -o late/f.####.png --size 80x60 --time-limit 3.75
 WHIT=$REAL
 check "holds over the sequence, with frames finished: $(count late)" test "$(count late)" -eq 10
 check "says how many" grep -q "$(count late) of 10000 frames were written" "$OUT/stderr"

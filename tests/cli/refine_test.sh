@@ -43,7 +43,7 @@ same_as_samples
 refined --refine 0.001ms
 check "the first sample is drawn in any case" test "$samples" -eq 1
 check "of one sample nothing is known" test "$estimate" = null
-refined --refine 1e5ms --depth 1 --size 16x12
+refined --refine 1e5ms --depth 1 --size 8x6
 check "time for all samples" test "$samples" -eq 4096
 check "which tell of rays that were cut" jq -e '.refine.rmse_estimate_of_cuts > 0.01 and
     .refine.rmse_estimate >= .refine.rmse_estimate_of_cuts and .refine.cut_radiance > 0' stdout
@@ -82,7 +82,7 @@ check "nothing was written" test ! -e no.png
 # Ctrl+C ends it as it ends every picture.
 "$WHIT" render "$SCENES/default.json" -o stopped.png --size 320x240 --refine 1e6ms 2>stderr &
 pid=$!
-sleep 2
+sleep 0.5
 kill -INT $pid
 wait $pid
 check "interrupted: exit code 130" test $? -eq 130
