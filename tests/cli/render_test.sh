@@ -21,7 +21,7 @@ for tile in 16 32 512; do
     expect 0 "--tile-size $tile" render "$CUBE" -o b.png --size 96x64 --tile-size $tile --quiet
     check "tiles of $tile give the same picture" cmp a.png b.png
 done
-# `--effects all`: cli_effects.
+# `--effects all`: scene_*.
 for option in "--build median" \
     "--build spatial+opt --leaf 1 --traversal sign --instance-build median" "--threads 1" \
     "--load-path texel" "--stats json"; do

@@ -1,5 +1,6 @@
 /* The numeric levels on the device: against the C twin, bit for bit; `exact` against rational
    arithmetic; what `fast` lacks. */
+#include "../cases.h"
 #include "ray_fixture.h"
 
 #include "oracle/rational.h"
@@ -8,7 +9,8 @@
 
 static const char *const names[] = {
     [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_FAST] = "fast", [NUMERICS_EXACT] = "exact"};
-enum { LEVELS = 3, RAYS = 20000 };
+enum { LEVELS = 3 };
+#define RAYS cases_of(32000)
 
 static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_ray *rays,
                                       const struct gpu_hit *hits)
@@ -133,9 +135,10 @@ static void only_fast_leaks(void **state)
 }
 
 static const whit_renderer_params glass_params = {
-    .width = 96, .height = 64, .depth = 6, .camera = GLASS_CAMERA, .packets = WHIT_PACKETS_ON};
+    .width = 48, .height = 32, .depth = 6, .camera = GLASS_CAMERA, .packets = WHIT_PACKETS_ON};
 
-/* Glass rings over ground: shadows through filters, media, all kinds of traversals. */
+/* Glass rings over ground: shadows through filters, media, all kinds of traversals. Larger pictures
+   at all levels are in tests/check/whit.suite. */
 static void pictures_agree(void **state)
 {
     (void)state;
