@@ -1,40 +1,41 @@
 /* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
+#include "../cases.h"
 #include "ray_fixture.h"
 #include "unit.h"
 
-enum { RAYS = 20000 };
+#define RAYS cases_of(32000)
 
 /* A ray is blocked up to t_max just when its closest hit is that near; a third of the rays end
    exactly there, or one float before. */
 static void check_any_against_closest(struct fixture *f, const char *label)
 {
-    enum { MANY = 180000 };
-    struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
-    struct gpu_hit *closest = array_alloc(MANY, sizeof *closest);
-    struct gpu_hit *any = array_alloc(MANY, sizeof *any);
+    const uint32_t many = 6 * RAYS;
+    struct gpu_ray *rays = array_alloc(many, sizeof *rays);
+    struct gpu_hit *closest = array_alloc(many, sizeof *closest);
+    struct gpu_hit *any = array_alloc(many, sizeof *any);
     assert_true(rays && closest && any);
-    for (uint32_t i = 0; i < MANY / RAYS; ++i)
+    for (uint32_t i = 0; i < many / RAYS; ++i)
         aim_rays(f, rays + (size_t)i * RAYS, RAYS, 1000 + i);
-    for (uint32_t i = 0; i < MANY; ++i)
+    for (uint32_t i = 0; i < many; ++i)
         rays[i].t_max = INFINITY;
-    assert_int_equal(renderer_trace(f->renderer, rays, MANY, false, closest, NULL), WHIT_OK);
+    assert_int_equal(renderer_trace(f->renderer, rays, many, false, closest, NULL), WHIT_OK);
     uint32_t blocked = 0, bad = 0;
     uint64_t state = 11;
-    for (uint32_t i = 0; i < MANY; ++i) {
+    for (uint32_t i = 0; i < many; ++i) {
         rays[i].t_max = 2.0f * fabsf(random_float_signed(&state));
         if (closest[i].primitive != HIT_NONE && i % 3 == 0)
             rays[i].t_max = i & 1 ? closest[i].t : nextafterf(closest[i].t, -INFINITY);
     }
-    assert_int_equal(renderer_trace(f->renderer, rays, MANY, true, any, NULL), WHIT_OK);
-    for (uint32_t i = 0; i < MANY; ++i) {
+    assert_int_equal(renderer_trace(f->renderer, rays, many, true, any, NULL), WHIT_OK);
+    for (uint32_t i = 0; i < many; ++i) {
         bool wanted = closest[i].primitive != HIT_NONE && closest[i].t <= rays[i].t_max;
         blocked += wanted;
         bad += wanted != (any[i].primitive != HIT_NONE);
     }
-    print_message("  %s: %u rays, %u blocked; any-hit unlike closest %u\n", label, MANY, blocked,
+    print_message("  %s: %u rays, %u blocked; any-hit unlike closest %u\n", label, many, blocked,
                   bad);
-    assert_true(blocked > MANY / 100);
-    assert_true(blocked < MANY);
+    assert_true(blocked > many / 100);
+    assert_true(blocked < many);
     assert_int_equal(bad, 0);
     free(rays);
     free(closest);
@@ -174,23 +175,23 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
 
 static void check_packets(struct scene *scene, const struct accel_params *params, const char *label)
 {
-    enum { MANY = 70000 }; /* the last packet is not full */
+    const uint32_t many = cases_of(70000); /* the last packet is not full */
     const whit_renderer_params on = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
     struct fixture f = fixture_open(scene, params, &on);
-    struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(MANY, sizeof *hits);
+    struct gpu_ray *rays = array_alloc(many, sizeof *rays);
+    struct gpu_hit *hits = array_alloc(many, sizeof *hits);
     assert_true(rays && hits);
-    aim_packets(&f, rays, MANY);
+    aim_packets(&f, rays, many);
     for (int any = 0; any < 2; ++any) {
-        uint32_t unlike = trace_beside_twin(&f, any, rays, MANY, hits, NULL).hits;
-        uint32_t met = count_met(hits, MANY);
+        uint32_t unlike = trace_beside_twin(&f, any, rays, many, hits, NULL).hits;
+        uint32_t met = count_met(hits, many);
         uint64_t together = renderer_trace_together(f.renderer);
         print_message("  %s, %s: %u rays, %u met, %u in packets; unlike the twin %u\n", label,
-                      any ? "any" : "closest", MANY, met, (uint32_t)together, unlike);
+                      any ? "any" : "closest", many, met, (uint32_t)together, unlike);
         assert_int_equal(unlike, 0);
-        assert_true(met > MANY / 10 && met < MANY);
+        assert_true(met > many / 10 && met < many);
         if (device_get_info(f.device)->subgroup_size == 8) {
-            assert_true(together > MANY / 2 && together < MANY);
+            assert_true(together > many / 2 && together < many);
         }
     }
     free(rays);
