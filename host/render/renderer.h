@@ -275,6 +275,8 @@ WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const c
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
 /* How kernels read the trees, and whether rays walk in packets; upload_scene begins with it. */
 void upload_choose(struct renderer *renderer);
+/* The part of it that goes by the number of rays, anew; before the frame is filled. */
+WHIT_CHECK whit_result upload_choose_packets(struct renderer *renderer);
 /* Makes the nodes of eight that packets need on the host, and says what stack they take. */
 WHIT_CHECK whit_result upload_widen(struct renderer *renderer);
 /* Whether rays can walk in packets here, as far as device, trees and parameters go. */
@@ -476,6 +478,8 @@ WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
 uint32_t views_rows(const struct renderer *renderer);
 /* Rows of one view among these. */
 uint32_t views_stride(const struct renderer *renderer);
+/* Rows of the whole picture, of all views. */
+uint32_t views_picture_rows(const struct renderer *renderer);
 /* Rows that its images have. */
 uint32_t views_image_rows(const struct renderer *renderer);
 /* Where each of its lenses is met by the sample that the chunk is for. */

@@ -348,7 +348,7 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
     double samples =
         params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 4.0 : (double)params->sampling.count;
     double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
-    double rays = (double)params->width * params->height * samples * (1.0 + lights);
+    double rays = (double)params->width * views_picture_rows(renderer) * samples * (1.0 + lights);
     double halvings = same_log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
     uint32_t chosen = 1;
     for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {
@@ -366,6 +366,12 @@ static bool choose_packets(struct renderer *renderer)
     if (renderer->params.packets == WHIT_PACKETS_ON && renderer->packet_rays == 1)
         renderer->packet_rays = packet_choices[0].rays;
     return upload_can_widen(renderer) && renderer->packet_rays > 1;
+}
+
+whit_result upload_choose_packets(struct renderer *renderer)
+{
+    renderer->packets = choose_packets(renderer);
+    return renderer->packets ? upload_wide(renderer) : WHIT_OK;
 }
 
 void upload_choose(struct renderer *renderer)

@@ -18,10 +18,15 @@ uint32_t views_rows(const struct renderer *renderer)
                                  : params_rows(&renderer->params);
 }
 
+uint32_t views_picture_rows(const struct renderer *renderer)
+{
+    uint32_t count = renderer->views.count;
+    return renderer->params.height * (count ? count : 1);
+}
+
 uint32_t views_image_rows(const struct renderer *renderer)
 {
-    return renderer->views.count ? renderer->views.count * renderer->params.height
-                                 : params_rows(&renderer->params);
+    return renderer->views.count ? views_picture_rows(renderer) : params_rows(&renderer->params);
 }
 
 uint32_t renderer_view_count(const struct renderer *renderer)
@@ -121,17 +126,35 @@ static whit_result upload_views(struct renderer *renderer, uint32_t count)
     return upload_words(renderer, views->all, bytes, BUFFER_STORAGE, "views", &views->buffer);
 }
 
+/* Kernels as one picture of as many rays has them. True: others than before. */
+static whit_result choose_kernels(struct renderer *renderer, bool *others)
+{
+    whit_renderer_params all = renderer->params;
+    uint32_t packet_rays = renderer->packet_rays, stack_size = renderer->packet_stack_size;
+    bool packets = renderer->packets, few = renderer->few_kernels;
+    all.height = views_picture_rows(renderer);
+    renderer->few_kernels = few && render_few_kernels(&all);
+    whit_result result = upload_choose_packets(renderer);
+    *others = renderer->few_kernels != few || renderer->packets != packets ||
+              renderer->packet_rays != packet_rays || renderer->packet_stack_size != stack_size;
+    return result;
+}
+
 /* Makes the renderer's picture that of these cameras. */
 static whit_result views_take(struct renderer *renderer, const whit_camera *cameras, uint32_t count)
 {
     struct views *views = &renderer->views;
     uint32_t camera = views->camera;
     bool touched = media_touch(renderer->scene, &renderer->bodies, &renderer->frame);
+    bool others = false;
     free(views->all);
-    views->count = 0; /* kinds of cameras are told one by one */
     views->all = array_alloc(count, sizeof *views->all);
+    views->count = count;
     whit_result result =
-        views->all ? take_cameras(renderer, cameras, count) : render_no_memory(renderer, "views");
+        views->all ? choose_kernels(renderer, &others) : render_no_memory(renderer, "views");
+    views->count = 0; /* kinds of cameras are told one by one */
+    if (result == WHIT_OK)
+        result = take_cameras(renderer, cameras, count);
     if (result == WHIT_OK)
         result = upload_views(renderer, count);
     if (result == WHIT_OK)
@@ -140,7 +163,7 @@ static whit_result views_take(struct renderer *renderer, const whit_camera *came
     if (result == WHIT_OK && count != views->held)
         result = retarget_pixels(renderer);
     if (result == WHIT_OK &&
-        (!views->held || views->camera != camera ||
+        (!views->held || others || views->camera != camera ||
          media_touch(renderer->scene, &renderer->bodies, &renderer->frame) != touched)) {
         async_finish(renderer);
         passes_finish(renderer);

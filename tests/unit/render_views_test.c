@@ -5,13 +5,13 @@
 #include "twin/traverse.h"
 #include "unit.h"
 
-enum { MANY = 23 };
+enum { MANY = 23, THRONG = 40 };
 
 /* Around the scene; every view of another kind in `mixed` ones. */
-static void place_cameras(whit_camera cameras[MANY], bool mixed)
+static void place_cameras(whit_camera *cameras, int count, bool mixed)
 {
-    for (int i = 0; i < MANY; ++i) {
-        double turn = 6.28318530718 * i / MANY, far = 4.0 + 0.3 * i;
+    for (int i = 0; i < count; ++i) {
+        double turn = 6.28318530718 * i / count, far = 4.0 + 0.3 * i;
         cameras[i] = (whit_camera)CAMERA_AT(far * sin(turn), 1.0 + 0.1 * i, far * cos(turn), 0.1,
                                             0.7, -0.2, 0, 1, 0, 30.0 + i);
         cameras[i].lens_radius = mixed && i % 4 == 1 ? 0.2 : 0.0;
@@ -109,7 +109,7 @@ static void check_scene(const char *name, const whit_renderer_params *params, bo
     plain.packets = WHIT_PACKETS_OFF;
     fixture_renew(&single, &plain);
     assert_int_equal(f.renderer->packets, params->packets == WHIT_PACKETS_ON);
-    place_cameras(cameras, mixed);
+    place_cameras(cameras, MANY, mixed);
     check_views(&f, &single, cameras, count);
     if (count == MANY)
         check_bands(&f, &single, cameras, count);
@@ -152,6 +152,24 @@ TEST(views_of_all_kinds_of_cameras_and_lenses)
                 true, MANY);
 }
 
+/* So many rays pay for packets and for kernels of their own, which one view has not. */
+TEST(many_views_have_the_kernels_of_a_large_picture)
+{
+    const whit_renderer_params small = {.width = 64, .height = 64, .depth = 2};
+    const struct accel_params flat = {.flatten = true};
+    whit_camera cameras[THRONG];
+    struct fixture f = fixture_open(file_scene("34k"), &flat, &small), single = f;
+    single.renderer = NULL;
+    fixture_renew(&single, &small);
+    assert_true(f.renderer->few_kernels && !f.renderer->packets);
+    place_cameras(cameras, THRONG, false);
+    check_views(&f, &single, cameras, THRONG);
+    assert_false(f.renderer->few_kernels);
+    assert_int_equal(f.renderer->packets, upload_can_widen(f.renderer));
+    renderer_destroy(single.renderer);
+    fixture_close(&f);
+}
+
 /* From afar the glass and its hollow may be met at one place, but for rounding: then they are
    walked for all views, and the last one is near. */
 TEST(media_touch_where_they_do_for_one_view)
@@ -177,7 +195,7 @@ TEST(pictures_of_one_camera_in_between)
     struct fixture f = fixture_open(file_scene("spin"), NULL, &small), single = f;
     single.renderer = NULL;
     fixture_renew(&single, &small);
-    place_cameras(cameras, true);
+    place_cameras(cameras, MANY, true);
     struct picture before = render_picture(&f);
     check_views(&f, &single, cameras, 4);
     cameras[6] = (whit_camera)CAMERA_AT(1, 1, 1, 1, 1, 1, 0, 1, 0, 40);
