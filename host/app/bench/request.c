@@ -24,6 +24,10 @@ const struct bench_kind bench_kinds[BENCH_COUNT] = {
     [BENCH_SHADERS] =
         {"shaders", "[SCENE...]: what follows a save of a shader in the viewer, on a display; fuel",
          1280, 720, .takes_names = true},
+    [BENCH_VIEWS] =
+        {"views",
+         "[SCENE...]: 4096 views of 64 x 64 drawn together beside one picture of as many pixels",
+         4096, 4096, .has_goals = true, .takes_names = true},
 };
 
 const struct setting bench_options[] = {
@@ -37,7 +41,7 @@ const struct setting bench_options[] = {
      SETTING_AT_NAME(struct bench_request, scenes)},
     {"naive-limit", 0, NULL, "is gone with the builder sweep-naive", .kind = SETTING_GONE},
     {"plot", 0, "FILE.svg",
-     "rays, frame, start, view: also draw how far each row is from what it must",
+     "rays, frame, start, view, views: also draw how far each row is from what it must",
      SETTING_AT_NAME(struct bench_request, plot)},
     {"against", 0, "PROGRAM", "frame, start: another whit, timed in turns",
      SETTING_AT_NAME(struct bench_request, against)},

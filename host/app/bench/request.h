@@ -13,6 +13,7 @@ enum bench_which {
     BENCH_FRAME,
     BENCH_START,
     BENCH_SHADERS,
+    BENCH_VIEWS,
     BENCH_COUNT
 };
 struct bench_kind {
