@@ -227,6 +227,12 @@ void whit_device_keep_kernels(whit_device *device)
     device_keep_pipelines(device->device);
 }
 
+bool whit_device_takes_peers(const whit_device *device)
+{
+    return device_get_info(device->device)->kind == DEVICE_CPU &&
+           device_compile_threads(device->device) != 1;
+}
+
 void whit_device_destroy(whit_device *device)
 {
     if (!device)

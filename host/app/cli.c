@@ -24,6 +24,7 @@ static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
 static volatile sig_atomic_t error_said;
 static bool hushed;
+static _Thread_local atomic_bool *muted; /* NULL: the thread speaks */
 static const char *errors_of;
 static char first_error[1024];
 static volatile sig_atomic_t grace_ms = GRACE_MS;
@@ -70,6 +71,31 @@ const char *cli_said(void)
     return first_error;
 }
 
+void cli_mute(atomic_bool *said)
+{
+    muted = said;
+}
+
+/* Whether the thread says nothing, which is noted. */
+static bool keeps_silent(void)
+{
+    if (muted)
+        atomic_store(muted, true);
+    return muted != NULL;
+}
+
+static void on_muted(void *user, whit_log_level level, const char *message)
+{
+    (void)level;
+    (void)message;
+    atomic_store((atomic_bool *)user, true);
+}
+
+whit_log cli_muted_log(atomic_bool *said)
+{
+    return (whit_log){.fn = on_muted, .user = said, .level = WHIT_LOG_WARNING};
+}
+
 static void say(const char *kind, const char *text)
 {
     char shown[16384];
@@ -79,6 +105,8 @@ static void say(const char *kind, const char *text)
 static void vsay(const char *kind, const char *format, va_list args)
 {
     char text[8192];
+    if (keeps_silent())
+        return;
     vsnprintf(text, sizeof text, format, args);
     say(kind, text);
 }
@@ -99,6 +127,8 @@ void cli_error(const char *format, ...)
 {
     sigset_t before;
     va_list args;
+    if (keeps_silent())
+        return;
     va_start(args, format);
     lock_reason(&before);
     say_error(format, args);
@@ -349,8 +379,8 @@ bool cli_can_write(const char *path)
 
 const char *cli_shown(const char *text)
 {
-    static char kept[4][16384];
-    static unsigned turn;
+    static _Thread_local char kept[4][16384];
+    static _Thread_local unsigned turn;
     char *out = kept[turn++ % 4];
     return whit_text_show(text ? text : "", out, sizeof kept[0]);
 }

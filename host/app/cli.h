@@ -2,6 +2,7 @@
 #ifndef APP_CLI_H
 #define APP_CLI_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -106,6 +107,12 @@ const char *cli_said(void);
 extern const whit_log cli_log;
 extern const whit_log cli_log_errors;
 extern const whit_log cli_log_notes; /* with notes */
+
+/* From here on this thread says nothing, and sets *said where it would have; NULL: it speaks again.
+   `said` is borrowed until then. */
+void cli_mute(atomic_bool *said);
+/* The same for libwhit's calls that log from threads of their own, as devices do. */
+whit_log cli_muted_log(atomic_bool *said);
 
 /* Whether errors of libwhit are kept to itself, as where something is tried that may be refused. */
 void cli_hush(bool on);

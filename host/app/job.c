@@ -146,10 +146,15 @@ static whit_device_params device_params(const struct job *job)
                                 .validation = settings->validation};
 }
 
+static const whit_log *log_of(const struct job *job)
+{
+    return job->log ? job->log : &cli_log;
+}
+
 void job_begin_device(struct job *job)
 {
     const whit_device_params params = device_params(job);
-    job->opening = whit_device_open_begin(&params, &cli_log);
+    job->opening = whit_device_open_begin(&params, log_of(job));
 }
 
 whit_result job_open_device(struct job *job)
@@ -157,7 +162,7 @@ whit_result job_open_device(struct job *job)
     const whit_device_params params = device_params(job);
     double start_ms = whit_clock_ms();
     whit_result result = job->opening ? whit_device_open_end(job->opening, &job->device)
-                                      : whit_device_create(&params, &cli_log, &job->device);
+                                      : whit_device_create(&params, log_of(job), &job->device);
     job->opening = NULL;
     job->device_ms = whit_clock_ms() - start_ms;
     return result == WHIT_OK ? job_still_wanted() : result;

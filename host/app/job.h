@@ -16,6 +16,7 @@ struct job {
     uint64_t recipe_hash;  /* of the scene, as a picture's recipe says; 0: nothing does */
     char recipe_part[512]; /* which part of a picture it was drawn as, likewise; "": the whole */
     bool keeps_axes;       /* `--up auto` turns no model: see job_load */
+    const whit_log *log;   /* of the device; NULL: cli_log */
     double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
 };
 

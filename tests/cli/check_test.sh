@@ -164,7 +164,21 @@ expect 4 "drawn elsewhere" check slow.whit --on reference --only large --only ot
 sed -i 's/4000x3000 --aa 64/16x12/' cut/r.json
 expect 0 "one run has what another has not" check slow.whit --on reference --accept-from cut
 check "all are accepted" grep -qx "3 cases, 1 ok, 2 accepted" stdout
+# Suites of many cases are drawn from both ends; what is said is said in the order of the suite.
+{
+    echo 'leaf-{1,2,3,4,5,6,7,8,9,10,11,12,13,14} cube.json --size 16x12 --leaf {}'
+    printf 'one tri.obj --size 16x12\nbroken broken.json\ntwo tri.obj --size 16x12 --depth 0\n'
+    printf 'lost cube.json --camera nobody\nlast cube.json --size 16x12 --leaf 15\n'
+} >many.whit
+expect 2 "many cases" check many.whit --json many.json
+check "in the order of the suite" sh -c '"$1" check many.whit --list >names && cut -d: -f1 <stdout | head -n -1 | cmp - names' - "$WHIT"
+check "all are counted" grep -qx "19 cases, 17 new, 2 broken" stdout
+check "errors and a warning, once and in this order" sh -c 'sed -n "s/^whit: \(warning\|error: many.whit:[0-9]*: [a-z]*\):.*/\1/p" stderr |
+    tr "\n" " " | grep -qx "warning error: many.whit:3: broken error: many.whit:5: lost "'
+check "cases that differ in their trees alone are the same picture" jq -e '[.cases[] | select(.name | startswith("l")) |
+    select(.verdict == "new") | .is.colors] | length == 15 and (unique | length) == 1' many.json >jq.out
 expect 5 "a time limit" check looks.whit --time-limit 0.001
+expect 5 "a time limit of many cases" check many.whit --time-limit 0.001
 export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
 refuse 3 "no device" "no Vulkan driver" check slow.whit --json cut/r.json --junit cut/r.xml --report cut/r.html
 undrawn "no device" 3 '["undrawn", "undrawn", "undrawn"]' "there is no device"

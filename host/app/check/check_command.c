@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/check/lanes.h"
 #include "app/check/strength.h"
 #include "app/commands.h"
 #include "base/array.h"
@@ -270,15 +271,12 @@ static bool ends_all(whit_result result)
            result == WHIT_ERROR_CANCELLED;
 }
 
-static whit_result run_case(struct check *check, struct studio *studio, uint32_t index)
+/* Draws a case and finds its verdict. */
+static whit_result draw_case(struct check *check, struct studio *studio, uint32_t index)
 {
     struct check_result *result = &check->results[index];
     struct drawing drawing;
-    char where[1024];
     double start_ms = whit_clock_ms();
-    snprintf(where, sizeof where, "%.500s:%u: %s", check->suite.path, result->item->line,
-             result->item->name);
-    cli_errors_of(where);
     whit_result drawn = studio_draw(studio, index, counts(result->item), &drawing);
     if (drawn == WHIT_OK)
         drawn = find_verdict(check, studio, &drawing, result);
@@ -293,6 +291,18 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
         verdict_finish(result);
         *result = (struct check_result){.item = result->item, .error = drawn};
     }
+    return drawn;
+}
+
+/* The same, with what fails as a verdict unless no other case can be drawn either. */
+static whit_result run_case(struct check *check, struct studio *studio, uint32_t index)
+{
+    struct check_result *result = &check->results[index];
+    char where[1024];
+    snprintf(where, sizeof where, "%.500s:%u: %s", check->suite.path, result->item->line,
+             result->item->name);
+    cli_errors_of(where);
+    whit_result drawn = draw_case(check, studio, index);
     if (drawn != WHIT_OK && !ends_all(drawn)) {
         const char *why = cli_said()[0] ? cli_said() : whit_result_name(drawn);
         verdict_set(result, CHECK_BROKEN, string_format("cannot be drawn: %s", why));
@@ -336,12 +346,20 @@ static whit_result run_cases(struct check *check)
 {
     struct studio studio;
     whit_result result = studio_open(&studio, (enum golden_kind)check->on, &check->settings,
-                                     &check->suite, check->wanted);
-    for (uint32_t i = 0; result == WHIT_OK && i < check->suite.count; ++i) {
+                                     &check->suite, check->wanted, &cli_log);
+    struct lanes *lanes = result == WHIT_OK ? lanes_begin(check, &studio, draw_case) : NULL;
+    uint32_t i = 0;
+    for (; result == WHIT_OK && i < check->suite.count; ++i) {
         if (!check->wanted[i])
             continue;
-        result = run_case(check, &studio, i);
+        if (!lanes_have(lanes, i))
+            result = run_case(check, &studio, i);
         if (result == WHIT_OK)
+            print_result(check, &check->results[i]);
+    }
+    lanes_end(lanes);
+    for (; i < check->suite.count; ++i) { /* where the first was cut off */
+        if (check->results[i].verdict != CHECK_NOT_RUN)
             print_result(check, &check->results[i]);
     }
     if (studio.job.device)

@@ -29,15 +29,16 @@ static bool any_compiles(const struct studio *studio)
 }
 
 whit_result studio_open(struct studio *studio, enum golden_kind kind, const struct settings *common,
-                        const struct suite *suite, const bool *wanted)
+                        const struct suite *suite, const bool *wanted, const whit_log *log)
 {
-    *studio = (struct studio){.suite = suite, .wanted = wanted, .job = {.settings = *common}};
+    *studio =
+        (struct studio){.suite = suite, .wanted = wanted, .job = {.settings = *common, .log = log}};
     whit_result result = WHIT_OK;
     if (kind == GOLDEN_OF_REFERENCE)
         return WHIT_OK;
     /* The compiler's process has the memory that this one has now. */
     if (any_compiles(studio))
-        result = job_begin_compiler(&studio->job, &cli_log);
+        result = job_begin_compiler(&studio->job, log);
     if (result == WHIT_OK)
         result = job_open_device(&studio->job);
     if (studio->job.device)
@@ -63,14 +64,16 @@ static void drop_renderer(struct studio *studio)
 
 static bool is_needed(const struct studio *studio, const struct settings *settings, uint32_t from)
 {
-    for (uint32_t i = from; i < studio->suite->count; ++i) {
+    uint32_t first = studio->backwards ? 0 : from;
+    uint32_t end = studio->backwards ? from + 1 : studio->suite->count;
+    for (uint32_t i = first; i < end; ++i) {
         if (studio->wanted[i] && settings_same_scene(settings, studio->suite->cases[i].settings))
             return true;
     }
     return false;
 }
 
-/* Frees scenes that no case from `from` on has. */
+/* Frees scenes that neither case `from` nor one that comes later has. */
 static void drop_scenes(struct studio *studio, uint32_t from)
 {
     for (uint32_t i = studio->scene_count; i-- > 0;) {
@@ -280,11 +283,18 @@ void drawing_finish(struct drawing *drawing)
     *drawing = (struct drawing){.renderer = NULL};
 }
 
-void studio_close(struct studio *studio)
+void studio_forget(struct studio *studio)
 {
     drop_renderer(studio);
-    for (uint32_t i = 0; i < studio->scene_count; ++i)
-        finish_scene(&studio->scenes[i]);
+    whit_shader_destroy(studio->job.shader);
+    studio->job.shader = NULL;
+    while (studio->scene_count > 0)
+        finish_scene(&studio->scenes[--studio->scene_count]);
+}
+
+void studio_close(struct studio *studio)
+{
+    studio_forget(studio);
     free(studio->scenes);
     job_finish(&studio->job);
 }

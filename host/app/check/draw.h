@@ -1,4 +1,4 @@
-/* The pictures of a suite, drawn one after the other in one process: one device, or the double
+/* The pictures of a suite, drawn one after the other in one process: by one device, or the double
    reference in its place, each scene, tree and shader loaded once for all cases that share it. */
 #ifndef APP_CHECK_DRAW_H
 #define APP_CHECK_DRAW_H
@@ -13,6 +13,7 @@ struct studio_scene;
 struct studio {
     const struct suite *suite;
     const bool *wanted; /* of each case of the suite: it will be drawn */
+    bool backwards;     /* the last one first */
     struct job job;     /* with the settings of the command line; its device, NULL where the
                            reference draws, and compiler */
     struct studio_scene *scenes;
@@ -32,12 +33,12 @@ struct drawing {
     whit_image *color, *ids; /* linear floats, as they are hashed; instance and primitive */
 };
 
-/* Opens the device, unless `kind` is of the reference. `common`: the settings of the command line,
-   whose device and limits stand for all cases. What fails was said. studio_close() it either way.
- */
+/* Opens the device, which has `log`, borrowed; none where `kind` is of the reference. `common`: the
+   settings of the command line, whose device and limits stand for all cases. What fails was said.
+   studio_close() it either way. */
 WHIT_CHECK whit_result studio_open(struct studio *studio, enum golden_kind kind,
                                    const struct settings *common, const struct suite *suite,
-                                   const bool *wanted);
+                                   const bool *wanted, const whit_log *log);
 /* Draws case `index`; `counts`: with what traversals cost. What fails was said.
    drawing_finish() it either way, before the next. */
 WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool counts,
@@ -57,6 +58,9 @@ WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, 
 /* on_reference.c: WHIT_ERROR_USAGE, said, where the job has no device and its settings ask for what
    the reference cannot draw. */
 WHIT_CHECK whit_result reference_check(const struct job *job);
+/* Drops scenes and functions, which are loaded again for the next case, and say again what they
+   have to say. */
+void studio_forget(struct studio *studio);
 void studio_close(struct studio *studio);
 
 /* Hashes of colours, or whatever is painted in floats, and of hit identities. Devices give NaN any

@@ -32,7 +32,7 @@ int strength_run(struct check *check)
     for (uint32_t i = 0; i < check->suite.count; ++i)
         count += check->wanted[i];
     whit_result result = studio_open(&studio, (enum golden_kind)check->on, &check->settings,
-                                     &check->suite, check->wanted);
+                                     &check->suite, check->wanted, &cli_log);
     for (uint32_t i = 0; result == WHIT_OK && i < check->suite.count; ++i) {
         if (!check->wanted[i])
             continue;
