@@ -29,6 +29,7 @@ check "tiles by GNU parallel" cmp one.exr parallel.exr
 check "tiles by make" cmp one.exr all.exr
 run render scenes/cube.json -o one.png --shadows none -q
 check "lines" cmp one.png bright.png
+check "views of sixteen cameras" test "$(ls view.*.png ids.*.exr | wc -l)" -eq 32
 run render scenes/swarm.json -o one.png --frame 149 -q
 check "frames" cmp one.png swarm.0149.png
 finish
