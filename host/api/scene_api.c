@@ -261,7 +261,8 @@ whit_result whit_scene_choose_camera(const whit_scene *handle, whit_camera *came
     return WHIT_OK;
 }
 
-/* Of an angle that is kept as a float the degrees that a file may have said; both give it back. */
+/* The degrees of an angle that the scene keeps as a float of radians: those with at most seven
+   digits where they round to the same float, as a file most likely had them, else all digits. */
 static double degrees_of(float radians)
 {
     char text[32];

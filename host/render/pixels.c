@@ -48,7 +48,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;
     uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
-    p->unposted = posts ? (uint32_t)(pixels + sums) : 0;
+    p->before_post = posts ? (uint32_t)(pixels + sums) : 0;
     /* What nothing is bound to has no bytes, and is not created. */
     bool lists = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     uint64_t before = renderer->scene_buffers.bytes;
@@ -102,7 +102,7 @@ static void pixels_finish(struct pixel_buffers *p)
 void target_drop_pixels(struct target *target)
 {
     struct buffer *status = target->buffers.status;
-    target->renderer->unposted.whole &= target->probed;
+    target->renderer->before_post.known &= target->probed;
     stages_unbind(&target->stages);
     target->buffers.status = NULL;
     target->renderer->scene_buffers.bytes -= target->buffers.bytes;

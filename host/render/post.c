@@ -6,11 +6,11 @@
 
 enum { BLOCKS_AT_ONCE = 4096 }; /* below the 2^14 that slot_pixel() of the kernels divides right */
 
-static void describe(const struct renderer *renderer, struct unposted *of)
+static void describe(const struct renderer *renderer, struct before_post *of)
 {
     const whit_renderer_params *params = &renderer->params;
     memset(of, 0, sizeof *of); /* it is compared by its bytes */
-    of->whole = true;
+    of->known = true;
     of->frame = renderer->frame;
     memcpy(of->sliders, renderer->sliders, sizeof of->sliders);
     of->samples = params->sampling.count;
@@ -24,7 +24,7 @@ void post_keep(struct renderer *renderer)
 {
     if (renderer->picture.stages.set.posts && readback_is_late(renderer) &&
         !renderer->params.count && !renderer->views.count)
-        describe(renderer, &renderer->unposted);
+        describe(renderer, &renderer->before_post);
 }
 
 /* Rays of post() itself are among those of the picture's statistics. */
@@ -35,11 +35,11 @@ static bool post_traces(const whit_shader *shader)
 
 bool post_can_reuse(const struct renderer *renderer)
 {
-    struct unposted wanted;
+    struct before_post wanted;
     describe(renderer, &wanted);
     return renderer->params.reuse_rays && !renderer->views.count && readback_is_late(renderer) &&
            renderer->picture.stages.set.posts && !post_traces(renderer->params.shader) &&
-           memcmp(&renderer->unposted, &wanted, sizeof wanted) == 0;
+           memcmp(&renderer->before_post, &wanted, sizeof wanted) == 0;
 }
 
 static void dispatch(struct renderer *renderer, struct gpu_chunk *chunk)

@@ -44,7 +44,7 @@ struct queue_buffers {
 struct pixel_buffers {
     struct buffer
         *pixels; /* behind them partial sums of samples, `levels` for each slot; last, from
-                    `unposted` on, what a user's post() is given: all pixels once more */
+                    `before_post` on, what a user's post() is given: all pixels once more */
     struct buffer *ids;
     struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
     struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
@@ -56,8 +56,8 @@ struct pixel_buffers {
     uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
     uint32_t chunk_slots; /* pixels that the queues hold */
     uint32_t levels;
-    uint32_t unposted; /* 0: there is no post() */
-    uint64_t bytes;    /* of all of them, also counted in scene_buffers.bytes */
+    uint32_t before_post; /* 0: there is no post() */
+    uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
 };
 
 /* A kernel, and where rays may wait (SPEC_SETTLES) the one that takes what the first has put on the
@@ -178,9 +178,9 @@ struct target {
     struct buffer *dbg;     /* of a probe with dbg(x): as hook/record.glsl; NULL before the first */
 };
 
-/* What the pixels on the device without post() are of. */
-struct unposted {
-    bool whole; /* false: of nothing any more */
+/* The picture whose colours the device still has as post() of a user's file was given them. */
+struct before_post {
+    bool known; /* false: there is none any more */
     struct gpu_frame frame;
     float sliders[SLIDERS_MAX];
     double time_s;
@@ -203,7 +203,7 @@ struct renderer {
     uint32_t packet_rays; /* of a lane, in these */
     bool few_kernels;     /* one for several stages and materials, since the renderer was made */
     bool wide;            /* there are such nodes on the device */
-    struct unposted unposted;
+    struct before_post before_post;
     struct trace_state trace;
     struct async_state async;
     struct commands *commands;
@@ -275,7 +275,8 @@ WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const c
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
 /* How kernels read the trees, and whether rays walk in packets; upload_scene begins with it. */
 void upload_choose(struct renderer *renderer);
-/* The part of it that goes by the number of rays, anew; before the frame is filled. */
+/* Chooses packets anew for the number of rays that the picture has now; before the frame is filled.
+ */
 WHIT_CHECK whit_result upload_choose_packets(struct renderer *renderer);
 /* Makes the nodes of eight that packets need on the host, and says what stack they take. */
 WHIT_CHECK whit_result upload_widen(struct renderer *renderer);
@@ -482,7 +483,7 @@ uint32_t views_stride(const struct renderer *renderer);
 uint32_t views_picture_rows(const struct renderer *renderer);
 /* Rows that its images have. */
 uint32_t views_image_rows(const struct renderer *renderer);
-/* Where each of its lenses is met by the sample that the chunk is for. */
+/* Writes for each view of the chunk where the sample in hand passes through its lens. */
 WHIT_CHECK whit_result views_take_sample(struct renderer *renderer, const struct gpu_chunk *chunk);
 /* Back to the picture of one camera; nothing where it is that. */
 WHIT_CHECK whit_result views_leave(struct renderer *renderer);
@@ -524,11 +525,13 @@ WHIT_CHECK whit_result steps_give(const struct renderer *renderer, uint32_t spac
 /* The picture in steps, with params.step after each but the last. */
 WHIT_CHECK whit_result steps_render(struct renderer *renderer, struct progress *progress);
 
-/* post.c: post() of a user's file over the pixels that the last picture has without it. Whether
-   they are those of the picture that is asked for. */
+/* post.c: whether the colours that post() was given last are those of the picture that is asked
+ * for.
+ */
 bool post_can_reuse(const struct renderer *renderer);
+/* Calls post() for each pixel once more, where post_can_reuse. */
 WHIT_CHECK whit_result post_render(struct renderer *renderer);
-/* The picture is drawn: notes what it is of. */
+/* After a picture was drawn: notes of which view, samples and sliders its colours are. */
 void post_keep(struct renderer *renderer);
 
 /* retarget.c: buffers of pixels for the picture as it is now, in place of those that there are. */

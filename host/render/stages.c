@@ -171,7 +171,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     struct stages_job was, job;
     struct gpu_spec spec;
     bool few = variant_few_kernels(target);
-    renderer->unposted.whole &= stages_are_made(target);
+    renderer->before_post.known &= stages_are_made(target);
     if (!stages_are_made(target))
         return WHIT_OK;
     renderer->params.shader = before;
@@ -185,7 +185,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
         job.wanted[i] =
             job.wanted[i] && (!same || !was.wanted[i] || is_other(&was.stages[i], &job.stages[i]));
     for (int i = 0; i < STAGE_COUNT; ++i)
-        renderer->unposted.whole &= !job.wanted[i] || i == STAGE_POST;
+        renderer->before_post.known &= !job.wanted[i] || i == STAGE_POST;
     whit_result result = stages_job_run(renderer->device, &job, &made);
     if (result != WHIT_OK || !same)
         stage_set_finish(set);

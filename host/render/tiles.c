@@ -199,7 +199,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
     chunk->samples = samples;
     chunk->sums_row = renderer->params.width * p->band_rows;
     chunk->sums_step = p->chunk_slots;
-    chunk->unposted = p->unposted;
+    chunk->before_post = p->before_post;
 }
 
 static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
@@ -335,7 +335,7 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
     return render_pass(renderer, params->sampling.count, progress);
 }
 
-/* What is shown of it on the way is all of it. */
+/* Draws the picture from the colours of the last one. Its only step shows all pixels. */
 static whit_result render_from_rays(struct renderer *renderer)
 {
     whit_result result = post_render(renderer);
@@ -372,7 +372,7 @@ whit_result render_all(struct renderer *renderer)
         result = renderer_compile(renderer);
     if (result == WHIT_OK && post_can_reuse(renderer))
         return render_from_rays(renderer);
-    renderer->unposted.whole = false;
+    renderer->before_post.known = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->color, params->width, rows, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))

@@ -583,7 +583,7 @@ void pass_finish(struct pass *pass)
 
 void passes_finish(struct renderer *renderer)
 {
-    renderer->unposted.whole = false;
+    renderer->before_post.known = false;
     renderer->async.general = false;
     stage_set_finish(&renderer->picture.stages.set);
     stage_set_finish(&renderer->probe.stages.set);

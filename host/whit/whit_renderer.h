@@ -101,8 +101,10 @@ typedef struct whit_renderer_params {
     /* The renderer is for many pictures: kernels that take longer to make are right where they draw
        faster. */
     bool many_pictures;
-    /* Where nothing but what post() of `shader` does is another since the last picture, that one's
-       rays are taken, and its times stand in whit_stats. The picture is the same. */
+    /* Where the renderer's last picture differs from the one asked for in what post() of `shader`
+       does, and in no other kernel, slider or parameter, no ray is traced: post() is given the
+       colours of the last picture once more. The picture is the same; whit_stats keeps the times of
+       the last one. */
     bool reuse_rays;
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;

@@ -229,7 +229,7 @@ struct gpu_chunk {
     gpu_uint sums_row, sums_step; /* of the pixels: slot 0's first partial sum, from one to the next */
     gpu_uint blocks_x; /* in a row of what is drawn */
     gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
-    gpu_uint unposted; /* HOOK_POST: of the pixels, the first one as it is without post() */
+    gpu_uint before_post; /* HOOK_POST: of the pixels, the first one as it is without post() */
     gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_chunk, 104)

@@ -27,7 +27,7 @@ void main()
     hook_records = alive; // it is called for all samples together
     hook_id = id;
     begin_hook();
-    vec3 color = post(ivec2(hook_pixel), pixels[chunk.unposted + pixel].rgb);
+    vec3 color = post(ivec2(hook_pixel), pixels[chunk.before_post + pixel].rgb);
     end_hook(alive);
     if (alive) {
         if (any(isnan(color)) || any(isinf(color)))

@@ -112,7 +112,7 @@ void resolve_pixel(uint id)
     bool posted = (SPEC_HOOKS & HOOK_POST) != 0u; // by a kernel that comes behind this one
     if (last && !posted && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
-    pixels[last ? (posted ? chunk.unposted : 0u) + pixel : row] = total;
+    pixels[last ? (posted ? chunk.before_post : 0u) + pixel : row] = total;
 }
 
 void main()

@@ -8,7 +8,8 @@ struct batch_request {
     bool resume, json;
 };
 
-/* What was made anew, and how long that took. */
+/* How often the command loaded a scene, built trees and made a renderer for its lines, and how long
+   all of that took. */
 struct batch_made {
     uint32_t scenes, trees, renderers;
     double load_ms, build_ms, device_ms;

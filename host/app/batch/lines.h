@@ -6,13 +6,13 @@
 
 enum { LINE_BYTES_MAX = 64 << 10 };
 
-/* What lines have in common: their scene, and trees and kernels over it. */
+/* Lines are grouped by their scene, and within one scene by their trees and kernels. */
 enum { LINE_SCENE, LINE_KERNEL, LINE_GROUPS };
 
-/* Where a line stands in the text, from byte `at` on. */
+/* A line of the text: `bytes` bytes from byte `at` on, without its end. */
 struct line_place {
     size_t at, bytes;
-    uint64_t group[LINE_GROUPS]; /* a number that those lines have that are of the same */
+    uint64_t group[LINE_GROUPS]; /* equal in lines of one LINE_* group */
     uint32_t number;
     bool left; /* it is still to be drawn */
 };

@@ -163,7 +163,7 @@ whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer)
                : whit_reference_create(job->accel, &drawing->params, 0, &drawing->reference);
 }
 
-/* What is drawn now, by the renderer of the case before where that can be. */
+/* Gives the drawing a renderer: that of the case before where its kernels serve, else a new one. */
 static whit_result make_renderer(struct studio *studio, struct drawing *drawing, bool counts)
 {
     const struct job *job = &drawing->job;

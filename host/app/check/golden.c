@@ -13,7 +13,7 @@
 
 enum { GOLDEN_BYTES_MAX = 64 << 20 };
 
-/* What the first line begins with. */
+/* The first line of a golden begins with these words. */
 static const char *const heads[] = {[GOLDEN_OF_DEVICE] = "whit check golden",
                                     [GOLDEN_OF_REFERENCE] = "whit check reference golden"};
 
@@ -190,7 +190,8 @@ static char *behind(char *line, const char *word)
     return strncmp(line, word, length) == 0 && line[length] == ' ' ? line + length + 1 : NULL;
 }
 
-/* Of lines that a merge has kept of both sides those that say the same are one. */
+/* Refuses a second line of a case that says something else than the first: two people have accepted
+   the case differently. Lines that say the same count as one. */
 static bool refuse_other(const struct reading *reading, const struct golden_case *item)
 {
     return refuse(

@@ -12,7 +12,7 @@
 
 enum { GOLDEN_REASON_MAX = 120, GOLDEN_FORMAT = 2 };
 
-/* What drew the pictures: the double reference gives other bits than devices do. */
+/* Devices and the double reference draw pictures of other bits, so each has goldens of its own. */
 enum golden_kind { GOLDEN_OF_DEVICE, GOLDEN_OF_REFERENCE };
 
 /* What a picture was made of: a mesh, a material, a light of a scene. */
