@@ -298,7 +298,8 @@ static void make_far(const struct hard_scene *hard, uint64_t *state, struct hard
     aim(out, target.point);
 }
 
-/* One float further along `side`, as next_float of shaders/lib/spawn.glsl. */
+/* One float further along `side`, as next_float of shaders/lib/spawn.glsl; but from 0 the least
+   denormal, which is harder for the tests of the ray. */
 static float step_beyond(float x, float side)
 {
     return side == 0.0f ? x : nextafterf(x, side > 0.0f ? INFINITY : -INFINITY);

@@ -104,6 +104,9 @@ change(shaders/lib/turn.glsl [[again && gl_WorkGroupID.y == 0u]] [[again]])
 mutation(offset_four_times_too_far render_shadow RED narrow_gaps_stay_dark)
 change(shaders/bind/surface.glsl [[s.error = rounding_bound(7.0)]] [[s.error = rounding_bound(28.0)]])
 
+mutation(origins_next_to_zero render_probe RED surfaces_let_rays_pass)
+change(shaders/lib/spawn.glsl [[* SPAWN_LEAST]] [[* 0.0]])
+
 mutation(t_min_in_world_units render_scale RED pictures_do_not_depend_on_the_unit)
 change(shaders/kernel/closest.comp [[(TRAVERSE_CLOSEST, 0.0,]] [[(TRAVERSE_CLOSEST, 1e-3,]])
 
