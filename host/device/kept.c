@@ -1,6 +1,8 @@
 /* Pipelines that a device keeps, so that who asks for the same one again gets it at once: a driver
    takes long for one, even out of its cache. */
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/hash.h"
 #include "device/vulkan.h"
@@ -11,6 +13,20 @@ enum { KEPT_MAX = 128 };
 void device_keep_pipelines(struct device *device)
 {
     device->keeps = true;
+}
+
+static struct pipeline *take(struct device *device, size_t key_of_pipeline, const uint64_t key[2])
+{
+    struct pipeline *found = NULL;
+    pthread_mutex_lock(&device->kept_lock);
+    for (struct pipeline *i = device->kept; i && !found; i = i->next) {
+        if (memcmp((const char *)i + key_of_pipeline, key, 2 * sizeof *key) == 0)
+            found = i;
+    }
+    if (found)
+        ++found->users;
+    pthread_mutex_unlock(&device->kept_lock);
+    return found;
 }
 
 /* Of all that decides what is made. Two hashes of 64 bits: a wrong kernel is a wrong picture. */
@@ -32,20 +48,28 @@ bool kept_take(struct device *device, const struct pipeline_params *params, bool
                struct pipeline **out)
 {
     uint64_t key[2];
-    struct pipeline *found = NULL;
     if (!device->keeps || !params->spirv)
         return false;
     key_of(params, specializes, key);
-    pthread_mutex_lock(&device->kept_lock);
-    for (struct pipeline *i = device->kept; i && !found; i = i->next) {
-        if (i->key[0] == key[0] && i->key[1] == key[1])
-            found = i;
-    }
-    if (found)
-        ++found->users;
-    pthread_mutex_unlock(&device->kept_lock);
-    *out = found;
-    return found != NULL;
+    *out = take(device, offsetof(struct pipeline, key), key);
+    return *out != NULL;
+}
+
+struct pipeline *kept_take_code(struct pipeline *made, const struct pipeline_params *params,
+                                const uint32_t *words, size_t word_count)
+{
+    const struct pipeline_params as_code = {
+        .spirv = words,
+        .spirv_bytes = word_count * sizeof *words,
+        .bindings = params->bindings,
+        .binding_count = params->binding_count,
+        .push_bytes = params->push_bytes,
+        .asks_statistics = params->asks_statistics,
+    };
+    if (!made->device->keeps)
+        return NULL;
+    key_of(&as_code, true, made->code_key);
+    return take(made->device, offsetof(struct pipeline, code_key), made->code_key);
 }
 
 /* Takes out of the list, and gives, the oldest one without a user. */

@@ -270,13 +270,21 @@ static bool copy_bindings(struct pipeline *pipeline, const struct pipeline_param
     return true;
 }
 
-static whit_result fill_pipeline(struct pipeline *pipeline, const struct pipeline_params *params)
+/* `same`: a kept pipeline of the same code, in whose place none is made. */
+static whit_result fill_pipeline(struct pipeline *pipeline, const struct pipeline_params *params,
+                                 struct pipeline **same)
 {
     struct kernel_words kernel = {0};
     whit_result result = check_kernel(pipeline, params);
     if (result != WHIT_OK)
         return result;
     result = prepare_kernel(pipeline, params, &kernel);
+    if (result == WHIT_OK && pipeline->info.specialized)
+        *same = kept_take_code(pipeline, params, kernel.specialized, kernel.word_count);
+    if (*same) {
+        kernel_words_finish(&kernel);
+        return WHIT_OK;
+    }
     if (result == WHIT_OK)
         result = check_limits(pipeline);
     if (result == WHIT_OK)
@@ -295,7 +303,7 @@ whit_result pipeline_create(struct device *device, const struct pipeline_params 
     *out = NULL;
     if (kept_take(device, params, !specializing_is_off(), out))
         return WHIT_OK;
-    struct pipeline *pipeline = array_alloc_zeroed(1, sizeof *pipeline);
+    struct pipeline *same = NULL, *pipeline = array_alloc_zeroed(1, sizeof *pipeline);
     whit_result result = pipeline ? WHIT_OK : WHIT_ERROR_MEMORY;
     if (pipeline) {
         pipeline->device = device;
@@ -308,9 +316,10 @@ whit_result pipeline_create(struct device *device, const struct pipeline_params 
     if (result != WHIT_OK)
         log_error(&device->log, "out of memory for a pipeline");
     if (result == WHIT_OK)
-        result = fill_pipeline(pipeline, params);
-    if (result != WHIT_OK) {
+        result = fill_pipeline(pipeline, params, &same);
+    if (result != WHIT_OK || same) {
         pipeline_destroy(pipeline);
+        *out = same;
         return result;
     }
     kept_add(pipeline, params, !specializing_is_off());

@@ -103,7 +103,7 @@ struct pipeline {
     /* Of one that the device keeps: */
     bool kept;
     uint32_t users;
-    uint64_t key[2];
+    uint64_t key[2], code_key[2]; /* of params; of what they make of the kernel, 0 where unknown */
     struct pipeline *next;
 };
 
@@ -125,6 +125,11 @@ whit_result instance_select(struct device *device, const char *selector);
 bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t *family,
                            uint32_t *timestamp_bits);
 
+/* kept.c: one whose params make the same code of the kernel as those of `made`, with one user more;
+   NULL: the device keeps none. Remembers the code's key in `made`. */
+WHIT_CHECK struct pipeline *kept_take_code(struct pipeline *made,
+                                           const struct pipeline_params *params,
+                                           const uint32_t *words, size_t word_count);
 /* kept.c: a pipeline of the same params, with one user more; false: the device keeps none.
    `specializes`: whether constants are filled in before the driver sees the kernel. */
 bool kept_take(struct device *device, const struct pipeline_params *params, bool specializes,

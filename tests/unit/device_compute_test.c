@@ -473,7 +473,7 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
     struct device *keeper = device_open(&said, true);
     const uint32_t spec[] = {64, 3, 7}, copy[] = {64, 3, 7};
     const struct pipeline_params params = affine_params(spec), same = affine_params(copy);
-    struct pipeline *held, *again, *before = NULL;
+    struct pipeline *held, *again;
     device_keep_pipelines(keeper);
     assert_int_equal(pipeline_create(keeper, &params, &held), WHIT_OK);
     assert_int_equal(pipeline_create(keeper, &same, &again), WHIT_OK);
@@ -492,9 +492,7 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
         rewritten.rewrite = copy_kernel;
         rewritten.rewrite_as = as;
         assert_int_equal(pipeline_create(keeper, &rewritten, &again), WHIT_OK);
-        assert_ptr_not_equal(held, again);
-        assert_ptr_not_equal(before, again);
-        before = again;
+        assert_ptr_equal(held, again); /* of the same code */
         pipeline_destroy(again);
     }
     for (uint32_t i = 0; i < MANY; ++i)
