@@ -99,21 +99,21 @@ static uint32_t as_bits(float value)
     return bits;
 }
 
-/* Of the float `found` beside the exact value; infinite where another kind of number is right. */
+/* Of the float `found` beside the exact value, 0.5 or less for the nearest one; infinite where
+   another kind of number is right. */
 static double error_ulp(float found, double exact)
 {
     float nearest = (float)exact;
     if (isnan(exact) || isnan(found))
         return isnan(exact) && as_bits(found) == 0x7fc00000 ? 0.0 : INFINITY;
-    if (as_bits(found) == as_bits(nearest) && (exact == 0.0 || isinf(nearest)))
-        return 0.0;
+    if (as_bits(found) == as_bits(nearest))
+        return exact == 0.0 || isinf(nearest) ? 0.0 : 0.5;
     if (isinf(exact) || exact == 0.0 || signbit(found) != signbit(nearest))
         return INFINITY;
     double of = isinf(found) ? copysign(0x1p128, (double)found) : (double)found;
     int exponent;
     (void)frexp(exact, &exponent);
-    double error = fabs(of - exact) / ldexp(1.0, exponent - 24 < -149 ? -149 : exponent - 24);
-    return as_bits(found) == as_bits(nearest) ? fmin(error, 0.5) : error;
+    return fabs(of - exact) / ldexp(1.0, exponent - 24 < -149 ? -149 : exponent - 24);
 }
 
 /* The library's kernel for one function, with the device's own division and without. */
