@@ -83,14 +83,18 @@ whit_result process_start(struct process *process)
 /* The last line of what it said, for the error. */
 static void last_line(const struct process *process, char *line, size_t bytes)
 {
+    static const char head[] = "whit: error: "; /* which the error that quotes the line has too */
     char path[BENCH_PATH], next[256];
+    bool is_whole = process->err && process->err[0] == '/';
     line[0] = 0;
-    snprintf(path, sizeof path, "%s/%s", process->folder ? process->folder : ".", process->err);
+    snprintf(path, sizeof path, "%s%s%s", is_whole || !process->folder ? "" : process->folder,
+             is_whole || !process->folder ? "" : "/", process->err ? process->err : "");
     FILE *from = process->err ? fopen(path, "r") : NULL;
     while (from && fgets(next, sizeof next, from)) {
         next[strcspn(next, "\n")] = 0;
+        size_t skipped = strncmp(next, head, sizeof head - 1) == 0 ? sizeof head - 1 : 0;
         if (next[0])
-            snprintf(line, bytes, ": %s", next);
+            snprintf(line, bytes, ": %s", next + skipped);
     }
     if (from)
         fclose(from);
@@ -108,11 +112,15 @@ static whit_result judge_end(const struct process *process, int status)
     if (process->is_tried)
         return WHIT_ERROR_FAILED;
     last_line(process, said, sizeof said);
-    if (WIFEXITED(status))
+    bool no_device = is_whit && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_DEVICE;
+    if (no_device && strcmp(process->arguments[1], "view") == 0) /* the bench has a device */
+        cli_error("this bench needs a window, and `whit view` opens none%s; where there is no "
+                  "screen, `xvfb-run -s '-screen 0 1280x1024x24' whit bench ...` makes one up",
+                  said);
+    else if (WIFEXITED(status))
         cli_error("`%s` ended with exit code %d%s", name, WEXITSTATUS(status), said);
     else
         cli_error("`%s` died of signal %d%s", name, WTERMSIG(status), said);
-    bool no_device = is_whit && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_DEVICE;
     return no_device ? WHIT_ERROR_NO_DEVICE : WHIT_ERROR_FAILED;
 }
 

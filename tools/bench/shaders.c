@@ -47,8 +47,19 @@ static const char looping[] =
     "    return sum * 0.05; }\n";
 static const char broken[] = "vec3 miss(vec3 dir) { return vec3(%.9g) + dirr; }\n";
 
+/* What saves must reach, seconds: to the first changed picture, by what the file does; to the whole
+   one, by what is drawn. Nothing is asked of other scenes. */
+static const double FIRST_MUST_S = 0.15, FIRST_TRACES_MUST_S = 0.35;
+static const double INTERSECT_MUST_S = 1.2;
+static const struct stage_must {
+    const char *scene;
+    double whole_s;
+} musts[] = {{"34k", 0.6}, {"default", 1.2}};
+enum { MUSTS = sizeof musts / sizeof *musts };
+
 struct saves {
     struct bench *bench;
+    double reached_ms[MUSTS][EDITS][2]; /* medians to the first and the whole picture; 0: not run */
     struct bench_scene loaded;
     whit_accel *accel;
     whit_shader_compiler *compiler;
@@ -326,6 +337,17 @@ static void put_row(struct table *table, const char *scene, const struct edited 
     table_keep(table, row);
 }
 
+static void keep_reached(struct saves *s, const char *scene, uint32_t edit,
+                         const struct save_times *times)
+{
+    for (int i = 0; i < MUSTS; ++i) {
+        if (strcmp(musts[i].scene, scene) == 0) {
+            s->reached_ms[i][edit][0] = quantile(&times->first, 0.5);
+            s->reached_ms[i][edit][1] = quantile(&times->whole, 0.5);
+        }
+    }
+}
+
 /* Errors are those of the first function alone: the file that is broken is the same. */
 static whit_result measure_saves(struct saves *s, struct table *table, const char *scene,
                                  const char *path)
@@ -334,8 +356,10 @@ static whit_result measure_saves(struct saves *s, struct table *table, const cha
     for (uint32_t i = 0; result == WHIT_OK && i < EDITS; ++i) {
         struct save_times times = {.first = {.count = 0}};
         result = view_saves(s, path, i, i == 0, &times);
-        if (result == WHIT_OK)
+        if (result == WHIT_OK) {
             put_row(table, scene, &edits[i], &times);
+            keep_reached(s, scene, i, &times);
+        }
     }
     return result;
 }
@@ -408,6 +432,39 @@ static whit_result run_scene(struct saves *s, struct table *table, const char *s
     return result;
 }
 
+/* What was reached of one function in one scene. */
+static void put_must(struct table *table, const struct stage_must *must, const struct edited *edit,
+                     const double reached_ms[2])
+{
+    static const char *const what[2] = {"first", "whole"};
+    bool intersects = strcmp(edit->label, "intersect") == 0;
+    const double must_s[2] = {edit->traces ? FIRST_TRACES_MUST_S : FIRST_MUST_S,
+                              intersects ? INTERSECT_MUST_S : must->whole_s};
+    for (int i = 0; i < 2; ++i) {
+        char name[80];
+        snprintf(name, sizeof name, "%s, %s: %s", must->scene, edit->label, what[i]);
+        table_goal(table, "save", name, reached_ms[i] * 1e-3, "s",
+                   (struct goal){must_s[i], must_s[i], false});
+    }
+}
+
+static whit_result judge(const struct saves *s)
+{
+    static const char *const heads[] = {"save", NULL};
+    struct table table;
+    bool has_any = false;
+    for (int i = 0; i < MUSTS; ++i)
+        has_any |= s->reached_ms[i][0][0] > 0.0;
+    if (!has_any)
+        return WHIT_OK;
+    table_begin(&table, s->bench, "shaders_goals", heads, true, 1);
+    for (int i = 0; i < MUSTS; ++i) {
+        for (uint32_t k = 0; k < EDITS && s->reached_ms[i][k][0] > 0.0; ++k)
+            put_must(&table, &musts[i], &edits[k], s->reached_ms[i][k]);
+    }
+    return table_end(&table, "What a save must reach, medians", WHIT_OK);
+}
+
 whit_result bench_shaders(struct bench *bench)
 {
     static const char *const usual[] = {"34k", "default"};
@@ -438,6 +495,9 @@ whit_result bench_shaders(struct bench *bench)
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
         result = run_scene(s, &table, scenes[i]);
     whit_shader_compiler_destroy(s->compiler);
+    result = table_end(&table, "Saves of a shader", result);
+    if (result == WHIT_OK)
+        result = judge(s);
     free(s);
-    return table_end(&table, "Saves of a shader", result);
+    return result;
 }

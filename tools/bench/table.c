@@ -124,6 +124,18 @@ void table_figure(struct table *table, const struct figure *figure, json_t *row)
         table->figures[table->figure_count++] = *figure;
 }
 
+void table_goal(struct table *table, const char *key, const char *name, double value,
+                const char *unit, struct goal goal)
+{
+    struct figure figure = {.unit = unit, .value = value, .goal = goal};
+    json_t *row = document_object();
+    snprintf(figure.name, sizeof figure.name, "%s", name);
+    document_text(row, key, name);
+    table_row(table);
+    table_cell(table, "%s", name);
+    table_figure(table, &figure, row);
+}
+
 void table_say(struct table *table, const char *format, ...)
 {
     if (table->said_count == TABLE_NOTES_MAX)

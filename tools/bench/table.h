@@ -43,6 +43,9 @@ void table_keep(struct table *table, json_t *row);
 /* The same with the figure of the row, and its verdict in the last cells. NAN: there is nothing to
    compare with. */
 void table_figure(struct table *table, const struct figure *figure, json_t *row);
+/* A row of a name, which its JSON has as `key`, and a figure. */
+void table_goal(struct table *table, const char *key, const char *name, double value,
+                const char *unit, struct goal goal);
 /* A sentence below the table. */
 void table_say(struct table *table, const char *format, ...) WHIT_PRINTF(2, 3);
 /* A peer or a row that cannot be had here. */

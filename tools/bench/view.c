@@ -42,12 +42,14 @@ static whit_result write_replay(const struct bench *bench, bool only_first)
     return result;
 }
 
-/* Runs `whit view`; what it prints goes into the file `out`. */
+/* Runs `whit view`; what it prints goes into the file `out`, and an error into the bench's own. */
 static whit_result run_viewer(const struct bench *bench, const struct view_case *c,
                               const char *replay, const char *out)
 {
     struct process process = {.program = bench->whit, .out = out};
-    char scene[BENCH_PATH], size[32];
+    char scene[BENCH_PATH], messages[BENCH_PATH], size[32];
+    bench_file(bench, "messages", messages);
+    process.err = messages;
     whit_result result = bench_find(bench, c->scene, scene);
     if (result != WHIT_OK)
         return result;
@@ -170,18 +172,6 @@ static void say_circumstances(struct table *table)
               sysconf(_SC_NPROCESSORS_ONLN));
 }
 
-static void put_goal(struct table *table, const char *name, double value, const char *unit,
-                     struct goal goal)
-{
-    struct figure figure = {.unit = unit, .value = value, .goal = goal};
-    json_t *row = document_object();
-    snprintf(figure.name, sizeof figure.name, "%s", name);
-    document_text(row, "viewer", name);
-    table_row(table);
-    table_cell(table, "%s", name);
-    table_figure(table, &figure, row);
-}
-
 enum { CUBE, SHADOWS_34K, FULL_34K, FULL_54K, DEFAULT, CASES };
 
 static whit_result judge(struct bench *bench, const struct view_case *cases)
@@ -190,12 +180,13 @@ static whit_result judge(struct bench *bench, const struct view_case *cases)
     const json_t *whole = cases[FULL_34K].whole, *moving = cases[DEFAULT].moving;
     struct table table;
     table_begin(&table, bench, "view_goals", heads, true, 1);
-    put_goal(&table, "34k, whole pictures", rate_of(number_of(whole, "whole_ms", "median")),
-             "a second", (struct goal){8.0, 17.0, true});
-    put_goal(&table, "default moving, size 1/N", number_of(moving, "divisor", "median"), "",
-             (struct goal){6.0, 4.0, false});
-    put_goal(&table, "default moving", rate_of(number_of(moving, "gap_ms", "median")), "a second",
-             (struct goal){30.0, 30.0, true});
+    table_goal(&table, "viewer", "34k, whole pictures",
+               rate_of(number_of(whole, "whole_ms", "median")), "a second",
+               (struct goal){8.0, 17.0, true});
+    table_goal(&table, "viewer", "default moving, size 1/N", number_of(moving, "divisor", "median"),
+               "", (struct goal){6.0, 4.0, false});
+    table_goal(&table, "viewer", "default moving", rate_of(number_of(moving, "gap_ms", "median")),
+               "a second", (struct goal){30.0, 30.0, true});
     return table_end(&table, "What the viewer must reach", WHIT_OK);
 }
 
