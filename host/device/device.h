@@ -160,6 +160,9 @@ WHIT_CHECK whit_result pipeline_get_statistics(const struct pipeline *pipeline,
                                                whit_statistic *statistics, uint32_t *count);
 /* The same without a pipeline or a device. False when the kernel cannot be specialized. */
 bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info);
+/* Whether both are the same code once their constants are filled in; false where one cannot be
+   specialized. Takes some ms. */
+bool pipeline_is_same(const struct pipeline_params *a, const struct pipeline_params *b);
 
 /* buffers[i] goes to binding i, NULL where the params have NONE, and at will where the kernel does
    not use it. The buffers are borrowed until

@@ -55,6 +55,23 @@ static bool mark_body(struct evaluation *e)
     return fine;
 }
 
+/* Words from `first` to below `last` are the ids that a type, a constant or a global variable is
+   made of, besides its own and its type's. */
+static void find_parts(const uint32_t *at, uint32_t *first, uint32_t *last)
+{
+    uint32_t op = spirv_op(at);
+    *first = 2;
+    *last = spirv_length(at);
+    if (op < OP_TYPE_VOID || op > OP_TYPE_FUNCTION)
+        *first = op == OP_VARIABLE ? 4 : op == OP_CONSTANT_COMPOSITE ? 3 : *last;
+    else if (op == OP_TYPE_BOOL || op == OP_TYPE_INT || op == OP_TYPE_FLOAT)
+        *first = *last;
+    else if (op == OP_TYPE_VECTOR || op == OP_TYPE_MATRIX || op == OP_TYPE_IMAGE)
+        *last = 3;
+    else if (op == OP_TYPE_POINTER)
+        *first = 3;
+}
+
 /* Marks as live what live types, constants and global variables are made of. Constants decorated
    with BuiltIn are always live: mark_roots marks them. */
 static void mark_globals(struct evaluation *e)
@@ -64,20 +81,13 @@ static void mark_globals(struct evaluation *e)
         e->failed = !ARRAY_PUSH(at, count, capacity, word) || e->failed;
     for (uint32_t i = count; !e->failed && i-- > 0;) {
         const uint32_t *instruction = e->globals.words + at[i];
-        uint32_t op = spirv_op(instruction), first = 2, last = spirv_length(instruction);
+        uint32_t op = spirv_op(instruction), first, last;
         bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
         if (!e->results[instruction[is_type ? 1 : 2]].live)
             continue;
-        if (!is_type) {
+        if (!is_type)
             e->results[instruction[1]].live = true;
-            first = op == OP_VARIABLE ? 4 : op == OP_CONSTANT_COMPOSITE ? 3 : last;
-        } else if (op == OP_TYPE_BOOL || op == OP_TYPE_INT || op == OP_TYPE_FLOAT) {
-            first = last;
-        } else if (op == OP_TYPE_VECTOR || op == OP_TYPE_MATRIX || op == OP_TYPE_IMAGE) {
-            last = 3;
-        } else if (op == OP_TYPE_POINTER) {
-            first = 3;
-        }
+        find_parts(instruction, &first, &last);
         for (uint32_t k = first; k < last; ++k) {
             if (instruction[k] < e->source_count)
                 e->results[instruction[k]].live = true;
@@ -188,6 +198,80 @@ static void mark_roots(struct evaluation *e, const uint32_t *function)
     }
 }
 
+/* ---- Numbers of ids ---- */
+
+/* The number of an id by the one that it had, 0 where it was not met yet, and the next number. */
+struct renumbering {
+    uint32_t *numbers, next;
+};
+
+static void renumber(struct renumbering *r, uint32_t *at, uint32_t first, uint32_t last)
+{
+    for (uint32_t i = first; i < last; ++i) {
+        uint32_t *number = &r->numbers[at[i]];
+        *number = *number ? *number : r->next++;
+        at[i] = *number;
+    }
+}
+
+/* Of what stands in front of the function; false: it is none of that. */
+static bool renumber_front(struct renumbering *r, uint32_t *at)
+{
+    uint32_t op = spirv_op(at), first, last;
+    bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
+    if (op == OP_ENTRY_POINT) {
+        for (first = 3; at[first] >> 24 != 0;)
+            ++first; /* its name */
+        renumber(r, at, 2, 3);
+        renumber(r, at, first + 1, spirv_length(at));
+    } else if (op == OP_EXT_INST_IMPORT || op == OP_EXECUTION_MODE || op == OP_DECORATE ||
+               op == OP_MEMBER_DECORATE) {
+        renumber(r, at, 1, 2);
+    } else if (is_type || (op >= OP_CONSTANT_TRUE && op <= OP_SPEC_CONSTANT_OP)) {
+        find_parts(at, &first, &last);
+        renumber(r, at, 1, is_type ? 2 : 3);
+        renumber(r, at, first, last);
+    } else {
+        return op == OP_CAPABILITY || op == OP_EXTENSION || op == OP_MEMORY_MODEL;
+    }
+    return true;
+}
+
+static void renumber_function(struct renumbering *r, uint32_t *at)
+{
+    uint32_t op = spirv_op(at);
+    struct spirv_shape shape = spirv_shape(op);
+    uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
+    if (op == OP_FUNCTION)
+        renumber(r, at, 4, 5);
+    if (shape.result || op == OP_FUNCTION)
+        renumber(r, at, 1, 3);
+    if (op == OP_LABEL)
+        renumber(r, at, 1, 2);
+    for (uint32_t i = head; i < spirv_length(at); ++i) {
+        if (spirv_operand_is_id(shape, i - head))
+            renumber(r, at, i, i + 1);
+    }
+}
+
+/* Ids get numbers in the order in which they stand, so that a kernel has the same words whatever
+   was taken out of it. */
+static void renumber_ids(struct evaluation *e, struct word_list *out)
+{
+    struct renumbering r = {array_alloc_zeroed(e->result_count, sizeof *r.numbers), 1};
+    if (!r.numbers) {
+        e->failed = true;
+        return;
+    }
+    for (uint32_t word = SPIRV_HEADER_WORDS; word < out->count;
+         word += spirv_length(out->words + word)) {
+        if (!renumber_front(&r, out->words + word))
+            renumber_function(&r, out->words + word);
+    }
+    out->words[3] = r.next;
+    free(r.numbers);
+}
+
 uint32_t *evaluate_write(struct evaluation *e, size_t *word_count)
 {
     const uint32_t *function = e->words + e->source[e->entry].at;
@@ -211,11 +295,12 @@ uint32_t *evaluate_write(struct evaluation *e, size_t *word_count)
     put_live(e, &out, &e->variables);
     put_body(e, &out);
     put(e, &out, &end, 1);
+    if (!e->failed)
+        renumber_ids(e, &out);
     if (e->failed) {
         free(out.words);
         return NULL;
     }
-    out.words[3] = e->result_count;
     *word_count = out.count;
     return out.words;
 }

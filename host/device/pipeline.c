@@ -176,13 +176,19 @@ static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeli
     return WHIT_OK;
 }
 
+/* False: it cannot be. Finished by kernel_words_finish either way. */
+static bool specialize_alone(const struct pipeline_params *params, struct kernel_words *kernel)
+{
+    char why[REWRITE_WHY_BYTES];
+    return rewrite_kernel(params, kernel, why) == WHIT_OK &&
+           specialize_kernel(params, kernel) == WHIT_OK;
+}
+
 bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *info)
 {
     struct kernel_words kernel;
-    char why[REWRITE_WHY_BYTES];
     *info = (struct pipeline_info){0};
-    bool counted = rewrite_kernel(params, &kernel, why) == WHIT_OK &&
-                   specialize_kernel(params, &kernel) == WHIT_OK;
+    bool counted = specialize_alone(params, &kernel);
     kernel_words_finish(&kernel);
     if (!counted)
         return false;
@@ -192,6 +198,17 @@ bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *
         .bindings = kernel.info.bindings,
     };
     return true;
+}
+
+bool pipeline_is_same(const struct pipeline_params *a, const struct pipeline_params *b)
+{
+    struct kernel_words of_a, of_b;
+    bool same = specialize_alone(a, &of_a) & specialize_alone(b, &of_b);
+    same = same && of_a.word_count == of_b.word_count &&
+           memcmp(of_a.specialized, of_b.specialized, of_a.word_count * sizeof(uint32_t)) == 0;
+    kernel_words_finish(&of_a);
+    kernel_words_finish(&of_b);
+    return same;
 }
 
 static whit_result make_module(const struct pipeline *pipeline,

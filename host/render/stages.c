@@ -155,12 +155,16 @@ whit_result stages_take(struct target *target, struct stage_set *set)
     return stages_bind(target);
 }
 
-/* Whether a stage is another kernel. */
-static bool is_other(const struct variant_job *a, const struct variant_job *b)
+/* Whether a stage is another kernel. `closely`: of other words it is asked what is left of them; of
+   one that leaves rays to a second kernel that would not tell about both. */
+static bool is_other(const struct variant_job *a, const struct variant_job *b, bool closely)
 {
+    struct gpu_spec second;
+    bool same_words = a->params.spirv_bytes == b->params.spirv_bytes &&
+                      memcmp(a->params.spirv, b->params.spirv, a->params.spirv_bytes) == 0;
     return memcmp(&a->spec, &b->spec, sizeof a->spec) != 0 ||
-           a->params.spirv_bytes != b->params.spirv_bytes ||
-           memcmp(a->params.spirv, b->params.spirv, a->params.spirv_bytes) != 0;
+           (!same_words && !(closely && !variant_defers(&b->params, &second) &&
+                             pipeline_is_same(&a->params, &b->params)));
 }
 
 whit_result stages_replace(struct target *target, const whit_shader *before)
@@ -181,9 +185,12 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     spec = variant_spec(target);
     stages_job_init(target, &spec, true, few, &job);
     bool same = was.classes == job.classes && memcmp(was.of, job.of, sizeof job.of) == 0;
+    /* Ids in the kernels of other functions move where post() is another. */
+    bool closely = was.wanted[STAGE_POST] && job.wanted[STAGE_POST];
     for (int i = 0; i < STAGE_COUNT; ++i)
         job.wanted[i] =
-            job.wanted[i] && (!same || !was.wanted[i] || is_other(&was.stages[i], &job.stages[i]));
+            job.wanted[i] && (!same || !was.wanted[i] ||
+                              is_other(&was.stages[i], &job.stages[i], closely && i != STAGE_POST));
     for (int i = 0; i < STAGE_COUNT; ++i)
         renderer->before_post.known &= !job.wanted[i] || i == STAGE_POST;
     whit_result result = stages_job_run(renderer->device, &job, &made);

@@ -239,6 +239,19 @@ TEST(another_post_needs_no_rays)
     draw_versions(versions, traces, sizeof versions / sizeof *versions);
 }
 
+/* Nor is one where the file has other functions too, whose ids in SPIR-V move with post(). */
+TEST(another_post_beside_other_functions_needs_no_rays)
+{
+    static const char *const versions[] = {
+        POST("c") SHADE "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
+        POST("c.bgr * 0.75 + length(c) * vec3(0.5, 0.0, 0.25)") SHADE
+        "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
+        POST("c.brg") SHADE "s.ns * sin(s.p.x * 5.0) + 0.125; }\n",
+    };
+    static const bool traces[] = {true, false, true};
+    draw_versions(versions, traces, sizeof versions / sizeof *versions);
+}
+
 /* The rays of the last picture serve the same view alone, and only who asks for that. */
 TEST(rays_are_taken_again_for_the_same_view)
 {
