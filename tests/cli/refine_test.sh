@@ -5,7 +5,7 @@
 . "$(dirname "$0")/common.sh"
 needs jq
 cd "$OUT" || exit 1
-BALLS="$SCENES/balls.json --size 64x48"
+BALLS="$SCENES/balls.json --size 32x24"
 
 # refined ARGUMENT...: --stats json of a refined picture, r.exr.
 refined() {
@@ -43,7 +43,7 @@ same_as_samples
 refined --refine 0.001ms
 check "the first sample is drawn in any case" test "$samples" -eq 1
 check "of one sample nothing is known" test "$estimate" = null
-refined --refine 1e5ms --depth 1 --size 8x6
+refined --refine 1e5ms --depth 1 --size 4x3
 check "time for all samples" test "$samples" -eq 4096
 check "which tell of rays that were cut" jq -e '.refine.rmse_estimate_of_cuts > 0.01 and
     .refine.rmse_estimate >= .refine.rmse_estimate_of_cuts and .refine.cut_radiance > 0' stdout
@@ -52,7 +52,7 @@ check "which tell of rays that were cut" jq -e '.refine.rmse_estimate_of_cuts > 
 refuse 1 "rays that are cut" "rays that --depth and --bailout cut" render $BALLS -o cut.png -q \
     --depth 1 --refine 0.01
 check "the picture is there, of the few samples that told" grep -aq -- "--aa 4 " cut.png
-refuse 1 "too small an error" "no more than 4096 samples" render "$CUBE" -o small.png -q --size 8x6 \
+refuse 1 "too small an error" "no more than 4096 samples" render "$CUBE" -o small.png -q --size 2x2 \
     --refine 1e-9
 check "so is this one" test -s small.png
 
