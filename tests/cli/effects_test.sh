@@ -30,12 +30,9 @@ expect 0 "--stats" render "$CUBE" -o "$OUT/auto.pfm" --size 48x36 --stats text
 check "the kernel's size" grep -Eq "^  [0-9]+ of [0-9]+ instructions, [0-9]+ in the largest, [0-9]+ of [0-9]+ bindings" \
     "$OUT/stdout"
 
-# With a shader, what it does not ask for is not compiled, and said so.
+# Which effects a shader asks for: json_test.sh.
 echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }' >"$OUT/plain.glsl"
 refuse 2 "--shader without --effects" "for the pictures of --effects" scene "$CUBE" --shader "$OUT/plain.glsl"
-expect 0 "scene --effects --shader" scene "$CUBE" --effects --json --size 48x36 --quiet --shader "$OUT/plain.glsl"
-check "no shadows are asked for" jq -e 'any(.effects[]; .name == "shadows" and .called and (.asked or .compiled | not))' \
-    "$OUT/stdout"
 
 # The table, and an effect in it that changes the picture though the scene does not call for it. The
 # layers see its kernels in json_test.sh, which has the same as JSON.

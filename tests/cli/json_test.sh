@@ -32,18 +32,22 @@ saved() {
 : >found
 # shellcheck disable=SC2086
 {
-    made render render "$SCENES/glass-of-water.json" -o p.png $SMALL --stats json --counters
+    made render render "$SCENES/gallery/glass.json" -o p.png $SMALL --stats json --counters
     made render render "$CUBE" -o p.png $SMALL --stats json --refine 1
     made render render "$CUBE" -o p.png $SMALL --stats json --aa adaptive:0.05
     grep -a -o '{"width":[^}]*}' p.png >options && keys whit:options options
     grep -a -o '{"rays":{[^}]*}[^}]*}' p.png >counters && keys whit:counters counters
     made frames render "$SCENES/spin.json" -o p.##.png --frames 0-1 $SMALL --stats json
     made scene scene "$SCENES/default.json" --json
-    made effects scene "$CUBE" --effects --json --size 16x12 --quiet
+    # With a shader, what it does not ask for is not compiled, and said so.
+    echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }' >plain.glsl
+    made effects scene "$CUBE" --effects --json --size 16x12 --quiet --shader plain.glsl
+    check "no shadows are asked for" jq -e 'any(.effects[]; .name == "shadows" and .called and (.asked or .compiled | not))' \
+        "$OUT/stdout"
     check "each effect has the same keys" \
         jq -e '(.effects | length > 0) and ([.effects[] | keys] | unique | length == 1)' "$OUT/stdout"
     made kernels scene "$CUBE" --kernels --json --size 16x12 --quiet
-    saved probe probe "$SCENES/glass-of-water.json" --pixel 8,6 $SMALL
+    saved probe probe "$SCENES/gallery/glass.json" --pixel 8,6 $SMALL
     echo 'vec3 miss(vec3 dir) { return dbg(dir); }' >dbg.glsl
     saved probe probe "$CUBE" --pixel 0,0 $SMALL --shader dbg.glsl
     made bvh bvh "$CUBE" --json --runs 1 --rays 500 --build binned --threads 1 --quiet
