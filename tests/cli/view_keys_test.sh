@@ -8,7 +8,14 @@ SMALL="--size 96x64"
 
 # ---- How rays are traced: another way to the same hits ----
 
-play "traversal, builders, instances" "$SCENES/spin.json" $SMALL <<END
+# Two boxes of one mesh, which light and materials make no kernel longer for.
+cat >"$OUT/boxes.json" <<'JSON'
+{ "camera": { "eye": [1.6, 1.3, 2.4], "target": [0, 0, 0], "fov": 45 }, "ambient": 0.12,
+  "lights": [ { "kind": "point", "position": [2, 4, 3], "intensity": 24 } ],
+  "objects": [ { "shape": "box", "size": 1, "translation": [0.3, 0, 0] },
+    { "shape": "box", "size": 1, "translation": [-0.8, 0.2, -0.4], "rotation": [20, 30, 10] } ] }
+JSON
+play "traversal, builders, instances" "$OUT/boxes.json" $SMALL <<END
 start:
 sign: press T | change.what = traversal distance -> sign
 basic: press T
