@@ -56,7 +56,7 @@ on: choose stepped | render has --set stepped=on | frame.pixels as twice
 height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
 colour: press F3 | frame.pixels as on | frame.ids as on
 END
-timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 400x300 --shader live/a.glsl --aov heigth \
+timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth \
     --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
 viewer=$!
 while read -r state; do
@@ -99,7 +99,7 @@ follow() {
 # ---- A picture of it, a file of settings, and both again ----
 
 cp "$CUBE" cube.json
-play "a slider that is moved" cube.json --size 400x300 --shader live/a.glsl <<END
+play "a slider that is moved" cube.json --size 200x150 --ui-scale 0.5 --shader live/a.glsl <<END
 still
 press X
 press Tab
@@ -123,7 +123,7 @@ for words in '--shader live/a.glsl' '--set stepped=off'; do
     check "the file of settings says $words" grep -qxF -e "$words" whit-0001.view
     check "and so does Ctrl+C" grep -qF -e "$words " line
 done
-play "by the file, and A beside B" cube.json --state whit-0001.view <<END
+play "by the file, and A beside B" cube.json --state whit-0001.view --ui-scale 0.5 <<END
 state: | error =
 panel: press X, press Tab
 same: press I | compare.mode = split | compare.other_colors = 0 | compare.other_ids = 0
@@ -144,7 +144,7 @@ follow "by the picture" asked.png --yes
 mv away live
 again picture
 expect 0 "what is saved of it" compare whit-0001.png whit-0002.png --metric differing --tolerance 0
-play "without functions at the start" cube.json --size 400x300 <<END
+play "without functions at the start" cube.json --size 96x64 <<END
 start: | error =
 dropped: drop whit-0001.view | toast has whit-0001.view has --shader | frame.pixels as start
 END
@@ -197,11 +197,11 @@ cp plain.new live/d.glsl
 VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
 steps >"$OUT/replay" <<END
 plain: click 4 4 | picked = true | probe.dbg = | probe.number = 1
-slid: press X, press Tab, move 20 20, still, choose twice | probe.number = 1 | frame.pixels not as plain
+slid: press X, press Tab, move 10 10, still, choose twice | probe.number = 1 | frame.pixels not as plain
 until shader.hash = $looks
 saved: | probe.dbg has $VALUE 2 | probe.dbg has d.glsl:4: dir = ( | frame.pixels as slid
 twice: choose twice | probe.dbg has $VALUE 1 | frame.pixels as plain
-moved: press Tab, move 380 12, still, button left down, move 392 40, button left up | probe.dbg has $VALUE 1 | probe.dbg not as twice
+moved: press Tab, move 190 6, still, button left down, move 196 20, button left up | probe.dbg has $VALUE 1 | probe.dbg not as twice
 until shader.hash = $plain
 without: | probe.dbg = | frame.pixels as moved
 END
@@ -211,7 +211,7 @@ on_state() {
     *'"at":"moved"'*) cp plain.new live/d.glsl ;;
     esac
 }
-follow "what values are" cube.json --size 400x300 --shader live/d.glsl
+follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
 
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
