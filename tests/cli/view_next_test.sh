@@ -1,5 +1,6 @@
 #!/bin/sh
-# What the user does is in the very next picture; what the figures say of a view.
+# What the user does is in the very next picture; what the figures say of a view (of instances too with `large`
+# as the third argument).
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
@@ -76,7 +77,9 @@ check "two pictures later at most" test "$(value after frame.number)" -le $(($(v
 # ---- Visits of a ray ----
 
 # Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
-for scene in 34k swarm; do
+scenes=34k
+[ "$3" != large ] || scenes="34k swarm"
+for scene in $scenes; do
     play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
 distance: size 64 48
 counted: press V
@@ -98,9 +101,9 @@ play "visits without trees" "$CUBE" $SMALL <<END
 no_trees: still, press G, press T | keys.trees = off | frame.visits_rays = 1536 | frame.visits = 1
 END
 # Of a larger picture a part of them.
-play "visits of some" "$SCENES/34k.json" --size 320x240 <<END
+play "visits of some" "$SCENES/34k.json" --size 120x80 <<END
 twin:
-counted: press V | frame.visits_rays = 76800
+counted: press V | frame.visits_rays = 9600
 END
 check "at most 4096 rays ($(value twin frame.visits_rays))" test "$(value twin frame.visits_rays)" -le 4096
 check "within 5 % ($(value twin frame.visits), $(value counted frame.visits))" \
