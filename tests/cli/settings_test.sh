@@ -49,7 +49,7 @@ for pass in colours costs; do
     {
         expect 0 "render$render" render "$CUBE" -o $pass.png $render --quiet
         [ $pass = costs ] || expect 0 "probe$probe" probe "$CUBE" --pixel 1,1 $probe --json probe.json --quiet
-        [ $pass = costs ] || expect 0 "cost$prices" cost "$CUBE" $prices --spend 0.3 --rays 0 \
+        [ $pass = costs ] || expect 0 "cost$prices" cost "$CUBE" $prices --spend 0.1 --rays 0 \
             --knobs traversal --json cost.json --quiet
     }
 done
@@ -119,7 +119,7 @@ own viewless glow.obj
 own viewless-auto glow.obj auto
 check "a model without a camera has whit's" cmp viewless.pfm viewless-auto.pfm
 flip_of() {
-    expect 0 "cost --exposure $1" cost "$CUBE" --size 24x16 --exposure "$1" --spend 0.3 --rays 0 \
+    expect 0 "cost --exposure $1" cost "$CUBE" --size 24x16 --exposure "$1" --spend 0.1 --rays 0 \
         --knobs traversal --json "cost$1.json" --quiet
     flip=$(jq '.rows[0].error.flip' "cost$1.json")
 }
