@@ -71,7 +71,7 @@ static const struct row rows[] = {
     {"exp", PORTABLE_EXP, exp, NULL, 1.35},
     {"log2", PORTABLE_LOG2, log2, NULL, 0.53},
     {"log", PORTABLE_LOG, log, NULL, 0.53},
-    {"pow", PORTABLE_POW, NULL, power, 2.5},
+    {"pow", PORTABLE_POW, NULL, power, 2.8},
     {"sin", PORTABLE_SIN, sin, NULL, 1.0},
     {"cos", PORTABLE_COS, cos, NULL, 1.0},
     {"tan", PORTABLE_TAN, tan, NULL, 2.5},
