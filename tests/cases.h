@@ -1,8 +1,11 @@
-/* How many of a test's random cases are tried. Without WHIT_TEST_TIMES, as in the short run, a
-   quarter of them; with WHIT_TEST_TIMES=N, as in tests with the label long, N times all. */
+/* How many of a test's cases are tried. Without WHIT_TEST_TIMES, as in the short run, a quarter of
+   the random ones, and some of those that take turns; with WHIT_TEST_TIMES=N, as in tests with the
+   label long, N times all. */
 #ifndef TESTS_CASES_H
 #define TESTS_CASES_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -17,6 +20,20 @@ static inline uint32_t cases_of(uint32_t all)
 {
     uint32_t times = cases_times();
     return times ? all * times : all / 4;
+}
+
+/* Of cases that cost much each: an eighth in the short run. */
+static inline uint32_t cases_few(uint32_t all)
+{
+    return cases_times() ? cases_of(all) : all / 8;
+}
+
+/* Whether a case is tried that takes turns with others: of `every` ones the short run has one,
+   others with each commit (WHIT_TEST_OFFSET). */
+static inline bool cases_turn(size_t index, size_t every)
+{
+    const char *offset = getenv("WHIT_TEST_OFFSET");
+    return cases_times() > 0 || (index + (offset ? strtoul(offset, NULL, 10) : 0)) % every == 0;
 }
 
 #endif

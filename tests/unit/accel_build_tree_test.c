@@ -98,7 +98,7 @@ static struct soup soup_beside_planes(void)
 
 TEST(every_builder_on_every_mesh)
 {
-    const uint32_t many = cases_of(10000);
+    const uint32_t many = cases_few(10000);
     random_state = 1;
     const struct soup soups[] = {
         soup_sphere(40, 30),
@@ -154,7 +154,7 @@ TEST(few_triangles)
 /* Extents and areas overflow, denormals vanish, many centroids meet. */
 TEST(a_thousand_trees_are_right)
 {
-    for (uint32_t round = 0; round < cases_of(1000); ++round) {
+    for (uint32_t round = 0; round < cases_few(1000); ++round) {
         random_state = 5000 + round;
         uint32_t count = 1 + random_below(&random_state, round % 10 == 0 ? 300 : 80);
         static const float limits[] = {FLT_MAX, 1e18f, 10.0f};

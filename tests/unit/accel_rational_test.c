@@ -332,8 +332,8 @@ TEST(triangles_are_found_by_trees_and_without)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
         on_edges +=
             compare_scene(rows[i].name, scene_of(rows[i].soup, rows[i].placed, rows[i].spread),
-                          *rows[i].params, aimed_ray, cases_of(rows[i].rays), 4);
-    assert_true(on_edges > cases_of(500));
+                          *rows[i].params, aimed_ray, cases_few(rows[i].rays), 4);
+    assert_true(on_edges > cases_few(500));
 }
 
 TEST(spheres_are_found_by_trees_and_without)
@@ -358,7 +358,7 @@ TEST(spheres_are_found_by_trees_and_without)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
         compare_scene(rows[i].name, rows[i].scene, *rows[i].params, rows[i].make,
-                      cases_of(rows[i].rays), rows[i].spread);
+                      cases_few(rows[i].rays), rows[i].spread);
 }
 
 /* ---- What the filter leaves out ---- */

@@ -89,7 +89,7 @@ static void compare_trees(const struct level *level, const struct world *world,
 /* Releases the world, of which trees[0] are the trees. */
 static void try_trees(struct world world)
 {
-    const uint32_t rays = cases_of(1200);
+    const uint32_t rays = cases_few(1200);
     bool empty = world.soup.count == 0 && world.scene->sphere_total == 0;
     struct accel *accels[TREES] = {world.accel};
     for (uint32_t t = 1; t < TREES; ++t) {
