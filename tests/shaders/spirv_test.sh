@@ -3,7 +3,7 @@
 # float operation of it is rounded as it is written: marked NoContraction, and no fma(), which Vulkan
 # lets a driver round once or twice. No kernel has numbers of 64 bits, but for integers of rows with
 # SPEC_WIDE_ROWS; without it, none and no capability for them. With constants filled in, kernels
-# are checked for none, all, and all but one of each, of which a short run takes a quarter, others with each commit
+# are checked for none, all, and all but one of each, of which a short run takes an eighth, others with each commit
 # (WHIT_TEST_OFFSET); with `all` for all of these, and for each alone as well.
 # In kernels made portable nothing is left that Vulkan leaves to drivers; with all constants set, a quarter of them
 # is validated with each commit.
@@ -103,7 +103,7 @@ for kernel in "$folder"/*.spv; do
     for id in $switches; do
         echo "$used" | grep -qx "$id" || continue
         turn=$((turn + 1))
-        [ -n "$all_too" ] || [ $((turn % 4)) -eq 0 ] || continue
+        [ -n "$all_too" ] || [ $((turn % 8)) -eq 0 ] || continue
         less=$(echo "0:64 2:24$all" | sed "s/ $id:1/ $id:0/")
         more=$(echo "0:64 2:24$none" | sed "s/ $id:0/ $id:1/")
         evaluate "$kernel" "$less"
