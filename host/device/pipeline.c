@@ -203,9 +203,9 @@ bool pipeline_count(const struct pipeline_params *params, struct pipeline_info *
 bool pipeline_is_same(const struct pipeline_params *a, const struct pipeline_params *b)
 {
     struct kernel_words of_a, of_b;
-    bool same = specialize_alone(a, &of_a) & specialize_alone(b, &of_b);
-    same = same && of_a.word_count == of_b.word_count &&
-           memcmp(of_a.specialized, of_b.specialized, of_a.word_count * sizeof(uint32_t)) == 0;
+    bool a_fine = specialize_alone(a, &of_a), b_fine = specialize_alone(b, &of_b);
+    bool same = a_fine && b_fine && of_a.word_count == of_b.word_count &&
+                memcmp(of_a.specialized, of_b.specialized, of_a.word_count * sizeof(uint32_t)) == 0;
     kernel_words_finish(&of_a);
     kernel_words_finish(&of_b);
     return same;
