@@ -214,7 +214,8 @@ static void renumber(struct renumbering *r, uint32_t *at, uint32_t first, uint32
     }
 }
 
-/* Of what stands in front of the function; false: it is none of that. */
+/* Renumbers the ids of an instruction that stands before the function; false: the instruction
+   belongs to the function. */
 static bool renumber_front(struct renumbering *r, uint32_t *at)
 {
     uint32_t op = spirv_op(at), first, last;

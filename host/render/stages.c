@@ -155,8 +155,9 @@ whit_result stages_take(struct target *target, struct stage_set *set)
     return stages_bind(target);
 }
 
-/* Whether a stage is another kernel. `closely`: of other words it is asked what is left of them; of
-   one that leaves rays to a second kernel that would not tell about both. */
+/* Whether two stages have different kernels. `closely`: kernels whose words differ are specialized
+   and compared again. Where rays may wait for a second kernel words decide, for that one is not
+   compared. */
 static bool is_other(const struct variant_job *a, const struct variant_job *b, bool closely)
 {
     struct gpu_spec second;

@@ -101,9 +101,9 @@ typedef struct whit_renderer_params {
     /* The renderer is for many pictures: kernels that take longer to make are right where they draw
        faster. */
     bool many_pictures;
-    /* Where the renderer's last picture differs from the one asked for in what post() of `shader`
-       does, and in no other kernel, slider or parameter, no ray is traced: post() is given the
-       colours of the last picture once more. The picture is the same; whit_stats keeps the times of
+    /* If nothing but post() of `shader` has changed since the renderer's last picture (no other
+       kernel, slider or parameter), no ray is traced: post() is given the colours of the last
+       picture once more. The picture is the same; whit_stats keeps the times of
        the last one. */
     bool reuse_rays;
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */

@@ -2,7 +2,8 @@
 #ifndef LIB_SPAWN_GLSL
 #define LIB_SPAWN_GLSL
 
-// Of the largest coordinate: 2^-24 of what that one is rounded to.
+// A ray starts at least this share of the largest coordinate of its origin away from a plane through 0.
+// It is at most 2^-24 of the distance between neighbouring floats there.
 const float SPAWN_LEAST = 1.0 / 281474976710656.0; // 2^-48
 
 // Bound of n roundings (Higham 2002, section 3.1), for 24-bit significands.
@@ -12,7 +13,7 @@ float rounding_bound(float n)
     return n * unit / (1.0 - n * unit);
 }
 
-// One float further up or down; `least` or more of it where that is nearly 0. A plane through 0 has no error,
+// One float further up or down; where x is nearer to 0 than `least`, that far from 0 in the same direction. A plane through 0 has no error,
 // and from there the next float is the least denormal: x86 processors of Intel take some 150 cycles for each
 // product with it.
 float next_float(float x, bool up, float least)

@@ -65,8 +65,8 @@ static void assert_child(const struct probe_ray *rays, uint32_t i)
     assert_int_equal(ray->generation, parent->generation + 1);
     assert_int_equal(parent->traced.end, PROBE_HIT);
     assert_true(parent->traced.primitive != HIT_NONE);
-    for (int k = 0; k < 3;
-         ++k) /* next to a plane through 0: see next_float of shaders/lib/spawn.glsl */
+    /* Also where a ray leaves a plane through 0: see next_float of shaders/lib/spawn.glsl. */
+    for (int k = 0; k < 3; ++k)
         assert_int_not_equal(fpclassify(ray->traced.origin[k]), FP_SUBNORMAL);
     if (kind_of(ray) == RAY_SHADOW) {
         assert_true(ray->traced.end == PROBE_REACHED || ray->traced.end == PROBE_BLOCKED);
