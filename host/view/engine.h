@@ -65,7 +65,7 @@ struct engine_frame {
     bool whole;           /* full size and all samples: what `whit render` makes */
     bool moving;          /* more was to follow */
     double asked_ms;      /* by whit_clock_ms: when engine_ask first asked for it */
-    double draw_ms;       /* by the clock: all of it, with reading it back */
+    double draw_ms;       /* by the clock: all of it, with reading it back; at once, not in steps */
     double scale;         /* of a heat map */
     whit_box *boxes;      /* of settings.boxes: at most ENGINE_BOXES_MAX */
     uint64_t boxes_total; /* that there are */
