@@ -10,6 +10,7 @@
 #include "kernel_shade_hooks.h"
 #include "kernel_shadow.h"
 #include "kernel_shadow_hooks.h"
+#include "kernel_shape_hooks.h"
 #include "kernel_test_hooks.h"
 #include "kernel_trace.h"
 
@@ -27,6 +28,7 @@ const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
     [HOOK_KERNEL_SHADOW] = {"shadow", kernel_shadow_hooks, sizeof kernel_shadow_hooks},
     [HOOK_KERNEL_RESOLVE] = {"resolve", NULL, 0},
     [HOOK_KERNEL_MISS] = {"miss", kernel_miss_hooks, sizeof kernel_miss_hooks},
+    [HOOK_KERNEL_SHAPE] = {"shape", kernel_shape_hooks, sizeof kernel_shape_hooks},
     [HOOK_KERNEL_POST] = {"post", kernel_post_hooks, sizeof kernel_post_hooks},
     [HOOK_KERNEL_TEST] = {"test", kernel_test_hooks, sizeof kernel_test_hooks},
 };

@@ -151,6 +151,7 @@ whit_result hooks_find_material(struct renderer *renderer)
     const float *passes = renderer->scene->materials[index].transmission;
     bool glass = passes[0] > 0.0f || passes[1] > 0.0f || passes[2] > 0.0f;
     renderer->frame.shape_material = index | (glass ? SHAPE_IS_GLASS : 0);
+    renderer->frame.shape_error = box->error;
     return WHIT_OK;
 }
 

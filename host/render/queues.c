@@ -93,6 +93,11 @@ whit_result queues_create(struct target *target)
         {&queues->deferred,
          variant_has_deferred(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
+        {&queues->shape_shadows,
+         shader_has(renderer->params.shader, SHADER_HOOK_INTERSECT)
+             ? (uint64_t)queues->lit_capacity * 2 * sizeof(uint32_t)
+             : 0,
+         BUFFER_STORAGE, "shadows of a shape"},
         {&queues->kinds,
          renderer->params.count || target->probed || textures_minify(renderer) ? sent * 4 : 0,
          BUFFER_STORAGE, "kinds of rays"},
@@ -131,9 +136,11 @@ whit_result queues_grow(struct target *target)
 
 void queues_finish(struct queue_buffers *queues)
 {
-    struct buffer *all[] = {queues->generations, queues->empty, queues->rays,     queues->hits,
-                            queues->lit,         queues->sums,  queues->hit_list, queues->cuts,
-                            queues->cut_sums,    queues->kinds, queues->lit_list, queues->deferred};
+    struct buffer *all[] = {queues->shape_shadows, queues->generations, queues->empty,
+                            queues->rays,          queues->hits,        queues->lit,
+                            queues->sums,          queues->hit_list,    queues->cuts,
+                            queues->cut_sums,      queues->kinds,       queues->lit_list,
+                            queues->deferred};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *queues = (struct queue_buffers){0};

@@ -34,7 +34,8 @@ struct queue_buffers {
     struct buffer *rays, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
-        *deferred;        /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+        *deferred; /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+    struct buffer *shape_shadows; /* of lit hits, with a user's shape: two words each */
     struct buffer *kinds; /* RAY_*, with params.count; how far rays have come, for textures */
     uint32_t generation_count, ray_capacity, lit_capacity;
     uint64_t bytes;
@@ -79,8 +80,9 @@ enum stage {
     STAGE_SHADOW_LATER,
     STAGE_RESOLVE, /* into pixels */
     STAGE_RESOLVE_LATER,
-    STAGE_MISS, /* of a user's function */
-    STAGE_POST, /* likewise, of pixels that have all samples */
+    STAGE_MISS,  /* of a user's function */
+    STAGE_SHAPE, /* likewise, before rays go through the trees */
+    STAGE_POST,  /* likewise, of pixels that have all samples */
     STAGE_COUNT
 };
 
@@ -93,6 +95,7 @@ struct stage_set {
     bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
     bool asks;                  /* whether hits ask lights, for stages of their own */
     bool misses, posts; /* whether stages of their own say what misses see, and what pixels show */
+    bool has_shape;     /* that rays are held against in a stage of its own */
 };
 
 /* How long each stage of the tile being drawn takes, see stage_times.c. */
@@ -381,9 +384,9 @@ void passes_finish(struct renderer *renderer);
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
-    bool asks, misses, posts;   /* as of a set */
-    bool wanted[STAGE_COUNT];   /* a kernel of its own */
-    enum stage of[STAGE_COUNT]; /* as of a set */
+    bool asks, misses, posts, has_shape; /* as of a set */
+    bool wanted[STAGE_COUNT];            /* a kernel of its own */
+    enum stage of[STAGE_COUNT];          /* as of a set */
     struct variant_job stages[STAGE_COUNT];
 };
 /* `own`: the kernels for the scene, else general ones with `spec`. `few`: one kernel for stages

@@ -47,6 +47,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     /* A shading function of the user's has asked them itself, as all but catchers do. */
     job->asks = !shader_has(renderer->params.shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->misses = shader_has(renderer->params.shader, SHADER_HOOK_MISS);
+    job->has_shape = shader_has(renderer->params.shader, SHADER_HOOK_INTERSECT);
     job->posts = shader_has(renderer->params.shader, SHADER_HOOK_POST);
     job->classes = own ? variant_classes(target) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
@@ -54,7 +55,8 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
-                         (i != STAGE_MISS || job->misses) && (i != STAGE_POST || job->posts) &&
+                         (i != STAGE_MISS || job->misses) && (i != STAGE_SHAPE || job->has_shape) &&
+                         (i != STAGE_POST || job->posts) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
@@ -87,8 +89,11 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){
-        .classes = job->classes, .asks = job->asks, .misses = job->misses, .posts = job->posts};
+    *out = (struct stage_set){.classes = job->classes,
+                              .asks = job->asks,
+                              .misses = job->misses,
+                              .posts = job->posts,
+                              .has_shape = job->has_shape};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
@@ -306,8 +311,11 @@ static uint32_t row_of(enum stage stage, uint32_t list)
         [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
         [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,
         [STAGE_RESOLVE_LATER] = RENDER_STAGE_RESOLVE,
+        [STAGE_SHAPE] = RENDER_STAGE_CAMERA,
         [STAGE_POST] = RENDER_STAGE_RESOLVE,
     };
+    if (stage == STAGE_SHAPE && list != LIST_RAYS)
+        stage = STAGE_SHADOW;
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
 
@@ -391,19 +399,26 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
 static whit_result record_generation(struct tile_run *run)
 {
     const struct renderer *renderer = run->target->renderer;
+    const struct stage_set *set = &run->target->stages.set;
     bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
-    whit_result result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
-    if (result == WHIT_OK && run->target->stages.set.misses)
+    bool in_shadow = set->has_shape && renderer_compiles(renderer, SCENE_EFFECT_SHADOWS);
+    whit_result result = set->has_shape ? dispatch(run, STAGE_SHAPE, LIST_RAYS) : WHIT_OK;
+    if (result == WHIT_OK)
+        result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
+    if (result == WHIT_OK && set->misses)
         result = dispatch(run, STAGE_MISS, LIST_RAYS);
     if (result == WHIT_OK)
         result = dispatch(run, STAGE_SHADE, LIST_HITS);
-    if (result == WHIT_OK && run->target->stages.set.classes > 1)
+    if (result == WHIT_OK && set->classes > 1)
         result = dispatch(run, STAGE_SHADE_GLASS, LIST_HITS + CLASS_GLASS);
-    uint32_t lights = run->target->stages.set.asks ? renderer->frame.light_count : 0;
+    uint32_t lights = set->asks ? renderer->frame.light_count : 0;
     for (uint32_t i = 0; result == WHIT_OK && i < lights; ++i) {
+        uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
         run->chunk.light = i;
-        result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER,
-                          LIST_LIGHTS + (by_light ? i : 0));
+        if (in_shadow)
+            result = dispatch(run, STAGE_SHAPE, list);
+        if (result == WHIT_OK)
+            result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER, list);
     }
     return result;
 }

@@ -53,6 +53,7 @@
 #define BIND_DBG                 38
 #define BIND_VIEWS               39
 #define BIND_DISTANCES           40
-#define BIND_STAGES_COUNT        41
+#define BIND_SHAPE_SHADOWS       41
+#define BIND_STAGES_COUNT        42
 
 #endif

@@ -163,8 +163,10 @@ struct gpu_frame {
     gpu_float inv_width, inv_height; /* 1 / width, 1 / height: so that no kernel divides by them */
     gpu_uint root8;     /* of eight children a node, see accel_bvh8 */
     gpu_uint shape_material; /* of a user's shape; SHAPE_IS_GLASS: light passes through it */
+    gpu_float shape_error; /* how far from it answers may be */
+    gpu_uint pad0, pad1, pad2;
 };
-GPU_ASSERT_SIZE(gpu_frame, 208)
+GPU_ASSERT_SIZE(gpu_frame, 224)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* What a frame has of its own in each of many views (SPEC_VIEWS). The views of a picture lie one

@@ -393,44 +393,12 @@ void packet_beams(const uint mode, float t_min, uint root, vec3 eye)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-#ifdef HOOKS
-// add_shape() for all rays of the subgroup, one after the other: so the user's function is in the kernel once.
-void add_shape_to_packets(const uint mode)
-{
-    uint turn = 0u;
-    do {
-        vec3 origin = packet_origin[0], dir = packet_dir[0];
-        Hit hit = packet_hits[0];
-        bool alive = packet_alive[0];
-        shape_checked = packet_checked[0];
-        EACH_RAY {
-            bool own = r == turn;
-            origin = own ? packet_origin[r] : origin;
-            dir = own ? packet_dir[r] : dir;
-            alive = own ? packet_alive[r] : alive;
-            shape_checked = own ? packet_checked[r] : shape_checked;
-            if (own)
-                hit = packet_hits[r];
-        }
-        add_shape(mode, origin, dir, alive, hit);
-        EACH_RAY {
-            if (r == turn)
-                packet_hits[r] = hit;
-        }
-        turn++;
-    } while (another_iteration(turn < SPEC_PACKET_RAYS));
-}
-#endif
-
 // traverse() for all rays of the subgroup, from packet_origin and the like into packet_hits. With
 // SPEC_BEAM all alive rays start at `eye` or end there.
 void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 eye)
 {
     if (SPEC_PACKETS == 0u) {
         EACH_RAY {
-#ifdef HOOKS
-            shape_checked = packet_checked[r];
-#endif
             packet_hits[r] =
                 traverse(mode, packet_origin[r], packet_dir[r], t_min, packet_t_max[r],
                          packet_alive[r] ? root : REF_DONE, packet_skip[r].x, packet_skip[r].y);
@@ -469,10 +437,6 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 
         if (packet_hits[r].primitive == HIT_NONE)
             packet_hits[r].t = make_hit(packet_t_max[r]).t;
     }
-#ifdef HOOKS
-    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u)
-        add_shape_to_packets(mode);
-#endif
 }
 
 #endif

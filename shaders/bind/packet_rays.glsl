@@ -18,9 +18,6 @@ bool packet_alive[SPEC_PACKET_RAYS];
 vec3 packet_origin[SPEC_PACKET_RAYS], packet_dir[SPEC_PACKET_RAYS];
 float packet_t_max[SPEC_PACKET_RAYS];
 uvec2 packet_skip[SPEC_PACKET_RAYS]; // instance, primitive
-#ifdef HOOKS
-uint packet_checked[SPEC_PACKET_RAYS]; // shape_checked of the ray
-#endif
 Hit packet_hits[SPEC_PACKET_RAYS];
 uint packet_status; // of the walk, for all rays
 

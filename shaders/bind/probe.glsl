@@ -52,10 +52,8 @@ gpu_probe_ray with_hit(gpu_probe_ray from, Hit hit)
         return from;
     if (SPEC_NUMERICS == NUMERICS_EXACT)
         finish_hit(from.origin, from.dir, hit);
-#ifdef HOOKS
     met_origin = from.origin;
     met_dir = from.dir;
-#endif
     Surface s = fetch_surface(hit);
     bool inside = dot(from.dir, s.ng) > 0.0;
     vec3 side = inside ? -s.ng : s.ng;

@@ -40,6 +40,7 @@ layout(set = 0, binding = BIND_AOVS, std430) buffer AovBuffer
 {
     vec4 aovs[]; // SPEC_AOVS of each slot, of the sample in hand; behind all slots those of each pixel, of all so far
 };
+layout(set = 0, binding = BIND_SHAPE_SHADOWS, std430) buffer ShapeShadowBuffer { uint shape_shadows[]; };
 layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
 {
     uint ray_kinds[]; // RAY_* in the low bits, with SPEC_COUNT or SPEC_PROBE, under ray.way
@@ -257,6 +258,45 @@ uvec2 fetch_hit_ids(uint id, uint record)
     return fetch_record_ids(record, instance);
 }
 
+// Puts a user's shape in the place of what a ray has met. `square`: of the normal, by square_from_dir().
+void put_shape_in(inout Hit hit, float t, vec2 square)
+{
+    hit.t = hit.lo = hit.hi = t;
+    hit.u = square.x;
+    hit.v = square.y;
+    hit.triangle = hit.instance = HIT_SHAPE;
+    hit.primitive = 0u;
+    hit.at_exit = false;
+    hit.glass = (frame.shape_material & SHAPE_IS_GLASS) != 0u;
+}
+
+// Until a ray has been through the trees, its hit is where it meets a user's shape.
+void store_shape(uint id, Hit hit)
+{
+    store_hit_row(id * HIT_ROWS, uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), hit.triangle));
+}
+
+// Keeps the shape where the ray meets that before what it has met in the trees.
+void add_stored_shape(uint id, inout Hit hit)
+{
+    uvec4 row = fetch_hit_row(id * HIT_ROWS);
+    float t = uintBitsToFloat(row.x);
+    if (row.w == HIT_SHAPE && (hit.primitive == HIT_NONE || t < hit.t))
+        put_shape_in(hit, t, uintBitsToFloat(row.yz));
+}
+
+// Bit `point` of two words: a user's shape is in the way of that point of the light in hand. `place`: in the
+// list of hits that the light may reach.
+void store_shape_shadows(uint place, uint word, uint bits)
+{
+    shape_shadows[place * 2u + word] = bits;
+}
+
+bool is_in_shape_shadow(uint place, uint point)
+{
+    return (shape_shadows[place * 2u + (point >> 5)] >> (point & 31u) & 1u) != 0u;
+}
+
 Hit fetch_hit(uint id)
 {
     uvec4 r0 = fetch_hit_row(id * HIT_ROWS);
@@ -323,18 +363,24 @@ const uint ITEM_NONE = 0xffffffffu;
 // Which segment the invocation takes its items from, and appends to.
 bool is_back = false;
 
-// An item of the list that the dispatch works on: where it is in front, or beyond `capacity` - 1 back
-// from the end.
-uint own_item(uint r, uint capacity)
+// The item at `place` of the workgroup's, each of which has `each`, in the list that the dispatch works on: where it
+// is in front, or beyond `capacity` - 1 back from the end.
+uint listed_item(uint place, uint each, uint capacity)
 {
-    uint each = SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, group = gl_WorkGroupID.x;
+    uint group = gl_WorkGroupID.x;
     uvec2 counts = fetch_counts(chunk.generation, chunk.list);
     uint front_groups = (counts.x + each - 1u) / each;
     is_back = SPEC_SEGMENTS == 2u && group >= front_groups;
-    uint at = (group - (is_back ? front_groups : 0u)) * each + own_place(r);
+    uint at = (group - (is_back ? front_groups : 0u)) * each + place;
     if (is_queue_full() || at >= (is_back ? counts.y : counts.x))
         return ITEM_NONE;
     return is_back ? capacity - 1u - at : at;
+}
+
+// The invocation's item `r` of that list.
+uint own_item(uint r, uint capacity)
+{
+    return listed_item(own_place(r), SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, capacity);
 }
 
 // The invocation's item of the list of deferred rays, of kernels whose items are rays or that append nothing.

@@ -137,23 +137,37 @@ bool is_on_sphere(Hit hit)
            (fetch_triangle_row(hit.triangle * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u;
 }
 
-#ifdef HOOKS
 // The ray of the hit that fetch_surface() is called for: what a user's shape, which is in no tree, is met by.
 vec3 met_origin, met_dir;
 
-// Puts the surface where a user's shape is met.
-void put_on_shape(float t, vec2 square, inout Surface s);
-#endif
+// Puts the surface where a user's shape is met; `square`: of the normal, by square_from_dir().
+void put_on_shape(float t, vec2 square, inout Surface s)
+{
+    s.p = met_origin + met_dir * t;
+    s.error = vec3(2.0 * frame.shape_error) + rounding_bound(8.0) * (abs(met_origin) + abs(met_dir * t));
+    vec3 n = dir_from_square(square);
+    s.ng = n / sqrt(dot(n, n));
+    s.ns = s.ng;
+    vec3 aside = abs(s.ng.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    s.e1 = normalize(cross(s.ng, aside));
+    s.e2 = cross(s.ng, s.e1);
+    s.color = vec3(1.0);
+    s.color_alpha = 1.0;
+    s.shade_index = 0u;
+    s.instance = HIT_SHAPE;
+    s.on_sphere = true; // nothing of a mesh's vertices counts
+    s.material = frame.shape_material & ~SHAPE_IS_GLASS;
+    s.u = 0.0;
+    s.v = 0.0;
+}
 
 Surface fetch_surface(Hit hit)
 {
     Surface s;
-#ifdef HOOKS
     Hit own = hit;
     bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && hit.triangle == HIT_SHAPE;
     if (on_shape) // what is fetched below is any primitive's
         hit.triangle = hit.instance = hit.primitive = 0u;
-#endif
     uint row = hit.triangle * TRIANGLE_ROWS;
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
     s.instance = hit.instance;
@@ -190,10 +204,8 @@ Surface fetch_surface(Hit hit)
     s.color = color.rgb;
     s.color_alpha = color.a;
     s.footprint = vec3(0.0);
-#ifdef HOOKS
     if (on_shape)
         put_on_shape(own.t, vec2(own.u, own.v), s);
-#endif
     return s;
 }
 

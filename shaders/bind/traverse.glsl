@@ -61,14 +61,6 @@ uint node_stack[SPEC_STACK_SIZE];
 gpu_cost traversal_cost;
 uint node_levels[SPEC_STACK_SIZE];
 
-#ifdef HOOKS
-// The pixel + 1 in whose name the answers of a user's shape for the ray are checked; 0: they are not.
-uint shape_checked = 0u;
-
-// Keeps the shape of a user's file in `hit` where the ray meets that first (hook/shape.glsl).
-void add_shape(const uint mode, vec3 origin, vec3 dir, bool alive, inout Hit hit);
-#endif
-
 const uint STACK_REGISTERS = 6u;
 
 struct NodeStack {
@@ -637,10 +629,6 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
             widen_ray_setup(ray, fetch_mesh_center(0u), fetch_mesh_reach(0u));
         traverse_mesh(mode, ray, t_min, root, skip_instance, skip_primitive, hit);
     }
-#ifdef HOOKS
-    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u)
-        add_shape(mode, origin, dir, root != REF_DONE, hit);
-#endif
     return hit;
 }
 

@@ -167,6 +167,9 @@ vec3 off_surface(Surface s, vec3 dir)
     return offset_origin(s.p, s.error, dot(dir, s.ng) < 0.0 ? -s.ng : s.ng);
 }
 
+// A shape of the user's is in no tree (hook/shape.glsl).
+void add_shape(vec3 origin, vec3 dir, bool alive, inout Hit hit);
+
 // How much light comes along a way of length `distance` from `origin`: 1 where nothing is in it, 0 behind
 // something opaque.
 vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorption)
@@ -174,6 +177,8 @@ vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorp
     if (SPEC_SHADOWS == 0u)
         return vec3(1.0);
     Hit blocker = traverse(TRAVERSE_SHADOW, origin, dir, 0.0, distance, frame.root, skip.x, skip.y);
+    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u && blocker.primitive == HIT_NONE)
+        add_shape(origin, dir, is_usable(origin, dir), blocker);
     hook_status |= blocker.status;
     hook_traced++;
     return passing_share(blocker, absorption, distance);
@@ -190,6 +195,8 @@ vec3 visible(Surface s, vec3 dir, float distance)
 bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
 {
     Hit hit = traverse(TRAVERSE_CLOSEST, origin, dir, 0.0, FLOAT_LARGEST, frame.root, HIT_NONE, HIT_NONE);
+    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u)
+        add_shape(origin, dir, is_usable(origin, dir), hit);
     hook_status |= hit.status;
     hook_traced++;
     bool some = hit.primitive != HIT_NONE;

@@ -1,8 +1,11 @@
-// A shape of the user's: his function intersect() in the box that his file names. It is in no tree. A ray that
-// has been through the trees is held against the box, and asks the function where it enters that before what
-// it has met.
+// A shape of the user's: his function intersect() in the box that his file names. It is in no tree. A ray is held
+// against the box, and asks the function where it enters that: rays of pictures in kernel/shape.comp, before they
+// go through the trees, and those of the user's functions in trace() and visible(), behind that.
 #ifndef HOOK_SHAPE_GLSL
 #define HOOK_SHAPE_GLSL
+
+// The pixel + 1 in whose name the answers for the ray are checked; 0: they are not.
+uint shape_checked = 0u;
 
 // Where a ray is within the box, widened by what answers may be off; and how far from its origin an answer is
 // looked at without the box: a function that marches through the void takes long to the end of the world.
@@ -84,51 +87,19 @@ ShapeAnswer ask_shape(vec3 origin, vec3 dir, float far, bool alive)
     return boxed;
 }
 
-void add_shape(const uint mode, vec3 origin, vec3 dir, bool alive, inout Hit hit)
+// Keeps the shape in `hit`, what the ray has met so far, where the ray meets that first.
+void add_shape(vec3 origin, vec3 dir, bool alive, inout Hit hit)
 {
-    bool asks = mode == TRAVERSE_CLOSEST || (mode == TRAVERSE_SHADOW && hit.primitive == HIT_NONE);
-    if (mode != TRAVERSE_CLOSEST && mode != TRAVERSE_SHADOW)
-        return;
     // It may be a function of the user's that traces.
     uint fuel = whit_fuel, fuel_loop = whit_fuel_loop;
     float size = sqrt(dot(dir, dir));
-    ShapeAnswer answer = ask_shape(origin, dir / size, min(hit.t * size, FLOAT_LARGEST), alive && asks);
+    ShapeAnswer answer = ask_shape(origin, dir / size, min(hit.t * size, FLOAT_LARGEST), alive);
     whit_fuel = fuel;
     whit_fuel_loop = fuel_loop;
     float t = answer.t / size;
     if (!answer.met || (hit.primitive != HIT_NONE && t >= hit.t))
         return;
-    hit.t = hit.lo = hit.hi = t;
-    vec2 square = square_from_dir(normalize_or(answer.normal, -dir));
-    hit.u = square.x;
-    hit.v = square.y;
-    hit.triangle = hit.instance = HIT_SHAPE;
-    hit.primitive = 0u;
-    hit.at_exit = false;
-    hit.glass = (frame.shape_material & SHAPE_IS_GLASS) != 0u;
-}
-
-void put_on_shape(float t, vec2 square, inout Surface s)
-{
-    vec3 lo, hi;
-    float error;
-    shape_box(lo, hi, error);
-    s.p = met_origin + met_dir * t;
-    s.error = vec3(2.0 * error) + rounding_bound(8.0) * (abs(met_origin) + abs(met_dir * t));
-    vec3 n = dir_from_square(square);
-    s.ng = n / sqrt(dot(n, n));
-    s.ns = s.ng;
-    vec3 aside = abs(s.ng.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    s.e1 = normalize(cross(s.ng, aside));
-    s.e2 = cross(s.ng, s.e1);
-    s.color = vec3(1.0);
-    s.color_alpha = 1.0;
-    s.shade_index = 0u;
-    s.instance = HIT_SHAPE;
-    s.on_sphere = true; // nothing of a mesh's vertices counts
-    s.material = frame.shape_material & ~SHAPE_IS_GLASS;
-    s.u = 0.0;
-    s.v = 0.0;
+    put_shape_in(hit, t, square_from_dir(normalize_or(answer.normal, -dir)));
 }
 
 #endif

@@ -63,10 +63,6 @@ void take_ray(uint r)
     packet_dir[r] = ray.dir;
     packet_t_max[r] = FLOAT_LARGEST;
     packet_skip[r] = uvec2(ray.skip_instance, ray.skip_primitive);
-#ifdef HOOKS
-    uvec2 at = slot_pixel(slot);
-    packet_checked[r] = primary && alive && chunk.sample_index == 0u ? at.y * frame.width + at.x + 1u : 0u;
-#endif
 }
 
 // Where the rays begin that those of the dispatch call for.
@@ -85,6 +81,8 @@ uint class_of_hit(Hit hit)
 // Whether ray `r` met something to be shaded.
 bool leave_ray(uint r, bool alive)
 {
+    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u) // met by shape.comp
+        add_stored_shape(ray_id[r], packet_hits[r]);
     Hit hit = packet_hits[r];
     bool primary = is_primary();
     if (alive)

@@ -292,10 +292,8 @@ void main()
     Hit hit = fetch_hit(id);
     uint status = 0u;
     ray.weight *= medium_transmittance(ray.media, hit.t);
-#ifdef HOOKS
     met_origin = ray.origin;
     met_dir = ray.dir;
-#endif
     Surface s = fetch_surface(hit);
     gpu_material m = fetch_material(s.material);
     bool inside = face_ray(s, ray.dir);

@@ -37,18 +37,20 @@ vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
 
 Arrival arrival_of[SPEC_PACKET_RAYS];
 
-void face_light(uint r, bool alive, gpu_light light, uint point)
+// Told by shape.comp. Such a ray does not go through the trees.
+bool in_shape_shadow[SPEC_PACKET_RAYS];
+
+void face_light(uint r, bool alive, gpu_light light, uint item, uint point)
 {
     Lit lit = lit_of[r];
     Arrival a = arrive(alive, lit, light, point);
-    packet_alive[r] = a.wanted;
+    const bool has_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && SPEC_SHADOWS != 0u;
+    in_shape_shadow[r] = has_shape && a.wanted && is_in_shape_shadow(item, point);
+    packet_alive[r] = a.wanted && !in_shape_shadow[r];
     packet_origin[r] = lit.origin;
     packet_dir[r] = a.dir;
     packet_t_max[r] = a.distance;
     packet_skip[r] = uvec2(lit.skip_instance, a.above ? lit.skip_primitive : HIT_NONE);
-#ifdef HOOKS
-    packet_checked[r] = 0u;
-#endif
     arrival_of[r] = a;
 }
 
@@ -59,6 +61,8 @@ uint rays_of[SPEC_PACKET_RAYS], status_of[SPEC_PACKET_RAYS];
 void add_arrival(uint r, gpu_light light, uint point)
 {
     Arrival a = arrival_of[r];
+    if (in_shape_shadow[r])
+        put_shape_in(packet_hits[r], packet_t_max[r], vec2(0.0));
     vec3 share = light_share(r, a.wanted, lit_of[r], status_of[r]);
     share = a.wanted ? share : vec3(0.0);
     if (SPEC_PROBE != 0u && SPEC_SHADOWS != 0u && a.wanted)
@@ -125,7 +129,7 @@ void main()
     uint point = 0u;
     bool more = false;
     do {
-        EACH_RAY face_light(r, alive[r], light, point);
+        EACH_RAY face_light(r, alive[r], light, item[r], point);
         if (SPEC_SHADOWS != 0u)
             traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8,
                              light_point(light, point));

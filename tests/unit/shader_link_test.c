@@ -54,17 +54,17 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
         {"//@ box 0 0 0 1 1 1 0.1\nbool intersect(vec3 o, vec3 d, float far, out float t, out vec3 "
          "n) "
          "{ t = 0.5; n = o; return far > t; }\n",
-         7},
+         32},
         {"vec3 post(ivec2 at, vec3 c) { switch (at.x & 3) { case 0: c.r = 1.0; break; case 1: "
          "return c.bgr; default: c.g = 0.0; } return c; }\n",
-         32},
+         64},
         {"vec3 post(ivec2 at, vec3 c) { uint64_t n = uint64_t(at.x) << 33; return c * float(n >> "
          "33); }\n",
-         32},
+         64},
         {"//@ slider x 0 1 0.5\n//@ color y #ff0000\n//@ toggle z on\n"
          "bool whole(out float f, in bvec2 b) { f = x; return any(b); }\n"
          "vec3 post(ivec2 at, vec3 c) { float f; return whole(f, bvec2(z, false)) ? y * f : c; }\n",
-         32},
+         64},
         {"vec3 shade(Surface s, Optics o, vec3 e) { Surface m; float d; vec3 sum = vec3(0.0);\n"
          "for (uint i = 0u; i < light_count(); i++) { Light l = light(i, 0u, s); sum += l.arriving "
          "* visible(s, l.dir, l.distance); }\n"
@@ -72,7 +72,7 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
          2},
         {"float begin_user(float x) { return x; }\nfloat main_(float x) { return x; }\n"
          "vec3 post(ivec2 at, vec3 c) { return c * begin_user(main_(1.0)); }\n",
-         32},
+         64},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         whit_shader *shader = make(cases[i].content);
