@@ -3,12 +3,15 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
 #include <sys/inotify.h>
 #include <unistd.h>
 
 #include "base/array.h"
 #include "base/file.h"
 #include "base/input.h"
+#include "base/threads.h"
 
 struct watched {
     int folder; /* inotify's number of it */
@@ -17,29 +20,70 @@ struct watched {
 
 struct watch {
     int fd;
+    int end, both; /* an eventfd that ends the thread; an epoll of it and fd */
+    struct thread *thread;
+    void (*wake)(void *user);
     struct watched *files;
     uint32_t count, capacity;
 };
 
-struct watch *watch_create(void)
+/* What comes wakes once. The one who is woken reads it by watch_changed; until then the system may
+   put the same of the same file together with it, which wakes nobody. */
+static void wait_for_events(void *context)
+{
+    const struct watch *watch = context;
+    struct epoll_event event = {.data.fd = -1};
+    while (event.data.fd != watch->end) {
+        if (epoll_wait(watch->both, &event, 1, -1) == 1 && event.data.fd == watch->fd)
+            watch->wake(NULL);
+    }
+}
+
+static bool start_waking(struct watch *watch)
+{
+    struct epoll_event changes = {.events = EPOLLIN | EPOLLET, .data.fd = watch->fd};
+    struct epoll_event end = {.events = EPOLLIN, .data.fd = watch->end};
+    if (watch->both < 0 || watch->end < 0 ||
+        epoll_ctl(watch->both, EPOLL_CTL_ADD, watch->fd, &changes) != 0 ||
+        epoll_ctl(watch->both, EPOLL_CTL_ADD, watch->end, &end) != 0)
+        return false;
+    watch->thread = thread_start(wait_for_events, watch);
+    return watch->thread;
+}
+
+struct watch *watch_create(void (*wake)(void *user))
 {
     struct watch *watch = array_alloc_zeroed(1, sizeof *watch);
     if (!watch)
         return NULL;
-    watch->fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (watch->fd >= 0)
+    *watch = (struct watch){.fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC),
+                            .end = eventfd(0, EFD_CLOEXEC),
+                            .both = epoll_create1(EPOLL_CLOEXEC),
+                            .wake = wake};
+    if (watch->fd >= 0 && start_waking(watch))
         return watch;
-    free(watch);
+    watch_destroy(watch);
     return NULL;
+}
+
+static void close_open(int fd)
+{
+    if (fd >= 0)
+        close(fd);
 }
 
 void watch_destroy(struct watch *watch)
 {
     if (!watch)
         return;
+    if (watch->thread)
+        (void)eventfd_write(watch->end, 1);
+    thread_join(watch->thread);
     watch_clear(watch);
     free(watch->files);
-    close(watch->fd);
+    close_open(watch->fd);
+    close_open(watch->end);
+    close_open(watch->both);
     free(watch);
 }
 

@@ -6,8 +6,9 @@
 
 struct watch;
 
-/* NULL where watching is not possible. */
-struct watch *watch_create(void);
+/* NULL where watching is not possible. `wake` is called, with NULL, from another thread when
+   watch_changed may have something to tell. */
+struct watch *watch_create(void (*wake)(void *user));
 void watch_destroy(struct watch *watch); /* NULL is fine */
 /* Also this file. Editors replace files: its folder is watched for its name. Standard input, which
    never changes, is none. */

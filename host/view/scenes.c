@@ -264,8 +264,8 @@ void scenes_begin(struct view *view)
         if (strcmp(params->scenes[i], params->settings.scene) == 0)
             view->scene_index = i;
     }
-    view->watch = watch_create();
-    view->watch_asked = watch_create();
+    view->watch = watch_create(window_wake);
+    view->watch_asked = watch_create(window_wake);
     recall_camera(view);
     view->fallback = view->settings;
 }

@@ -34,7 +34,7 @@ void shaders_begin(struct view *view)
 {
     if (!settings_compiles(&view->settings))
         return;
-    view->shaders.watch = watch_create();
+    view->shaders.watch = watch_create(window_wake);
     watch_files(view);
 }
 
@@ -49,12 +49,11 @@ void shaders_watch(struct view *view)
     struct shaders *shaders = &view->shaders;
     if (!watch_changed(shaders->watch))
         return;
-    shaders->errors[0] = shaders->line[0] = '\0';
     view->settings.shader_reload = ++view->reloads;
     shaders->wait = (struct shaders_wait){
         .goes_on = true, .saved_ms = whit_clock_ms(), .asked = view->settings};
     engine_stop_reload(view->engine);
-    view->dirty = true;
+    view->progress_ms = shaders->wait.saved_ms;
 }
 
 /* Colours are shown in the place of a function that the file does not have. */
@@ -81,6 +80,7 @@ void shaders_take(struct view *view)
     }
     shader_ref_drop(shaders->shown);
     shaders->shown = shader_ref_take(view->frame.shader);
+    shaders->errors[0] = shaders->line[0] = '\0';
     watch_files(view);
     say_no_aov(view);
 }

@@ -18,8 +18,6 @@ static const double REST_MS = 1000.0; /* without a picture: the next begins anot
 static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
 /* Between pictures of how far it is: on a CPU device each takes from the cores that draw. */
 static const double PROGRESS_SHOWN_MS = 400.0;
-static const double WATCH_S = 0.25;        /* between looks at the scene's files */
-static const double SHADER_WATCH_S = 0.02; /* and at those of a shader, which are written often */
 static const double IDLE_S = 5.0;
 
 double view_now_ms(const struct view *view)
@@ -193,10 +191,15 @@ static whit_result take_status(struct view *view)
 {
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
-    if (old.stage != view->status.stage || strcmp(old.error, view->status.error) != 0 ||
+    /* What begins after a save is not worth a drawing, which would take from the cores that make
+     * it. */
+    bool tells = !view->shaders.wait.goes_on;
+    bool other_stage = old.stage != view->status.stage;
+    bool other_drawing = old.drawing != view->status.drawing;
+    if ((other_stage && (tells || view->status.stage == SESSION_DONE)) ||
+        (other_drawing && (tells || old.drawing)) || strcmp(old.error, view->status.error) != 0 ||
         old.change.number != view->status.change.number ||
-        old.reload.over != view->status.reload.over || old.drawing != view->status.drawing ||
-        is_progress_due(view))
+        old.reload.over != view->status.reload.over || is_progress_due(view))
         view->dirty = true;
     /* Hidden, it is asked for nothing: the failure is that of something older. */
     return view->status.failed && !is_hidden(view) ? take_failure(view) : WHIT_OK;
@@ -315,10 +318,6 @@ static double wait_seconds(struct view *view, bool goes_on)
         wait = fmin(wait, fmax(view->toast_until_ms - now_ms, 0.0) * 1e-3);
     if (view->status.stage != SESSION_DONE || view->status.drawing)
         wait = fmin(wait, PROGRESS_S);
-    if (view->watch || view->watch_asked)
-        wait = fmin(wait, WATCH_S);
-    if (view->shaders.watch)
-        wait = fmin(wait, SHADER_WATCH_S);
     wait = fmin(wait, replay_wait_s(view));
     return wait > 0.0 ? wait + 1e-3 : 0.0;
 }

@@ -1,6 +1,17 @@
 /* Files that are written, replaced, or not. */
+#include <semaphore.h>
+#include <time.h>
+
 #include "base/watch.h"
 #include "folder_fixture.h"
+
+static sem_t woken;
+
+static void wake(void *user)
+{
+    (void)user;
+    sem_post(&woken);
+}
 
 static void put(const char *name, const char *text)
 {
@@ -9,7 +20,7 @@ static void put(const char *name, const char *text)
 
 TEST_IN(changes_are_told_once, folder_begin, folder_end)
 {
-    struct watch *watch = watch_create();
+    struct watch *watch = watch_create(wake);
     assert_non_null(watch);
     put("a.json", "1");
     watch_add(watch, in_folder("a.json"));
@@ -24,9 +35,27 @@ TEST_IN(changes_are_told_once, folder_begin, folder_end)
     watch_destroy(watch);
 }
 
+TEST_IN(who_waits_is_woken, folder_begin, folder_end)
+{
+    struct timespec until;
+    struct watch *watch = watch_create(wake);
+    assert_non_null(watch);
+    watch_add(watch, in_folder("a.json"));
+    while (sem_trywait(&woken) == 0)
+        continue;
+    assert_int_equal(clock_gettime(CLOCK_REALTIME, &until), 0);
+    until.tv_sec += 60;
+    for (int i = 0; i < 3; ++i) {
+        put("a.json", "1");
+        assert_int_equal(sem_timedwait(&woken, &until), 0);
+        assert_true(watch_changed(watch));
+    }
+    watch_destroy(watch);
+}
+
 TEST_IN(others_are_nobodys_business, folder_begin, folder_end)
 {
-    struct watch *watch = watch_create();
+    struct watch *watch = watch_create(wake);
     watch_add(watch, in_folder("a.json"));
     put("b.json", "1");
     assert_false(watch_changed(watch));
@@ -48,7 +77,7 @@ TEST(nothing_is_fine)
     watch_clear(NULL);
     assert_false(watch_changed(NULL));
     watch_destroy(NULL);
-    struct watch *watch = watch_create();
+    struct watch *watch = watch_create(wake);
     watch_add(watch, in_folder("no/such/folder/a.json"));
     assert_false(watch_changed(watch));
     watch_destroy(watch);
