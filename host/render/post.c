@@ -22,7 +22,7 @@ static void describe(const struct renderer *renderer, struct before_post *of)
 
 void post_keep(struct renderer *renderer)
 {
-    if (renderer->picture.stages.set.posts && readback_is_late(renderer) &&
+    if (renderer->picture.stages.set.passes[STAGE_POST].pipeline && readback_is_late(renderer) &&
         !renderer->params.count && !renderer->views.count)
         describe(renderer, &renderer->before_post);
 }
@@ -38,7 +38,8 @@ bool post_can_reuse(const struct renderer *renderer)
     struct before_post wanted;
     describe(renderer, &wanted);
     return renderer->params.reuse_rays && !renderer->views.count && readback_is_late(renderer) &&
-           renderer->picture.stages.set.posts && !post_traces(renderer->params.shader) &&
+           renderer->picture.stages.set.passes[STAGE_POST].pipeline &&
+           !post_traces(renderer->params.shader) &&
            memcmp(&renderer->before_post, &wanted, sizeof wanted) == 0;
 }
 

@@ -82,6 +82,7 @@ enum stage {
     STAGE_RESOLVE_LATER,
     STAGE_MISS,  /* of a user's function */
     STAGE_SHAPE, /* likewise, before rays go through the trees */
+    STAGE_AOV,   /* likewise, beside the colour */
     STAGE_POST,  /* likewise, of pixels that have all samples */
     STAGE_COUNT
 };
@@ -94,8 +95,6 @@ struct stage_set {
     uint32_t classes;           /* of materials, each with a shading kernel of its own */
     bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
     bool asks;                  /* whether hits ask lights, for stages of their own */
-    bool misses, posts; /* whether stages of their own say what misses see, and what pixels show */
-    bool has_shape;     /* that rays are held against in a stage of its own */
 };
 
 /* How long each stage of the tile being drawn takes, see stage_times.c. */
@@ -384,9 +383,9 @@ void passes_finish(struct renderer *renderer);
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
-    bool asks, misses, posts, has_shape; /* as of a set */
-    bool wanted[STAGE_COUNT];            /* a kernel of its own */
-    enum stage of[STAGE_COUNT];          /* as of a set */
+    bool asks;                  /* as of a set */
+    bool wanted[STAGE_COUNT];   /* a kernel of its own */
+    enum stage of[STAGE_COUNT]; /* as of a set */
     struct variant_job stages[STAGE_COUNT];
 };
 /* `own`: the kernels for the scene, else general ones with `spec`. `few`: one kernel for stages

@@ -43,20 +43,20 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
                      struct stages_job *job)
 {
     const struct renderer *renderer = target->renderer;
+    const whit_shader *shader = renderer->params.shader;
     *job = (struct stages_job){.spec = *spec};
     /* A shading function of the user's has asked them itself, as all but catchers do. */
-    job->asks = !shader_has(renderer->params.shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
-    job->misses = shader_has(renderer->params.shader, SHADER_HOOK_MISS);
-    job->has_shape = shader_has(renderer->params.shader, SHADER_HOOK_INTERSECT);
-    job->posts = shader_has(renderer->params.shader, SHADER_HOOK_POST);
+    job->asks = !shader_has(shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
         bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
-                         (i != STAGE_MISS || job->misses) && (i != STAGE_SHAPE || job->has_shape) &&
-                         (i != STAGE_POST || job->posts) &&
+                         (i != STAGE_MISS || shader_has(shader, SHADER_HOOK_MISS)) &&
+                         (i != STAGE_SHAPE || shader_has(shader, SHADER_HOOK_INTERSECT)) &&
+                         (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
+                         (i != STAGE_POST || shader_has(shader, SHADER_HOOK_POST)) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
@@ -89,11 +89,7 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){.classes = job->classes,
-                              .asks = job->asks,
-                              .misses = job->misses,
-                              .posts = job->posts,
-                              .has_shape = job->has_shape};
+    *out = (struct stage_set){.classes = job->classes, .asks = job->asks};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
@@ -316,6 +312,8 @@ static uint32_t row_of(enum stage stage, uint32_t list)
     };
     if (stage == STAGE_SHAPE && list != LIST_RAYS)
         stage = STAGE_SHADOW;
+    if (stage == STAGE_AOV)
+        return RENDER_STAGE_SHADE + (list - LIST_HITS);
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
 
@@ -396,31 +394,56 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
     return WHIT_OK;
 }
 
-static whit_result record_generation(struct tile_run *run)
+/* A stage of a user's functions, where the file has them. */
+static whit_result dispatch_own(struct tile_run *run, enum stage stage, uint32_t list)
 {
-    const struct renderer *renderer = run->target->renderer;
+    bool has = run->target->stages.set.passes[stage].pipeline;
+    return has ? dispatch(run, stage, list) : WHIT_OK;
+}
+
+static whit_result record_hits(struct tile_run *run)
+{
     const struct stage_set *set = &run->target->stages.set;
-    bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
-    bool in_shadow = set->has_shape && renderer_compiles(renderer, SCENE_EFFECT_SHADOWS);
-    whit_result result = set->has_shape ? dispatch(run, STAGE_SHAPE, LIST_RAYS) : WHIT_OK;
-    if (result == WHIT_OK)
-        result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
-    if (result == WHIT_OK && set->misses)
-        result = dispatch(run, STAGE_MISS, LIST_RAYS);
+    whit_result result = WHIT_OK;
+    /* Before the stages that shade, which leave no hits of shadow catchers. */
+    for (uint32_t i = 0; result == WHIT_OK && run->chunk.generation == 0 && i < set->classes; ++i)
+        result = dispatch_own(run, STAGE_AOV, LIST_HITS + i);
     if (result == WHIT_OK)
         result = dispatch(run, STAGE_SHADE, LIST_HITS);
     if (result == WHIT_OK && set->classes > 1)
         result = dispatch(run, STAGE_SHADE_GLASS, LIST_HITS + CLASS_GLASS);
-    uint32_t lights = set->asks ? renderer->frame.light_count : 0;
+    return result;
+}
+
+static whit_result record_lights(struct tile_run *run)
+{
+    const struct renderer *renderer = run->target->renderer;
+    bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
+    bool shadows = renderer_compiles(renderer, SCENE_EFFECT_SHADOWS);
+    whit_result result = WHIT_OK;
+    uint32_t lights = run->target->stages.set.asks ? renderer->frame.light_count : 0;
     for (uint32_t i = 0; result == WHIT_OK && i < lights; ++i) {
         uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
         run->chunk.light = i;
-        if (in_shadow)
-            result = dispatch(run, STAGE_SHAPE, list);
+        if (shadows)
+            result = dispatch_own(run, STAGE_SHAPE, list);
         if (result == WHIT_OK)
             result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER, list);
     }
     return result;
+}
+
+static whit_result record_generation(struct tile_run *run)
+{
+    bool camera = run->chunk.generation == 0;
+    whit_result result = dispatch_own(run, STAGE_SHAPE, LIST_RAYS);
+    if (result == WHIT_OK)
+        result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
+    if (result == WHIT_OK)
+        result = dispatch_own(run, STAGE_MISS, LIST_RAYS);
+    if (result == WHIT_OK)
+        result = record_hits(run);
+    return result == WHIT_OK ? record_lights(run) : result;
 }
 
 /* From the last generation to the camera rays. Does nothing where generation `count` has rays. */
@@ -438,7 +461,7 @@ static whit_result record_resolve(struct tile_run *run, uint32_t count)
     if (result == WHIT_OK)
         result = dispatch(run, STAGE_RESOLVE, LIST_RAYS);
     bool last = run->chunk.summed + 1 == run->chunk.samples;
-    return result == WHIT_OK && set->posts && last ? dispatch(run, STAGE_POST, LIST_RAYS) : result;
+    return result == WHIT_OK && last ? dispatch_own(run, STAGE_POST, LIST_RAYS) : result;
 }
 
 static void clear_queues(struct target *target)

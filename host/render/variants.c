@@ -470,6 +470,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_RESOLVE_LATER] = {&kernels[KERNEL_RESOLVE], "resolve later", false, 2},
         [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
         [STAGE_SHAPE] = {&hook_kernels[HOOK_KERNEL_SHAPE], "shape", false, 3},
+        [STAGE_AOV] = {&hook_kernels[HOOK_KERNEL_AOV], "aov", false, 1},
         [STAGE_POST] = {&hook_kernels[HOOK_KERNEL_POST], "post", false, 1},
     };
     struct bindings bindings = bind_stages(target);

@@ -20,6 +20,7 @@
 #define scatter whit_scatter
 #include "../hook/scatter.glsl"
 #endif
+#include "../hook/met.glsl"
 
 layout(local_size_x_id = 0) in;
 
@@ -131,8 +132,7 @@ void send(uint slot, Ray ray, vec3 dir, vec3 weight, uint steps, inout uint next
 }
 
 // Gives what sums[].w tells of them.
-uint send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c, Hit hit, Calls calls,
-                inout uint status)
+uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
 {
     uint next = reserve_rays(alive ? uint(calls.wanted[0]) + uint(calls.wanted[1]) +
                                          uint(calls.wanted[2])
@@ -146,30 +146,30 @@ uint send_calls(bool alive, uint slot, Ray ray, Surface s, Optics o, Crossing c,
     if (next == HIT_NONE)
         return 0u;
     uint has = next;
-    Ray beyond = ray;
-    beyond.origin = offset_origin(c.p, c.error, -c.ng);
-    beyond.skip_instance = c.instance;
-    beyond.skip_record = c.record;
+    Ray beyond = met.ray;
+    beyond.origin = offset_origin(met.c.p, met.c.error, -met.c.ng);
+    beyond.skip_instance = met.c.instance;
+    beyond.skip_record = met.c.record;
     if ((SPEC_REFRACTION != 0u || SPEC_MEDIA != 0u) && calls.wanted[0]) {
-        beyond.media = o.thin ? ray.media : c.after;
+        beyond.media = o.thin ? met.ray.media : met.c.after;
         beyond.kind = RAY_REFRACTED;
-        send(slot, beyond, calls.dir[0], calls.weight[0], calls.steps, next);
+        send(met.slot, beyond, calls.dir[0], calls.weight[0], calls.steps, next);
         has |= SUM_REFRACTED;
     }
     if ((SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) && calls.wanted[1]) {
-        beyond.media = ray.media;
-        beyond.kind = ray.kind;
-        send(slot, beyond, calls.dir[1], calls.weight[1], calls.steps, next);
+        beyond.media = met.ray.media;
+        beyond.kind = met.ray.kind;
+        send(met.slot, beyond, calls.dir[1], calls.weight[1], calls.steps, next);
         has |= SUM_STRAIGHT;
     }
     if (SPEC_REFLECTION != 0u && calls.wanted[2]) {
-        Ray back = ray;
-        back.origin = offset_origin(s.p, s.error, s.ng);
-        back.skip_instance = hit.instance;
-        back.skip_record = hit.triangle;
-        back.media = c.before;
+        Ray back = met.ray;
+        back.origin = offset_origin(met.s.p, met.s.error, met.s.ng);
+        back.skip_instance = met.hit.instance;
+        back.skip_record = met.hit.triangle;
+        back.media = met.c.before;
         back.kind = RAY_REFLECTED;
-        send(slot, back, calls.dir[2], calls.weight[2], calls.steps, next);
+        send(met.slot, back, calls.dir[2], calls.weight[2], calls.steps, next);
         has |= SUM_REFLECTED;
     }
     return has;
@@ -216,14 +216,13 @@ void make_catcher(inout Optics o)
     o.metal_rough = false;
 }
 
-void ask_lights(bool alive, uint id, uint record, Ray ray, Surface s, Optics o, Crossing c,
-                bool catcher, inout uint status)
+void ask_lights(bool alive, uint id, Met met, Optics o, bool catcher, inout uint status)
 {
-    vec3 weight = catcher ? vec3(1.0) : ray.weight * (1.0 - o.straight);
-    Lit lit = lit_surface(s, o, weight, c.before);
+    vec3 weight = catcher ? vec3(1.0) : met.ray.weight * (1.0 - o.straight);
+    Lit lit = lit_surface(met.s, o, weight, met.c.before);
     lit.flags |= catcher ? LIT_CATCHER : 0u;
     lit.id = id;
-    lit.record = record;
+    lit.record = met.hit.triangle;
     bool some = largest_of(lit.diffuse + lit.highlight) > 0.0 ||
                 any(isnan(lit.diffuse + lit.highlight));
     list_lit(alive && some, lit, status);
@@ -243,35 +242,6 @@ vec3 own_light(Surface s, Optics o, vec3 dir)
     return o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
 }
 
-#ifdef HOOKS
-void change_surface(inout Surface s)
-{
-    Surface changed = s;
-    begin_hook();
-    surface(changed);
-    end_hook(true);
-    vec3 sum = changed.ns + changed.color + vec3(changed.u, changed.v, changed.color_alpha);
-    hook_lost = any(isnan(sum)) || any(isinf(sum));
-    s.ns = normalize_or(changed.ns, s.ns);
-    s.color = changed.color;
-    s.color_alpha = changed.color_alpha;
-    s.u = changed.u;
-    s.v = changed.v;
-}
-
-// What the user has beside the colour, of the sample in hand.
-void store_aovs(uint slot, bool alive, Surface s)
-{
-    for (uint i = 0u; i < SPEC_AOVS; i++) {
-        begin_hook();
-        vec4 value = aov(i, s);
-        end_hook(true);
-        if (alive)
-            aovs[slot * SPEC_AOVS + i] = value;
-    }
-}
-#endif
-
 void main()
 {
     load_frame();
@@ -284,54 +254,26 @@ void main()
     item = alive ? item : 0u;
     uint id = waited ? item : fetch_listed_hit(item);
     id = alive ? id : 0u;
-    uint slot;
-    Ray ray = fetch_ray(id, slot);
-#ifdef HOOKS
-    count_camera(0u, is_primary());
-#endif
-    Hit hit = fetch_hit(id);
     uint status = 0u;
-    ray.weight *= medium_transmittance(ray.media, hit.t);
-    met_origin = ray.origin;
-    met_dir = ray.dir;
-    Surface s = fetch_surface(hit);
-    gpu_material m = fetch_material(s.material);
-    bool inside = face_ray(s, ray.dir);
-    Crossing c = cross_surface(alive ? slot : HIT_NONE, ray, hit, s, m, inside, status);
+    Met met = fetch_met(id, alive, true, status);
     if (alive && must_wait(status))
         list_deferred(id);
     alive = alive && !must_wait(status);
-    if (SPEC_MINIFICATION != 0u) {
-        ray.way += hit.t;
-        take_footprint(s, ray.dir, texel_area(slot_pixel(slot), ray.way));
-    }
-    hook_ray = ray;
 #ifdef HOOKS
-    hook_pixel = slot_pixel(slot);
-    hook_hit = hit;
-    hook_media = c.before;
     record_for(id, alive);
 #endif
-#ifdef HOOKS
-    if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
-        change_surface(s);
-#endif
-    Optics o = surface_optics(s, m, ray.dir, c.eta);
-    if (dot(s.ns, ray.dir) > 0.0)
-        s.ns = s.ng;
-    bool seen = SPEC_MEDIA == 0u || c.seen;
-    bool catcher = SPEC_CATCHERS != 0u && (m.flags & MATERIAL_CATCHER) != 0u;
+    Optics o = look_at(met);
+    bool seen = SPEC_MEDIA == 0u || met.c.seen;
+    bool catcher = SPEC_CATCHERS != 0u && (met.m.flags & MATERIAL_CATCHER) != 0u;
     if (catcher)
         make_catcher(o);
-    Calls calls = call_children(ray, s, o, c, status);
+    Calls calls = call_children(met.ray, met.s, o, met.c, status);
     if (SPEC_MEDIA != 0u && !seen) {
-        calls = call_through(ray, status);
+        calls = call_through(met.ray, status);
         o.thin = false;
     }
-    vec3 own = own_light(s, o, ray.dir);
+    vec3 own = own_light(met.s, o, met.ray.dir);
 #ifdef HOOKS
-    if (SPEC_AOVS != 0u && is_primary())
-        store_aovs(slot, alive, s);
     calls.lost = calls.lost || hook_lost;
     status |= hook_status;
     if (alive && must_wait(hook_status))
@@ -346,23 +288,22 @@ void main()
         tally_cuts(alive ? calls.cuts : 0u);
     uint has = 0u;
     if (SPEC_SECONDARY != 0u && CALLS_RAYS)
-        has = send_calls(alive, slot, ray, s, o, c, hit, calls, status);
+        has = send_calls(alive, met, o, calls, status);
     if (SPEC_PROBE != 0u && alive)
-        probe_calls(id, ray, calls, has, !seen);
-    own *= ray.weight * (1.0 - o.straight);
+        probe_calls(id, met.ray, calls, has, !seen);
+    own *= met.ray.weight * (1.0 - o.straight);
     bool some = has != 0u;
     has |= catcher && some ? SUM_IS_CATCHER : 0u;
     own = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : own;
     if (alive)
         store_sum(id, calls.lost || (seen && !catcher) ? own : vec3(0.0), has);
     if (CALLS_RAYS && alive && calls.cut > 0.0)
-        count_cut(slot, calls);
+        count_cut(met.slot, calls);
     if (alive && catcher)
         store_hit_row(id * HIT_ROWS, uvec4(0u));
     bool has_asked = (SPEC_HOOKS & HOOK_SHADE) != 0u; // but for catchers
     seen = has_asked ? catcher : seen;
     if (SPEC_LIGHTS != 0u && (SPEC_CATCHERS != 0u || (SPEC_HOOKS & HOOK_SHADE) == 0u))
-        ask_lights(alive && seen && !o.unlit && (!catcher || some), id, hit.triangle, ray, s, o, c, catcher,
-                   status);
+        ask_lights(alive && seen && !o.unlit && (!catcher || some), id, met, o, catcher, status);
     report_status(alive ? status : 0u);
 }

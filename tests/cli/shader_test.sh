@@ -82,7 +82,7 @@ check "its functions" test "$(jq -r '[.functions[].name] | join(" ")' all.json)"
 check "its aovs" test "$(jq -r '[.aovs[].name] | join(" ")' all.json)" = facing
 check "its sliders" test "$(jq -r '[.sliders[] | "\(.name)=\(.value)"] | join(",")' all.json)" = \
     "bands=3,rim=#ffcc88,on=on,mode=plain"
-check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "shade post"
+check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "aov post"
 expect 2 "no such aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov face -o aov.exr
 said "names those that there are" "there is facing"
 expect 0 "an aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov facing -o aov.exr
@@ -94,7 +94,7 @@ expect 0 "dump" shader all.glsl --dump spirv
 check "SPIR-V" spirv-val --target-env vulkan1.2 spirv/post.spv
 check "GLSL with all that it includes" sh -c 'grep -q "^vec3 tint" spirv/post.comp && ! grep -q "^#include [^<]" spirv/post.comp'
 check "the text of the SPIR-V" sh -c 'spirv-as --target-env vulkan1.2 spirv/post.spvasm -o again.spv && spirv-val again.spv'
-check "variants beside whit's own" test "$(jq '[.variants[] | select(.name == "shade" and
+check "variants beside whit's own" test "$(jq '[.variants[] | select(.name == "resolve" and
     .base_instructions > 0 and .instructions > .base_instructions)] | length' all.json)" = 1
 
 # ---- Tests in it, and what it expects ----

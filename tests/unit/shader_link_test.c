@@ -26,53 +26,60 @@ static uint32_t count_functions(const struct shader_code *code)
     return count;
 }
 
+#define KERNEL(name) (1u << SHADER_KERNEL_##name)
+
 TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
 {
     static const struct {
         const char *content;
-        uint32_t kernels; /* bits 1 << SHADER_KERNEL_* */
+        uint32_t kernels;
     } cases[] = {
-        {"void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += at.y; }\n", 7},
-        {"void surface(inout Surface s) { s.ns = normalize(s.ns + sin(s.p)); }\n", 2},
+        {"void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += at.y; }\n",
+         KERNEL(CLOSEST) | KERNEL(SHADE) | KERNEL(SHADOW)},
+        {"void surface(inout Surface s) { s.ns = normalize(s.ns + sin(s.p)); }\n", KERNEL(SHADE)},
         {"vec3 shade(Surface s, Optics o, vec3 e) { return whit_shade(s, o, e) + shade(s, o, e, 1);"
          " }\nvec3 shade(Surface s, Optics o, vec3 e, int n) { return vec3(n); }\n",
          0}, /* used before it is declared */
         {"vec3 shade(Surface s, Optics o, vec3 e, int n) { return vec3(n); }\n"
          "vec3 shade(Surface s, Optics o, vec3 e) { return shade(s, o, e, 2); }\n",
-         2},
+         KERNEL(SHADE)},
         {"void scatter(Surface s, Optics o, inout Rays r) { whit_scatter(s, o, r); r.reflected *= "
          "random(1u); }\n",
-         2},
+         KERNEL(SHADE)},
         {"float k = 3.0; float a[4] = float[4](1.0, 2.0, 3.0, 4.0); const vec2 c[2] = vec2[2]("
          "vec2(1.0), vec2(2.0));\n"
          "vec3 miss(vec3 d) { k += 1.0; return vec3(k, a[int(d.x * 4.0)], c[int(d.y)].x); }\n",
-         16},
+         KERNEL(MISS)},
         {"struct Hit { vec3 a; float b[3]; }; struct Own { Hit h; mat3 m; };\n"
          "Own traverse(vec3 v) { Own o; o.h.a = v; o.m = mat3(v, v, v); return o; }\n"
          "vec3 miss(vec3 d) { Own o = traverse(d); return o.m * o.h.a; }\n",
-         16},
+         KERNEL(MISS)},
+        {"//@ aov kept\nvec4 kept(Surface s) { Surface m; float d; bool met = trace(s.p, s.ng, m, "
+         "d);\n"
+         "return vec4(visible(s, s.ns, 1.0), met ? d : s.u); }\n",
+         KERNEL(AOV)},
         {"//@ box 0 0 0 1 1 1 0.1\nbool intersect(vec3 o, vec3 d, float far, out float t, out vec3 "
          "n) "
          "{ t = 0.5; n = o; return far > t; }\n",
-         32},
+         KERNEL(SHAPE)},
         {"vec3 post(ivec2 at, vec3 c) { switch (at.x & 3) { case 0: c.r = 1.0; break; case 1: "
          "return c.bgr; default: c.g = 0.0; } return c; }\n",
-         64},
+         KERNEL(POST)},
         {"vec3 post(ivec2 at, vec3 c) { uint64_t n = uint64_t(at.x) << 33; return c * float(n >> "
          "33); }\n",
-         64},
+         KERNEL(POST)},
         {"//@ slider x 0 1 0.5\n//@ color y #ff0000\n//@ toggle z on\n"
          "bool whole(out float f, in bvec2 b) { f = x; return any(b); }\n"
          "vec3 post(ivec2 at, vec3 c) { float f; return whole(f, bvec2(z, false)) ? y * f : c; }\n",
-         64},
+         KERNEL(POST)},
         {"vec3 shade(Surface s, Optics o, vec3 e) { Surface m; float d; vec3 sum = vec3(0.0);\n"
          "for (uint i = 0u; i < light_count(); i++) { Light l = light(i, 0u, s); sum += l.arriving "
          "* visible(s, l.dir, l.distance); }\n"
          "if (trace(off_surface(s, s.ng), s.ng, m, d)) sum += m.color; return sum; }\n",
-         2},
+         KERNEL(SHADE)},
         {"float begin_user(float x) { return x; }\nfloat main_(float x) { return x; }\n"
          "vec3 post(ivec2 at, vec3 c) { return c * begin_user(main_(1.0)); }\n",
-         64},
+         KERNEL(POST)},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         whit_shader *shader = make(cases[i].content);
