@@ -34,7 +34,8 @@ struct queue_buffers {
     struct buffer *rays, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
-        *deferred; /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+        *deferred;      /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+    struct buffer *own; /* of hits: what a user's surface() and shade() have said */
     struct buffer *shape_shadows; /* of lit hits, with a user's shape: two words each */
     struct buffer *kinds; /* RAY_*, with params.count; how far rays have come, for textures */
     uint32_t generation_count, ray_capacity, lit_capacity;
@@ -82,7 +83,7 @@ enum stage {
     STAGE_RESOLVE_LATER,
     STAGE_MISS,  /* of a user's function */
     STAGE_SHAPE, /* likewise, before rays go through the trees */
-    STAGE_AOV,   /* likewise, beside the colour */
+    STAGE_HIT,   /* likewise, of what rays have met */
     STAGE_POST,  /* likewise, of pixels that have all samples */
     STAGE_COUNT
 };

@@ -39,6 +39,12 @@ static void share_kernel(struct stages_job *job, enum stage first, enum stage la
     job->of[first] = later;
 }
 
+/* Whether functions of the user's change the colours of what is met. */
+static bool acts_at_hits(const whit_shader *shader)
+{
+    return shader_has(shader, SHADER_HOOK_SURFACE) || shader_has(shader, SHADER_HOOK_SHADE);
+}
+
 void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own, bool few,
                      struct stages_job *job)
 {
@@ -55,7 +61,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
                          (i != STAGE_MISS || shader_has(shader, SHADER_HOOK_MISS)) &&
                          (i != STAGE_SHAPE || shader_has(shader, SHADER_HOOK_INTERSECT)) &&
-                         (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
+                         (i != STAGE_HIT || acts_at_hits(shader) || spec->SPEC_AOVS > 0) &&
                          (i != STAGE_POST || shader_has(shader, SHADER_HOOK_POST)) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
@@ -312,7 +318,7 @@ static uint32_t row_of(enum stage stage, uint32_t list)
     };
     if (stage == STAGE_SHAPE && list != LIST_RAYS)
         stage = STAGE_SHADOW;
-    if (stage == STAGE_AOV)
+    if (stage == STAGE_HIT)
         return RENDER_STAGE_SHADE + (list - LIST_HITS);
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
@@ -405,9 +411,9 @@ static whit_result record_hits(struct tile_run *run)
 {
     const struct stage_set *set = &run->target->stages.set;
     whit_result result = WHIT_OK;
-    /* Before the stages that shade, which leave no hits of shadow catchers. */
-    for (uint32_t i = 0; result == WHIT_OK && run->chunk.generation == 0 && i < set->classes; ++i)
-        result = dispatch_own(run, STAGE_AOV, LIST_HITS + i);
+    bool acts = run->chunk.generation == 0 || acts_at_hits(run->target->renderer->params.shader);
+    for (uint32_t i = 0; result == WHIT_OK && acts && i < set->classes; ++i)
+        result = dispatch_own(run, STAGE_HIT, LIST_HITS + i);
     if (result == WHIT_OK)
         result = dispatch(run, STAGE_SHADE, LIST_HITS);
     if (result == WHIT_OK && set->classes > 1)

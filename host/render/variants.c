@@ -280,6 +280,8 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_AOVS, BINDING_STORAGE, pixels->aovs);
     bind(&bindings, BIND_VIEWS, BINDING_STORAGE, renderer->views.buffer);
     bind(&bindings, BIND_DISTANCES, BINDING_STORAGE, pixels->distances);
+    bind(&bindings, BIND_OWN_ROWS, BINDING_STORAGE, queues->own);
+    bind(&bindings, BIND_OWN_TEXELS, BINDING_TEXELS, queues->own);
     bind(&bindings, BIND_SHAPE_SHADOWS, BINDING_STORAGE, queues->shape_shadows);
     bind(&bindings, BIND_CUT_SUMS, BINDING_STORAGE, queues->cut_sums);
     return bindings;
@@ -470,7 +472,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_RESOLVE_LATER] = {&kernels[KERNEL_RESOLVE], "resolve later", false, 2},
         [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
         [STAGE_SHAPE] = {&hook_kernels[HOOK_KERNEL_SHAPE], "shape", false, 3},
-        [STAGE_AOV] = {&hook_kernels[HOOK_KERNEL_AOV], "aov", false, 1},
+        [STAGE_HIT] = {&hook_kernels[HOOK_KERNEL_HIT], "hit", false, 3},
         [STAGE_POST] = {&hook_kernels[HOOK_KERNEL_POST], "post", false, 1},
     };
     struct bindings bindings = bind_stages(target);

@@ -29,13 +29,12 @@ static const struct {
     uint32_t hooks;
 } kernel_table[SHADER_KERNEL_COUNT] = {
     [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA)},
-    [SHADER_KERNEL_SHADE] = {"kernel/shade.comp",
-                             BIT(CAMERA) | BIT(SURFACE) | BIT(SHADE) | BIT(SCATTER)},
+    [SHADER_KERNEL_SHADE] = {"kernel/shade.comp", BIT(CAMERA) | BIT(SCATTER)},
     [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
     [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", 0},
     [SHADER_KERNEL_MISS] = {"kernel/miss.comp", BIT(MISS)},
     [SHADER_KERNEL_SHAPE] = {"kernel/shape.comp", BIT(INTERSECT)},
-    [SHADER_KERNEL_AOV] = {"kernel/aov.comp", BIT(AOV)},
+    [SHADER_KERNEL_HIT] = {"kernel/hit.comp", BIT(SURFACE) | BIT(SHADE) | BIT(AOV)},
     [SHADER_KERNEL_POST] = {"kernel/post.comp", BIT(POST)},
     [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
 };

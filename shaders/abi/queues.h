@@ -11,6 +11,8 @@
 /* Rows of 16 bytes. */
 #define RAY_ROWS 4u /* origin, state; dir, record to skip; weight, its instance; media */
 #define LIT_ROWS 8u /* at most, see bind/lit.glsl */
+#define OWN_SURFACE_ROWS 3u /* of a hit that a user's surface() has changed */
+#define OWN_LIGHT_ROWS   1u /* of a hit whose light a user's shade() has said, behind these */
 
 /* The state of a queued ray: its steps in the low bits, and above them the slot of its pixel. */
 #define STATE_SLOT_SHIFT  16u

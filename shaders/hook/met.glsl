@@ -8,6 +8,10 @@
 #include "../bind/optics.glsl"
 #include "../bind/queues.glsl"
 
+layout(set = 0, binding = BIND_OWN_ROWS, std430) buffer OwnRowBuffer { uvec4 own_rows[]; };
+layout(set = 0, binding = BIND_OWN_ROWS, std430) buffer WideOwnBuffer { u64vec2 wide_own[]; };
+layout(set = 0, binding = BIND_OWN_TEXELS) uniform usamplerBuffer own_texels;
+
 struct Met {
     uint slot;
     Ray ray; // as it arrives: its weight is what counts of the surface's light
@@ -47,33 +51,83 @@ Met fetch_met(uint id, bool alive, bool counts, inout uint status)
     return met;
 }
 
-#ifdef HOOKS
-void change_surface(inout Surface s)
+// Rows that a hit has of what the user's functions make of it.
+const uint OWN_SURFACE = (SPEC_HOOKS & HOOK_SURFACE) != 0u ? OWN_SURFACE_ROWS : 0u;
+const uint OWN_ROWS = OWN_SURFACE + ((SPEC_HOOKS & HOOK_SHADE) != 0u ? OWN_LIGHT_ROWS : 0u);
+
+void store_own_row(uint row, vec4 value)
 {
-    Surface changed = s;
-    begin_hook();
-    surface(changed);
-    end_hook(true);
-    vec3 sum = changed.ns + changed.color + vec3(changed.u, changed.v, changed.color_alpha);
-    hook_lost = any(isnan(sum)) || any(isinf(sum));
-    s.ns = normalize_or(changed.ns, s.ns);
-    s.color = changed.color;
-    s.color_alpha = changed.color_alpha;
-    s.u = changed.u;
-    s.v = changed.v;
+    if (SPEC_WIDE_ROWS != 0u)
+        wide_own[row] = wide_row(floatBitsToUint(value));
+    else
+        own_rows[row] = floatBitsToUint(value);
 }
-#endif
+
+vec4 fetch_own_row(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return uintBitsToFloat(texelFetch(own_texels, int(row)));
+    return uintBitsToFloat(own_rows[row]);
+}
+
+// What surface() has changed of the hit of ray `id`. `lost`: it gave no number.
+void store_changed(uint id, Surface s, bool lost)
+{
+    store_own_row(id * OWN_ROWS, vec4(s.ns, s.u));
+    store_own_row(id * OWN_ROWS + 1u, vec4(s.color, s.v));
+    store_own_row(id * OWN_ROWS + 2u, vec4(s.color_alpha, float(lost), 0.0, 0.0));
+}
+
+void fetch_changed(uint id, inout Surface s, out bool lost)
+{
+    vec4 r0 = fetch_own_row(id * OWN_ROWS), r1 = fetch_own_row(id * OWN_ROWS + 1u);
+    vec4 r2 = fetch_own_row(id * OWN_ROWS + 2u);
+    s.ns = r0.xyz;
+    s.u = r0.w;
+    s.color = r1.xyz;
+    s.v = r1.w;
+    s.color_alpha = r2.x;
+    lost = r2.y != 0.0;
+}
+
+// What shade() has said.
+void store_own_light(uint id, vec3 light)
+{
+    store_own_row(id * OWN_ROWS + OWN_SURFACE, vec4(light, 0.0));
+}
+
+vec3 fetch_own_light(uint id)
+{
+    return fetch_own_row(id * OWN_ROWS + OWN_SURFACE).xyz;
+}
+
+bool is_catcher(Met met)
+{
+    return SPEC_CATCHERS != 0u && (met.m.flags & MATERIAL_CATCHER) != 0u;
+}
+
+// A shadow catcher reflects nothing: light goes straight on, see caught_share.
+void make_catcher(inout Optics o)
+{
+    o.diffuse = vec3(1.0);
+    o.ambient = vec3(0.0);
+    o.highlight = vec3(0.0);
+    o.emission = vec3(0.0);
+    o.reflected = vec3(0.0);
+    o.refracted = vec3(0.0);
+    o.straight = 1.0;
+    o.unlit = false;
+    o.metal_rough = false;
+}
 
 // What the material does with light; met.s then has its last normal.
 Optics look_at(inout Met met)
 {
-#ifdef HOOKS
-    if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
-        change_surface(met.s);
-#endif
     Optics o = surface_optics(met.s, met.m, met.ray.dir, met.c.eta);
     if (dot(met.s.ns, met.ray.dir) > 0.0)
         met.s.ns = met.s.ng;
+    if (is_catcher(met))
+        make_catcher(o);
     return o;
 }
 

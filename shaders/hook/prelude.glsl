@@ -15,7 +15,6 @@ Hit hook_hit;            // of the surface
 uvec4 hook_media;        // around it
 uint hook_status = 0u;   // of the rays that hooks have traced
 uint hook_traced = 0u;   // how many these are
-bool hook_lost = false;  // a hook gave no number
 uint whit_fuel = 0u;     // iterations of loops that the call may still take
 uint whit_fuel_loop = 0u; // number of the loop in which there were none left; 0: none
 uint hook_loop = 0u;      // the same, of any call

@@ -202,20 +202,6 @@ void count_cut(uint slot, Calls calls)
     atomicAdd(cuts[slot * 2u + uint(!calls.deep)], uint(min(calls.cut, 64.0) * CUT_PARTS + 0.5));
 }
 
-// A shadow catcher reflects nothing: light goes straight on, see caught_share.
-void make_catcher(inout Optics o)
-{
-    o.diffuse = vec3(1.0);
-    o.ambient = vec3(0.0);
-    o.highlight = vec3(0.0);
-    o.emission = vec3(0.0);
-    o.reflected = vec3(0.0);
-    o.refracted = vec3(0.0);
-    o.straight = 1.0;
-    o.unlit = false;
-    o.metal_rough = false;
-}
-
 void ask_lights(bool alive, uint id, Met met, Optics o, bool catcher, inout uint status)
 {
     vec3 weight = catcher ? vec3(1.0) : met.ray.weight * (1.0 - o.straight);
@@ -229,16 +215,10 @@ void ask_lights(bool alive, uint id, Met met, Optics o, bool catcher, inout uint
 }
 
 // What the surface sends to the eye before lights are asked, or by a function of a user all of it.
-vec3 own_light(Surface s, Optics o, vec3 dir)
+vec3 own_light(uint id, Optics o)
 {
-#ifdef HOOKS
-    if ((SPEC_HOOKS & HOOK_SHADE) != 0u) {
-        begin_hook();
-        vec3 own = shade(s, o, -dir);
-        end_hook(true);
-        return own;
-    }
-#endif
+    if ((SPEC_HOOKS & HOOK_SHADE) != 0u)
+        return fetch_own_light(id);
     return o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
 }
 
@@ -262,19 +242,19 @@ void main()
 #ifdef HOOKS
     record_for(id, alive);
 #endif
+    bool lost = false;
+    if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
+        fetch_changed(id, met.s, lost);
     Optics o = look_at(met);
-    bool seen = SPEC_MEDIA == 0u || met.c.seen;
-    bool catcher = SPEC_CATCHERS != 0u && (met.m.flags & MATERIAL_CATCHER) != 0u;
-    if (catcher)
-        make_catcher(o);
+    bool seen = SPEC_MEDIA == 0u || met.c.seen, catcher = is_catcher(met);
     Calls calls = call_children(met.ray, met.s, o, met.c, status);
     if (SPEC_MEDIA != 0u && !seen) {
         calls = call_through(met.ray, status);
         o.thin = false;
     }
-    vec3 own = own_light(met.s, o, met.ray.dir);
+    vec3 own = own_light(id, o);
+    calls.lost = calls.lost || lost;
 #ifdef HOOKS
-    calls.lost = calls.lost || hook_lost;
     status |= hook_status;
     if (alive && must_wait(hook_status))
         list_deferred(id);

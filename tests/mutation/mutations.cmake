@@ -45,7 +45,7 @@ change(shaders/bind/crossing.glsl [[same != CROSSED_MAX && left == leaves;]] [[f
 
 mutation(averted_normals_kept render_shading RED averted_normals_give_way)
 change(shaders/bind/crossing.glsl [[if (dot(s.ns, dir) > 0.0)]] [[if (false)]])
-change(shaders/kernel/shade.comp [[if (dot(s.ns, ray.dir) > 0.0)]] [[if (false)]])
+change(shaders/hook/met.glsl [[if (dot(met.s.ns, met.ray.dir) > 0.0)]] [[if (false)]])
 
 mutation(second_uvs_unread render_shading RED each_texture_has_its_coordinates)
 change(shaders/bind/shading.glsl [[(uv_set != 0u ? frame.uv1_row : frame.uv0_row)]] [[frame.uv0_row]])
@@ -380,7 +380,7 @@ mutation(levels_too_coarse reference_minification RED cameras_agree_with_the_ref
 change(shaders/bind/shading.glsl [[0.5 * exponent + (start]] [[0.5 * exponent + 0.01 + (start]])
 
 mutation(way_before_mirrors_forgotten reference_minification RED cameras_agree_with_the_reference)
-change(shaders/kernel/shade.comp [[ray.way += hit.t;]] [[ray.way = hit.t;]])
+change(shaders/hook/met.glsl [[ray.way += met.hit.t;]] [[ray.way = met.hit.t;]])
 
 mutation(samples_blur_as_one reference_minification RED one_sample_is_nearer_to_the_truth)
 change(shaders/bind/camera.glsl [[(127u - 2u * halvings) << 23]] [[127u << 23]])

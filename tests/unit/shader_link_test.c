@@ -36,13 +36,13 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
     } cases[] = {
         {"void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += at.y; }\n",
          KERNEL(CLOSEST) | KERNEL(SHADE) | KERNEL(SHADOW)},
-        {"void surface(inout Surface s) { s.ns = normalize(s.ns + sin(s.p)); }\n", KERNEL(SHADE)},
+        {"void surface(inout Surface s) { s.ns = normalize(s.ns + sin(s.p)); }\n", KERNEL(HIT)},
         {"vec3 shade(Surface s, Optics o, vec3 e) { return whit_shade(s, o, e) + shade(s, o, e, 1);"
          " }\nvec3 shade(Surface s, Optics o, vec3 e, int n) { return vec3(n); }\n",
          0}, /* used before it is declared */
         {"vec3 shade(Surface s, Optics o, vec3 e, int n) { return vec3(n); }\n"
          "vec3 shade(Surface s, Optics o, vec3 e) { return shade(s, o, e, 2); }\n",
-         KERNEL(SHADE)},
+         KERNEL(HIT)},
         {"void scatter(Surface s, Optics o, inout Rays r) { whit_scatter(s, o, r); r.reflected *= "
          "random(1u); }\n",
          KERNEL(SHADE)},
@@ -57,7 +57,7 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
         {"//@ aov kept\nvec4 kept(Surface s) { Surface m; float d; bool met = trace(s.p, s.ng, m, "
          "d);\n"
          "return vec4(visible(s, s.ns, 1.0), met ? d : s.u); }\n",
-         KERNEL(AOV)},
+         KERNEL(HIT)},
         {"//@ box 0 0 0 1 1 1 0.1\nbool intersect(vec3 o, vec3 d, float far, out float t, out vec3 "
          "n) "
          "{ t = 0.5; n = o; return far > t; }\n",
@@ -76,7 +76,7 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
          "for (uint i = 0u; i < light_count(); i++) { Light l = light(i, 0u, s); sum += l.arriving "
          "* visible(s, l.dir, l.distance); }\n"
          "if (trace(off_surface(s, s.ng), s.ng, m, d)) sum += m.color; return sum; }\n",
-         KERNEL(SHADE)},
+         KERNEL(HIT)},
         {"float begin_user(float x) { return x; }\nfloat main_(float x) { return x; }\n"
          "vec3 post(ivec2 at, vec3 c) { return c * begin_user(main_(1.0)); }\n",
          KERNEL(POST)},

@@ -1,0 +1,74 @@
+// What a user's functions make of what a ray has met: the surface, the light that it sends to the eye, values beside
+// the colour. In a kernel of its own, before the one that shades, so that the file's next version is soon made.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/queues.glsl"
+#include "../hook/declare.glsl"
+#include "../hook/met.glsl"
+
+layout(local_size_x_id = 0) in;
+
+void change_surface(uint id, bool alive, inout Surface s)
+{
+    Surface changed = s;
+    begin_hook();
+    surface(changed);
+    end_hook(true);
+    vec3 sum = changed.ns + changed.color + vec3(changed.u, changed.v, changed.color_alpha);
+    bool lost = any(isnan(sum)) || any(isinf(sum));
+    s.ns = normalize_or(changed.ns, s.ns);
+    s.color = changed.color;
+    s.color_alpha = changed.color_alpha;
+    s.u = changed.u;
+    s.v = changed.v;
+    if (alive)
+        store_changed(id, s, lost);
+}
+
+void store_aovs(uint slot, bool alive, Surface s)
+{
+    for (uint i = 0u; i < SPEC_AOVS; i++) {
+        begin_hook();
+        vec4 value = aov(i, s);
+        end_hook(true);
+        if (alive)
+            aovs[slot * SPEC_AOVS + i] = value;
+    }
+}
+
+void main()
+{
+    load_frame();
+    begin_user();
+    uint item = own_item(0u, hit_capacity());
+    bool alive = item != ITEM_NONE;
+    uint id = fetch_listed_hit(alive ? item : 0u);
+    id = alive ? id : 0u;
+    uint status = 0u;
+    record_for(id, false); // the camera's function is told of where it aims first
+    Met met = fetch_met(id, alive, false, status);
+    record_for(id, alive);
+    if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
+        change_surface(id, alive, met.s);
+    Optics o = look_at(met);
+    if ((SPEC_HOOKS & HOOK_SHADE) != 0u) {
+        begin_hook();
+        vec3 light = shade(met.s, o, -met.ray.dir);
+        end_hook(true);
+        if (alive)
+            store_own_light(id, light);
+    }
+    if (SPEC_AOVS != 0u && is_primary())
+        store_aovs(met.slot, alive, met.s);
+    if (alive) {
+        report_status(status | hook_status);
+        report_hooks();
+        tally_traced(hook_traced);
+    }
+}
