@@ -130,12 +130,13 @@ static char *declare_aovs(const whit_shader *shader)
         used += (size_t)snprintf(text + used, bytes - used, "vec4 %s(Surface s);\n",
                                  shader->aovs[i].name);
     used += (size_t)snprintf(text + used, bytes - used,
-                             "vec4 aov(uint index, Surface s)\n{\n    vec4 value = vec4(0.0);\n");
+                             "vec4 aov(uint whit_index, Surface whit_s)\n{\n"
+                             "    vec4 whit_value = vec4(0.0);\n");
     for (uint32_t i = 0; i < shader->aov_count; ++i)
         used += (size_t)snprintf(text + used, bytes - used,
-                                 "    if (index == %uu)\n        value = %s(s);\n", i,
-                                 shader->aovs[i].name);
-    snprintf(text + used, bytes - used, "    return value;\n}\n");
+                                 "    if (whit_index == %uu)\n        whit_value = %s(whit_s);\n",
+                                 i, shader->aovs[i].name);
+    snprintf(text + used, bytes - used, "    return whit_value;\n}\n");
     return text;
 }
 

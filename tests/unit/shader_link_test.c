@@ -54,9 +54,9 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
          "Own traverse(vec3 v) { Own o; o.h.a = v; o.m = mat3(v, v, v); return o; }\n"
          "vec3 miss(vec3 d) { Own o = traverse(d); return o.m * o.h.a; }\n",
          KERNEL(MISS)},
-        {"//@ aov kept\nvec4 kept(Surface s) { Surface m; float d; bool met = trace(s.p, s.ng, m, "
-         "d);\n"
-         "return vec4(visible(s, s.ns, 1.0), met ? d : s.u); }\n",
+        {"//@ aov value\nvec4 value(Surface s) { Surface m; float d;\n"
+         "return vec4(visible(s, s.ns, 1.0), trace(s.p, s.ng, m, d) ? d : s.u); }\n"
+         "//@ aov s\nvec4 s(Surface at) { return vec4(at.u); }\n",
          KERNEL(HIT)},
         {"//@ box 0 0 0 1 1 1 0.1\nbool intersect(vec3 o, vec3 d, float far, out float t, out vec3 "
          "n) "
