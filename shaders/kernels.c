@@ -1,5 +1,6 @@
 #include "kernels.h"
 
+#include "kernel_aov_hooks.h"
 #include "kernel_closest.h"
 #include "kernel_closest_hooks.h"
 #include "kernel_hit_hooks.h"
@@ -31,6 +32,7 @@ const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT] = {
     [HOOK_KERNEL_MISS] = {"miss", kernel_miss_hooks, sizeof kernel_miss_hooks},
     [HOOK_KERNEL_SHAPE] = {"shape", kernel_shape_hooks, sizeof kernel_shape_hooks},
     [HOOK_KERNEL_HIT] = {"hit", kernel_hit_hooks, sizeof kernel_hit_hooks},
+    [HOOK_KERNEL_AOV] = {"aov", kernel_aov_hooks, sizeof kernel_aov_hooks},
     [HOOK_KERNEL_POST] = {"post", kernel_post_hooks, sizeof kernel_post_hooks},
     [HOOK_KERNEL_TEST] = {"test", kernel_test_hooks, sizeof kernel_test_hooks},
 };

@@ -32,6 +32,7 @@ enum hook_kernel {
     HOOK_KERNEL_MISS,    /* of a user's function alone */
     HOOK_KERNEL_SHAPE,   /* likewise */
     HOOK_KERNEL_HIT,     /* likewise */
+    HOOK_KERNEL_AOV,     /* likewise */
     HOOK_KERNEL_POST,    /* likewise */
     HOOK_KERNEL_TEST,    /* runs tests of the user's file */
     HOOK_KERNEL_COUNT

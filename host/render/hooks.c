@@ -17,6 +17,12 @@ _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SH
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
 
+/* What its functions come to call that kernels have for it alone. */
+static uint32_t effects_reached(const whit_shader *shader)
+{
+    return shader_reaches(shader) & (SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS);
+}
+
 /* With a `shade` of the user's nothing else asks lights, but for shadow catchers. */
 static uint64_t effects_not_asked_for(const struct renderer *renderer)
 {
@@ -95,7 +101,7 @@ bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *s
 {
     const whit_shader *own = renderer->params.shader;
     return own && shader && own->hooks == shader->hooks && same_aovs(own, shader) &&
-           shader_reaches(own) == shader_reaches(shader);
+           effects_reached(own) == effects_reached(shader);
 }
 
 whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_params *params)

@@ -102,7 +102,7 @@ static void pixels_finish(struct pixel_buffers *p)
 void target_drop_pixels(struct target *target)
 {
     struct buffer *status = target->buffers.status;
-    target->renderer->before_post.known &= target->probed;
+    target->renderer->kept.known &= target->probed;
     stages_unbind(&target->stages);
     target->buffers.status = NULL;
     target->renderer->scene_buffers.bytes -= target->buffers.bytes;

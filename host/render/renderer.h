@@ -84,6 +84,7 @@ enum stage {
     STAGE_MISS,  /* of a user's function */
     STAGE_SHAPE, /* likewise, before rays go through the trees */
     STAGE_HIT,   /* likewise, of what rays have met */
+    STAGE_AOV,   /* likewise, beside the colour */
     STAGE_POST,  /* likewise, of pixels that have all samples */
     STAGE_COUNT
 };
@@ -150,6 +151,7 @@ struct progress {
     double before, share;           /* of the picture: of passes before, of this one */
     uint32_t samples;               /* a pixel, in this pass */
     bool listed;                    /* it draws only pixels that `levels` gives these samples */
+    bool aovs_alone;                /* it leaves colours and identities as they are */
     uint8_t *levels; /* of each pixel: 1: 4 samples, 2: 16, 3: 64; NULL when not adaptive */
 };
 
@@ -181,13 +183,21 @@ struct target {
     struct buffer *dbg;     /* of a probe with dbg(x): as hook/record.glsl; NULL before the first */
 };
 
-/* The picture whose colours the device still has as post() of a user's file was given them. */
-struct before_post {
-    bool known; /* false: there is none any more */
+/* What the colours of a picture follow from beside its kernels. */
+struct kept_view {
     struct gpu_frame frame;
     float sliders[SLIDERS_MAX];
     double time_s;
     uint32_t samples, first_sample, first_row, rows;
+};
+
+/* The picture whose colours the device still has, as post() of a user's file was given them. */
+struct kept_picture {
+    bool known; /* false: there is none any more */
+    bool aovs;  /* what is beside the colours is of the file in hand */
+    struct kept_view view;
+    whit_stats stats;
+    struct stage_sample timed[RENDER_STAGE_COUNT];
 };
 
 struct renderer {
@@ -206,7 +216,7 @@ struct renderer {
     uint32_t packet_rays; /* of a lane, in these */
     bool few_kernels;     /* one for several stages and materials, since the renderer was made */
     bool wide;            /* there are such nodes on the device */
-    struct before_post before_post;
+    struct kept_picture kept;
     struct trace_state trace;
     struct async_state async;
     struct commands *commands;
@@ -528,14 +538,13 @@ WHIT_CHECK whit_result steps_give(const struct renderer *renderer, uint32_t spac
 /* The picture in steps, with params.step after each but the last. */
 WHIT_CHECK whit_result steps_render(struct renderer *renderer, struct progress *progress);
 
-/* post.c: whether the colours that post() was given last are those of the picture that is asked
- * for.
- */
-bool post_can_reuse(const struct renderer *renderer);
-/* Calls post() for each pixel once more, where post_can_reuse. */
-WHIT_CHECK whit_result post_render(struct renderer *renderer);
+/* reuse.c: whether the colours that are kept are those of the picture that is asked for. */
+bool reuse_is_possible(const struct renderer *renderer);
+/* The picture, where reuse_is_possible: calls post() for each pixel once more, and the functions
+   beside the colour where these are others. Statistics stay. */
+WHIT_CHECK whit_result reuse_render(struct renderer *renderer);
 /* After a picture was drawn: notes of which view, samples and sliders its colours are. */
-void post_keep(struct renderer *renderer);
+void reuse_note(struct renderer *renderer);
 
 /* retarget.c: buffers of pixels for the picture as it is now, in place of those that there are. */
 WHIT_CHECK whit_result retarget_pixels(struct renderer *renderer);
@@ -552,7 +561,9 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
    traces take more iterations of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
-/* tiles.c: the picture, of one camera or of many. */
+/* tiles.c: of a pass over all pixels that begins now. */
+struct progress render_progress(const struct renderer *renderer);
+/* The picture, of one camera or of many. */
 WHIT_CHECK whit_result render_all(struct renderer *renderer);
 
 /* tiles.c: what submissions are made of. */

@@ -39,12 +39,6 @@ static void share_kernel(struct stages_job *job, enum stage first, enum stage la
     job->of[first] = later;
 }
 
-/* Whether functions of the user's change the colours of what is met. */
-static bool acts_at_hits(const whit_shader *shader)
-{
-    return shader_has(shader, SHADER_HOOK_SURFACE) || shader_has(shader, SHADER_HOOK_SHADE);
-}
-
 void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own, bool few,
                      struct stages_job *job)
 {
@@ -61,7 +55,9 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
                          (i != STAGE_MISS || shader_has(shader, SHADER_HOOK_MISS)) &&
                          (i != STAGE_SHAPE || shader_has(shader, SHADER_HOOK_INTERSECT)) &&
-                         (i != STAGE_HIT || acts_at_hits(shader) || spec->SPEC_AOVS > 0) &&
+                         (i != STAGE_HIT || shader_has(shader, SHADER_HOOK_SURFACE) ||
+                          shader_has(shader, SHADER_HOOK_SHADE)) &&
+                         (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
                          (i != STAGE_POST || shader_has(shader, SHADER_HOOK_POST)) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
@@ -175,6 +171,26 @@ static bool is_other(const struct variant_job *a, const struct variant_job *b, b
                              pipeline_is_same(&a->params, &b->params)));
 }
 
+/* Whether both have a kernel of the stage. */
+static bool both_have(const struct stages_job *a, const struct stages_job *b, enum stage stage)
+{
+    return a->wanted[stage] && b->wanted[stage];
+}
+
+/* Leaves in `job` the kernels that are others than those of `was`. */
+static void drop_same(const struct stages_job *was, bool same, struct stages_job *job)
+{
+    /* Ids in other kernels move where a function that has one of its own is another. */
+    static const enum stage own[] = {STAGE_SHAPE, STAGE_HIT, STAGE_AOV, STAGE_MISS, STAGE_POST};
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        bool closely = false;
+        for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
+            closely = closely || ((int)own[k] != i && both_have(was, job, own[k]));
+        job->wanted[i] = job->wanted[i] && (!same || !was->wanted[i] ||
+                                            is_other(&was->stages[i], &job->stages[i], closely));
+    }
+}
+
 whit_result stages_replace(struct target *target, const whit_shader *before)
 {
     struct renderer *renderer = target->renderer;
@@ -183,7 +199,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     struct stages_job was, job;
     struct gpu_spec spec;
     bool few = variant_few_kernels(target);
-    renderer->before_post.known &= stages_are_made(target);
+    renderer->kept.known &= stages_are_made(target);
     if (!stages_are_made(target))
         return WHIT_OK;
     renderer->params.shader = before;
@@ -193,14 +209,10 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     spec = variant_spec(target);
     stages_job_init(target, &spec, true, few, &job);
     bool same = was.classes == job.classes && memcmp(was.of, job.of, sizeof job.of) == 0;
-    /* Ids in the kernels of other functions move where post() is another. */
-    bool closely = was.wanted[STAGE_POST] && job.wanted[STAGE_POST];
+    drop_same(&was, same, &job);
     for (int i = 0; i < STAGE_COUNT; ++i)
-        job.wanted[i] =
-            job.wanted[i] && (!same || !was.wanted[i] ||
-                              is_other(&was.stages[i], &job.stages[i], closely && i != STAGE_POST));
-    for (int i = 0; i < STAGE_COUNT; ++i)
-        renderer->before_post.known &= !job.wanted[i] || i == STAGE_POST;
+        renderer->kept.known &= !job.wanted[i] || i == STAGE_AOV || i == STAGE_POST;
+    renderer->kept.aovs &= !job.wanted[STAGE_AOV];
     whit_result result = stages_job_run(renderer->device, &job, &made);
     if (result != WHIT_OK || !same)
         stage_set_finish(set);
@@ -318,7 +330,7 @@ static uint32_t row_of(enum stage stage, uint32_t list)
     };
     if (stage == STAGE_SHAPE && list != LIST_RAYS)
         stage = STAGE_SHADOW;
-    if (stage == STAGE_HIT)
+    if (stage == STAGE_HIT || stage == STAGE_AOV)
         return RENDER_STAGE_SHADE + (list - LIST_HITS);
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
@@ -407,16 +419,32 @@ static whit_result dispatch_own(struct tile_run *run, enum stage stage, uint32_t
     return has ? dispatch(run, stage, list) : WHIT_OK;
 }
 
+static whit_result record_rays(struct tile_run *run)
+{
+    bool camera = run->chunk.generation == 0;
+    whit_result result = dispatch_own(run, STAGE_SHAPE, LIST_RAYS);
+    return result == WHIT_OK ? dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS)
+                             : result;
+}
+
+/* A stage of a user's functions over the hits of all classes. */
+static whit_result record_own_hits(struct tile_run *run, enum stage stage)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < run->target->stages.set.classes; ++i)
+        result = dispatch_own(run, stage, LIST_HITS + i);
+    return result;
+}
+
+/* Functions of users come first: where a shadow catcher is shaded there is no hit any more. */
 static whit_result record_hits(struct tile_run *run)
 {
-    const struct stage_set *set = &run->target->stages.set;
-    whit_result result = WHIT_OK;
-    bool acts = run->chunk.generation == 0 || acts_at_hits(run->target->renderer->params.shader);
-    for (uint32_t i = 0; result == WHIT_OK && acts && i < set->classes; ++i)
-        result = dispatch_own(run, STAGE_HIT, LIST_HITS + i);
+    whit_result result = record_own_hits(run, STAGE_HIT);
+    if (result == WHIT_OK && run->chunk.generation == 0)
+        result = record_own_hits(run, STAGE_AOV);
     if (result == WHIT_OK)
         result = dispatch(run, STAGE_SHADE, LIST_HITS);
-    if (result == WHIT_OK && set->classes > 1)
+    if (result == WHIT_OK && run->target->stages.set.classes > 1)
         result = dispatch(run, STAGE_SHADE_GLASS, LIST_HITS + CLASS_GLASS);
     return result;
 }
@@ -441,10 +469,7 @@ static whit_result record_lights(struct tile_run *run)
 
 static whit_result record_generation(struct tile_run *run)
 {
-    bool camera = run->chunk.generation == 0;
-    whit_result result = dispatch_own(run, STAGE_SHAPE, LIST_RAYS);
-    if (result == WHIT_OK)
-        result = dispatch(run, camera ? STAGE_CAMERA : STAGE_CLOSEST, LIST_RAYS);
+    whit_result result = record_rays(run);
     if (result == WHIT_OK)
         result = dispatch_own(run, STAGE_MISS, LIST_RAYS);
     if (result == WHIT_OK)
@@ -503,6 +528,26 @@ static whit_result trace_generations(struct tile_run *run, uint32_t first, uint3
     return result == WHIT_OK ? finish_submission(run) : result;
 }
 
+/* What is beside the colours of a tile, and nothing else: without rays that surfaces call for. */
+static whit_result draw_aovs(struct tile_run *run)
+{
+    run->target->stages.times.on = false;
+    run->chunk.aovs_alone = 1;
+    run->chunk.generation = 0;
+    run->chunk.light = GENERATION_NONE;
+    whit_result result = begin_submission(run);
+    if (result != WHIT_OK)
+        return result;
+    clear_queues(run->target);
+    commands_barrier(run->target->renderer->commands);
+    result = record_rays(run);
+    if (result == WHIT_OK)
+        result = record_own_hits(run, STAGE_AOV);
+    if (result == WHIT_OK)
+        result = dispatch(run, STAGE_RESOLVE, LIST_RAYS);
+    return result == WHIT_OK ? finish_submission(run) : result;
+}
+
 static whit_result take_tally(struct target *target)
 {
     whit_stats *stats = &target->stats;
@@ -545,8 +590,14 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
     run.chunk.ray_capacity = queues->ray_capacity;
     run.chunk.lit_capacity = queues->lit_capacity;
     uint32_t done = 0, end = stages->expected, left = 1, deferred = 0, deferred_before = 0;
+    whit_result result = WHIT_OK;
+    if (progress->aovs_alone) {
+        result = draw_aovs(&run);
+        *longest_ms = fmax(*longest_ms, run.longest_ms);
+        return result;
+    }
     stage_times_begin(target);
-    whit_result result = deferred_read(target, &deferred_before);
+    result = deferred_read(target, &deferred_before);
     if (result != WHIT_OK)
         return result;
     while (left > 0) {

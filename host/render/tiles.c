@@ -335,20 +335,25 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
     return render_pass(renderer, params->sampling.count, progress);
 }
 
-/* Draws the picture from the colours of the last one. Its only step shows all pixels. */
-static whit_result render_from_rays(struct renderer *renderer)
-{
-    whit_result result = post_render(renderer);
-    if (result == WHIT_OK && steps_are_wanted(renderer))
-        result = steps_give(renderer, 1);
-    renderer->rendered = result == WHIT_OK;
-    return result;
-}
-
 whit_result renderer_render(struct renderer *renderer)
 {
     whit_result result = views_leave(renderer);
     return result == WHIT_OK ? render_all(renderer) : result;
+}
+
+struct progress render_progress(const struct renderer *renderer)
+{
+    uint32_t asked = renderer->params.tile_size;
+    uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
+    return (struct progress){
+        .lattice = lattice_whole(renderer),
+        .start_ms = clock_ms(),
+        .tile = asked                                         ? asked
+                : renderer->accel->no_trees                   ? TILE_MIN
+                : largest < TILE_FIRST && largest >= TILE_MIN ? largest
+                                                              : TILE_FIRST,
+        .share = 1.0,
+    };
 }
 
 whit_result render_all(struct renderer *renderer)
@@ -370,9 +375,9 @@ whit_result render_all(struct renderer *renderer)
     whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK)
         result = renderer_compile(renderer);
-    if (result == WHIT_OK && post_can_reuse(renderer))
-        return render_from_rays(renderer);
-    renderer->before_post.known = false;
+    if (result == WHIT_OK && reuse_is_possible(renderer))
+        return reuse_render(renderer);
+    renderer->kept.known = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->color, params->width, rows, 4, false);
     if (result == WHIT_OK && !readback_is_late(renderer))
@@ -387,16 +392,7 @@ whit_result render_all(struct renderer *renderer)
         result = image_init(&renderer->aovs, params->width * aovs, rows, 4, false);
     stats_clear(&renderer->picture);
     material_shares_clear(&renderer->picture);
-    uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
-    struct progress progress = {
-        .lattice = lattice_whole(renderer),
-        .start_ms = clock_ms(),
-        .tile = params->tile_size                             ? params->tile_size
-                : renderer->accel->no_trees                   ? TILE_MIN
-                : largest < TILE_FIRST && largest >= TILE_MIN ? largest
-                                                              : TILE_FIRST,
-        .share = 1.0,
-    };
+    struct progress progress = render_progress(renderer);
     if (result == WHIT_OK)
         result = deferred_clear(&renderer->picture);
     if (result == WHIT_OK)
@@ -406,7 +402,7 @@ whit_result render_all(struct renderer *renderer)
     renderer->picture.stats.render_ms = clock_ms() - progress.start_ms;
     renderer->rendered = result == WHIT_OK;
     if (renderer->rendered)
-        post_keep(renderer);
+        reuse_note(renderer);
     return result;
 }
 

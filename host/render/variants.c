@@ -473,6 +473,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
         [STAGE_SHAPE] = {&hook_kernels[HOOK_KERNEL_SHAPE], "shape", false, 3},
         [STAGE_HIT] = {&hook_kernels[HOOK_KERNEL_HIT], "hit", false, 3},
+        [STAGE_AOV] = {&hook_kernels[HOOK_KERNEL_AOV], "aov", false, 1},
         [STAGE_POST] = {&hook_kernels[HOOK_KERNEL_POST], "post", false, 1},
     };
     struct bindings bindings = bind_stages(target);
@@ -588,7 +589,7 @@ void pass_finish(struct pass *pass)
 
 void passes_finish(struct renderer *renderer)
 {
-    renderer->before_post.known = false;
+    renderer->kept.known = false;
     renderer->async.general = false;
     stage_set_finish(&renderer->picture.stages.set);
     stage_set_finish(&renderer->probe.stages.set);

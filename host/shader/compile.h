@@ -55,7 +55,8 @@ enum { SHADER_OPENS_MAX = 8 }; /* of others the place is not known */
 enum {
     SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
     SHADER_REACHES_SHADOWS = 2, /* what is on the way to a place */
-    SHADER_REACHES_ALL = 3
+    SHADER_REACHES_RAYS = 4,    /* rays of their own */
+    SHADER_REACHES_ALL = 7
 };
 
 /* What whit_fuel_loop holds is 1 + the index in `loops`. */

@@ -34,7 +34,8 @@ static const struct {
     [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", 0},
     [SHADER_KERNEL_MISS] = {"kernel/miss.comp", BIT(MISS)},
     [SHADER_KERNEL_SHAPE] = {"kernel/shape.comp", BIT(INTERSECT)},
-    [SHADER_KERNEL_HIT] = {"kernel/hit.comp", BIT(SURFACE) | BIT(SHADE) | BIT(AOV)},
+    [SHADER_KERNEL_HIT] = {"kernel/hit.comp", BIT(SURFACE) | BIT(SHADE)},
+    [SHADER_KERNEL_AOV] = {"kernel/aov.comp", BIT(AOV)},
     [SHADER_KERNEL_POST] = {"kernel/post.comp", BIT(POST)},
     [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
 };

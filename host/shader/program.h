@@ -29,6 +29,7 @@ enum shader_kernel {
     SHADER_KERNEL_MISS, /* from here on: of functions alone */
     SHADER_KERNEL_SHAPE,
     SHADER_KERNEL_HIT,
+    SHADER_KERNEL_AOV,
     SHADER_KERNEL_POST,
     SHADER_KERNEL_TEST, /* of no picture: see tests.h */
     SHADER_KERNEL_COUNT

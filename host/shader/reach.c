@@ -10,9 +10,12 @@ static const struct {
     const char *name;
     uint32_t bits;
 } needs[] = {
-    {"light(", SHADER_REACHES_LIGHTS},    {"light_points(", SHADER_REACHES_LIGHTS},
-    {"lit_by(", SHADER_REACHES_ALL},      {"whit_shade(", SHADER_REACHES_ALL},
-    {"visible(", SHADER_REACHES_SHADOWS},
+    {"light(", SHADER_REACHES_LIGHTS},
+    {"light_points(", SHADER_REACHES_LIGHTS},
+    {"lit_by(", SHADER_REACHES_ALL},
+    {"whit_shade(", SHADER_REACHES_ALL},
+    {"visible(", SHADER_REACHES_SHADOWS | SHADER_REACHES_RAYS},
+    {"trace(", SHADER_REACHES_RAYS},
 };
 
 uint32_t reach_of(const char *name)

@@ -101,10 +101,11 @@ typedef struct whit_renderer_params {
     /* The renderer is for many pictures: kernels that take longer to make are right where they draw
        faster. */
     bool many_pictures;
-    /* If nothing but post() of `shader` has changed since the renderer's last picture (no other
-       kernel, slider or parameter), no ray is traced: post() is given the colours of the last
-       picture once more. The picture is the same; whit_stats keeps the times of
-       the last one. */
+    /* If nothing but post() of `shader` and what it has beside the colour have changed since the
+       renderer's last picture (no other kernel, slider or parameter), and none of its functions
+       traces, the colours are not drawn once more: post() is given those of the last picture, and
+       for values beside the colour camera rays alone are traced. The picture is the same;
+       whit_stats are those of the last one. */
     bool reuse_rays;
     uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
     const volatile bool *cancel;

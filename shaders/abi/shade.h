@@ -232,7 +232,7 @@ struct gpu_chunk {
     gpu_uint blocks_x; /* in a row of what is drawn */
     gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
     gpu_uint before_post; /* HOOK_POST: of the pixels, the first one as it is without post() */
-    gpu_uint pad0;
+    gpu_uint aovs_alone;  /* 1: of pixels, what is beside the colour and nothing else */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 104)
 

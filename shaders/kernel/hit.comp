@@ -1,5 +1,5 @@
-// What a user's functions make of what a ray has met: the surface, the light that it sends to the eye, values beside
-// the colour. In a kernel of its own, before the one that shades, so that the file's next version is soon made.
+// What a user's functions make of what a ray has met: the surface, and the light that it sends to the eye. In a
+// kernel of its own, before the one that shades, so that the file's next version is soon made.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -31,17 +31,6 @@ void change_surface(uint id, bool alive, inout Surface s)
         store_changed(id, s, lost);
 }
 
-void store_aovs(uint slot, bool alive, Surface s)
-{
-    for (uint i = 0u; i < SPEC_AOVS; i++) {
-        begin_hook();
-        vec4 value = aov(i, s);
-        end_hook(true);
-        if (alive)
-            aovs[slot * SPEC_AOVS + i] = value;
-    }
-}
-
 void main()
 {
     load_frame();
@@ -64,8 +53,6 @@ void main()
         if (alive)
             store_own_light(id, light);
     }
-    if (SPEC_AOVS != 0u && is_primary())
-        store_aovs(met.slot, alive, met.s);
     if (alive) {
         report_status(status | hook_status);
         report_hooks();

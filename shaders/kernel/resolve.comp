@@ -92,12 +92,15 @@ void resolve_pixel(uint id)
     uvec2 at = slot_place(slot);
     alive = alive && is_in_picture(at);
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
-    if (CALLS_RAYS)
+    bool alone = SPEC_AOVS != 0u && chunk.aovs_alone != 0u;
+    if (CALLS_RAYS && !alone)
         add_cuts(alive, slot, pixel);
     if (!alive)
         return;
     if (SPEC_AOVS != 0u)
         add_aovs(slot, pixel);
+    if (alone)
+        return;
     vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
     // Samples are summed in pairs, pairs in pairs: partial sum i, of 2^i samples, waits for the next like it
     // where bit i of their number is set. Behind the last sample all that wait are added; of 2^i samples these

@@ -82,7 +82,7 @@ check "its functions" test "$(jq -r '[.functions[].name] | join(" ")' all.json)"
 check "its aovs" test "$(jq -r '[.aovs[].name] | join(" ")' all.json)" = facing
 check "its sliders" test "$(jq -r '[.sliders[] | "\(.name)=\(.value)"] | join(",")' all.json)" = \
     "bands=3,rim=#ffcc88,on=on,mode=plain"
-check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "hit post"
+check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "aov post"
 expect 2 "no such aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov face -o aov.exr
 said "names those that there are" "there is facing"
 expect 0 "an aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov facing -o aov.exr

@@ -108,7 +108,7 @@ struct steps {
 static void look_at_step(void *user, const whit_step *step)
 {
     struct steps *steps = user;
-    uint32_t first = step->spacing == 8 ? 5 : 1;
+    uint32_t first = step->spacing == 8 ? 5 : step->spacing > 1;
     ++steps->seen;
     for (uint32_t y = 0; y < step->height; ++y) {
         for (uint32_t x = 0; x < step->width; ++x) {
@@ -261,6 +261,147 @@ TEST(refined_pictures_have_those_of_all_samples)
     whit_refine_destroy(refine);
     whit_renderer_destroy(renderer);
     drop(&four);
+}
+
+static double render_ms(const whit_renderer *renderer)
+{
+    whit_stats stats;
+    whit_renderer_get_stats(renderer, &stats);
+    assert_true(stats.render_ms > 0.0 && stats.rays_primary >= PIXELS);
+    return stats.render_ms;
+}
+
+/* Of the first value alone. */
+static void draw_again(whit_renderer *renderer, struct drawn *drawn)
+{
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &drawn->color), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &drawn->ids), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_SHADER, &drawn->aovs[0]), WHIT_OK);
+}
+
+/* The file's picture in the place of the one before. Whether it was drawn anew: a picture whose
+   colours are those of the last one has its times too. */
+static bool draw_in_place(whit_renderer *renderer, const whit_renderer_params *params,
+                          struct drawn *drawn)
+{
+    double before_ms = render_ms(renderer);
+    assert_int_equal(whit_renderer_set_shader(renderer, params), WHIT_OK);
+    draw_again(renderer, drawn);
+    return render_ms(renderer) != before_ms;
+}
+
+static void assert_same_picture(const struct drawn *in_place, const struct drawn *alone)
+{
+    assert_same(in_place->color, alone->color);
+    assert_same(in_place->aovs[0], alone->aovs[0]);
+    assert_memory_equal(whit_image_words(in_place->ids), whit_image_words(alone->ids),
+                        PIXELS * 2 * sizeof(uint32_t));
+}
+
+/* What its functions give. */
+static const struct version {
+    const char *value, *shade, *post;
+    bool anew;
+} versions[] = {
+    {"vec4(s.p, 1.0)", "s.ns", "c", true},
+    {"vec4(s.ns, 1.0).zxyw * 2.0 + random(1u)", "s.ns", "c", false},
+    {"vec4(length(s.p), s.u, s.v, 1.0)", "s.ns", "c.bgr * 0.5", false},
+    {"vec4(length(s.p), s.u, s.v, 1.0)", "s.ns", "c.brg", false},
+    {"vec4(length(s.p), s.u, s.v, 1.0)", "s.ng", "c.brg", true},
+    /* Rays of functions are among those of the picture. */
+    {"trace(s.p + s.ng, s.ng, met, t) ? vec4(t) : vec4(1.0)", "s.ng", "c.brg", true},
+    {"vec4(s.ng, 0.5)", "s.ng", "c.brg", true},
+    {"vec4(s.ng, 0.25)", "s.ng", "c.brg", false},
+};
+enum { VERSIONS = sizeof versions / sizeof *versions };
+
+static whit_shader *load_version(size_t i, bool posts)
+{
+    char text[1024];
+    whit_shader *version;
+    snprintf(text, sizeof text,
+             "Surface met;\nfloat t;\n//@ aov kept\nvec4 kept(Surface s) { return %s; }\n"
+             "vec3 shade(Surface s, Optics o, vec3 e) { return %s * sin(s.p.x * 3.0); }\n"
+             "vec3 %s(ivec2 at, vec3 c) { return %s; }\n",
+             versions[i].value, versions[i].shade, posts ? "post" : "other", versions[i].post);
+    assert_int_equal(hooks_load(text, &version), WHIT_OK);
+    return version;
+}
+
+/* Where values beside the colour are others, and post(), colours are not drawn anew. */
+static void draw_versions(whit_renderer_params params, bool posts)
+{
+    whit_renderer *renderer;
+    whit_shader *before = load_version(0, posts);
+    params.shader = before;
+    params.reuse_rays = true;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    for (size_t i = 1; i < VERSIONS; ++i) {
+        whit_renderer *other;
+        struct drawn in_place = {0}, alone = {0};
+        whit_shader *version = load_version(i, posts);
+        params.shader = version;
+        if (draw_in_place(renderer, &params, &in_place) != versions[i].anew)
+            fail_msg("drawn anew or not: %s", versions[i].value);
+        assert_int_equal(whit_renderer_create(device, accel, &params, &other), WHIT_OK);
+        draw_again(other, &alone);
+        assert_same_picture(&in_place, &alone);
+        whit_renderer_destroy(other);
+        drop(&in_place);
+        drop(&alone);
+        whit_shader_destroy(before);
+        before = version;
+    }
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(before);
+}
+
+TEST(other_values_leave_the_colours)
+{
+    draw_versions(usual(1), false);
+}
+
+TEST(other_values_of_many_samples_in_tiles_leave_the_colours)
+{
+    whit_renderer_params params = usual(4);
+    params.tile_size = 16;
+    draw_versions(params, true);
+}
+
+/* The values in steps; of the colours, which are there, all at once. */
+TEST(steps_show_other_values)
+{
+    whit_shader *versions_of[2] = {load_version(0, true), load_version(1, true)};
+    for (uint32_t aov = 0; aov < 2; ++aov) {
+        whit_renderer *renderer;
+        struct drawn alone = {0}, in_place = {0};
+        whit_renderer_params params = usual(1);
+        params.shader = versions_of[1];
+        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        draw_again(renderer, &alone);
+        whit_renderer_destroy(renderer);
+        struct steps steps = {.whole = floats(aov ? alone.aovs[0] : alone.color)};
+        params.shader = versions_of[0];
+        params.step = look_at_step;
+        params.progress_user = &steps;
+        params.reuse_rays = true;
+        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+        params.shader = versions_of[1];
+        params.step_spacing = 8;
+        params.step_aov = aov;
+        assert_false(draw_in_place(renderer, &params, &in_place));
+        assert_same_picture(&in_place, &alone);
+        assert_int_equal(steps.seen, aov ? 3 : 1);
+        assert_int_equal(steps.wrong, 0);
+        whit_renderer_destroy(renderer);
+        drop(&in_place);
+        drop(&alone);
+    }
+    whit_shader_destroy(versions_of[0]);
+    whit_shader_destroy(versions_of[1]);
 }
 
 int main(void)

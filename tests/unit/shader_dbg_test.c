@@ -198,7 +198,7 @@ TEST(a_picture_has_nothing_of_it)
     size_t bytes, plain_bytes;
     whit_shader_get_info(shader, &with);
     whit_shader_get_info(plain, &without);
-    assert_int_equal(with.kernel_count, 6);
+    assert_int_equal(with.kernel_count, 7);
     assert_int_equal(with.instructions, without.instructions);
     for (uint32_t i = 0; i < with.kernel_count; ++i) {
         assert_non_null(whit_shader_kernel(shader, i, &words, &bytes));

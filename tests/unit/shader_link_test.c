@@ -57,7 +57,7 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
         {"//@ aov value\nvec4 value(Surface s) { Surface m; float d;\n"
          "return vec4(visible(s, s.ns, 1.0), trace(s.p, s.ng, m, d) ? d : s.u); }\n"
          "//@ aov s\nvec4 s(Surface at) { return vec4(at.u); }\n",
-         KERNEL(HIT)},
+         KERNEL(AOV)},
         {"//@ box 0 0 0 1 1 1 0.1\nbool intersect(vec3 o, vec3 d, float far, out float t, out vec3 "
          "n) "
          "{ t = 0.5; n = o; return far > t; }\n",

@@ -1,0 +1,44 @@
+// What a user's functions give beside the colour, for what the camera's rays have met: in a kernel of its own, so
+// that the file's next version is soon made, and leaves the colours as they are.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/queues.glsl"
+#include "../hook/declare.glsl"
+#include "../hook/met.glsl"
+
+layout(local_size_x_id = 0) in;
+
+void main()
+{
+    load_frame();
+    begin_user();
+    uint item = own_item(0u, hit_capacity());
+    bool alive = item != ITEM_NONE;
+    uint id = fetch_listed_hit(alive ? item : 0u);
+    id = alive ? id : 0u;
+    uint status = 0u;
+    Met met = fetch_met(id, alive, false, status);
+    bool lost = false; // that is told by the stage that shades
+    if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
+        fetch_changed(id, met.s, lost);
+    look_at(met);
+    record_for(id, alive); // what functions before do is told by the stages that these are of
+    for (uint i = 0u; i < SPEC_AOVS; i++) {
+        begin_hook();
+        vec4 value = aov(i, met.s);
+        end_hook(true);
+        if (alive)
+            aovs[met.slot * SPEC_AOVS + i] = value;
+    }
+    if (alive) {
+        report_status(status | hook_status);
+        report_hooks();
+        tally_traced(hook_traced);
+    }
+}
