@@ -316,15 +316,23 @@ static const struct version {
 };
 enum { VERSIONS = sizeof versions / sizeof *versions };
 
+/* `posts`: with post() and a shape. */
 static whit_shader *load_version(size_t i, bool posts)
 {
+    static const char shape[] =
+        "//@ box -1 -1 -1 1 1 1 0.01\n"
+        "bool intersect(vec3 o, vec3 d, float far, out float t, out vec3 n) {\n"
+        "    float b = dot(o, d), r = b * b - dot(o, o) + 0.5;\n"
+        "    t = -b - sqrt(max(r, 0.0)); n = normalize(o + t * d);\n"
+        "    return r > 0.0 && t > 0.0 && t < far; }\n";
     char text[1024];
     whit_shader *version;
     snprintf(text, sizeof text,
              "Surface met;\nfloat t;\n//@ aov kept\nvec4 kept(Surface s) { return %s; }\n"
              "vec3 shade(Surface s, Optics o, vec3 e) { return %s * sin(s.p.x * 3.0); }\n"
-             "vec3 %s(ivec2 at, vec3 c) { return %s; }\n",
-             versions[i].value, versions[i].shade, posts ? "post" : "other", versions[i].post);
+             "vec3 %s(ivec2 at, vec3 c) { return %s; }\n%s",
+             versions[i].value, versions[i].shade, posts ? "post" : "other", versions[i].post,
+             posts ? shape : "");
     assert_int_equal(hooks_load(text, &version), WHIT_OK);
     return version;
 }
