@@ -82,7 +82,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/a model.obj"
 thumbnail() {
     line=$(field "$THUMBNAILER" Exec | sed "s,%i,'$OUT/a model.obj',; s,%o,'$OUT/thumb.X7',; s,%s,$1,g")
     (
-        unset DISPLAY WAYLAND_DISPLAY XDG_CACHE_HOME XDG_RUNTIME_DIR
+        unset DISPLAY WAYLAND_DISPLAY XDG_CACHE_HOME XDG_RUNTIME_DIR MESA_SHADER_CACHE_DIR
         HOME=/proc/self PATH=$OUT/prefix/bin:$PATH $isolate sh -c "$line" >"$OUT/said" 2>&1
     )
 }

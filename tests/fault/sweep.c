@@ -178,8 +178,10 @@ static void run_child(const struct sweep *sweep, bool validated)
     if (!validated)
         unsetenv("WHIT_VALIDATION");
     char *cache = sweep->cold ? realpath("../cache", NULL) : NULL;
-    if (cache)
+    if (cache) {
         setenv("XDG_CACHE_HOME", cache, 1);
+        unsetenv("MESA_SHADER_CACHE_DIR");
+    }
     alarm(RUN_LIMIT_S);
     execvp(sweep->command[0], sweep->command);
     _exit(126);
