@@ -9,10 +9,11 @@ case $WHIT in */*) WHIT=$(cd "$(dirname "$WHIT")" && pwd)/$(basename "$WHIT") ;;
 SCENES=$(cd "$SCENES" && pwd)
 CUBE=$SCENES/cube.json
 
-# Validation layers make commands half as slow again, and unit tests and pictures of all scenes have them: of the
-# tests of commands a quarter has them with each commit, others with the next.
-if [ "${WHIT_VALIDATION:-}" = sync ] &&
-    [ $((($(basename "$0" | cksum | cut -d ' ' -f 1) + ${WHIT_TEST_OFFSET:-0}) % 4)) -ne 0 ]; then
+OFFSET=${WHIT_TEST_OFFSET:-0}
+
+# Validation layers make commands half as slow again: of these entries a quarter has them with each commit, others with
+# the next, as with those of programs (layers_turn.c).
+if [ "${WHIT_VALIDATION:-}" = sync ] && [ $(((${WHIT_TEST_TURN:-0} + OFFSET + OFFSET / 8) % 4)) -ne 0 ]; then
     unset WHIT_VALIDATION
 fi
 
