@@ -64,7 +64,6 @@ if [ "${3:-}" = all ]; then
         holds '[.tables[0].rows[] | select(.start | endswith(", 320x240"))] |
             length == 6 and all(.beside_ms.median > 0 and .figure > 0 and .must > 0)'
     check "caches that are filled" holds '.tables[0].rows | any(.start == "cube, 1280x720, filled")'
-    finish
 fi
 
 # --- Refusals ---
@@ -86,133 +85,139 @@ check "no files" is_empty "$OUT/files"
 
 # --- Rays ---
 
-# On both sides of 200,000 triangles, which the second goal begins above.
-for steps in 316 317; do
-    echo "{\"objects\": [{\"shape\": \"terrain\", \"size\": 9, \"steps\": $steps, \"seed\": 5}]}" \
-        >"$OUT/t$steps.json"
-done
-J=$OUT/files/rays.json K=$OUT/kept
-expect 0 "rays, quick" bench rays "$OUT/t316.json" "$OUT/t317.json" --quick --runs 1 --json "$J" \
-    --plot "$OUT/files/rays.svg" --keep "$K"
-check "says nothing on a pipe" test ! -s "$OUT/stderr"
-check "the JSON is as documented" jq -e --arg bench rays "$schema" "$J"
-check "rows of each model" test "$(jq -r '.tables[0].rows[] | .model + " " + .rays' "$J" | tr '\n' ,)" \
-    = "t316 camera,t316 shadow,t316 bounce,t317 camera,t317 shadow,t317 bounce,"
-check "whit's times in both orders" \
-    holds ".tables[0].rows | all((.tiles.whit_ms | $times) and (.shuffled.whit_ms | $times))"
-check "verdicts at the ends of rows alone" verdicts
-check "the drawing is SVG" xmllint --noout "$OUT/files/rays.svg"
-check "device and driver" grep -qF "$(jq -r '.device.name + ", " + .device.driver' "$J")" "$OUT/stdout"
+if part 1 2; then
+    # On both sides of 200,000 triangles, which the second goal begins above.
+    for steps in 316 317; do
+        echo "{\"objects\": [{\"shape\": \"terrain\", \"size\": 9, \"steps\": $steps, \"seed\": 5}]}" \
+            >"$OUT/t$steps.json"
+    done
+    J=$OUT/files/rays.json K=$OUT/kept
+    expect 0 "rays, quick" bench rays "$OUT/t316.json" "$OUT/t317.json" --quick --runs 1 --json "$J" \
+        --plot "$OUT/files/rays.svg" --keep "$K"
+    check "says nothing on a pipe" test ! -s "$OUT/stderr"
+    check "the JSON is as documented" jq -e --arg bench rays "$schema" "$J"
+    check "rows of each model" test "$(jq -r '.tables[0].rows[] | .model + " " + .rays' "$J" | tr '\n' ,)" \
+        = "t316 camera,t316 shadow,t316 bounce,t317 camera,t317 shadow,t317 bounce,"
+    check "whit's times in both orders" \
+        holds ".tables[0].rows | all((.tiles.whit_ms | $times) and (.shuffled.whit_ms | $times))"
+    check "verdicts at the ends of rows alone" verdicts
+    check "the drawing is SVG" xmllint --noout "$OUT/files/rays.svg"
+    check "device and driver" grep -qF "$(jq -r '.device.name + ", " + .device.driver' "$J")" "$OUT/stdout"
 
-# What both sides read: records of `whit trace`.
-floats() {
-    od -An -v -t f4 -w32 "$1"
-}
-check "camera rays, one a pixel" test "$(floats "$K/t316-camera.rays" | wc -l)" -eq $((128 * 72))
-# Rays 0 to 3 are neighbours in x, ray 4 is below ray 0, and ray 64 is 8 to its right.
-check "in tiles of 8x8" sh -c "od -An -v -t f4 -w32 '$K/t316-camera.rays' | awk '
-    { for (i = 0; i < 3; i++) d[NR - 1, i] = \$(5 + i) }
-    function near(n, a, times,    i, worst) {
-        worst = 0
-        for (i = 0; i < 3; i++) {
-            gap = d[n, i] - d[0, i] - times * (d[a, i] - d[0, i])
-            worst = gap * gap > worst ? gap * gap : worst
+    # What both sides read: records of `whit trace`.
+    floats() {
+        od -An -v -t f4 -w32 "$1"
+    }
+    check "camera rays, one a pixel" test "$(floats "$K/t316-camera.rays" | wc -l)" -eq $((128 * 72))
+    # Rays 0 to 3 are neighbours in x, ray 4 is below ray 0, and ray 64 is 8 to its right.
+    check "in tiles of 8x8" sh -c "od -An -v -t f4 -w32 '$K/t316-camera.rays' | awk '
+        { for (i = 0; i < 3; i++) d[NR - 1, i] = \$(5 + i) }
+        function near(n, a, times,    i, worst) {
+            worst = 0
+            for (i = 0; i < 3; i++) {
+                gap = d[n, i] - d[0, i] - times * (d[a, i] - d[0, i])
+                worst = gap * gap > worst ? gap * gap : worst
+            }
+            return worst < 1e-10
         }
-        return worst < 1e-10
-    }
-    END { exit !(near(3, 1, 3) && near(8, 1, 4) && near(16, 4, 2) && near(64, 1, 8) && !near(4, 1, 4)) }'"
-for kind in camera shadow; do
-    floats "$K/t316-$kind.rays" >"$OUT/in_order"
-    floats "$K/t316-$kind-shuffled.rays" >"$OUT/shuffled"
-    check "$kind: the same rays in another order" sh -c "! cmp -s '$OUT/in_order' '$OUT/shuffled' &&
-        sort '$OUT/in_order' >'$OUT/a' && sort '$OUT/shuffled' | cmp -s - '$OUT/a'"
-done
-for kind in camera shadow; do
-    check "$kind: one origin" \
-        test "$(floats "$K/t316-$kind.rays" | awk '{ print $1, $2, $3 }' | sort -u | wc -l)" -eq 1
-done
-"$WHIT" trace "$OUT/t316.json" --input "$K/t316-bounce.rays" -o "$OUT/twin" --on cpu --quiet
-check "whit's hits are the twin's" cmp "$OUT/twin" "$K/t316-bounce.whit.hits"
-if [ -x "$(dirname "$WHIT")/whit-embree" ]; then
-    check "every row has a verdict" holds '.tables[0].rows | all(.verdict != null)'
-    check "Embree's times" holds ".tables[0].rows |
-        all(.tiles | (.single_ms | $times) and (.packets_ms | $times) and (.stream_ms | $times))"
-    check "Embree has the same hits" holds '.tables[0].rows | all(.hits.compared > 1000 and
-        .hits.met_by_one_alone <= .hits.compared / 10000 and .hits.other_t == 0 and
-        .hits.other_ids <= .hits.compared / 1000)'
-    check "up to 200,000 triangles the first goal" \
-        holds '[.tables[0].rows[:3][] | [.must, .aim]] == [[2, 3.5], [1.5, 2.5], [0.6, 0.75]]'
-    check "above it the second" \
-        holds '[.tables[0].rows[3:][] | [.must, .aim]] == [[0.8, 1.2], [0.6, 1], [0.45, 0.6]]'
-    ids() { # t to 5 digits, primitive and instance of every hit
-        od -An -v -t f4 -w32 "$1" | awk '{ printf "%.3f\n", $1 }'
-    }
-    ids "$K/t316-camera.whit.hits" >"$OUT/a"
-    ids "$K/t316-camera.embree.hits" >"$OUT/b"
-    check "and t in the files" sh -c "test \$(diff '$OUT/a' '$OUT/b' | grep -c '^<') -le 9"
-    echo bogus | "$(dirname "$WHIT")/whit-embree" "$K/t316.triangles" >"$OUT/answer" 2>"$OUT/stderr"
-    check "whit-embree refuses other lines" \
-        test "$? $(cat "$OUT/stderr")" = "2 whit-embree: no such line: bogus"
-else
-    echo "SKIPPED: no whit-embree: rays without a peer"
-    check "Embree is left out by name" grep -q "^- Left out: Embree" "$OUT/stdout"
+        END { exit !(near(3, 1, 3) && near(8, 1, 4) && near(16, 4, 2) && near(64, 1, 8) && !near(4, 1, 4)) }'"
+    for kind in camera shadow; do
+        floats "$K/t316-$kind.rays" >"$OUT/in_order"
+        floats "$K/t316-$kind-shuffled.rays" >"$OUT/shuffled"
+        check "$kind: the same rays in another order" sh -c "! cmp -s '$OUT/in_order' '$OUT/shuffled' &&
+            sort '$OUT/in_order' >'$OUT/a' && sort '$OUT/shuffled' | cmp -s - '$OUT/a'"
+    done
+    for kind in camera shadow; do
+        check "$kind: one origin" \
+            test "$(floats "$K/t316-$kind.rays" | awk '{ print $1, $2, $3 }' | sort -u | wc -l)" -eq 1
+    done
+    "$WHIT" trace "$OUT/t316.json" --input "$K/t316-bounce.rays" -o "$OUT/twin" --on cpu --quiet
+    check "whit's hits are the twin's" cmp "$OUT/twin" "$K/t316-bounce.whit.hits"
+    if [ -x "$(dirname "$WHIT")/whit-embree" ]; then
+        check "every row has a verdict" holds '.tables[0].rows | all(.verdict != null)'
+        check "Embree's times" holds ".tables[0].rows |
+            all(.tiles | (.single_ms | $times) and (.packets_ms | $times) and (.stream_ms | $times))"
+        check "Embree has the same hits" holds '.tables[0].rows | all(.hits.compared > 1000 and
+            .hits.met_by_one_alone <= .hits.compared / 10000 and .hits.other_t == 0 and
+            .hits.other_ids <= .hits.compared / 1000)'
+        check "up to 200,000 triangles the first goal" \
+            holds '[.tables[0].rows[:3][] | [.must, .aim]] == [[2, 3.5], [1.5, 2.5], [0.6, 0.75]]'
+        check "above it the second" \
+            holds '[.tables[0].rows[3:][] | [.must, .aim]] == [[0.8, 1.2], [0.6, 1], [0.45, 0.6]]'
+        ids() { # t to 5 digits, primitive and instance of every hit
+            od -An -v -t f4 -w32 "$1" | awk '{ printf "%.3f\n", $1 }'
+        }
+        ids "$K/t316-camera.whit.hits" >"$OUT/a"
+        ids "$K/t316-camera.embree.hits" >"$OUT/b"
+        check "and t in the files" sh -c "test \$(diff '$OUT/a' '$OUT/b' | grep -c '^<') -le 9"
+        echo bogus | "$(dirname "$WHIT")/whit-embree" "$K/t316.triangles" >"$OUT/answer" 2>"$OUT/stderr"
+        check "whit-embree refuses other lines" \
+            test "$? $(cat "$OUT/stderr")" = "2 whit-embree: no such line: bogus"
+    else
+        echo "SKIPPED: no whit-embree: rays without a peer"
+        check "Embree is left out by name" grep -q "^- Left out: Embree" "$OUT/stdout"
+    fi
 fi
 
 # --- Whole pictures ---
 
-J=$OUT/files/frame.json
-expect 0 "frame, quick" bench frame glass "$CUBE" --quick --runs 1 --scenes "$SCENES" \
-    --against "$WHIT" --json "$J" --plot "$OUT/files/frame.svg"
-check "says nothing on a pipe" test ! -s "$OUT/stderr"
-check "the JSON is as documented" jq -e --arg bench frame "$schema" "$J"
-check "rows of cube" test "$(jq -r '.tables[0].rows[] | select(.picture | test("^cube")) |
-    .picture + " " + (.level // "-") + " : " + (.beside // "-")' "$J" | tr '\n' ,)" \
-    = "cube watertight : whit,cube exact : watertight,cube watertight : fast,cube, device memory - : -,"
-check "times of both sides and the reference" holds ".tables[0].rows | map(select(.ms)) |
-    length > 2 and all((.ms | $times) and (.beside_ms | $times) and (.reference_ms | $times))"
-check "the figure is their ratio" holds '.tables[0].rows | map(select(.ms)) |
-    all(.figure * .beside_ms.median / .ms.median - 1 | fabs < 0.01)'
-check "verdicts at the ends of rows alone" verdicts
-check "the drawing is SVG" xmllint --noout "$OUT/files/frame.svg"
-if command -v povray >/dev/null; then
-    check "beside POV-Ray" holds '.tables[0].rows[0] |
-        .picture == "glass" and .beside == "POV-Ray" and .must == 0.5'
-else
-    echo "SKIPPED: no povray"
+if part 0 2; then
+    J=$OUT/files/frame.json
+    expect 0 "frame, quick" bench frame glass "$CUBE" --quick --runs 1 --scenes "$SCENES" \
+        --against "$WHIT" --json "$J" --plot "$OUT/files/frame.svg"
+    check "says nothing on a pipe" test ! -s "$OUT/stderr"
+    check "the JSON is as documented" jq -e --arg bench frame "$schema" "$J"
+    check "rows of cube" test "$(jq -r '.tables[0].rows[] | select(.picture | test("^cube")) |
+        .picture + " " + (.level // "-") + " : " + (.beside // "-")' "$J" | tr '\n' ,)" \
+        = "cube watertight : whit,cube exact : watertight,cube watertight : fast,cube, device memory - : -,"
+    check "times of both sides and the reference" holds ".tables[0].rows | map(select(.ms)) |
+        length > 2 and all((.ms | $times) and (.beside_ms | $times) and (.reference_ms | $times))"
+    check "the figure is their ratio" holds '.tables[0].rows | map(select(.ms)) |
+        all(.figure * .beside_ms.median / .ms.median - 1 | fabs < 0.01)'
+    check "verdicts at the ends of rows alone" verdicts
+    check "the drawing is SVG" xmllint --noout "$OUT/files/frame.svg"
+    if command -v povray >/dev/null; then
+        check "beside POV-Ray" holds '.tables[0].rows[0] |
+            .picture == "glass" and .beside == "POV-Ray" and .must == 0.5'
+    else
+        echo "SKIPPED: no povray"
+    fi
+    check "no scratch files stay" is_empty "$OUT/tmp"
 fi
-check "no scratch files stay" is_empty "$OUT/tmp"
 
 # --- Peers that are not here ---
 
-cp "$WHIT" "$(dirname "$WHIT")/whit-bench" "$OUT/alone/"
-PEERED=$WHIT WHIT=$OUT/alone/whit
-echo '{"objects": [{"shape": "ball"}, {"shape": "box", "translation": [2, 0, 0]}]}' >"$OUT/ball.json"
-J=$OUT/files/alone.json
-expect 0 "rays without Embree" bench rays "$OUT/t316.json" --quick --runs 1 --json "$J" \
-    --keep "$OUT/again"
-check "the same rays once more" cmp "$K/t316-bounce-shuffled.rays" "$OUT/again/t316-bounce-shuffled.rays"
-check "the same hits" cmp "$K/t316-bounce-shuffled.whit.hits" "$OUT/again/t316-bounce-shuffled.whit.hits"
-check "left out by name" grep -q "^- Left out: Embree: .whit-embree. is not beside" "$OUT/stdout"
-check "and no verdict" verdicts
-check "nor in the JSON" holds '.tables[0].left_out[0].name == "Embree" and
-    (.tables[0].rows | length == 3 and all(.verdict == null and (.tiles | has("single_ms") | not)))'
-path=$PATH
-PATH=$OUT/alone
-export PATH
-run bench frame glass --quick --runs 1 --scenes "$SCENES"
-PATH=$path
-check "frame without peers: exit code 0 (got $status)" test "$status" -eq 0
-check "which is no error" test ! -s "$OUT/stderr"
-for name in "another whit" Embree "glass, wine, flake, hollow, mesh: povray"; do
-    check "$name is left out by name" grep -q "^- Left out: $name" "$OUT/stdout"
-done
-printf '#!/bin/sh\necho embree 0 1\nexit 7\n' >"$OUT/alone/whit-embree"
-chmod +x "$OUT/alone/whit-embree"
-refuse 1 "an Embree that dies" "whit-embree. ended with exit code 7" bench rays "$CUBE" --quick
-WHIT=$PEERED
-expect 0 "spheres and triangles" bench rays "$OUT/ball.json" --quick --runs 1
-[ -x "$(dirname "$WHIT")/whit-embree" ] &&
-    check "Embree is left out for spheres" grep -q "^- Left out: Embree: .*spheres" "$OUT/stdout"
+if part 1 2; then
+    cp "$WHIT" "$(dirname "$WHIT")/whit-bench" "$OUT/alone/"
+    PEERED=$WHIT WHIT=$OUT/alone/whit
+    echo '{"objects": [{"shape": "ball"}, {"shape": "box", "translation": [2, 0, 0]}]}' >"$OUT/ball.json"
+    J=$OUT/files/alone.json
+    expect 0 "rays without Embree" bench rays "$OUT/t316.json" --quick --runs 1 --json "$J" \
+        --keep "$OUT/again"
+    check "the same rays once more" cmp "$K/t316-bounce-shuffled.rays" "$OUT/again/t316-bounce-shuffled.rays"
+    check "the same hits" cmp "$K/t316-bounce-shuffled.whit.hits" "$OUT/again/t316-bounce-shuffled.whit.hits"
+    check "left out by name" grep -q "^- Left out: Embree: .whit-embree. is not beside" "$OUT/stdout"
+    check "and no verdict" verdicts
+    check "nor in the JSON" holds '.tables[0].left_out[0].name == "Embree" and
+        (.tables[0].rows | length == 3 and all(.verdict == null and (.tiles | has("single_ms") | not)))'
+    path=$PATH
+    PATH=$OUT/alone
+    export PATH
+    run bench frame glass --quick --runs 1 --scenes "$SCENES"
+    PATH=$path
+    check "frame without peers: exit code 0 (got $status)" test "$status" -eq 0
+    check "which is no error" test ! -s "$OUT/stderr"
+    for name in "another whit" Embree "glass, wine, flake, hollow, mesh: povray"; do
+        check "$name is left out by name" grep -q "^- Left out: $name" "$OUT/stdout"
+    done
+    printf '#!/bin/sh\necho embree 0 1\nexit 7\n' >"$OUT/alone/whit-embree"
+    chmod +x "$OUT/alone/whit-embree"
+    refuse 1 "an Embree that dies" "whit-embree. ended with exit code 7" bench rays "$CUBE" --quick
+    WHIT=$PEERED
+    expect 0 "spheres and triangles" bench rays "$OUT/ball.json" --quick --runs 1
+    [ -x "$(dirname "$WHIT")/whit-embree" ] &&
+        check "Embree is left out for spheres" grep -q "^- Left out: Embree: .*spheres" "$OUT/stdout"
+fi
 
 # Ctrl+C while a child is at work that would be for long.
 cat >"$OUT/sleeper" <<'END'

@@ -17,6 +17,12 @@ if [ "${WHIT_VALIDATION:-}" = sync ] && [ $(((${WHIT_TEST_TURN:-0} + OFFSET + OF
     unset WHIT_VALIDATION
 fi
 
+# part I N: whether the part I of a test runs. Of N parts a short run has one, another one with the next commit; the entry
+# cli_NAME_long has all.
+part() {
+    [ -n "${WHIT_TEST_TIMES:-}${WHIT_TEST_ONLY:-}" ] || [ $((($1 + OFFSET) % $2)) -eq 0 ]
+}
+
 # needs PROGRAM: skips the test, by name, where there is no such program.
 needs() {
     command -v "$1" >/dev/null && return

@@ -22,14 +22,16 @@ small="--size 48x36 --quick --rays 600 --quiet --spend 0.1"
 
 C=$OUT/files/cost.csv
 D=$OUT/files/other.csv
-expect 0 "a scene" cost "$CUBE" $small --reference-samples 4 --knobs aa,light-samples --within 1e6 --json "$J"
-check "--within anything is kept" grep -q "^Best picture within 1e+06 ms: .*: kept" "$OUT/stdout"
-check "the JSON names its device and is whole" jq -e '(.device | length > 0) and
-    (.driver | length > 0) and (.command | startswith("whit cost ")) and .complete and
-    .reference.samples == 4 and all(.rows[]; .measured) and
-    ([.rows[] | keys] | unique | length == 1)' "$J"
-check "prices have intervals" jq -e 'all(.rows[].price; (.cpu // .wall).ratio as $ratio |
-    .rounds >= 7 and $ratio.low <= $ratio.median and $ratio.median <= $ratio.high)' "$J"
+if part 0 2; then
+    expect 0 "a scene" cost "$CUBE" $small --reference-samples 4 --knobs aa,light-samples --within 1e6 --json "$J"
+    check "--within anything is kept" grep -q "^Best picture within 1e+06 ms: .*: kept" "$OUT/stdout"
+    check "the JSON names its device and is whole" jq -e '(.device | length > 0) and
+        (.driver | length > 0) and (.command | startswith("whit cost ")) and .complete and
+        .reference.samples == 4 and all(.rows[]; .measured) and
+        ([.rows[] | keys] | unique | length == 1)' "$J"
+    check "prices have intervals" jq -e 'all(.rows[].price; (.cpu // .wall).ratio as $ratio |
+        .rounds >= 7 and $ratio.low <= $ratio.median and $ratio.median <= $ratio.high)' "$J"
+fi
 
 # ---- By clocks that are known ----
 
@@ -81,65 +83,73 @@ expect 0 "compared with itself" cost --compare "$J" "$J"
 check "nothing is distinguishable" \
     test "$(grep -c 'dearer in\|cheaper in' "$OUT/stdout")" -eq 0
 
-expect 0 "what may change nothing" cost "$CUBE" $small --reference-samples 4 \
-    --knobs numerics,arithmetic --csv "$C"
-double=$(value "$C" arithmetic double alone_rmse)
-float=$(value "$C" usual "" alone_rmse)
-check "double is exact where nothing is cut, float nearly ($double, $float)" \
-    holds "$double < 1e-9 && 1e-9 < $float && $float < 1e-6"
-check "600 rays are aimed" test "$(value "$C" usual "" aimed_rays)" = 600
-check "exact: no aimed ray hits something else" test "$(value "$C" \
-    numerics exact aimed_other_ids)$(value "$C" numerics exact aimed_misses)" = 00
-# Far from the origin a turned box is other triangles with instances and in one tree, which the scene is
-# by itself: each is held against its own.
-cat >"$OUT/far.json" <<'JSON'
+if part 1 2; then
+    expect 0 "what may change nothing" cost "$CUBE" $small --reference-samples 4 \
+        --knobs numerics,arithmetic --csv "$C"
+    double=$(value "$C" arithmetic double alone_rmse)
+    float=$(value "$C" usual "" alone_rmse)
+    check "double is exact where nothing is cut, float nearly ($double, $float)" \
+        holds "$double < 1e-9 && 1e-9 < $float && $float < 1e-6"
+    check "600 rays are aimed" test "$(value "$C" usual "" aimed_rays)" = 600
+    check "exact: no aimed ray hits something else" test "$(value "$C" \
+        numerics exact aimed_other_ids)$(value "$C" numerics exact aimed_misses)" = 00
+fi
+if part 0 2; then
+    # Far from the origin a turned box is other triangles with instances and in one tree, which the scene is
+    # by itself: each is held against its own.
+    cat >"$OUT/far.json" <<'JSON'
 { "camera": { "eye": [90, 1, 4], "target": [90, 0.5, 0] },
   "objects": [
     { "shape": "box", "translation": [90.3, 0.7, 0.1], "rotation": [10, 30, 20] },
     { "shape": "sphere", "translation": [91.6, 0.7, 0.1] } ] }
 JSON
-expect 0 "with instances and in one tree" cost "$OUT/far.json" $small --reference-samples 4 \
-    --knobs instances --csv "$C"
-for row in usual: instances:on; do
-    most=$(value "$C" "${row%:*}" "${row#*:}" aimed_ulp_max)
-    check "$row: rays are held against its triangles ($most ulp)" holds "$most < 100"
-done
-check "what the scene takes by itself is no row" grep -q "^Not here: .*instances off" "$OUT/stdout"
+    expect 0 "with instances and in one tree" cost "$OUT/far.json" $small --reference-samples 4 \
+        --knobs instances --csv "$C"
+    for row in usual: instances:on; do
+        most=$(value "$C" "${row%:*}" "${row#*:}" aimed_ulp_max)
+        check "$row: rays are held against its triangles ($most ulp)" holds "$most < 100"
+    done
+    check "what the scene takes by itself is no row" grep -q "^Not here: .*instances off" "$OUT/stdout"
+fi
 check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
 expect 0 "one knob" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$C"
 check "is that knob alone" test "$(grep -c '^fresnel  *schlick ' "$OUT/stdout")" -eq 1
 check "and no other" test "$(grep -c '^aa  ' "$OUT/stdout")" -eq 0
-expect 1 "an error that nothing has" cost "$CUBE" $small --reference-samples 4 --knobs shadows --rays 0 \
-    --under 1e-9
-check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
+if part 0 2; then
+    expect 1 "an error that nothing has" cost "$CUBE" $small --reference-samples 4 --knobs shadows --rays 0 \
+        --under 1e-9
+    check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
+fi
 
 # ---- Choices of `whit render` ----
 
-tiny="$CUBE --size 48x36 -o $OUT/chosen.png"
-enough="$tiny --budget-ms 1e6"
-chosen() { sed -n 's/^whit: note: chosen: \(.*\); predicted.*/\1/p' "$OUT/stderr"; }
-expect 0 "a time that is enough" render $enough
-check "takes the most samples" grep -q "^whit: note: chosen: --aa 64.*; predicted" "$OUT/stderr"
-most=$(chosen)
-check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
-expect 0 "an error that one sample has" render $tiny --max-error 0.9
-check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
-check "takes less" test "$(grep -c "chosen: --aa" "$OUT/stderr")" -eq 0
-expect 0 "--fresh" render $enough --fresh
-check "measures anew" grep -q "measuring what settings cost" "$OUT/stderr"
-expect 0 "other trees" render $enough --build median
-check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
-# Records that are cut, of something else or empty are measured again, and nothing is said of them.
-record=$(ls -t "$OUT"/cache/whit/cost-* | sed -n 2p)
-for damage in "truncate -s 2000" "truncate -s 0" "cp $(ls -t "$OUT"/cache/whit/cost-* | sed -n 1p)"; do
-    $damage "$record"
-    expect 0 "a record damaged by ${damage%% /*}" render $enough
-    check "is measured again" grep -q "measuring what settings cost" "$OUT/stderr"
-    check "with the same choice, and no error" test "$(chosen)$(grep -c "error\|warning" "$OUT/stderr")" = "${most}0"
-done
-refuse 1 "no time at all" "no setting takes" render $tiny --budget-ms 0.001 --quiet
-refuse 2 "chosen and given" "chooses --aa" render $tiny --budget-ms 10 --aa 4
-refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
+if part 1 2; then
+    tiny="$CUBE --size 48x36 -o $OUT/chosen.png"
+    enough="$tiny --budget-ms 1e6"
+    chosen() { sed -n 's/^whit: note: chosen: \(.*\); predicted.*/\1/p' "$OUT/stderr"; }
+    expect 0 "a time that is enough" render $enough
+    check "takes the most samples" grep -q "^whit: note: chosen: --aa 64.*; predicted" "$OUT/stderr"
+    most=$(chosen)
+    check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
+    expect 0 "an error that one sample has" render $tiny --max-error 0.9
+    check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
+    check "takes less" test "$(grep -c "chosen: --aa" "$OUT/stderr")" -eq 0
+    expect 0 "--fresh" render $enough --fresh
+    check "measures anew" grep -q "measuring what settings cost" "$OUT/stderr"
+    expect 0 "other trees" render $enough --build median
+    check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
+    # Records that are cut, of something else or empty are measured again, and nothing is said of them.
+    record=$(ls -t "$OUT"/cache/whit/cost-* | sed -n 2p)
+    for damage in "truncate -s 2000" "truncate -s 0" "cp $(ls -t "$OUT"/cache/whit/cost-* | sed -n 1p)"; do
+        $damage "$record"
+        expect 0 "a record damaged by ${damage%% /*}" render $enough
+        check "is measured again" grep -q "measuring what settings cost" "$OUT/stderr"
+        check "with the same choice, and no error" test "$(chosen)$(grep -c "error\|warning" "$OUT/stderr")" = "${most}0"
+    done
+    refuse 1 "no time at all" "no setting takes" render $tiny --budget-ms 0.001 --quiet
+    refuse 2 "chosen and given" "chooses --aa" render $tiny --budget-ms 10 --aa 4
+    refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
+fi
 
 if [ "${4:-}" = all ]; then
     # A sample takes 135 ms, and bounces take nothing: so there are as many of these as there can be, and of samples
@@ -183,22 +193,24 @@ right=$(value "$C" fresnel schlick alone_rmse) biased=$(value "$D" fresnel schli
 check "a biased Schlick: its error grows ($right to $biased)" holds "$biased > 1.5 * $right"
 check "and no other" test "$(value "$C" usual "" alone_rmse)" = "$(value "$D" usual "" alone_rmse)"
 
-export WHIT_TEST_WRONG=triangle
-refuse 1 "a wrong triangle" "build median: it may change nothing" \
-    cost "$CUBE" $small --reference-samples 4 --knobs build,traversal --csv "$D"
-unset WHIT_TEST_WRONG
-check "its row says so" grep -q "^build  *median .*NOT THE SAME" "$OUT/stdout"
-check "no other does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
-# (Trees by medians that are right: render_test.sh.)
-for row in "traversal sign" "traversal basic" "build sweep" "build spatial" "build binned+opt"; do
-    set -- $row
-    check "$row: no pixel is other" test "$(value "$D" "$1" "$2" pixels_changed)" = 0
-    check "$row: no identity is other" test "$(value "$D" "$1" "$2" ids_changed)" = 0
-done
-check "from when on its trees are dearer" grep -q \
-    "^build median: 1.0 ms to build beside 9.0; dearer from 1 picture on" "$OUT/stdout"
-check "rays find it too ($(value "$D" build median aimed_wrong))" \
-    holds "$(value "$D" build median aimed_wrong) > $(value "$D" usual "" aimed_wrong)"
+if part 0 2; then
+    export WHIT_TEST_WRONG=triangle
+    refuse 1 "a wrong triangle" "build median: it may change nothing" \
+        cost "$CUBE" $small --reference-samples 4 --knobs build,traversal --csv "$D"
+    unset WHIT_TEST_WRONG
+    check "its row says so" grep -q "^build  *median .*NOT THE SAME" "$OUT/stdout"
+    check "no other does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
+    # (Trees by medians that are right: render_test.sh.)
+    for row in "traversal sign" "traversal basic" "build sweep" "build spatial" "build binned+opt"; do
+        set -- $row
+        check "$row: no pixel is other" test "$(value "$D" "$1" "$2" pixels_changed)" = 0
+        check "$row: no identity is other" test "$(value "$D" "$1" "$2" ids_changed)" = 0
+    done
+    check "from when on its trees are dearer" grep -q \
+        "^build median: 1.0 ms to build beside 9.0; dearer from 1 picture on" "$OUT/stdout"
+    check "rays find it too ($(value "$D" build median aimed_wrong))" \
+        holds "$(value "$D" build median aimed_wrong) > $(value "$D" usual "" aimed_wrong)"
+fi
 
 export WHIT_TEST_WRONG=slow
 run cost "$GLASS" $small --reference-samples 4 --knobs depth --rays 0 --csv "$D"

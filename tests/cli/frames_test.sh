@@ -23,7 +23,10 @@ for frame in 08 11; do
     check "so are the identities" cmp one.exr i.${frame#0}.exr
 done
 check "things have moved" sh -c '! cmp -s a.0008.png a.0011.png'
+way=0
 for option in "--instance-update refit" "--instance-build median" "--instance-build median --instance-update refit"; do
+    way=$((way + 1))
+    part $way 3 || continue
     expect 0 "$option" render "$SWARM" --frames 8-11 -o b.####.png --size 64x48 $option --quiet
     check "$option is quiet" test ! -s "$OUT/stderr"
     for frame in 08 09 10 11; do
@@ -48,6 +51,8 @@ check "rays are summed up" jq -e '.rays.primary == 768' "$OUT/stdout"
 # What is cut, and pixels by samples: sums over frames, of weights and bounds the largest, which here are
 # those of the first frame.
 for option in "--depth 1" "--bailout 0.05"; do
+    way=$((way + 1))
+    part $way 2 || continue
     cut="$SWARM --size 40x30 $option --aa adaptive:0.05 --fps 1 --stats json"
     expect 0 "frames with $option" render $cut --frames 0-1 -o t.#.png
     jq '[.rays.cut_by_depth, .rays.cut_by_bailout, .rays.bailout_bound, .pixels_by_samples]' \

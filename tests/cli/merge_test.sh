@@ -88,15 +88,18 @@ if [ "${4:-}" = all ]; then
     done
     large 32768 512 png 200
     large 32768 512 exr 200
-    finish
 fi
 
 tiles png 4 cube "$CUBE" --size 90x120
-tiles pfm 7 balls "$SCENES/balls.json" --size 60x120 --aa 2
-tiles exr 3 lens "$SCENES/lens.json" --size 60x40 --aa 4
-tiles png 2 "a user's functions" "$CUBE" --size 60x48 --shader "$SCENES/../shaders/examples/occlusion.glsl"
-samples exr 4 balls "$SCENES/balls.json" --size 60x40 --aa 16
-samples pfm 4 balls "$SCENES/balls.json" --size 60x40 --aa 4
+if part 0 2; then
+    tiles pfm 7 balls "$SCENES/balls.json" --size 60x120 --aa 2
+    samples exr 4 balls "$SCENES/balls.json" --size 60x40 --aa 16
+fi
+if part 1 2; then
+    tiles exr 3 lens "$SCENES/lens.json" --size 60x40 --aa 4
+    tiles png 2 "a user's functions" "$CUBE" --size 60x48 --shader "$SCENES/../shaders/examples/occlusion.glsl"
+    samples pfm 4 balls "$SCENES/balls.json" --size 60x40 --aa 4
+fi
 
 # Both at once, by three processes, in any order.
 both="$SCENES/lens.json --size 60x40 --aa 16"

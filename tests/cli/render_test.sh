@@ -17,23 +17,25 @@ expect 0 "again, under another name" render "$CUBE" -o b.png --size 96x64 --ids 
 check "--quiet prints nothing" test ! -s "$OUT/stderr"
 check "two runs give the same picture" cmp a.png b.png
 check "two runs give the same identities" cmp a.exr b.exr
-for tile in 16 32 512; do
-    expect 0 "--tile-size $tile" render "$CUBE" -o b.png --size 96x64 --tile-size $tile --quiet
-    check "tiles of $tile give the same picture" cmp a.png b.png
-done
-# `--effects all`: scene_*.
-for option in "--build median" \
-    "--build spatial+opt --leaf 1 --traversal sign --instance-build median" "--threads 1" \
-    "--load-path texel" "--stats json"; do
-    # shellcheck disable=SC2086
-    expect 0 "$option" render "$CUBE" -o b.png --size 96x64 $option --quiet
-    check "$option gives the same picture" cmp a.png b.png
-done
-# Trees out of storage buffers, each access checked by the validation layers: texel buffers in scene_*_validated.
-WHIT_VALIDATION=1 expect 0 "--load-path storage" render "$CUBE" -o b.png --size 96x64 --load-path storage --quiet
-check "--load-path storage gives the same picture" cmp a.png b.png
-expect 0 "other bounces" render "$CUBE" -o b.png --size 96x64 --shadows none --quiet
-check "another option is another file" sh -c '! cmp -s a.png b.png'
+if part 0 2; then
+    for tile in 16 32 512; do
+        expect 0 "--tile-size $tile" render "$CUBE" -o b.png --size 96x64 --tile-size $tile --quiet
+        check "tiles of $tile give the same picture" cmp a.png b.png
+    done
+    # `--effects all`: scene_*.
+    for option in "--build median" \
+        "--build spatial+opt --leaf 1 --traversal sign --instance-build median" "--threads 1" \
+        "--load-path texel" "--stats json"; do
+        # shellcheck disable=SC2086
+        expect 0 "$option" render "$CUBE" -o b.png --size 96x64 $option --quiet
+        check "$option gives the same picture" cmp a.png b.png
+    done
+    # Trees out of storage buffers, each access checked by the validation layers: texel buffers in scene_*_validated.
+    WHIT_VALIDATION=1 expect 0 "--load-path storage" render "$CUBE" -o b.png --size 96x64 --load-path storage --quiet
+    check "--load-path storage gives the same picture" cmp a.png b.png
+    expect 0 "other bounces" render "$CUBE" -o b.png --size 96x64 --shadows none --quiet
+    check "another option is another file" sh -c '! cmp -s a.png b.png'
+fi
 
 command="whit render $CUBE --size 96x64 --aa 1 --depth 8 -o whit.png"
 check "the recipe has the command" has_text a.png "$command"
@@ -108,40 +110,42 @@ refuse 2 "a render that fails" "there is no camera" render "$CUBE" -o keep.png -
 check "leaves the old file alone" test "$(cat keep.png)" = old
 check "no hidden file is left" test -z "$(find . -name '.*' -type f)"
 
-# Edges are drawn over the picture, and nothing else changes.
-black() {
-    tail -c $((64 * 48 * 12)) "$1.pfm" | od -An -v -tx4 -w12 | grep -c '^ 00000000 00000000 00000000$'
-}
-for edges in off objects triangles; do
-    expect 0 "--edges $edges" render "$CUBE" -o $edges.pfm --size 64x48 --edges $edges --quiet
-    tail -c $((64 * 48 * 12)) $edges.pfm | od -An -v -tx4 -w12 >$edges.pixels
-done
-expect 0 "no word of edges" render "$CUBE" -o usual.pfm --size 64x48 --quiet
-check "--edges off is the usual picture" cmp usual.pfm off.pfm
-objects=$(black objects) triangles=$(black triangles)
-check "more edges of triangles ($triangles) than of objects ($objects)" \
-    test "$objects" -gt 20 -a "$triangles" -gt $((objects + 20)) -a "$(black off)" -eq 0
-for edges in objects triangles; do
-    check "what is no edge is as it was" test "$(paste -d '|' off.pixels $edges.pixels |
-        awk -F '|' '$1 != $2 && $2 != " 00000000 00000000 00000000"' | wc -l)" -eq 0
-done
+if part 1 2; then
+    # Edges are drawn over the picture, and nothing else changes.
+    black() {
+        tail -c $((64 * 48 * 12)) "$1.pfm" | od -An -v -tx4 -w12 | grep -c '^ 00000000 00000000 00000000$'
+    }
+    for edges in off objects triangles; do
+        expect 0 "--edges $edges" render "$CUBE" -o $edges.pfm --size 64x48 --edges $edges --quiet
+        tail -c $((64 * 48 * 12)) $edges.pfm | od -An -v -tx4 -w12 >$edges.pixels
+    done
+    expect 0 "no word of edges" render "$CUBE" -o usual.pfm --size 64x48 --quiet
+    check "--edges off is the usual picture" cmp usual.pfm off.pfm
+    objects=$(black objects) triangles=$(black triangles)
+    check "more edges of triangles ($triangles) than of objects ($objects)" \
+        test "$objects" -gt 20 -a "$triangles" -gt $((objects + 20)) -a "$(black off)" -eq 0
+    for edges in objects triangles; do
+        check "what is no edge is as it was" test "$(paste -d '|' off.pixels $edges.pixels |
+            awk -F '|' '$1 != $2 && $2 != " 00000000 00000000 00000000"' | wc -l)" -eq 0
+    done
 
-# So is a grid on the ground, which a cube that glows stands before.
-cat >glows.json <<X
+    # So is a grid on the ground, which a cube that glows stands before.
+    cat >glows.json <<X
 { "camera": { "eye": [1.2, 1.4, 1.6], "target": [0, 0, 0], "fov": 60 }, "environment": "#000000", "ambient": 0,
   "materials": { "m": { "emission": [7, 0, 0] } }, "objects": [ { "shape": "box", "size": 1, "material": "m" } ] }
 X
-for grid in off on; do
-    expect 0 "--grid $grid" render glows.json -o grid-$grid.pfm --size 64x48 --grid $grid --quiet
-    tail -c $((64 * 48 * 12)) grid-$grid.pfm | od -An -v -tf4 -w12 >grid-$grid.pixels
-done
-lines=$(grep -cv '^ *[07] *0 *0$' grid-on.pixels)
-check "lines are drawn ($lines pixels), and nothing else" test "$lines" -gt 100 -a \
-    "$(grep -cv '^ *[07] *0 *0$' grid-off.pixels)" -eq 0
-check "what stands before them is as it was" test "$(grep -c '^ *7 ' grid-off.pixels)" -gt 60 -a \
-    "$(grep -c '^ *7 *0 *0$' grid-on.pixels)" -eq "$(grep -c '^ *7 ' grid-off.pixels)"
-expect 0 "edges of costs" render "$CUBE" -o costs.png --size 64x48 --edges objects --grid on --view visits --quiet
-check "are none" sh -c '! grep -aq -e "--edges" -e "--grid" costs.png'
+    for grid in off on; do
+        expect 0 "--grid $grid" render glows.json -o grid-$grid.pfm --size 64x48 --grid $grid --quiet
+        tail -c $((64 * 48 * 12)) grid-$grid.pfm | od -An -v -tf4 -w12 >grid-$grid.pixels
+    done
+    lines=$(grep -cv '^ *[07] *0 *0$' grid-on.pixels)
+    check "lines are drawn ($lines pixels), and nothing else" test "$lines" -gt 100 -a \
+        "$(grep -cv '^ *[07] *0 *0$' grid-off.pixels)" -eq 0
+    check "what stands before them is as it was" test "$(grep -c '^ *7 ' grid-off.pixels)" -gt 60 -a \
+        "$(grep -c '^ *7 *0 *0$' grid-on.pixels)" -eq "$(grep -c '^ *7 ' grid-off.pixels)"
+    expect 0 "edges of costs" render "$CUBE" -o costs.png --size 64x48 --edges objects --grid on --view visits --quiet
+    check "are none" sh -c '! grep -aq -e "--edges" -e "--grid" costs.png'
+fi
 
 # A file in place of a command.
 mkdir "$OUT/alone" && cp "$CUBE" "$OUT/alone/some.cube.json"

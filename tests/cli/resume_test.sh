@@ -59,44 +59,49 @@ check "all is as of one run" same
 expect 0 "all is there" render $frames -o a.###.png --ids a.###.exr --resume --stats json
 check "nothing is drawn" jq -e ".frames.count == 0 and .frames.kept == $((last + 1))" "$OUT/stdout"
 
-# Three processes: what one draws no other does.
-rm -f a.*
-for i in 1 2 3; do
-    "$WHIT" render $frames -o a.###.png --ids a.###.exr --resume --stats json >"$i.json" 2>"$i.err" &
-done
-wait
-check "three processes draw every frame once" jq -es "map(.frames.count) | add == $((last + 1))" 1.json 2.json 3.json
-check "each ends with all frames there" jq -es "all(.[]; .frames.count + .frames.kept == $((last + 1)))" 1.json 2.json 3.json
-check "they are those of one run" same
-
-# The same by lines of one process, and of two at once.
-{
-    echo "# frames of one scene"
-    for i in $(seq 0 $last); do
-        echo "whit render '$SWARM' --frame $i --size 96x72 --aa 4 -o a.$(printf %03d "$i").png --ids a.$(printf %03d "$i").exr"
-        [ "$i" -ne 3 ] || echo
+if part 0 2; then
+    # Three processes: what one draws no other does.
+    rm -f a.*
+    for i in 1 2 3; do
+        "$WHIT" render $frames -o a.###.png --ids a.###.exr --resume --stats json >"$i.json" 2>"$i.err" &
     done
-} >lines
-rm -f a.*
-"$WHIT" batch lines --resume --stats json >1.json 2>1.err &
-"$WHIT" batch lines --resume --stats json >2.json 2>2.err
-wait
-check "two processes draw every line once" jq -es "map(.written) | add == $((last + 1))" 1.json 2.json
-check "with one renderer each" jq -es "map(.renderers) | max == 1" 1.json 2.json
-check "lines are the frames of one run" same
-sed 's/96x72/0x72/;6q' lines >wrong
-refuse 2 "a wrong line" "wrong:2: --size \`0x72\`" batch wrong
-echo "'$SWARM' -o x.png --time-limit 1" >wrong
-refuse 2 "a limit of a line" "wrong:1: --time-limit is of all lines" batch wrong
-echo "'$SWARM' -o x.png --counters" >wrong
-refuse 2 "costs of a line" "wrong:1: --counters is for .whit render" batch wrong
-echo "'$SWARM' -o x.png 'x" >wrong
-refuse 2 "a quote without end" "wrong:1: a quote has no end" batch wrong
-expect 5 "a time limit" batch lines --time-limit 0.001
-check "says how lines go on" grep -q "^whit: to go on: whit batch lines --time-limit 0.001 --resume$" "$OUT/stderr"
+    wait
+    check "three processes draw every frame once" jq -es "map(.frames.count) | add == $((last + 1))" 1.json 2.json 3.json
+    check "each ends with all frames there" jq -es "all(.[]; .frames.count + .frames.kept == $((last + 1)))" 1.json 2.json 3.json
+    check "they are those of one run" same
+fi
 
-# Lines of one scene share it wherever they stand, and those of the same kernels these, whatever is drawn between.
-cat >mixed <<LINES
+if part 1 2; then
+    # The same by lines of one process, and of two at once.
+    {
+        echo "# frames of one scene"
+        for i in $(seq 0 $last); do
+            echo "whit render '$SWARM' --frame $i --size 96x72 --aa 4 -o a.$(printf %03d "$i").png --ids a.$(printf %03d "$i").exr"
+            [ "$i" -ne 3 ] || echo
+        done
+    } >lines
+    rm -f a.*
+    "$WHIT" batch lines --resume --stats json >1.json 2>1.err &
+    "$WHIT" batch lines --resume --stats json >2.json 2>2.err
+    wait
+    check "two processes draw every line once" jq -es "map(.written) | add == $((last + 1))" 1.json 2.json
+    check "with one renderer each" jq -es "map(.renderers) | max == 1" 1.json 2.json
+    check "lines are the frames of one run" same
+    sed 's/96x72/0x72/;6q' lines >wrong
+    refuse 2 "a wrong line" "wrong:2: --size \`0x72\`" batch wrong
+    echo "'$SWARM' -o x.png --time-limit 1" >wrong
+    refuse 2 "a limit of a line" "wrong:1: --time-limit is of all lines" batch wrong
+    echo "'$SWARM' -o x.png --counters" >wrong
+    refuse 2 "costs of a line" "wrong:1: --counters is for .whit render" batch wrong
+    echo "'$SWARM' -o x.png 'x" >wrong
+    refuse 2 "a quote without end" "wrong:1: a quote has no end" batch wrong
+    expect 5 "a time limit" batch lines --time-limit 0.001
+    check "says how lines go on" grep -q "^whit: to go on: whit batch lines --time-limit 0.001 --resume$" "$OUT/stderr"
+fi
+
+if part 0 2; then
+    # Lines of one scene share it wherever they stand, and those of the same kernels these, whatever is drawn between.
+    cat >mixed <<LINES
 '$CUBE' --size 32x24 -o m1.png
 '$SWARM' --size 32x24 -o m2.png
 '$CUBE' --size 32x24 --shadows none -o m3.png
@@ -105,30 +110,33 @@ cat >mixed <<LINES
 '$CUBE' --size 24x24 -o m6.png
 '$CUBE' --size 32x24 --frames 0-1 -o m7.#.png
 LINES
-expect 0 "lines in any order" batch mixed --stats json
-check "each scene, tree and kernel is made once" jq -e '[.lines, .written, .scenes, .trees, .renderers] == [7, 8, 2, 3, 4]' "$OUT/stdout"
-check "rays are those of all pictures" jq -e '.rays.primary == 32*24*5 + 24*24*2 + 48*24' "$OUT/stdout"
-for i in 1 2 3 4 5 6; do
-    eval "\"\$WHIT\" render $(sed -n ${i}p mixed | sed "s/-o m$i/-o n$i/") -q"
-    check "line $i is the picture that it is alone" cmp "n$i.png" "m$i.png"
-done
-rm m1.png m4.png m7.1.png
-expect 0 "some of them again" batch mixed --resume --stats json
-check "they alone are drawn" jq -e '.written == 3 and .kept == 5 and .rays.primary == 32*24*2 + 24*24' "$OUT/stdout"
+    expect 0 "lines in any order" batch mixed --stats json
+    check "each scene, tree and kernel is made once" jq -e '[.lines, .written, .scenes, .trees, .renderers] == [7, 8, 2, 3, 4]' "$OUT/stdout"
+    check "rays are those of all pictures" jq -e '.rays.primary == 32*24*5 + 24*24*2 + 48*24' "$OUT/stdout"
+    for i in 1 2 3 4 5 6; do
+        eval "\"\$WHIT\" render $(sed -n ${i}p mixed | sed "s/-o m$i/-o n$i/") -q"
+        check "line $i is the picture that it is alone" cmp "n$i.png" "m$i.png"
+    done
+    rm m1.png m4.png m7.1.png
+    expect 0 "some of them again" batch mixed --resume --stats json
+    check "they alone are drawn" jq -e '.written == 3 and .kept == 5 and .rays.primary == 32*24*2 + 24*24' "$OUT/stdout"
 
+fi
 # A tile, in a PFM with its recipe beside it.
-expect 0 "one picture" render "$CUBE" --size 64x130 --aa 4 -o one.pfm -q
-for i in $(seq $tiles); do
-    "$WHIT" render "$CUBE" --size 64x130 --aa 4 -o "t$i.pfm" --tile $i/$tiles --resume -q &
-    pid=$!
-    killed test -e "t$i.pfm.lock"
-    expect 0 "tile $i goes on" render "$CUBE" --size 64x130 --aa 4 -o "t$i.pfm" --tile $i/$tiles --resume -q
-done
-expect 0 "the tiles" merge t?.pfm -o merged.pfm
-check "are the picture" cmp one.pfm merged.pfm
-printf x >>t1.pfm
-expect 0 "a tile that was changed" render "$CUBE" --size 64x130 --aa 4 -o t1.pfm --tile 1/$tiles --resume
-check "is drawn again" sh -c "! grep -q kept '$OUT/stderr' && ! tail -c 1 t1.pfm | grep -q x"
+if part 1 2; then
+    expect 0 "one picture" render "$CUBE" --size 64x130 --aa 4 -o one.pfm -q
+    for i in $(seq $tiles); do
+        "$WHIT" render "$CUBE" --size 64x130 --aa 4 -o "t$i.pfm" --tile $i/$tiles --resume -q &
+        pid=$!
+        killed test -e "t$i.pfm.lock"
+        expect 0 "tile $i goes on" render "$CUBE" --size 64x130 --aa 4 -o "t$i.pfm" --tile $i/$tiles --resume -q
+    done
+    expect 0 "the tiles" merge t?.pfm -o merged.pfm
+    check "are the picture" cmp one.pfm merged.pfm
+    printf x >>t1.pfm
+    expect 0 "a tile that was changed" render "$CUBE" --size 64x130 --aa 4 -o t1.pfm --tile 1/$tiles --resume
+    check "is drawn again" sh -c "! grep -q kept '$OUT/stderr' && ! tail -c 1 t1.pfm | grep -q x"
+fi
 
 # Ctrl+C and --time-limit leave what is finished, and say how it goes on.
 rm -f a.*

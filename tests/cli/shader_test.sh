@@ -21,31 +21,33 @@ said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
 
 # ---- What a pixel is ----
 
-mkdir looks
-cat >looks/at.glsl <<'END'
+if part 0 2; then
+    mkdir looks
+    cat >looks/at.glsl <<'END'
 //@ whit 1
 //@ slider scale 0 4 1
 
 #include "post.glsl"
 vec3 shade(Surface s, Optics o, vec3 to_eye) { return dbg(vec3(0.25, 1.5, 0.1) * scale); }
 END
-printf 'vec3 post(ivec2 at,\n vec3 color) { return dbg(\n  at.x == 24)\n  ? color : dbg(-color); }\n' >looks/post.glsl
-expect 0 "a pixel" probe "$CUBE" --size 48x32 --quiet --pixel 24,16 --shader looks/at.glsl --set scale=2 --json looks.json
-grep '^looks/' "$OUT/stdout" >told
-cat >want <<'END'
+    printf 'vec3 post(ivec2 at,\n vec3 color) { return dbg(\n  at.x == 24)\n  ? color : dbg(-color); }\n' >looks/post.glsl
+    expect 0 "a pixel" probe "$CUBE" --size 48x32 --quiet --pixel 24,16 --shader looks/at.glsl --set scale=2 --json looks.json
+    grep '^looks/' "$OUT/stdout" >told
+    cat >want <<'END'
 looks/at.glsl:5: vec3(0.25, 1.5, 0.1) * scale = (0.5, 3, 0.200000003)
 looks/post.glsl:2: at.x == 24 = true
 looks/post.glsl:4: -color was not reached
 END
-check "says what each value is: $(tr '\n' ';' <told)" cmp told want
-check "says what rows have not" grep -q '^missing    .*post()' "$OUT/stdout"
-check "and where rays end is as the CPU says" \
-    test "$(grep -c '^\(twin\|exact\)  *differs in 0 of 1$' "$OUT/stdout")" = 2
-check "JSON has them" test "$(jq -c '[.dbg[] | [.line, .count, .values[0].value]]' looks.json)" = \
-    '[[5,1,[0.5,3,0.2]],[2,1,[true]],[4,0,null]]'
-printf 'struct A { float b; };\nvec3 miss(vec3 dir)\n{\n A a;\n dbg(a);\n return dir; }\n' >looks/struct.glsl
-expect 2 "a value of another kind, in pictures too" render "$CUBE" $SMALL --shader looks/struct.glsl -o no.png
-said "names the line, and what there is" "looks/struct.glsl:5: dbg(x) takes a float, int, uint, bool or a vector"
+    check "says what each value is: $(tr '\n' ';' <told)" cmp told want
+    check "says what rows have not" grep -q '^missing    .*post()' "$OUT/stdout"
+    check "and where rays end is as the CPU says" \
+        test "$(grep -c '^\(twin\|exact\)  *differs in 0 of 1$' "$OUT/stdout")" = 2
+    check "JSON has them" test "$(jq -c '[.dbg[] | [.line, .count, .values[0].value]]' looks.json)" = \
+        '[[5,1,[0.5,3,0.2]],[2,1,[true]],[4,0,null]]'
+    printf 'struct A { float b; };\nvec3 miss(vec3 dir)\n{\n A a;\n dbg(a);\n return dir; }\n' >looks/struct.glsl
+    expect 2 "a value of another kind, in pictures too" render "$CUBE" $SMALL --shader looks/struct.glsl -o no.png
+    said "names the line, and what there is" "looks/struct.glsl:5: dbg(x) takes a float, int, uint, bool or a vector"
+fi
 
 # ---- What a file is ----
 
@@ -99,7 +101,8 @@ check "variants beside whit's own" test "$(jq '[.variants[] | select(.name == "r
 
 # ---- Tests in it, and what it expects ----
 
-cat >tests.glsl <<'END'
+if part 1 2; then
+    cat >tests.glsl <<'END'
 #include "part/tint.glsl"
 //@ slider bands 1 8 3
 //@ test
@@ -117,11 +120,11 @@ void rays(uint seed)
     check(trace(vec3(0.0, 3.0, 0.0), vec3(0.0, -1.0, 0.0), met, t));
 }
 END
-expect 0 "tests" shader tests.glsl
-check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
-# What the linking of a file into whit's kernels has to keep: numbers that are no ids, what global
-# variables begin with, functions and records that whit has by the same name.
-cat >linked.glsl <<'END'
+    expect 0 "tests" shader tests.glsl
+    check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
+    # What the linking of a file into whit's kernels has to keep: numbers that are no ids, what global
+    # variables begin with, functions and records that whit has by the same name.
+    cat >linked.glsl <<'END'
 float k = 3.0, twice = 2.0 * k;
 const float table[4] = float[4](1.0, 2.0, 3.0, 4.0);
 struct Hit { vec3 a; int b[3]; };
@@ -142,11 +145,11 @@ void linked(uint seed) {
     check(v.wzyx == vec4(3.0, 3.0, 1.0, 1.0));
 }
 END
-expect 0 "what is linked" shader linked.glsl
-check "all of it" grep -q "test linked: passed, 5 checks of 4096 seeds" "$OUT/stdout"
-expect 1 "a slider in tests" shader tests.glsl --set bands=4
-said "the failed check" "tests.glsl:8: check(bands <= 3.0) fails for 4096 of 4096 seeds of fine, the smallest is 0"
-cat >wrong.glsl <<'END'
+    expect 0 "what is linked" shader linked.glsl
+    check "all of it" grep -q "test linked: passed, 5 checks of 4096 seeds" "$OUT/stdout"
+    expect 1 "a slider in tests" shader tests.glsl --set bands=4
+    said "the failed check" "tests.glsl:8: check(bands <= 3.0) fails for 4096 of 4096 seeds of fine, the smallest is 0"
+    cat >wrong.glsl <<'END'
 //@ test
 void wrong(uint seed)
 {
@@ -156,13 +159,13 @@ void wrong(uint seed)
         check(true);
 }
 END
-expect 1 "failed tests" shader wrong.glsl --json
-said "seeds" "wrong.glsl:5: check(seed != 7u && seed < 4000u) fails for 97 of 4096 seeds of wrong, the smallest is 7"
-said "what is no number" "wrong.glsl:5: check(x == x) fails for 4096 of 4096"
-said "what is not reached" "wrong.glsl:7: check(true) is not reached"
-check "in JSON" test "$(jq -c '[.tests[0].checks[] | [.line, .reached, .failed, .first_seed]]' "$OUT/stdout")" = \
-    "[[5,true,97,7],[5,true,4096,0],[7,false,0,0]]"
-cat >long.glsl <<'END'
+    expect 1 "failed tests" shader wrong.glsl --json
+    said "seeds" "wrong.glsl:5: check(seed != 7u && seed < 4000u) fails for 97 of 4096 seeds of wrong, the smallest is 7"
+    said "what is no number" "wrong.glsl:5: check(x == x) fails for 4096 of 4096"
+    said "what is not reached" "wrong.glsl:7: check(true) is not reached"
+    check "in JSON" test "$(jq -c '[.tests[0].checks[] | [.line, .reached, .failed, .first_seed]]' "$OUT/stdout")" = \
+        "[[5,true,97,7],[5,true,4096,0],[7,false,0,0]]"
+    cat >long.glsl <<'END'
 //@ test
 void long_loop(uint seed)
 {
@@ -171,25 +174,26 @@ void long_loop(uint seed)
     check(x < 0.0);
 }
 END
-expect 1 "a test without end" shader long.glsl
-said "its loop" "long.glsl:5: \`//@ fuel N\`"
-cat >turned.glsl <<'END'
+    expect 1 "a test without end" shader long.glsl
+    said "its loop" "long.glsl:5: \`//@ fuel N\`"
+    cat >turned.glsl <<'END'
 //@ expect rays.camera == base
 //@ expect ids == base
 //@ expect pixels == base
 void camera(vec2 at, inout vec3 origin, inout vec3 dir) { if (at.x > 0.9) dir.x += 0.1; }
 END
-expect 1 "what is expected and not so" shader turned.glsl
-said "ids" "turned.glsl:2: \`ids == base\` does not hold: "
-check "pixels and the first" grep -qE "turned.glsl:3: .*of 19200 pixels have another colour, the first at 15[0-9],[0-9]+: " "$OUT/stderr"
-check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
-# shellcheck disable=SC2086
-expect 1 "in a picture" render "$SCENES/default.json" $SMALL --shader turned.glsl -o broken.png
-said "says so" "turned.glsl:2: "
-check "no picture" test ! -e broken.png
-sed 's/0\.1;/0.0;/' turned.glsl >still.glsl
-expect 0 "what is so" shader still.glsl --scene "$CUBE"
-draw "a picture that is as expected" still.png cube --shader still.glsl
+    expect 1 "what is expected and not so" shader turned.glsl
+    said "ids" "turned.glsl:2: \`ids == base\` does not hold: "
+    check "pixels and the first" grep -qE "turned.glsl:3: .*of 19200 pixels have another colour, the first at 15[0-9],[0-9]+: " "$OUT/stderr"
+    check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
+    # shellcheck disable=SC2086
+    expect 1 "in a picture" render "$SCENES/default.json" $SMALL --shader turned.glsl -o broken.png
+    said "says so" "turned.glsl:2: "
+    check "no picture" test ! -e broken.png
+    sed 's/0\.1;/0.0;/' turned.glsl >still.glsl
+    expect 0 "what is so" shader still.glsl --scene "$CUBE"
+    draw "a picture that is as expected" still.png cube --shader still.glsl
+fi
 
 # broken NAME LINE REASON, of the text on standard input, which begins in line 1.
 broken() {
@@ -212,43 +216,49 @@ said "names it" "missing.glsl"
 # ---- Pictures ----
 
 cat camera.glsl surface.glsl shade.glsl scatter.glsl miss.glsl post.glsl | grep -v '^//@' >own.glsl
-for scene in default $MORE; do
-    draw "$scene" a.exr $scene --shadows tinted
-    draw "$scene by the defaults in a file" b.exr $scene --shader own.glsl
-    expect 0 "$scene: the same picture" compare a.exr b.exr --metric rmse --tolerance 1e-4
-    expect 0 "$scene: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
-    test $scene != default || mv b.exr few.exr
-done
-draw "in other tiles" c.exr default --shader own.glsl --tile-size 16 --segments 1
-expect 0 "the same bits" compare few.exr c.exr --metric largest --tolerance 0
-if [ -n "$MORE" ]; then
-    draw "exact" a.exr cube --numerics exact
-    draw "exact, by a file" b.exr cube --numerics exact --shader own.glsl
-    expect 0 "exact: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
+if part 0 2; then
+    for scene in default $MORE; do
+        draw "$scene" a.exr $scene --shadows tinted
+        draw "$scene by the defaults in a file" b.exr $scene --shader own.glsl
+        expect 0 "$scene: the same picture" compare a.exr b.exr --metric rmse --tolerance 1e-4
+        expect 0 "$scene: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
+        test $scene != default || mv b.exr few.exr
+    done
+    draw "in other tiles" c.exr default --shader own.glsl --tile-size 16 --segments 1
+    expect 0 "the same bits" compare few.exr c.exr --metric largest --tolerance 0
+    if [ -n "$MORE" ]; then
+        draw "exact" a.exr cube --numerics exact
+        draw "exact, by a file" b.exr cube --numerics exact --shader own.glsl
+        expect 0 "exact: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
+    fi
 fi
 
-draw "usual sliders" a.pfm cube --shader all.glsl
-draw "others" b.pfm cube --shader all.glsl --set bands=2 --set on=off,mode=warm
-draw "the last of a name" c.pfm cube --shader all.glsl --set bands=5,on=off --set mode=warm,bands=2
-check "sliders count" sh -c '! cmp -s a.pfm b.pfm'
-check "the last one of a name counts" cmp b.pfm c.pfm
-draw "by the file's own values" c.pfm cube --shader all.glsl --set bands=3,rim=#ffcc88,on=on,mode=plain
-check "those of the file are the usual ones" cmp a.pfm c.pfm
-for pair in band=2 bands=9; do
-    # shellcheck disable=SC2086
-    expect 2 "--set $pair" render "$CUBE" $SMALL --shader all.glsl --set $pair -o no.png
-    check "no picture of --set $pair" test ! -e no.png
-done
-draw "with a recipe" a.png cube --shader all.glsl --set bands=2
-check "the recipe names file and sliders" grep -aq -- '--shader all.glsl --set bands=2' a.png
+if part 1 2; then
+    draw "usual sliders" a.pfm cube --shader all.glsl
+    draw "others" b.pfm cube --shader all.glsl --set bands=2 --set on=off,mode=warm
+    draw "the last of a name" c.pfm cube --shader all.glsl --set bands=5,on=off --set mode=warm,bands=2
+    check "sliders count" sh -c '! cmp -s a.pfm b.pfm'
+    check "the last one of a name counts" cmp b.pfm c.pfm
+    draw "by the file's own values" c.pfm cube --shader all.glsl --set bands=3,rim=#ffcc88,on=on,mode=plain
+    check "those of the file are the usual ones" cmp a.pfm c.pfm
+    for pair in band=2 bands=9; do
+        # shellcheck disable=SC2086
+        expect 2 "--set $pair" render "$CUBE" $SMALL --shader all.glsl --set $pair -o no.png
+        check "no picture of --set $pair" test ! -e no.png
+    done
+    draw "with a recipe" a.png cube --shader all.glsl --set bands=2
+    check "the recipe names file and sliders" grep -aq -- '--shader all.glsl --set bands=2' a.png
+fi
 
-draw "a camera of its own" a.pfm cube --shader camera.glsl
-draw "and without" b.pfm cube
-check "the empty camera changes nothing" cmp a.pfm b.pfm
-echo 'void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += 0.2 * random(1u); }' >shaky.glsl
-draw "random" a.pfm cube --shader shaky.glsl
-draw "random again" b.pfm cube --shader shaky.glsl --tile-size 16 --packets on
-check "the same numbers in every run" cmp a.pfm b.pfm
+if part 0 2; then
+    draw "a camera of its own" a.pfm cube --shader camera.glsl
+    draw "and without" b.pfm cube
+    check "the empty camera changes nothing" cmp a.pfm b.pfm
+    echo 'void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.x += 0.2 * random(1u); }' >shaky.glsl
+    draw "random" a.pfm cube --shader shaky.glsl
+    draw "random again" b.pfm cube --shader shaky.glsl --tile-size 16 --packets on
+    check "the same numbers in every run" cmp a.pfm b.pfm
+fi
 
 draw_usual
 turn=${WHIT_TEST_OFFSET:-0}
@@ -274,7 +284,8 @@ refused() {
     check "$1: says so ($(head -1 "$OUT/stderr"))" grep -qE "$3" "$OUT/stderr"
     check "$1: no picture" test ! -e no.png
 }
-refused "a loop without end" 1 "bad\.glsl:4: .*fuel" <<'END'
+if part 1 2; then
+    refused "a loop without end" 1 "bad\.glsl:4: .*fuel" <<'END'
 vec3 shade(Surface s, Optics o, vec3 to_eye)
 {
     float sum = 0.0;
@@ -283,18 +294,19 @@ vec3 shade(Surface s, Optics o, vec3 to_eye)
     return vec3(sum);
 }
 END
-refused "no number from miss" 1 "not finite" <<'END'
+    refused "no number from miss" 1 "not finite" <<'END'
 vec3 miss(vec3 dir) { return vec3(sqrt(-1.0 - dir.x * dir.x)); }
 END
-cat >trusted.glsl <<'END'
+    cat >trusted.glsl <<'END'
 vec3 miss(vec3 dir) { for (int i = 0; i < 12000; ++i) dir.x += 1e-9; return dir * dir; }
 END
-# shellcheck disable=SC2086
-expect 1 "12,000 iterations" render "$CUBE" $SMALL --shader trusted.glsl -o no.png
-draw "trusted" trusted.pfm cube --shader trusted.glsl --trust
-sed 's/^/\/\/@ fuel 12001\n/' trusted.glsl >fuel.glsl
-draw "with fuel" fuel.pfm cube --shader fuel.glsl
-check "the same as trusted" cmp trusted.pfm fuel.pfm
+    # shellcheck disable=SC2086
+    expect 1 "12,000 iterations" render "$CUBE" $SMALL --shader trusted.glsl -o no.png
+    draw "trusted" trusted.pfm cube --shader trusted.glsl --trust
+    sed 's/^/\/\/@ fuel 12001\n/' trusted.glsl >fuel.glsl
+    draw "with fuel" fuel.pfm cube --shader fuel.glsl
+    check "the same as trusted" cmp trusted.pfm fuel.pfm
+fi
 # shellcheck disable=SC2086
 {
     expect 2 "--max-error" render "$CUBE" $SMALL --shader own.glsl --max-error 0.1 -o no.png

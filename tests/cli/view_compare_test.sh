@@ -13,7 +13,8 @@ columns() {
 
 # ---- Split ----
 
-play "A beside B" "$BALLS" --size 96x64 <<END
+if part 0 2; then
+    play "A beside B" "$BALLS" --size 96x64 <<END
 start: press F2 x2 | compare.mode = off
 same: shot b.pfm, press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors = 0 | compare.flip = 0
 sign: press T | compare.other_colors = 0 | compare.count = 6144 | words = --size 96x64 --traversal sign
@@ -21,41 +22,43 @@ flat: press T x2, press Minus x8, still, wait 4200 | compare.other_ids = 0 | com
 ended: shot split.pfm, press I | compare.mode = off | frame.pixels as flat
 shot a.pfm
 END
-check "half of one and half of the other are the picture" \
-    test "$(value same compare.mixed)" = "$(value same frame.pixels)"
-check "B stays as it was" test "$(value flat compare.b.pixels)" = "$(value start frame.pixels)"
+    check "half of one and half of the other are the picture" \
+        test "$(value same compare.mixed)" = "$(value same frame.pixels)"
+    check "B stays as it was" test "$(value flat compare.b.pixels)" = "$(value start frame.pixels)"
 
-# The window has A on the left and B on the right; the divider is in between.
-columns a.pfm 0 43 >a.left
-columns b.pfm 52 95 >b.right
-columns split.pfm 0 43 >split.left
-columns split.pfm 52 95 >split.right
-columns b.pfm 0 43 >b.left
-check "44 columns of 64 pixels each" test "$(wc -w <a.left)" -eq $((44 * 64 * 3))
-check "A is on the left" cmp a.left split.left
-check "B is on the right" cmp b.right split.right
-check "B is not on the left" test "$(cmp -s b.left split.left; echo $?)" = 1
+    # The window has A on the left and B on the right; the divider is in between.
+    columns a.pfm 0 43 >a.left
+    columns b.pfm 52 95 >b.right
+    columns split.pfm 0 43 >split.left
+    columns split.pfm 52 95 >split.right
+    columns b.pfm 0 43 >b.left
+    check "44 columns of 64 pixels each" test "$(wc -w <a.left)" -eq $((44 * 64 * 3))
+    check "A is on the left" cmp a.left split.left
+    check "B is on the right" cmp b.right split.right
+    check "B is not on the left" test "$(cmp -s b.left split.left; echo $?)" = 1
 
-# The figures are those of whit compare, of what whit render makes of the two lines.
-renders start -o rendered-b.pfm
-renders flat -o rendered-a.pfm
-expect 0 "whit compare" compare rendered-a.pfm rendered-b.pfm --json c.json
-for pair in largest:.largest flip:.flip.mean; do
-    here=$(value flat "compare.${pair%:*}")
-    there=$(jq "${pair#*:}" c.json)
-    check "${pair%:*} is that of whit compare ($there, $here)" about "$there" "$here"
-done
-for side in a b; do
-    tail -c $((96 * 64 * 12)) rendered-$side.pfm | od -An -v -tf4 -w4 >numbers.$side
-done
-mean=$(paste numbers.a numbers.b | awk '{ d = $1 - $2; s += d < 0 ? -d : d } END { print s / NR }')
-here=$(value flat compare.mean)
-check "the mean difference is that of the two pictures ($mean, $here)" about "$mean" "$here" 1e-4
-check "as many pixels differ" test "$(jq .differing_pixels c.json)" = "$(value flat compare.other_colors)"
+    # The figures are those of whit compare, of what whit render makes of the two lines.
+    renders start -o rendered-b.pfm
+    renders flat -o rendered-a.pfm
+    expect 0 "whit compare" compare rendered-a.pfm rendered-b.pfm --json c.json
+    for pair in largest:.largest flip:.flip.mean; do
+        here=$(value flat "compare.${pair%:*}")
+        there=$(jq "${pair#*:}" c.json)
+        check "${pair%:*} is that of whit compare ($there, $here)" about "$there" "$here"
+    done
+    for side in a b; do
+        tail -c $((96 * 64 * 12)) rendered-$side.pfm | od -An -v -tf4 -w4 >numbers.$side
+    done
+    mean=$(paste numbers.a numbers.b | awk '{ d = $1 - $2; s += d < 0 ? -d : d } END { print s / NR }')
+    here=$(value flat compare.mean)
+    check "the mean difference is that of the two pictures ($mean, $here)" about "$mean" "$here" 1e-4
+    check "as many pixels differ" test "$(jq .differing_pixels c.json)" = "$(value flat compare.other_colors)"
+fi
 
 # ---- Difference, and the divider ----
 
-play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
+if part 1 2; then
+    play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
 one: still, press I, press Equal
 difference: press U | compare.mode = difference | compare.scale > 0
 scaled: press ] | compare.heat not as difference | words as one
@@ -65,84 +68,93 @@ dragged: press U, move 48 32, button left down, move 24 32, button left up | com
 turned: move 80 20, button left down, move 90 25, button left up | words not as dragged | frame.pixels not as dragged
     | compare.other_ids = 0
 END
-check "] doubles it" about "$(value scaled compare.scale)" "(2 * $(value difference compare.scale))"
-check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
+    check "] doubles it" about "$(value scaled compare.scale)" "(2 * $(value difference compare.scale))"
+    check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
 
-# Costs are numbers, not colours; and there is nothing between the two.
-play "costs of A and B" "$SCENES/8k.json" --size 96x64 --view visits <<END
+    # Costs are numbers, not colours; and there is nothing between the two.
+    play "costs of A and B" "$SCENES/8k.json" --size 96x64 --view visits <<END
 costs: still, press I, press T x2 | compare.has_flip = false | compare.other_ids = 0 | compare.other_colors > 0
 mixed: press V x3, still, press U | keys.view = stack | compare.known = true
 END
+fi
 
 # ---- Effects ----
 
-play "effects by click" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
+if part 0 2; then
+    play "effects by click" "$CUBE" --size 320x240 --ui-scale 0.5 <<END
 start: press F2 x2
 off: press X, choose shadows | words = --size 320x240 --effects -shadows | change.what = effects auto -> -shadows
 on: choose shadows | words = --size 320x240 | frame.pixels as start
 END
-check "the price says how many pixels changed" \
-    test "$(value off prices.shadows)" = "$(value off change.other_colors)"
-is off prices.highlights "(no prices.highlights)" # of what was switched alone
+    check "the price says how many pixels changed" \
+        test "$(value off prices.shadows)" = "$(value off change.other_colors)"
+    is off prices.highlights "(no prices.highlights)" # of what was switched alone
+fi
 
 # ---- Settings by mouse: what their keys do ----
 
-play "by mouse" "$CUBE" --size 320x400 --ui-scale 0.5 <<END
+if part 0 2; then
+    play "by mouse" "$CUBE" --size 320x400 --ui-scale 0.5 <<END
 key: press F2 x2, press T
 mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose sign | words as key
     | keys.traversal as key | words = --size 320x400 --traversal sign
 END
 
-# ---- The panel of a pixel stands beside it ----
+    # ---- The panel of a pixel stands beside it ----
 
-play "a pixel" "$CUBE" --size 640x400 --ui-scale 0.5 <<END
+    play "a pixel" "$CUBE" --size 640x400 --ui-scale 0.5 <<END
 left: press F2 x2, click 40 200 | picked = true
 right: click 600 200 | picked = true
 END
-check "on its right" test "$(value left panels.Pixel | cut -d ' ' -f 1)" -gt 320
-check "and on its left" test "$(value right panels.Pixel | cut -d ' ' -f 3)" -lt 320
+    check "on its right" test "$(value left panels.Pixel | cut -d ' ' -f 1)" -gt 320
+    check "and on its left" test "$(value right panels.Pixel | cut -d ' ' -f 3)" -lt 320
+fi
 
 # ---- Files of settings ----
 
-play "saved" "$SCENES/8k.json" --size 96x64 <<END
+if part 1 2; then
+    play "saved" "$SCENES/8k.json" --size 96x64 <<END
 still
 move 40 30
 saved! button left down, move 49 33, button left up, press T, press M, press K, press Y, press Minus, press O, press V, still, press Ctrl+S
 press Ctrl+S
 END
-check "Ctrl+S saves" test -s whit-0001.view
-check "and once more beside" test -s whit-0002.view
-check "one option a line" test "$(grep -c '^--' whit-0001.view)" -eq "$(grep -vc '^#' whit-0001.view)"
-check "as many as there are words" test "$(grep -c '^--' whit-0001.view)" -eq \
-    "$(value saved words | grep -o -e ' --' -e '^--' | wc -l)"
-cp "$OUT/values" saved.values
-echo "--numerics exactly" >bad.view
-play "loaded" "$SCENES/8k.json" --state whit-0001.view <<END
+    check "Ctrl+S saves" test -s whit-0001.view
+    check "and once more beside" test -s whit-0002.view
+    check "one option a line" test "$(grep -c '^--' whit-0001.view)" -eq "$(grep -vc '^#' whit-0001.view)"
+    check "as many as there are words" test "$(grep -c '^--' whit-0001.view)" -eq \
+        "$(value saved words | grep -o -e ' --' -e '^--' | wc -l)"
+    cp "$OUT/values" saved.values
+    echo "--numerics exactly" >bad.view
+    play "loaded" "$SCENES/8k.json" --state whit-0001.view <<END
 loaded:
 dropped: press Ctrl+S, press T, press Y, press V, still, drop whit-0001.view
 bad! drop bad.view
 END
-cat saved.values >>"$OUT/values"
-same words saved loaded
-same words saved dropped
-same words saved bad
-same frame.ids saved loaded
-same frame.pixels saved loaded
-same frame.pixels saved dropped
-check "the message has file and line ($(value bad toast))" \
-    test "$(value bad toast | grep -c '^bad.view:1: --numerics `exactly`: one of')" -eq 1
-check "what was loaded is saved as it was" sh -c \
-    "grep -v '^#' whit-0001.view >1 && grep -v '^#' whit-0003.view | cmp - 1"
-play "the command line has the last word" "$CUBE" --state whit-0001.view --traversal basic <<END
+    cat saved.values >>"$OUT/values"
+    same words saved loaded
+    same words saved dropped
+    same words saved bad
+    same frame.ids saved loaded
+    same frame.pixels saved loaded
+    same frame.pixels saved dropped
+    check "the message has file and line ($(value bad toast))" \
+        test "$(value bad toast | grep -c '^bad.view:1: --numerics `exactly`: one of')" -eq 1
+    check "what was loaded is saved as it was" sh -c \
+        "grep -v '^#' whit-0001.view >1 && grep -v '^#' whit-0003.view | cmp - 1"
+    play "the command line has the last word" "$CUBE" --state whit-0001.view --traversal basic <<END
 last:
 END
-check "of all words one is another ($(value last words))" test "$(value last words | grep -c -e "--traversal basic .*--numerics")" -eq 1
+    check "of all words one is another ($(value last words))" test "$(value last words | grep -c -e "--traversal basic .*--numerics")" -eq 1
+fi
 
-# What whit render refuses is not among the words: costs are not those of adaptive samples.
-play "adaptive costs" "$CUBE" --size 96x64 --aa adaptive:0.1 <<END
+if part 0 2; then
+    # What whit render refuses is not among the words: costs are not those of adaptive samples.
+    play "adaptive costs" "$CUBE" --size 96x64 --aa adaptive:0.1 <<END
 costs: still, press V | error = | frame.view = depth | words = --size 96x64 --view depth
 colors: press V x5 | words = --size 96x64 --aa adaptive:0.1
 END
+fi
 
 # refused WHAT PATTERN LINE...: a file of settings with these lines.
 refused() {

@@ -5,20 +5,23 @@
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
+mkfifo "$OUT/pipe"
+NONE=
 SMALL="--size 96x64"
 
 # ---- Scenes ----
 
-mkdir list
-cp "$CUBE" list/a.json
-cp "$SCENES/8k.json" list/b.json
-cp "$SCENES/spin.json" list/c.json
-echo no scene >list/notes.txt
-echo "--size 96x64" >start.view
-echo "--size 96x64 --effects -highlights" >plain.view
-echo "--size 96x64 --edges triangles" >edges.view
-EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
-play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
+if part 0 2; then
+    mkdir list
+    cp "$CUBE" list/a.json
+    cp "$SCENES/8k.json" list/b.json
+    cp "$SCENES/spin.json" list/c.json
+    echo no scene >list/notes.txt
+    echo "--size 96x64" >start.view
+    echo "--size 96x64 --effects -highlights" >plain.view
+    echo "--size 96x64 --edges triangles" >edges.view
+    EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
+    play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
 a: | scene = list/a.json
 b: press Right | scene = list/b.json | frame.ids not as a
 c: press Right | scene = list/c.json
@@ -40,12 +43,13 @@ plain: drop plain.view | compare.other_ids = 0 | compare.other_colors > 0
 copied! press Ctrl+C | toast has copied: whit render $SCENES/cube.json | toast has -highlights
 mended: press F12, press I, drop start.view, drop list/b.json | error = | frame.ids as b
 END
-check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
-    "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
-check "and what takes too much" test "$(grep -c memory-limit "$OUT/stderr")" -eq 1
-check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001.png
-rm whit-0001.png
-EXPECTED=
+    check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
+        "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
+    check "and what takes too much" test "$(grep -c memory-limit "$OUT/stderr")" -eq 1
+    check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001.png
+    rm whit-0001.png
+    EXPECTED=
+fi
 
 # Standard input: read once, watched never, and the scenes beside it are none.
 printf -- '--size 96x64\n' >./-
@@ -61,31 +65,32 @@ check "no camera of it is remembered" test $? -ne 0
 INPUT=/dev/null
 rm ./-
 
-# A scene that names a file outside of its folder: asked once, read where the answer is yes.
-mkdir model maps
-printf 'mtllib ../maps/a.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' >model/a.obj
-printf 'newmtl red\nKd 1 0 0\n' >maps/a.mtl
-maps=$(realpath maps)
-play "files elsewhere" model/a.obj --size 400x160 <<END
+if part 1 2; then
+    # A scene that names a file outside of its folder: asked once, read where the answer is yes.
+    mkdir model maps
+    printf 'mtllib ../maps/a.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' >model/a.obj
+    printf 'newmtl red\nKd 1 0 0\n' >maps/a.mtl
+    maps=$(realpath maps)
+    play "files elsewhere" model/a.obj --size 400x160 <<END
 asked: until question | question = $maps
 without: choose go on without | question =
 again: press R | question = | frame.pixels as asked
 other: drop $CUBE | question =
 END
-ids=$(value without frame.ids) pixels=$(value without frame.pixels)
-play "files elsewhere, allowed" model/a.obj --size 400x160 <<END
+    ids=$(value without frame.ids) pixels=$(value without frame.pixels)
+    play "files elsewhere, allowed" model/a.obj --size 400x160 <<END
 allowed: until question, choose allow | question = | frame.ids = $ids | render has --allow-path $maps
 END
-check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
+    check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
+fi
 
-# Read again: an error with file and line, the old picture stays; then its mend.
-cp "$CUBE" own.json
-sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
-sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
-line=$(grep -n boxx broken.json | cut -d : -f 1)
-mkfifo "$OUT/pipe"
-NONE=""
-steps >"$OUT/replay" <<END
+if part 0 2; then
+    # Read again: an error with file and line, the old picture stays; then its mend.
+    cp "$CUBE" own.json
+    sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
+    sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
+    line=$(grep -n boxx broken.json | cut -d : -f 1)
+    steps >"$OUT/replay" <<END
 start:
 turned: move 40 30, button left down, move 45 30, button left up
 until toast = own.json was written: reading it again
@@ -99,29 +104,31 @@ mended: | error = | scene = own.json | frame.ids not as alive | words as alive
 missing! drop late.json, until error | scene = own.json
 came: until scene = late.json | error = | scene = late.json
 END
-timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view own.json --size 96x64 \
-    --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
-viewer=$!
-while read -r state; do
-    echo "$state" >>"$OUT/read"
-    case $state in
-    *'"at":"turned"'*) mv broken.json own.json ;;
-    *'"at":"again"'*) mv larger.json own.json ;;
-    *'"at":"missing"'*) mv own.json late.json ;;
-    esac
-done <"$OUT/pipe"
-wait $viewer
-check "read again: exit code 0" test $? -eq 0
-check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
-    " own.json:$line  own.json:$line  late.json: there is no such file "
-mv "$OUT/read" "$OUT/states"
-read_states
-as_wanted
+    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view own.json --size 96x64 \
+        --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
+    viewer=$!
+    while read -r state; do
+        echo "$state" >>"$OUT/read"
+        case $state in
+        *'"at":"turned"'*) mv broken.json own.json ;;
+        *'"at":"again"'*) mv larger.json own.json ;;
+        *'"at":"missing"'*) mv own.json late.json ;;
+        esac
+    done <"$OUT/pipe"
+    wait $viewer
+    check "read again: exit code 0" test $? -eq 0
+    check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
+        " own.json:$line  own.json:$line  late.json: there is no such file "
+    mv "$OUT/read" "$OUT/states"
+    read_states
+    as_wanted
+fi
 
 # Nothing is shown beside a scene that cannot be read at the start.
 printf '{ "asset": { "version": "2.0" }, ' >broken.gltf
 printf 'v 0 0 0\nf 1 2 3\n' >broken.obj
 sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
+line=$(grep -n boxx broken.json | cut -d : -f 1)
 echo still >still.replay
 refuse 2 "a missing scene" "$OUT/nowhere.json: there is no such file" view "$OUT/nowhere.json"
 refuse 2 "a broken scene" "broken.json:$line:" view broken.json --frames 3
@@ -144,7 +151,8 @@ done
 
 # ---- Out: the picture, and the line that makes it ----
 
-play "pictures" "$SCENES/spin.json" $SMALL --fps 10 <<END
+if part 1 2; then
+    play "pictures" "$SCENES/spin.json" $SMALL --fps 10 <<END
 costs! press F2 x2, still, press V, still, press F12
 press B
 still
@@ -157,31 +165,34 @@ press M
 press Minus
 shown! press Y, press K, press Period, still, press Ctrl+C, press F12, still, wait 4200, still, shot shown.png
 END
-check "F12 saves" test -s whit-0001.png
-check "Ctrl+C copies the line" test "$(value shown frame.whole)" = true
-value shown render | sed -e 's/^whit //' -e 's/picture.png$/rendered.png/' >"$OUT/line"
-check "the line has all that was switched" sh -c "grep -q -e --camera '$OUT/line' &&
-    grep -q -e '--traversal sign' '$OUT/line' && grep -q -e '--numerics exact' '$OUT/line' &&
-    grep -q -e '--build sweep' '$OUT/line' && grep -q -e '--aa 4' '$OUT/line' &&
-    grep -q -e '--depth 7' '$OUT/line' && grep -q -e '--time 0.1' '$OUT/line'"
-eval "run $(cat "$OUT/line") --quiet"
-check "the line renders (got $status)" test "$status" -eq 0
-check "byte for byte the window's picture" cmp whit-0001.png rendered.png
-expect 0 "what the window showed" compare shown.png rendered.png --tolerance 0 --metric largest
-check "its recipe is inside" grep -aq "whit render .*spin.json" whit-0001.png
-check "costs are not saved so" test ! -e whit-0002.png
-check "and it says how" test "$(value costs toast | grep -c 'whit render --view')" -eq 1
+    check "F12 saves" test -s whit-0001.png
+    check "Ctrl+C copies the line" test "$(value shown frame.whole)" = true
+    value shown render | sed -e 's/^whit //' -e 's/picture.png$/rendered.png/' >"$OUT/line"
+    check "the line has all that was switched" sh -c "grep -q -e --camera '$OUT/line' &&
+        grep -q -e '--traversal sign' '$OUT/line' && grep -q -e '--numerics exact' '$OUT/line' &&
+        grep -q -e '--build sweep' '$OUT/line' && grep -q -e '--aa 4' '$OUT/line' &&
+        grep -q -e '--depth 7' '$OUT/line' && grep -q -e '--time 0.1' '$OUT/line'"
+    eval "run $(cat "$OUT/line") --quiet"
+    check "the line renders (got $status)" test "$status" -eq 0
+    check "byte for byte the window's picture" cmp whit-0001.png rendered.png
+    expect 0 "what the window showed" compare shown.png rendered.png --tolerance 0 --metric largest
+    check "its recipe is inside" grep -aq "whit render .*spin.json" whit-0001.png
+    check "costs are not saved so" test ! -e whit-0002.png
+    check "and it says how" test "$(value costs toast | grep -c 'whit render --view')" -eq 1
+fi
 
-# The words of a start are those of the state: whit view says as whit render does.
-play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa 4 --depth 3 \
-    --bailout 0.01 --fresnel schlick --shadows opaque --instances off --numerics fast <<END
+if part 0 2; then
+    # The words of a start are those of the state: whit view says as whit render does.
+    play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa 4 --depth 3 \
+        --bailout 0.01 --fresnel schlick --shadows opaque --instances off --numerics fast <<END
 start:
     | words = --size 96x64 --aa 4 --depth 3 --bailout 0.01 --shadows opaque --fresnel schlick --build median --instances off --traversal basic --numerics fast
 END
-renders start -o words.pfm --ids words.exr
-play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
+    renders start -o words.pfm --ids words.exr
+    play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
 start: press F2 x2 | words = --size 96x64 --view visits --view-rays all --view-scale 64 | frame.view = visits
 END
+fi
 
 # ---- Replays ----
 

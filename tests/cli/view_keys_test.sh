@@ -8,14 +8,15 @@ SMALL="--size 96x64"
 
 # ---- How rays are traced: another way to the same hits ----
 
-# Two boxes of one mesh, which light and materials make no kernel longer for.
-cat >"$OUT/boxes.json" <<'JSON'
+if part 0 2; then
+    # Two boxes of one mesh, which light and materials make no kernel longer for.
+    cat >"$OUT/boxes.json" <<'JSON'
 { "camera": { "eye": [1.6, 1.3, 2.4], "target": [0, 0, 0], "fov": 45 }, "ambient": 0.12,
   "lights": [ { "kind": "point", "position": [2, 4, 3], "intensity": 24 } ],
   "objects": [ { "shape": "box", "size": 1, "translation": [0.3, 0, 0] },
     { "shape": "box", "size": 1, "translation": [-0.8, 0.2, -0.4], "rotation": [20, 30, 10] } ] }
 JSON
-play "traversal, builders, instances" "$OUT/boxes.json" $SMALL <<END
+    play "traversal, builders, instances" "$OUT/boxes.json" $SMALL <<END
 start:
 sign: press T | change.what = traversal distance -> sign
 basic: press T
@@ -32,55 +33,61 @@ exact: press M
 fast: press M
 watertight: press M
 END
-for at in "sign traversal|sign" "basic traversal|basic" "round traversal|distance" \
-    "back traversal|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \
-    "median tree|builder|median" "binned tree|builder|binned" "instances instance|tree|on" \
-    "flat instance|tree|off" "again instance|tree|auto" "exact numerics|exact" "fast numerics|fast" \
-    "watertight numerics|watertight"; do
-    state=${at%% *}
-    key=${at#* }
-    is "$state" "keys.$(echo "${key%|*}" | tr '|' ' ')" "${key##*|}"
-    is "$state" frame.whole true
-done
-for state in sign basic round back sweep spatial median binned instances again exact watertight; do
-    same frame.ids start $state
-    is $state change.other_ids 0
-    is $state change.pixels 6144
-done
-for state in sign basic round back sweep spatial median binned; do
-    same frame.pixels start $state
-done
-# Where `fast` leaks, the window says on how many pixels: as many as two pictures of `whit render`.
-INSIDE="--camera 0,0,0,1,0,0,0,1,0,90 --size 161x121"
-for level in watertight fast; do
-    expect 0 "hits of $level" render "$CUBE" -o "$OUT/x.pfm" --ids "$OUT/$level.exr" \
-        --numerics $level $INSIDE --quiet
-done
-run compare "$OUT/watertight.exr" "$OUT/fast.exr"
-leaks=$(sed -n 's/.*(\([0-9]*\) of 19481 pixels not the same.*/\1/p' "$OUT/stdout")
-check "\`fast\` leaks here (on $leaks pixels)" test "$leaks" -gt 0
-play "leaks" "$CUBE" $INSIDE <<END
+    for at in "sign traversal|sign" "basic traversal|basic" "round traversal|distance" \
+        "back traversal|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \
+        "median tree|builder|median" "binned tree|builder|binned" "instances instance|tree|on" \
+        "flat instance|tree|off" "again instance|tree|auto" "exact numerics|exact" "fast numerics|fast" \
+        "watertight numerics|watertight"; do
+        state=${at%% *}
+        key=${at#* }
+        is "$state" "keys.$(echo "${key%|*}" | tr '|' ' ')" "${key##*|}"
+        is "$state" frame.whole true
+    done
+    for state in sign basic round back sweep spatial median binned instances again exact watertight; do
+        same frame.ids start $state
+        is $state change.other_ids 0
+        is $state change.pixels 6144
+    done
+    for state in sign basic round back sweep spatial median binned; do
+        same frame.pixels start $state
+    done
+fi
+if part 1 2; then
+    # Where `fast` leaks, the window says on how many pixels: as many as two pictures of `whit render`.
+    INSIDE="--camera 0,0,0,1,0,0,0,1,0,90 --size 161x121"
+    for level in watertight fast; do
+        expect 0 "hits of $level" render "$CUBE" -o "$OUT/x.pfm" --ids "$OUT/$level.exr" \
+            --numerics $level $INSIDE --quiet
+    done
+    run compare "$OUT/watertight.exr" "$OUT/fast.exr"
+    leaks=$(sed -n 's/.*(\([0-9]*\) of 19481 pixels not the same.*/\1/p' "$OUT/stdout")
+    check "\`fast\` leaks here (on $leaks pixels)" test "$leaks" -gt 0
+    play "leaks" "$CUBE" $INSIDE <<END
 fast: still, press M x2 | change.what = numerics watertight -> fast | change.pixels = 19481
 END
-is fast change.other_ids "$leaks"
+    is fast change.other_ids "$leaks"
+fi
 
-# Without trees: the same again, and back.
-play "no trees" "$CUBE" $SMALL <<END
+if part 0 2; then
+    # Without trees: the same again, and back.
+    play "no trees" "$CUBE" $SMALL <<END
 start:
 off: press G | keys.trees = off | frame.ids as start | frame.pixels as start | change.other_ids = 0
 on: press G | keys.trees = on
 END
+fi
 
-# Where there is too much to test it is refused, and the tree stays.
-play "no trees, too much" "$SCENES/54k.json" $SMALL <<END
+if part 1 2; then
+    # Where there is too much to test it is refused, and the tree stays.
+    play "no trees, too much" "$SCENES/54k.json" $SMALL <<END
 placed:
 refused: press G, until keys.trees = on | keys.trees = on | frame.number as placed | frame.pixels as placed
     | toast = $SCENES/54k.json: without trees every ray tests every primitive, and 54450 over all instances are too many: 40000 are possible, fewer in thousands of instances
 END
 
-# ---- Bounces and samples, and what is painted ----
+    # ---- Bounces and samples, and what is painted ----
 
-play "bounces, samples, views" "$SCENES/balls.json" --size 48x32 <<END
+    play "bounces, samples, views" "$SCENES/balls.json" --size 48x32 <<END
 start: | keys.bounces = 8
 depth: press B
 visits: press Shift+B | frame.pixels not as depth
@@ -103,10 +110,11 @@ adaptive: press Y | keys.anti-aliasing = adaptive | words = --size 48x32 --aa ad
 single: press Y | frame.samples = 1 | frame.pixels as up
 END
 
-for at in "start color" "depth depth" "visits visits" "stack stack" "again depth" "color color" "v depth"; do
-    is "${at% *}" frame.view "${at#* }"
-done
-for at in depth visits stack; do
-    same frame.ids start $at
-done
+    for at in "start color" "depth depth" "visits visits" "stack stack" "again depth" "color color" "v depth"; do
+        is "${at% *}" frame.view "${at#* }"
+    done
+    for at in depth visits stack; do
+        same frame.ids start $at
+    done
+fi
 finish

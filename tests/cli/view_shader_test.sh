@@ -33,7 +33,8 @@ printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z =
     >broken.new
 mkfifo "$OUT/pipe"
 NONE=
-steps >"$OUT/replay" <<END
+if part 0 2; then
+    steps >"$OUT/replay" <<END
 start: | toast has did you mean \`height\`? | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
 until shader.hash = $red
 red: | frame.ids as start | frame.pixels not as start | error =
@@ -56,27 +57,28 @@ on: choose stepped | render has --set stepped=on | frame.pixels as twice
 height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
 colour: press F3 | frame.pixels as on | frame.ids as on
 END
-timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth \
-    --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
-viewer=$!
-while read -r state; do
-    printf "%s\n" "$state" >>"$OUT/read"
-    case $state in
-    *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
-    *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
-    *'"at":"turned"'*) cp green.new live/new && mv live/new live/part/tint.glsl ;; # put in its place
-    *'"at":"alone"'*) cp blue.new live/part/tint.glsl && cp violet.new live/part/tint.glsl ;;
-    esac
-done <"$OUT/pipe"
-wait $viewer
-check "exit code 0" test $? -eq 0
-check "each error is said once" test "$(grep -cE 'error: live/part/tint.glsl:(2:11|3|4:11|5:9): ' "$OUT/stderr")" -eq 4
-check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 4
-check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
-mv "$OUT/read" "$OUT/states"
-read_states
-as_wanted
-check "B is the version before" test "$(value beside compare.b.pixels)" = "$(value turned frame.pixels)"
+    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth \
+        --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
+    viewer=$!
+    while read -r state; do
+        printf "%s\n" "$state" >>"$OUT/read"
+        case $state in
+        *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
+        *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
+        *'"at":"turned"'*) cp green.new live/new && mv live/new live/part/tint.glsl ;; # put in its place
+        *'"at":"alone"'*) cp blue.new live/part/tint.glsl && cp violet.new live/part/tint.glsl ;;
+        esac
+    done <"$OUT/pipe"
+    wait $viewer
+    check "exit code 0" test $? -eq 0
+    check "each error is said once" test "$(grep -cE 'error: live/part/tint.glsl:(2:11|3|4:11|5:9): ' "$OUT/stderr")" -eq 4
+    check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 4
+    check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
+    mv "$OUT/read" "$OUT/states"
+    read_states
+    as_wanted
+    check "B is the version before" test "$(value beside compare.b.pixels)" = "$(value turned frame.pixels)"
+fi
 
 # follow WHAT OPTION...: `whit view` with $OUT/replay; on_state is called with each state as it comes.
 follow() {
@@ -99,7 +101,8 @@ follow() {
 # ---- A picture of it, a file of settings, and both again ----
 
 cp "$CUBE" cube.json
-play "a slider that is moved" cube.json --size 200x150 --ui-scale 0.5 --shader live/a.glsl <<END
+if part 1 2; then
+    play "a slider that is moved" cube.json --size 200x150 --ui-scale 0.5 --shader live/a.glsl <<END
 still
 press X
 press Tab
@@ -110,92 +113,96 @@ press Ctrl+S
 press Ctrl+C
 state first
 END
-check "saved" test -e whit-0001.png -a -e whit-0001.view
-cp "$OUT/values" first
-value first render >line
-# again STATE: it is as the first one was.
-again() {
-    for field in frame.ids frame.pixels shader.hash; do
-        is "$1" $field "$(awk -F '\t' -v field=$field '$2 == field { print $3 }' first)"
+    check "saved" test -e whit-0001.png -a -e whit-0001.view
+    cp "$OUT/values" first
+    value first render >line
+    # again STATE: it is as the first one was.
+    again() {
+        for field in frame.ids frame.pixels shader.hash; do
+            is "$1" $field "$(awk -F '\t' -v field=$field '$2 == field { print $3 }' first)"
+        done
+    }
+    for words in '--shader live/a.glsl' '--set stepped=off'; do
+        check "the file of settings says $words" grep -qxF -e "$words" whit-0001.view
+        check "and so does Ctrl+C" grep -qF -e "$words " line
     done
-}
-for words in '--shader live/a.glsl' '--set stepped=off'; do
-    check "the file of settings says $words" grep -qxF -e "$words" whit-0001.view
-    check "and so does Ctrl+C" grep -qF -e "$words " line
-done
-play "by the file, and A beside B" cube.json --state whit-0001.view --ui-scale 0.5 <<END
+    play "by the file, and A beside B" cube.json --state whit-0001.view --ui-scale 0.5 <<END
 state: | error =
 panel: press X, press Tab
 same: press I | compare.mode = split | compare.other_colors = 0 | compare.other_ids = 0
 other: choose stepped | compare.other_colors > 0 | compare.other_ids = 0 | render has --set stepped=on
 END
-again state
-# What was asked about is shown, whatever becomes of the picture.
-echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr; }' >other.glsl
-expect 0 "another picture" render cube.json --size 8x8 --quiet --shader other.glsl -o other.png
-cp whit-0001.png asked.png
-mv live away
-steps >"$OUT/replay" <<END
+    again state
+    # What was asked about is shown, whatever becomes of the picture.
+    echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr; }' >other.glsl
+    expect 0 "another picture" render cube.json --size 8x8 --quiet --shader other.glsl -o other.png
+    cp whit-0001.png asked.png
+    mv live away
+    steps >"$OUT/replay" <<END
 picture:
 later: wait 600, press F12 | shader.hash as picture | frame.pixels as picture
 END
-on_state() { case $1 in *'"at":"picture"'*) cp other.png asked.png ;; esac }
-follow "by the picture" asked.png --yes
-mv away live
-again picture
-expect 0 "what is saved of it" compare whit-0001.png whit-0002.png --metric differing --tolerance 0
-play "without functions at the start" cube.json --size 96x64 <<END
+    on_state() { case $1 in *'"at":"picture"'*) cp other.png asked.png ;; esac }
+    follow "by the picture" asked.png --yes
+    mv away live
+    again picture
+    expect 0 "what is saved of it" compare whit-0001.png whit-0002.png --metric differing --tolerance 0
+    play "without functions at the start" cube.json --size 96x64 <<END
 start: | error =
 dropped: drop whit-0001.view | toast has whit-0001.view has --shader | frame.pixels as start
 END
-expect 2 "by a picture, without an answer" view whit-0001.png
-check "says what to do" grep -q 'no terminal to ask at; --yes' "$OUT/stderr"
-printf -- '--shader live/a.glsl\n--trust\n' >bad.view
-refuse 2 "a file that trusts" "bad.view:2: --trust is nothing to be saved" view cube.json --state bad.view
-for option in --allow-path=/ --memory-limit=900G --import-limit=99 --require-sandbox; do
-    echo $option >bad.view
-    refuse 2 "a file with $option" "bad.view:1: ${option%=*} is nothing to be saved" view cube.json --state bad.view
-done
+    expect 2 "by a picture, without an answer" view whit-0001.png
+    check "says what to do" grep -q 'no terminal to ask at; --yes' "$OUT/stderr"
+    printf -- '--shader live/a.glsl\n--trust\n' >bad.view
+    refuse 2 "a file that trusts" "bad.view:2: --trust is nothing to be saved" view cube.json --state bad.view
+    for option in --allow-path=/ --memory-limit=900G --import-limit=99 --require-sandbox; do
+        echo $option >bad.view
+        refuse 2 "a file with $option" "bad.view:1: ${option%=*} is nothing to be saved" view cube.json --state bad.view
+    done
+fi
 
 # ---- Stages of a checkout, written while they are shown ----
 
-cp -r "$SCENES/../shaders" st
-sed 's/environment(dir)/environment(dir) * bright/' st/hook/miss.glsl >broken.new
-sed 's/environment(dir)/environment(dir) * 0.5/' st/hook/miss.glsl >dim.new
-line=$(grep -n bright broken.new | cut -d : -f 1)
-steps >"$OUT/replay" <<END
+if part 0 2; then
+    cp -r "$SCENES/../shaders" st
+    sed 's/environment(dir)/environment(dir) * bright/' st/hook/miss.glsl >broken.new
+    sed 's/environment(dir)/environment(dir) * 0.5/' st/hook/miss.glsl >dim.new
+    line=$(grep -n bright broken.new | cut -d : -f 1)
+    steps >"$OUT/replay" <<END
 start: | shader.files > 10 | error =
 until error
 broken: | error has st/hook/miss.glsl:$line: | frame.pixels as start
 until error = $NONE
 mended: | frame.pixels not as start | frame.ids as start
 END
-on_state() {
-    case $1 in
-    *'"at":"start"'*) cp broken.new st/hook/miss.glsl ;;
-    *'"at":"broken"'*) cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl ;;
-    esac
-}
-follow "stages" cube.json --size 96x64 --stages st
+    on_state() {
+        case $1 in
+        *'"at":"start"'*) cp broken.new st/hook/miss.glsl ;;
+        *'"at":"broken"'*) cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl ;;
+        esac
+    }
+    follow "stages" cube.json --size 96x64 --stages st
+fi
 
 # ---- What dbg(x) is, of the pixel that was clicked ----
 
-cat >looks.new <<'END'
+if part 1 2; then
+    cat >looks.new <<'END'
 //@ toggle twice off
 vec3 miss(vec3 dir)
 {
     return environment(dbg(dir)) * dbg(twice ? 2.0 : 1.0);
 }
 END
-sed 's/dbg//g' looks.new >plain.new
-for version in plain looks; do
-    cp $version.new live/d.glsl
-    "$WHIT" shader live/d.glsl --json >hash.json
-    eval "$version=$(jq -r .hash hash.json)"
-done
-cp plain.new live/d.glsl
-VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
-steps >"$OUT/replay" <<END
+    sed 's/dbg//g' looks.new >plain.new
+    for version in plain looks; do
+        cp $version.new live/d.glsl
+        "$WHIT" shader live/d.glsl --json >hash.json
+        eval "$version=$(jq -r .hash hash.json)"
+    done
+    cp plain.new live/d.glsl
+    VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
+    steps >"$OUT/replay" <<END
 plain: click 4 4 | picked = true | probe.dbg = | probe.number = 1
 slid: press X, press Tab, move 10 10, still, choose twice | probe.number = 1 | frame.pixels not as plain
 until shader.hash = $looks
@@ -205,13 +212,14 @@ moved: press Tab, move 190 6, still, button left down, move 196 20, button left 
 until shader.hash = $plain
 without: | probe.dbg = | frame.pixels as moved
 END
-on_state() {
-    case $1 in
-    *'"at":"slid"'*) cp looks.new live/d.glsl ;;
-    *'"at":"moved"'*) cp plain.new live/d.glsl ;;
-    esac
-}
-follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
+    on_state() {
+        case $1 in
+        *'"at":"slid"'*) cp looks.new live/d.glsl ;;
+        *'"at":"moved"'*) cp plain.new live/d.glsl ;;
+        esac
+    }
+    follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
+fi
 
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl

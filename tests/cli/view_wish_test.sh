@@ -38,33 +38,41 @@ chose() {
         test "$(value "$1" words | sed 's/ --traversal sign//')" = "--size $SIZE${text:+ $text}"
 }
 
-# Another scene is measured anew; what is dropped meanwhile ends what goes on.
-wished "$CUBE" "drop $BALLS" "$BALLS" chosen --max-error 0.9
-chose chosen
-error=$(value chosen wish.predicted_error)
-check "one sample or less will do ($error)" holds "$error > 0 && $error <= 0.81"
-check "its picture was timed" holds "$(value chosen wish.took_ms) > 0"
-renders chosen -o rendered.pfm
+if part 0 2; then
+    # Another scene is measured anew; what is dropped meanwhile ends what goes on.
+    wished "$CUBE" "drop $BALLS" "$BALLS" chosen --max-error 0.9
+    chose chosen
+    error=$(value chosen wish.predicted_error)
+    check "one sample or less will do ($error)" holds "$error > 0 && $error <= 0.81"
+    check "its picture was timed" holds "$(value chosen wish.took_ms) > 0"
+    renders chosen -o rendered.pfm
+fi
 
-wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
-chose chosen
-case $(value chosen words) in *--aa*) more=yes ;; *) more=no ;; esac
-check "time enough gives more samples ($(value chosen words))" test $more = yes
-differs words chosen left
+if part 1 2; then
+    wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
+    chose chosen
+    case $(value chosen words) in *--aa*) more=yes ;; *) more=no ;; esac
+    check "time enough gives more samples ($(value chosen words))" test $more = yes
+    differs words chosen left
+fi
 
-wished "$CUBE" "" "$CUBE" "no choice" --budget-ms 0.001
-is chosen wish.text "no setting takes so little here"
-is chosen words "--size $SIZE --traversal sign"
+if part 0 2; then
+    wished "$CUBE" "" "$CUBE" "no choice" --budget-ms 0.001
+    is chosen wish.text "no setting takes so little here"
+    is chosen words "--size $SIZE --traversal sign"
+fi
 
-# What takes far longer than was predicted is chosen anew; where nothing is nearer it stays.
-patient=$WHIT
-WHIT=$3
-export WHIT_TEST_SLOW=told
-wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
-unset WHIT_TEST_SLOW
-WHIT=$patient
-is chosen wish.took_ms 10000000
-is chosen wish.text "no setting takes so little here"
+if part 1 2; then
+    # What takes far longer than was predicted is chosen anew; where nothing is nearer it stays.
+    patient=$WHIT
+    WHIT=$3
+    export WHIT_TEST_SLOW=told
+    wished "$CUBE" "" "$CUBE" chosen --budget-ms 1e6
+    unset WHIT_TEST_SLOW
+    WHIT=$patient
+    is chosen wish.took_ms 10000000
+    is chosen wish.text "no setting takes so little here"
+fi
 
 refuse 2 "chosen and given" "chooses --aa" view "$CUBE" --budget-ms 10 --aa 4 --frames 1
 refuse 2 "two wishes" "one of them" view "$CUBE" --budget-ms 10 --max-error 1 --frames 1

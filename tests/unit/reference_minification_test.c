@@ -136,7 +136,7 @@ static void widen(struct scene *scene)
     scene->cameras[0].fov_y = 2.0f;
 }
 
-TEST(cameras_agree_with_the_reference)
+TEST_BY_TURNS(cameras_agree_with_the_reference, 0, 2)
 {
     check("pinhole", NULL, NULL, 1);
     check("wide pinhole", NULL, widen, 1);
@@ -146,7 +146,7 @@ TEST(cameras_agree_with_the_reference)
     check("lens", NULL, make_lens, 4);
 }
 
-TEST(a_tree_in_the_world_agrees_too)
+TEST_BY_TURNS(a_tree_in_the_world_agrees_too, 1, 2)
 {
     const struct accel_params flat = {.flatten = true, .stack_floor = 32};
     check("one tree", &flat, NULL, 1);
@@ -181,7 +181,7 @@ static struct image picture_by(struct fixture *f, whit_minification minification
     return render(f);
 }
 
-TEST(one_sample_is_nearer_to_the_truth)
+TEST_BY_TURNS(one_sample_is_nearer_to_the_truth, 0, 2)
 {
     struct fixture f = fixture_open(checkers(1), NULL, NULL);
     struct image truth = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 256);
@@ -203,7 +203,7 @@ TEST(one_sample_is_nearer_to_the_truth)
     fixture_close(&f);
 }
 
-TEST(magnified_textures_keep_their_bytes)
+TEST_BY_TURNS(magnified_textures_keep_their_bytes, 1, 2)
 {
     struct fixture f = fixture_open(checkers(60), NULL, NULL);
     for (int far = 0; far < 2; ++far) {

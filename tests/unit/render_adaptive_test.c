@@ -131,13 +131,13 @@ TEST(pixels_are_those_of_plain_pictures)
     check_scene(glass_scene(), NULL, &glass_camera, contrasts, 2);
 }
 
-TEST(so_they_are_without_trees)
+TEST_BY_TURNS(so_they_are_without_trees, 0, 2)
 {
     const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
     check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, contrasts, 1);
 }
 
-TEST(lens_and_plain_scenes_too)
+TEST_BY_TURNS(lens_and_plain_scenes_too, 1, 2)
 {
     struct scene *scene = terrain_scene();
     scene_put_camera(scene, (double[]){0, 4, 9}, (double[]){0, 0, 0}, 0.7);

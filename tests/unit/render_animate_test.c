@@ -156,7 +156,7 @@ static const struct pipeline *shading_of(const struct fixture *f)
     return f->renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
 }
 
-TEST(a_deeper_tree_gets_a_larger_stack)
+TEST_BY_TURNS(a_deeper_tree_gets_a_larger_stack, 0, 2)
 {
     const struct accel_params as_deep = {0}; /* as its tree, no deeper */
     struct fixture f = fixture_open(strung_out(), &as_deep, &animate_params);
@@ -193,7 +193,7 @@ static double difference(const struct image *a, const struct image *b)
 /* The vertices' last bits differ, and so do those of the pictures; a ray at an edge may go the
    other way. At 0.9 s the glass is a mirrored instance: with inside and outside exchanged, or a
    normal by the wrong matrix, the difference is 0.1 or more. */
-TEST(a_flattened_scene_looks_the_same)
+TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
 {
     static const double times_s[] = {0.0, 0.9, 2.0};
     struct fixture f = fixture_open(everything_moves(), NULL, &animate_params);

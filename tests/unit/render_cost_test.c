@@ -63,7 +63,7 @@ TEST(instances_cost_the_same)
 }
 
 /* Margins of boxes change what is visited, on both sides alike, but no hit. */
-TEST(clipped_trees_cost_the_same)
+TEST_BY_TURNS(clipped_trees_cost_the_same, 0, 2)
 {
     struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
     for (int i = 0; i < 2; ++i) {
@@ -78,7 +78,7 @@ TEST(clipped_trees_cost_the_same)
 }
 
 /* One tree for all instances, in world space. */
-TEST(flat_trees_cost_the_same)
+TEST_BY_TURNS(flat_trees_cost_the_same, 1, 2)
 {
     const struct accel_params flat = {.flatten = true};
     const whit_renderer_params params = {
@@ -155,7 +155,7 @@ static whit_result trace_caterpillar(uint32_t depth, uint32_t stated,
 }
 
 /* With the short stack of lavapipe and without it. */
-TEST(deep_trees_are_walked)
+TEST_BY_TURNS(deep_trees_are_walked, 0, 2)
 {
     const uint32_t depths[] = {31, 32, 33, 63, 64, 65, 128, 200};
     for (uint32_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
@@ -175,7 +175,7 @@ TEST(deep_trees_are_walked)
 }
 
 /* A tree deeper than stated is an error, not a hit. */
-TEST(understated_depth_is_reported)
+TEST_BY_TURNS(understated_depth_is_reported, 1, 2)
 {
     for (uint32_t order = 0; order < ORDERS; ++order) {
         const whit_renderer_params params = {

@@ -320,7 +320,7 @@ TEST(effects_alone_draw_the_same)
 
 /* What is left out leaves no rays of its kind and takes no others along, in the general kernel as
    well. */
-TEST(effects_left_out_are_gone)
+TEST_BY_TURNS(effects_left_out_are_gone, 0, 2)
 {
     static const enum scene_effect effects[] = {SCENE_EFFECT_SHADOWS, SCENE_EFFECT_REFLECTION,
                                                 SCENE_EFFECT_REFRACTION};
@@ -401,7 +401,7 @@ TEST(glass_that_refracts_nothing_is_a_body_of_its_colour)
     }
 }
 
-TEST(effects_added_do_not_matter)
+TEST_BY_TURNS(effects_added_do_not_matter, 1, 2)
 {
     static const enum scene_effect added[] = {SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,
                                               SCENE_EFFECT_NORMAL_MAPS, SCENE_EFFECT_AREA_LIGHTS,
@@ -562,7 +562,7 @@ static void check_who_refracts(whit_classes classes)
 
 /* One kernel for all materials must leave alone what is no glass; a kernel for each class must have
    what its materials call for. */
-TEST(only_pixels_that_see_glass_refract)
+TEST_BY_TURNS(only_pixels_that_see_glass_refract, 0, 2)
 {
     check_who_refracts(WHIT_CLASSES_ONE);
     check_who_refracts(WHIT_CLASSES_MANY);
@@ -579,7 +579,7 @@ static struct scene *rising_glass_scene(void)
     return scene;
 }
 
-TEST(what_comes_into_view_is_right_at_once)
+TEST_BY_TURNS(what_comes_into_view_is_right_at_once, 1, 2)
 {
     whit_renderer_params later = small;
     later.time_s = 1.0;

@@ -51,7 +51,7 @@ TEST(white_furnace)
     check_furnace("mirror ring", furnace(mesh_torus(0.7, 0.3, 24, 12), mirror(1, 1, 1)));
 }
 
-TEST(white_furnace_of_nested_media)
+TEST_BY_TURNS(white_furnace_of_nested_media, 0, 2)
 {
     struct scene *scene = furnace(mesh_box(1.6, 1.6, 1.6), clear_glass(1.33f, 0));
     add_object(scene, mesh_icosphere(0.6, 3), clear_glass(1.5f, 1), 0.3, 0, 0);
@@ -63,7 +63,7 @@ TEST(white_furnace_of_nested_media)
 /* ---- Facing mirrors ---- */
 
 /* Mirrors that reflect everything and shine a little: each bounce adds as much, and it ends. */
-TEST(facing_mirrors_end)
+TEST_BY_TURNS(facing_mirrors_end, 1, 2)
 {
     const uint32_t depths[] = {0, 1, 2, 3, 8, 64, 255};
     struct image before = {0};

@@ -2,6 +2,7 @@
    arithmetic; what `fast` lacks. */
 #include "../cases.h"
 #include "ray_fixture.h"
+#include "unit.h"
 
 #include "oracle/rational.h"
 #include "render_scenes.h"
@@ -60,6 +61,8 @@ static void one_mesh(void **state)
 static void instances(void **state)
 {
     (void)state;
+    if (!unit_turn(0, 2))
+        skip();
     check_levels(ring_scene(), NULL);
     check_levels(ring_scene(), &(struct accel_params){.flatten = true});
 }
@@ -68,6 +71,8 @@ static void instances(void **state)
 static void split_triangles(void **state)
 {
     (void)state;
+    if (!unit_turn(1, 2))
+        skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_terrain(0x1p-20 * 10.0, 0x1p-20 * 2.0, 40, 3), NULL);
     check_levels(scene,
@@ -78,6 +83,8 @@ static void split_triangles(void **state)
 static void ties(void **state)
 {
     (void)state;
+    if (!unit_turn(0, 2))
+        skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put_mesh(scene, mesh_terrain(10.0, 2.0, 4, 3));
     for (int i = 0; i < 6; ++i)
@@ -89,6 +96,8 @@ static void ties(void **state)
 static void spheres(void **state)
 {
     (void)state;
+    if (!unit_turn(1, 2))
+        skip();
     struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
     struct scene *scene = terrain_scene();
     scene_put(scene, balls, NULL);

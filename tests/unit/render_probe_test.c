@@ -5,6 +5,7 @@
 #include "render/probe.h"
 #include "render/renderer.h"
 #include "render_scenes.h"
+#include "unit.h"
 
 enum { SIDE = 8 };
 
@@ -221,6 +222,8 @@ static void assert_all_kinds(const struct sums *sums)
 static void rays_are_those_of_the_picture(void **state)
 {
     (void)state;
+    if (!unit_turn(0, 2))
+        skip();
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
     struct sums sums = probe_picture(&f);
     assert_all_kinds(&sums);
@@ -278,6 +281,8 @@ static const whit_renderer_params sieve_params = {
 static void surfaces_let_rays_pass(void **state)
 {
     (void)state;
+    if (!unit_turn(1, 2))
+        skip();
     whit_renderer_params params = sieve_params;
     params.numerics = NUMERICS_EXACT;
     struct fixture f = fixture_open(sieve_scene(), NULL, &params);
@@ -334,6 +339,8 @@ static void scenes_of_all_kinds(void **state)
 static void another_time_and_size(void **state)
 {
     (void)state;
+    if (!unit_turn(0, 2))
+        skip();
     const whit_renderer_params params = {.width = SIDE, .height = 6, .depth = 3};
     struct fixture f = fixture_open(file_scene("spin"), NULL, &params);
     struct sums before = probe_picture(&f);
@@ -354,6 +361,8 @@ static void another_time_and_size(void **state)
 static void color_is_of_all_samples(void **state)
 {
     (void)state;
+    if (!unit_turn(1, 2))
+        skip();
     whit_renderer_params params = small;
     params.sampling.count = 4;
     params.width = params.height = 4;

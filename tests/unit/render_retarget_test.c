@@ -65,7 +65,7 @@ TEST(views_are_those_of_new_renderers)
 }
 
 /* Seen from afar, a ray may meet the glass and its hollow at one place, but for rounding. */
-TEST(media_touch_for_cameras_far_away)
+TEST_BY_TURNS(media_touch_for_cameras_far_away, 0, 2)
 {
     whit_renderer_params far_away = steps[0];
     far_away.camera = (whit_camera)CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3);
@@ -81,7 +81,7 @@ TEST(media_touch_for_cameras_far_away)
 }
 
 /* Kernels of ray batches are bound to what a new size must keep. */
-TEST(rays_are_traced_in_between)
+TEST_BY_TURNS(rays_are_traced_in_between, 1, 2)
 {
     struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     const struct gpu_ray ray = {.origin = {3, 2.5f, 4}, .dir = {-3, -2, -4}, .t_max = INFINITY};

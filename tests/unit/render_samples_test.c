@@ -103,7 +103,7 @@ TEST(sets_merge_to_the_whole)
 }
 
 /* Of every number of samples the picture is their mean, on the device and in double. */
-TEST(any_number_of_samples_is_their_mean)
+TEST_BY_TURNS(any_number_of_samples_is_their_mean, 0, 2)
 {
     draw_parts(1);
     for (uint32_t count = 2; count < SAMPLES; ++count) {
@@ -145,7 +145,7 @@ static whit_result set_rows(uint32_t first, uint32_t count, whit_sampling_kind k
     return renderer_set_view(f.renderer, &params);
 }
 
-TEST(rows_drawn_alone_are_those_of_the_picture)
+TEST_BY_TURNS(rows_drawn_alone_are_those_of_the_picture, 1, 2)
 {
     static const uint32_t rows[][2] = {{8, 8}, {0, 8}, {16, 2}, {0, 16}, {0, 0}};
     struct picture all, some;

@@ -56,7 +56,7 @@ static void fill_normals(struct scene_mesh *mesh, float x, float y, float z)
         set_rgb(&mesh->normals[3 * i], x, y, z);
 }
 
-TEST(unusable_normals_are_those_of_the_faces)
+TEST_BY_TURNS(unusable_normals_are_those_of_the_faces, 0, 2)
 {
     static const float wrong[][3] = {{0, 0, 0},        {-0.0f, 0, -0.0f}, {NAN, 1, 0},
                                      {0, INFINITY, 0}, {0, -INFINITY, 1}, {NAN, NAN, NAN},
@@ -73,7 +73,7 @@ TEST(unusable_normals_are_those_of_the_faces)
 }
 
 /* A longer normal weighs no more than its neighbours. */
-TEST(lengths_of_normals_do_not_matter)
+TEST_BY_TURNS(lengths_of_normals_do_not_matter, 1, 2)
 {
     static const float lengths[] = {1e-30f, 1e30f, 3.0f, 0.01f};
     struct scene_mesh mesh = mesh_plane(10), even = mesh_plane(10);
@@ -94,7 +94,7 @@ TEST(lengths_of_normals_do_not_matter)
 }
 
 /* Normals to the other side, or corners the other way round, or both: the eye sees its own side. */
-TEST(turned_normals_shade_the_same)
+TEST_BY_TURNS(turned_normals_shade_the_same, 0, 2)
 {
     for (int i = 0; i < 4; ++i) {
         struct scene_mesh mesh = mesh_plane(10);
@@ -110,7 +110,7 @@ TEST(turned_normals_shade_the_same)
 }
 
 /* A shading normal that faces away from the eye gives way to the face's own. */
-TEST(averted_normals_give_way)
+TEST_BY_TURNS(averted_normals_give_way, 1, 2)
 {
     struct scene_mesh mesh = mesh_plane(40);
     fill_normals(&mesh, 0, 0.3f, -1);

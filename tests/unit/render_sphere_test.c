@@ -42,7 +42,7 @@ TEST(spheres_equal_twin)
 }
 
 /* Triangles in clipped trees among them. */
-TEST(mixed_scene_equals_twin)
+TEST_BY_TURNS(mixed_scene_equals_twin, 0, 2)
 {
     random_state = 12;
     const struct accel_params spatial = {.mesh = {.builder = BVH_SPATIAL}};
@@ -122,7 +122,7 @@ static const whit_renderer_params small = {
    of the checker cross some 12 times the 64 columns, a hundredth of these makes 8. All others are
    off by what 8e-5 changes in texture coordinates, times the slope of bilinear texels (64 of up to
    0.8 in 2 pi: 6e-4), or in a normal (smooth ones: less), which glass multiplies by some 10. */
-TEST(balls_look_like_fine_triangles)
+TEST_BY_TURNS(balls_look_like_fine_triangles, 1, 2)
 {
     static const char *const names[LOOK_COUNT] = {"texture", "mask", "bump", "glass"};
     for (int look = 0; look < LOOK_COUNT; ++look) {
@@ -151,7 +151,7 @@ TEST(balls_look_like_fine_triangles)
 }
 
 /* Light through a ball of glass is filtered where it enters and where it leaves. */
-TEST(glass_filters_light_twice)
+TEST_BY_TURNS(glass_filters_light_twice, 0, 2)
 {
     for (int balls = 0; balls < 2; ++balls) {
         struct scene *scene = floor_scene(2);
@@ -195,7 +195,7 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
     image_finish(&image);
 }
 
-TEST(one_sided_leaves_are_not_seen_from_behind)
+TEST_BY_TURNS(one_sided_leaves_are_not_seen_from_behind, 1, 2)
 {
     for (int how = 0; how < 8; ++how) {
         float seen[3], shadow;

@@ -146,7 +146,7 @@ TEST(views_are_the_pictures_of_their_cameras)
                     false, 5);
 }
 
-TEST(views_of_all_kinds_of_cameras_and_lenses)
+TEST_BY_TURNS(views_of_all_kinds_of_cameras_and_lenses, 0, 2)
 {
     check_scene("whitted",
                 &(whit_renderer_params){.width = 12,
@@ -159,7 +159,7 @@ TEST(views_of_all_kinds_of_cameras_and_lenses)
 }
 
 /* So many rays pay for packets and for kernels of their own, which one view has not. */
-TEST(many_views_have_the_kernels_of_a_large_picture)
+TEST_BY_TURNS(many_views_have_the_kernels_of_a_large_picture, 1, 2)
 {
     const whit_renderer_params small = {.width = 64, .height = 64, .depth = 2};
     const struct accel_params flat = {.flatten = true};
@@ -178,7 +178,7 @@ TEST(many_views_have_the_kernels_of_a_large_picture)
 
 /* From afar the glass and its hollow may be met at one place, but for rounding: then they are
    walked for all views, and the last one is near. */
-TEST(media_touch_where_they_do_for_one_view)
+TEST_BY_TURNS(media_touch_where_they_do_for_one_view, 0, 2)
 {
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 4};
     const whit_camera cameras[] = {CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3),
@@ -194,7 +194,7 @@ TEST(media_touch_where_they_do_for_one_view)
 }
 
 /* What is left of one picture says nothing in the next. */
-TEST(pictures_of_one_camera_in_between)
+TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
 {
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 2};
     whit_camera cameras[MANY];

@@ -173,7 +173,7 @@ TEST(nothing_else_changes)
 }
 
 /* Of samples 0 to 3: the mean of those of 0, 1 and of 2, 3. */
-TEST(samples_are_averaged)
+TEST_BY_TURNS(samples_are_averaged, 0, 2)
 {
     whit_renderer_params params = usual(4);
     struct drawn all = draw(&params);
@@ -197,7 +197,7 @@ TEST(samples_are_averaged)
     drop(&second);
 }
 
-TEST(tiles_leave_them_as_they_are)
+TEST_BY_TURNS(tiles_leave_them_as_they_are, 1, 2)
 {
     whit_renderer_params params = usual(4);
     struct drawn whole = draw(&params);
@@ -210,7 +210,7 @@ TEST(tiles_leave_them_as_they_are)
 }
 
 /* Where a pixel has as many samples as in a picture of that many, it has that picture's values. */
-TEST(adaptive_samples_have_those_of_their_number)
+TEST_BY_TURNS(adaptive_samples_have_those_of_their_number, 0, 2)
 {
     whit_renderer_params params = usual(4);
     struct drawn four = draw(&params);
@@ -235,7 +235,7 @@ TEST(adaptive_samples_have_those_of_their_number)
     drop(&four);
 }
 
-TEST(refined_pictures_have_those_of_all_samples)
+TEST_BY_TURNS(refined_pictures_have_those_of_all_samples, 1, 2)
 {
     whit_renderer_params params = usual(4);
     struct drawn four = draw(&params);

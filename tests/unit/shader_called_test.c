@@ -231,7 +231,7 @@ TEST(a_version_in_place_draws_the_same)
 }
 
 /* Where nothing but what post() does is another no ray is traced for it. */
-TEST(another_post_needs_no_rays)
+TEST_BY_TURNS(another_post_needs_no_rays, 0, 2)
 {
     static const char *const versions[] = {
         SLIDER("0.25") POST("c"),
@@ -244,7 +244,7 @@ TEST(another_post_needs_no_rays)
 }
 
 /* Nor is one where the file has other functions too, whose ids in SPIR-V move with post(). */
-TEST(another_post_beside_other_functions_needs_no_rays)
+TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
 {
     static const char *const versions[] = {
         POST("c") SHADE "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
@@ -257,7 +257,7 @@ TEST(another_post_beside_other_functions_needs_no_rays)
 }
 
 /* The rays of the last picture serve the same view alone, and only who asks for that. */
-TEST(rays_are_taken_again_for_the_same_view)
+TEST_BY_TURNS(rays_are_taken_again_for_the_same_view, 0, 2)
 {
     uint32_t calls = 0;
     whit_shader *shader = load(POST("c.bgr"));
@@ -296,7 +296,7 @@ TEST(rays_are_taken_again_for_the_same_view)
 }
 
 /* The picture without the shader has the lights that the shader does not ask for. */
-TEST(expectations_are_held_against_all_effects)
+TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
     whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
     whit_renderer_params params = whit_renderer_defaults();

@@ -135,7 +135,7 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
 
 /* A probe's twin and exact arithmetic, which know nothing of the shape, agree that the way to it is
    free, and on all rays behind it. */
-TEST(probe_of_the_shape_differs_nowhere)
+TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
 {
     whit_shader *shader;
     whit_renderer_params params = whit_renderer_defaults();
@@ -157,7 +157,7 @@ TEST(probe_of_the_shape_differs_nowhere)
 }
 
 /* What the user's other functions trace meets the shape, and its loops have their own fuel. */
-TEST(functions_that_trace_meet_the_shape)
+TEST_BY_TURNS(functions_that_trace_meet_the_shape, 1, 2)
 {
     static const char shade[] =
         "%s" SHAPE_TEXT "vec3 shade(Surface s, Optics o, vec3 to_eye)\n{\n"
@@ -178,7 +178,7 @@ TEST(functions_that_trace_meet_the_shape)
     compare(&shape, &real);
 }
 
-TEST(material_that_nothing_wears_has_a_nearest_one)
+TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
 {
     whit_shader *shader;
     assert_int_equal(hooks_load("//@ box -1 0 -1  1 1 1  0.01 gald\n"
@@ -204,7 +204,7 @@ static void expect_error(const char *content, whit_result wanted, const char *pa
     whit_shader_destroy(shader);
 }
 
-TEST(answers_that_are_no_shape_s_are_told)
+TEST_BY_TURNS(answers_that_are_no_shape_s_are_told, 1, 2)
 {
     static const struct {
         const char *content, *part;

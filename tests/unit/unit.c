@@ -3,6 +3,8 @@
    failure: see what was run. */
 #include "unit.h"
 
+#include "../cases.h"
+
 enum { CHECKS_MAX = 64 };
 
 static struct CMUnitTest checks[CHECKS_MAX]; /* cmocka leaves out those without a name. */
@@ -21,6 +23,11 @@ void unit_add(const char *name, CMUnitTestFunction check, CMFixtureFunction begi
     if (check_count == CHECKS_MAX)
         abort();
     checks[check_count++] = (struct CMUnitTest){name, check, begin, end, NULL};
+}
+
+bool unit_turn(size_t index, size_t every)
+{
+    return getenv("WHIT_TEST_ONLY") || cases_turn(index, every);
 }
 
 int unit_run(CMFixtureFunction begin, CMFixtureFunction end)
