@@ -6,11 +6,12 @@ say() {
 
 # missing_packages KIND...: those of tools/packages that are not installed.
 missing_packages() {
-    for kind in "$@"; do
-        awk -v kind="$kind" '$1 == kind { print $2 }' "$root/tools/packages"
-    done | while read -r package; do
-        status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=
-        [ "$status" = installed ] || echo "$package"
+    wanted=$(for kind in "$@"; do awk -v kind="$kind" '$1 == kind { print $2 }' "$root/tools/packages"; done)
+    # shellcheck disable=SC2086
+    installed=" $(dpkg-query -W -f='${db:Status-Status} ${Package}\n' $wanted 2>/dev/null |
+        awk '$1 == "installed" { printf "%s ", $2 }')"
+    for package in $wanted; do
+        case $installed in *" $package "*) ;; *) echo "$package" ;; esac
     done
 }
 
