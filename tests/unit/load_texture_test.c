@@ -76,20 +76,20 @@ static const char *write_gltf(struct fixture *fixture, const char *const *images
 enum { SPELLINGS = 60 };
 
 /* a.tga in ways that lead to one file. */
-static void spell(char spellings[SPELLINGS][96])
+static void spell(char spellings[SPELLINGS][112])
 {
     for (uint32_t i = 0; i < SPELLINGS; i++) {
         char name[80] = "";
         for (uint32_t k = 0; k < i / 2; k++)
             strcat(name, "./");
-        snprintf(spellings[i], 96, "{\"uri\":\"%s%s\"}", name, i % 2 ? "%61.tga" : "A.TGA");
+        snprintf(spellings[i], 112, "{\"uri\":\"%s%s\"}", name, i % 2 ? "%61.tga" : "A.TGA");
     }
 }
 
 TEST_IN(one_file_of_many_names, begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    char spellings[SPELLINGS][96];
+    char spellings[SPELLINGS][112];
     const char *images[SPELLINGS];
     spell(spellings);
     for (uint32_t i = 0; i < SPELLINGS; i++)
