@@ -16,96 +16,104 @@ next() {
 
 # ---- Keys ----
 
-KEYS="T K O Minus Equal Y B V T ] 2 Home Period"
-{
+if part 0 2; then
+    KEYS="T K O Minus Equal Y B V T ] 2 Home Period"
+    {
+        n=0
+        for key in $KEYS; do
+            printf 'still\nstate before%d\npress %s\npicture\nstate after%d\n' $n "$key" $n
+            n=$((n + 1))
+        done
+        printf 'still\nstate before%d\n' $n
+    } >"$OUT/keys"
+    play "keys" "$SCENES/spin.json" $SMALL <"$OUT/keys"
     n=0
     for key in $KEYS; do
-        printf 'still\nstate before%d\npress %s\npicture\nstate after%d\n' $n "$key" $n
+        differs words before$n after$n
+        next after$n before$n
+        case $key in
+        2 | Home | Period) # the same kernel: a whole picture at once
+            differs frame.ids before$n after$n
+            same frame.ids after$n before$((n + 1))
+            ;;
+        esac
         n=$((n + 1))
     done
-    printf 'still\nstate before%d\n' $n
-} >"$OUT/keys"
-play "keys" "$SCENES/spin.json" $SMALL <"$OUT/keys"
-n=0
-for key in $KEYS; do
-    differs words before$n after$n
-    next after$n before$n
-    case $key in
-    2 | Home | Period) # the same kernel: a whole picture at once
-        differs frame.ids before$n after$n
-        same frame.ids after$n before$((n + 1))
-        ;;
-    esac
-    n=$((n + 1))
-done
+fi
 
 # ---- A drag ----
 
-# drag EVENT: with it after each move.
-drag() {
-    printf 'still\nstate m0\nmove 30 30\nbutton left down\n'
+if part 1 2; then
+    # drag EVENT: with it after each move.
+    drag() {
+        printf 'still\nstate m0\nmove 30 30\nbutton left down\n'
+        for n in 1 2 3 4 5 6; do
+            printf 'move %d %d\n%s\nstate m%d\n' $((30 + 4 * n)) $((30 + n)) "$1" $n
+        done
+        printf 'button left up\n'
+    }
+    drag picture >"$OUT/drag"
+    play "a drag" "$SCENES/34k.json" $SMALL <"$OUT/drag"
     for n in 1 2 3 4 5 6; do
-        printf 'move %d %d\n%s\nstate m%d\n' $((30 + 4 * n)) $((30 + n)) "$1" $n
+        next m$n m$((n - 1))
+        differs words m$((n - 1)) m$n
+        value m$n frame.ids >"$OUT/moving.$n"
+        value m$n words >"$OUT/words.$n"
     done
-    printf 'button left up\n'
-}
-drag picture >"$OUT/drag"
-play "a drag" "$SCENES/34k.json" $SMALL <"$OUT/drag"
-for n in 1 2 3 4 5 6; do
-    next m$n m$((n - 1))
-    differs words m$((n - 1)) m$n
-    value m$n frame.ids >"$OUT/moving.$n"
-    value m$n words >"$OUT/words.$n"
-done
-drag still >"$OUT/drag"
-play "the same drag, still each time" "$SCENES/34k.json" $SMALL <"$OUT/drag"
-for n in 1 2 3 4 5 6; do
-    is m$n words "$(cat "$OUT/words.$n")"
-    is m$n frame.ids "$(cat "$OUT/moving.$n")"
-done
+    drag still >"$OUT/drag"
+    play "the same drag, still each time" "$SCENES/34k.json" $SMALL <"$OUT/drag"
+    for n in 1 2 3 4 5 6; do
+        is m$n words "$(cat "$OUT/words.$n")"
+        is m$n frame.ids "$(cat "$OUT/moving.$n")"
+    done
 
-# While one picture is on its way, or has just come: the one after it. `wait` lets the first question
-# reach the engine.
-play "a picture on its way" "$SCENES/34k.json" $SMALL <<END
+    # While one picture is on its way, or has just come: the one after it. `wait` lets the first question
+    # reach the engine.
+    play "a picture on its way" "$SCENES/34k.json" $SMALL <<END
 before:
 after: move 30 30, button left down, move 40 32, wait 1, move 50 36
 button left up
 END
-is after frame.drawn_words "$(value after words)"
-check "two pictures later at most" test "$(value after frame.number)" -le $(($(value before frame.number) + 2))
+    is after frame.drawn_words "$(value after words)"
+    check "two pictures later at most" test "$(value after frame.number)" -le $(($(value before frame.number) + 2))
+fi
 
 # ---- Visits of a ray ----
 
-# Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
-scenes=34k
-[ "$3" != large ] || scenes="34k swarm"
-for scene in $scenes; do
-    play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
+if part 0 2; then
+    # Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
+    scenes=34k
+    [ "$3" != large ] || scenes="34k swarm"
+    for scene in $scenes; do
+        play "visits, $scene" "$SCENES/$scene.json" $SMALL <<END
 distance: size 64 48
 counted: press V
 basic: press Shift+T
 twin: press V x5
 END
-    for name in distance counted basic twin; do
-        is $name frame.visits_rays 3072
+        for name in distance counted basic twin; do
+            is $name frame.visits_rays 3072
+        done
+        is counted frame.view depth
+        is twin frame.view color
+        same frame.visits distance counted
+        same frame.visits basic twin
+        differs frame.visits distance twin
+        check "$scene: some are visited ($(value distance frame.visits))" \
+            holds "$(value distance frame.visits) > 2 && $(value distance frame.visits) < 200"
     done
-    is counted frame.view depth
-    is twin frame.view color
-    same frame.visits distance counted
-    same frame.visits basic twin
-    differs frame.visits distance twin
-    check "$scene: some are visited ($(value distance frame.visits))" \
-        holds "$(value distance frame.visits) > 2 && $(value distance frame.visits) < 200"
-done
-play "visits without trees" "$CUBE" $SMALL <<END
+fi
+if part 1 2; then
+    play "visits without trees" "$CUBE" $SMALL <<END
 no_trees: still, press G, press T | keys.trees = off | frame.visits_rays = 1536 | frame.visits = 1
 END
-# Of a larger picture a part of them.
-play "visits of some" "$SCENES/34k.json" --size 120x80 <<END
+    # Of a larger picture a part of them.
+    play "visits of some" "$SCENES/34k.json" --size 120x80 <<END
 twin:
 counted: press V | frame.visits_rays = 9600
 END
-check "at most 4096 rays ($(value twin frame.visits_rays))" test "$(value twin frame.visits_rays)" -le 4096
-check "within 5 % ($(value twin frame.visits), $(value counted frame.visits))" \
-    about "$(value counted frame.visits)" "$(value twin frame.visits)" 0.05
+    check "at most 4096 rays ($(value twin frame.visits_rays))" test "$(value twin frame.visits_rays)" -le 4096
+    check "within 5 % ($(value twin frame.visits), $(value counted frame.visits))" \
+        about "$(value counted frame.visits)" "$(value twin frame.visits)" 0.05
+fi
 finish

@@ -12,7 +12,8 @@ HIGH=${WHIT_TEST_SCREEN#*x}
 
 # ---- Cameras ----
 
-play "cameras" "$SCENES/spin.json" $SMALL <<END
+if part 0 2; then
+    play "cameras" "$SCENES/spin.json" $SMALL <<END
 start:
 around: move 40 30, button left down, move 60 40, button left up | keys.next camera of the file = by hand
 aside: move 40 30, button middle down, move 60 40, button middle up
@@ -30,27 +31,29 @@ left: press 5
 below: press 6
 same: press W, press D | words as below
 END
-before=start
-for at in around aside near look fly fit file front right above behind left below; do
-    differs words $before $at
-    differs frame.ids $before $at
-    is $at frame.whole true
-    before=$at
-done
-# Along an axis: the eye differs from the target in that coordinate alone.
-along() {
-    value "$1" words | sed 's/.*--camera //' | awk -F, -v axis="$2" -v sign="$3" '
-        function size(x) { return x < 0 ? -x : x }
-        { for (i = 0; i < 3; ++i) { d[i] = $(i + 1) - $(i + 4); far += i != axis ? size(d[i]) : 0 }
-          exit !(d[axis] * sign > 0 && far <= 0.1 * size(d[axis])) }'
-}
-for at in "front 2 1" "right 0 1" "above 1 1" "behind 2 -1" "left 0 -1" "below 1 -1"; do
-    check "at ${at%% *}: the camera looks along its axis" along $at
-done
+    before=start
+    for at in around aside near look fly fit file front right above behind left below; do
+        differs words $before $at
+        differs frame.ids $before $at
+        is $at frame.whole true
+        before=$at
+    done
+    # Along an axis: the eye differs from the target in that coordinate alone.
+    along() {
+        value "$1" words | sed 's/.*--camera //' | awk -F, -v axis="$2" -v sign="$3" '
+            function size(x) { return x < 0 ? -x : x }
+            { for (i = 0; i < 3; ++i) { d[i] = $(i + 1) - $(i + 4); far += i != axis ? size(d[i]) : 0 }
+              exit !(d[axis] * sign > 0 && far <= 0.1 * size(d[axis])) }'
+    }
+    for at in "front 2 1" "right 0 1" "above 1 1" "behind 2 -1" "left 0 -1" "below 1 -1"; do
+        check "at ${at%% *}: the camera looks along its axis" along $at
+    done
+fi
 
 # ---- Time ----
 
-play "animation" "$SCENES/spin.json" $SMALL --fps 10 <<END
+if part 1 2; then
+    play "animation" "$SCENES/spin.json" $SMALL --fps 10 <<END
 start:
 two: press Period x2 | time_s = 0.2 | frame.ids not as start
 one: press Comma | time_s = 0.1
@@ -61,41 +64,46 @@ fast! press Shift+9 x2 | keys.double speed = x 2
 later: press Space, wait 300, press Space | playing = false
 end: press Shift+9 x3, press Space, wait 900 | playing = false | time_s = 4
 END
-check "300 ms at double speed are 0.6 s ($(value later time_s))" \
-    about 0.6 "$(value later time_s)"
+    check "300 ms at double speed are 0.6 s ($(value later time_s))" \
+        about 0.6 "$(value later time_s)"
+fi
 
 # ---- Sizes ----
 
-play "sizes" "$CUBE" --size 200x100 <<END
+if part 0 2; then
+    play "sizes" "$CUBE" --size 200x100 <<END
 start:
 tall: size 90 120 | window_width = 90 | frame.width = 90 | frame.height = 120 | frame.whole = true
 back: size 200 100 | frame.ids as start | frame.pixels as start
 full: press F11 | window_width = $WIDE | frame.height = $HIGH | keys.full screen = on
 window: shot full.png, press F11 | window_width = 200 | frame.ids as start
 END
-check "a picture of the full screen" test "$(od -An -tu1 -j16 -N8 full.png | tr -s ' ')" = \
-    "$(printf ' 0 0 %d %d 0 0 %d %d' $((WIDE / 256)) $((WIDE % 256)) $((HIGH / 256)) $((HIGH % 256)))"
-play "full screen from the start" "$CUBE" --size 200x100 --fullscreen <<END
+    check "a picture of the full screen" test "$(od -An -tu1 -j16 -N8 full.png | tr -s ' ')" = \
+        "$(printf ' 0 0 %d %d 0 0 %d %d' $((WIDE / 256)) $((WIDE % 256)) $((HIGH / 256)) $((HIGH % 256)))"
+    play "full screen from the start" "$CUBE" --size 200x100 --fullscreen <<END
 full: | window_width = $WIDE
 window: press F11 | window_width = 200
 END
+fi
 
 # ---- Ways to the screen ----
 
-# What the window shows, without figures over it, is the picture.
-for way in vsync no-vsync; do
-    option=
-    [ "$way" = vsync ] || option=--$way
-    play "$way" "$CUBE" --size 200x100 $option <<END
+if part 1 2; then
+    # What the window shows, without figures over it, is the picture.
+    for way in vsync no-vsync; do
+        option=
+        [ "$way" = vsync ] || option=--$way
+        play "$way" "$CUBE" --size 200x100 $option <<END
 shown! press F2 x2, still, shot $way.png
 END
-    is shown hud off
-    is shown frame.whole true
-done
-expect 0 "the same picture" render "$CUBE" --size 200x100 -o render.png --quiet
-for way in vsync no-vsync; do
-    expect 0 "$way and \`whit render\`" compare $way.png render.png --tolerance 0 --metric largest
-done
+        is shown hud off
+        is shown frame.whole true
+    done
+    expect 0 "the same picture" render "$CUBE" --size 200x100 -o render.png --quiet
+    for way in vsync no-vsync; do
+        expect 0 "$way and \`whit render\`" compare $way.png render.png --tolerance 0 --metric largest
+    done
+fi
 
 # ---- Help and figures ----
 
@@ -119,38 +127,40 @@ END
 
 # ---- What takes long ----
 
-# Another kernel in the making is stopped by Escape, or by taking the switch back: it would go on
-# until then.
-patient=$WHIT
-WHIT=$SLOW
-export WHIT_TEST_SLOW=kernel
-play "a switch that is stopped" "$CUBE" $SMALL <<END
+if part 0 2; then
+    # Another kernel in the making is stopped by Escape, or by taking the switch back: it would go on
+    # until then.
+    patient=$WHIT
+    WHIT=$SLOW
+    export WHIT_TEST_SLOW=kernel
+    play "a switch that is stopped" "$CUBE" $SMALL <<END
 start:
 working! press G, until work = compiling the kernel | keys.trees = off
 stopped: press Escape | toast = stopped: as it was
 back: press G, until work, press G
 once! press Escape | toast = Escape once more quits
 END
-for at in stopped back; do
-    is $at "keys.trees" on
-    is $at work ""
-    same words start $at
-    same frame.number start $at
-    same frame.pixels start $at
-done
+    for at in stopped back; do
+        is $at "keys.trees" on
+        is $at work ""
+        same words start $at
+        same frame.number start $at
+        same frame.pixels start $at
+    done
 
-# A slow picture says how far it is, and can be left.
-export WHIT_TEST_SLOW=picture
-play "a slow picture" "$CUBE" $SMALL <<END
+    # A slow picture says how far it is, and can be left.
+    export WHIT_TEST_SLOW=picture
+    play "a slow picture" "$CUBE" $SMALL <<END
 start:
 slow! press G, until part, until panels.work | keys.trees = off | frame.ids as start
 back: press G | frame.ids as start
 END
-unset WHIT_TEST_SLOW
-WHIT=$patient
-part=$(value slow part)
-check "it says which part is done ($part)" holds "$part > 0 && $part < 1"
-check "at slow: it is shown" test "$(value slow panels.work)" != "(no panels.work)"
+    unset WHIT_TEST_SLOW
+    WHIT=$patient
+    part=$(value slow part)
+    check "it says which part is done ($part)" holds "$part > 0 && $part < 1"
+    check "at slow: it is shown" test "$(value slow panels.work)" != "(no panels.work)"
+fi
 
 # ---- Ways to end ----
 

@@ -9,7 +9,8 @@
    a kind that the scene does not call for. `full`: also the whole kernel by storage buffers, for
    which the driver takes up to 7 s; else that load path has a kernel of camera rays and lights.
    `full` and `threads`: by one, two and three threads; else by one of these numbers, in turns
-   (WHIT_TEST_OFFSET).
+   (WHIT_TEST_OFFSET), as are tiles, texel buffers and builders on the one hand, storage buffers and
+   the kernel with more effects on the other: `full` and WHIT_TEST_TIMES have all.
    `validated`: the same picture under GPU-assisted validation; `stored`: by storage buffers, as
    GPUs read. `levels`: the kernel with every effect beside the scene's own at one of the other
    levels of numerics; at `exact` both without refraction, whose traversal makes the driver take
@@ -356,10 +357,14 @@ static void check_usual(const struct subject *subject, const char *what)
                         "GPU-assisted validation");
         } else {
             bool full = strcmp(what, "full") == 0;
-            check_threads(subject, &first, full || strcmp(what, "threads") == 0);
-            check_ways(subject, &first);
-            check_storage(subject, &first, full);
-            check_all_effects(subject, &first, usual, 0);
+            bool all = full || cases_times() > 0;
+            check_threads(subject, &first, all || strcmp(what, "threads") == 0);
+            if (all || turn_of(subject) % 2 == 0)
+                check_ways(subject, &first);
+            if (all || turn_of(subject) % 2 == 1) {
+                check_storage(subject, &first, full);
+                check_all_effects(subject, &first, usual, 0);
+            }
         }
     }
     drawn_finish(&first);

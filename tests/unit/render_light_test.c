@@ -80,7 +80,7 @@ static void check_form_factor(struct scene_light light, uint32_t samples, double
     image_finish(&image);
 }
 
-TEST_BY_TURNS(emitters_give_their_integral, 0, 2)
+TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
 {
     /* Above the floor, tilted, and through the floor's horizon. */
     static const struct {
@@ -99,7 +99,7 @@ TEST_BY_TURNS(emitters_give_their_integral, 0, 2)
 
 /* From the middle of the floor a plate hides just the half of the emitter on its side: of n points
    each stands for 1 / n. */
-TEST_BY_TURNS(half_a_cover_takes_half, 1, 2)
+TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
 {
     static const uint32_t samples[] = {4, 16, 64};
     for (int i = 0; i < 6; ++i) {
@@ -128,7 +128,7 @@ TEST_BY_TURNS(half_a_cover_takes_half, 1, 2)
 }
 
 /* Samples of the pixel move the points, so that steps of a soft shadow grow smaller. */
-TEST_BY_TURNS(pixel_samples_smooth_shadows, 0, 2)
+TEST_BY_TURNS(pixel_samples_smooth_shadows, 2, 4)
 {
     double largest[2];
     for (int i = 0; i < 2; ++i) {
@@ -154,7 +154,7 @@ TEST_BY_TURNS(pixel_samples_smooth_shadows, 0, 2)
     assert_true(largest[1] < 0.35 * largest[0]);
 }
 
-TEST_BY_TURNS(spots_fall_off_between_their_cones, 1, 2)
+TEST_BY_TURNS(spots_fall_off_between_their_cones, 3, 4)
 {
     const double height = 3.0, inner = 0.15, outer = 0.4;
     struct scene *scene = floor_scene(eye_height);
@@ -193,7 +193,7 @@ TEST_BY_TURNS(spots_fall_off_between_their_cones, 1, 2)
     image_finish(&image);
 }
 
-TEST_BY_TURNS(ranges_end_lights, 0, 2)
+TEST_BY_TURNS(ranges_end_lights, 0, 4)
 {
     struct scene *scene = floor_scene(eye_height);
     scene_put_lamp(scene, 0, 1, 0, 2.0f);
@@ -215,7 +215,7 @@ TEST_BY_TURNS(ranges_end_lights, 0, 2)
 }
 
 /* No light, light in the surface itself, none and far too much of it: a picture, and finite. */
-TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 2)
+TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 4)
 {
     for (int i = 0; i < 6; ++i) {
         struct scene *scene = floor_scene(eye_height);
@@ -238,7 +238,7 @@ TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 2)
 
 /* S4 of the catalogue of hard cases: a lamp just above the floor lights it by the formula, one in
    it or just behind it not at all. */
-TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 0, 2)
+TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 2, 4)
 {
     enum { ACROSS = 33 };
     const double heights[] = {1e-6, 1e-3, 0.0, -1e-6};
@@ -267,7 +267,7 @@ TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 0, 2)
 }
 
 /* What glows lies in its light's plane, but for the roundings of where it is met. */
-TEST_BY_TURNS(emitters_do_not_light_themselves, 1, 2)
+TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)
 {
     const double heights[] = {1.99, 1001.3};
     const whit_renderer_params params = {

@@ -4,7 +4,7 @@
 #include "render/renderer.h"
 #include "unit.h"
 
-TEST_BY_TURNS(glass_slab_passes_and_absorbs, 0, 2)
+TEST_BY_TURNS(glass_slab_passes_and_absorbs, 0, 4)
 {
     const double ior = 1.5, thickness = 2.0, sigma = 0.3;
     struct scene *scene = dark_scene((double[]){0, 0, 9}, (double[]){0, 0, 0});
@@ -50,7 +50,7 @@ static struct image transmitting_box(float transmission, int texel)
     return color_of(scene, NULL, &picture_params);
 }
 
-TEST_BY_TURNS(texture_of_transmission_decides, 1, 2)
+TEST_BY_TURNS(texture_of_transmission_decides, 1, 4)
 {
     struct image opaque = transmitting_box(0.0f, -1);
     struct image masked = transmitting_box(1.0f, 0);
@@ -88,7 +88,7 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     return seen;
 }
 
-TEST_BY_TURNS(textures_of_specular_scale_it, 0, 2)
+TEST_BY_TURNS(textures_of_specular_scale_it, 2, 4)
 {
     /* ior 1.5: 0.04 straight on. The tint is sRGB, the level linear. */
     assert_near(mirrored(1.0f, 1.0f, SCENE_SLOT_SPECULAR, 255), 0.04, 1e-5);
@@ -159,7 +159,7 @@ static struct scene *panes_scene(int count)
 }
 
 /* In one large tree, and of one picture where it has enough rays to pay for the kernels. */
-TEST_BY_TURNS(packets_are_chosen_where_they_pay, 1, 2)
+TEST_BY_TURNS(packets_are_chosen_where_they_pay, 3, 4)
 {
     static const struct {
         uint32_t steps, side;
@@ -196,7 +196,7 @@ TEST_BY_TURNS(packets_are_chosen_where_they_pay, 1, 2)
 /* More loop turns than lavapipe grants: an error, never a silently wrong picture. Here a shadow ray
    passes all panes of a stack, the last thing that it meets, through each kind of tree and of walk.
  */
-TEST_BY_TURNS(cut_loops_are_reported, 0, 2)
+TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
 {
     for (int i = 0; i < 4; ++i) {
         const whit_renderer_params params = {.width = 8,
@@ -235,7 +235,7 @@ static struct scene *lamps_scene(int lamps)
 }
 
 /* Each light is a dispatch of its own. */
-TEST_BY_TURNS(many_lights_are_drawn, 1, 2)
+TEST_BY_TURNS(many_lights_are_drawn, 1, 4)
 {
     const whit_renderer_params params = {.width = 8, .height = 8, .depth = 0};
     struct picture picture = picture_of(lamps_scene(4000), NULL, &params);
@@ -244,7 +244,7 @@ TEST_BY_TURNS(many_lights_are_drawn, 1, 2)
 }
 
 /* In one tile, whose first submission takes some of its lights. */
-TEST_BY_TURNS(many_lights_defer_no_one, 0, 2)
+TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
 {
     bool cancel = false;
     whit_renderer_params params = {.width = 8, .height = 8, .depth = 0, .cancel = &cancel};
@@ -358,7 +358,7 @@ TEST(shares_are_the_same_by_one_segment_and_by_two)
 }
 
 /* Each of these rays calls for two others. */
-TEST_BY_TURNS(full_queues_end_in_smaller_tiles, 1, 2)
+TEST_BY_TURNS(full_queues_end_in_smaller_tiles, 3, 4)
 {
     for (int count = 0; count < 2; ++count) {
         struct glass_picture large = glass_picture(64, count), small = glass_picture(16, count);

@@ -57,7 +57,7 @@ static void check_pane(bool blends)
     image_finish(&image);
 }
 
-TEST_BY_TURNS(textures_pattern_shadows, 0, 2)
+TEST_BY_TURNS(textures_pattern_shadows, 0, 4)
 {
     for (int blends = 0; blends < 2; ++blends)
         check_pane(blends);
@@ -94,7 +94,7 @@ static struct scene *block_scene(const struct block *block)
 }
 
 /* exp(-sigma length) is left; each end of the light's way inside is rounded to 1/64 stop. */
-TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 2)
+TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
 {
     /* The first is under the block. */
     static const whit_camera beside = CAMERA_AT(3.9, 0.3, 0, 0, 0, 0, 0, 1, 0, 0.01),
@@ -122,7 +122,7 @@ TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 2)
     }
 }
 
-TEST_BY_TURNS(knobs_make_shadows_opaque, 0, 2)
+TEST_BY_TURNS(knobs_make_shadows_opaque, 2, 4)
 {
     for (int all = 0; all < 2; ++all) {
         whit_renderer_params params = {.width = 201, .height = 1, .shadows = WHIT_SHADOWS_OPAQUE};
@@ -180,7 +180,7 @@ static double ball_error(const struct image *a, const struct image *b)
 }
 
 /* The coarsest ball's own shape is off by more than its shadows are. */
-TEST_BY_TURNS(coarse_balls_are_shaded_like_fine_ones, 1, 2)
+TEST_BY_TURNS(coarse_balls_are_shaded_like_fine_ones, 3, 4)
 {
     struct image fine = ball_picture(512, true);
     static const uint32_t segments[] = {12, 20, 32};
@@ -213,7 +213,7 @@ static struct scene *flat_scene(bool normals)
     return scene;
 }
 
-TEST_BY_TURNS(flat_meshes_do_not_change, 0, 2)
+TEST_BY_TURNS(flat_meshes_do_not_change, 0, 4)
 {
     for (int normals = 0; normals < 2; ++normals) {
         struct image images[2];
@@ -248,7 +248,7 @@ static struct scene_mesh round_box(void)
 }
 
 /* From inside a closed mesh with smooth normals no lamp outside is seen to light anything. */
-TEST_BY_TURNS(closed_rooms_stay_dark, 1, 2)
+TEST_BY_TURNS(closed_rooms_stay_dark, 1, 4)
 {
     static const double lamps[][3] = {{3, 0.2, 0.1}, {1.6, 1.7, 1.5}, {0.3, 1.2, -0.4},
                                       {1.05, 0, 0},  {-2, -3, 0.5},   {0.99, 1.2, 1.2}};
@@ -292,7 +292,7 @@ static struct scene *catcher_scene(bool lit)
     return scene;
 }
 
-TEST_BY_TURNS(catchers_show_shadows_alone, 0, 2)
+TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
 {
     for (int all = 0; all < 2; ++all) {
         whit_renderer_params params = {.width = 201, .height = 1, .depth = 4};
@@ -336,7 +336,7 @@ static struct scene_mesh sheets(uint32_t count, float y)
 /* More sheets than lavapipe grants turns of loops, each of which has to be looked at and lets the
    ray through: an error, and no picture of what was met so far. On the way of the eye, or of the
    light alone. */
-TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 1, 2)
+TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
 {
     for (int lit = 0; lit < 2; ++lit) {
         struct scene *scene = lit ? floor_scene(eye_height)

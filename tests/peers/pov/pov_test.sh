@@ -1,6 +1,8 @@
 #!/bin/sh
 # whit beside POV-Ray 3.7 on one scene, see scenes.sh for what is set equal:
 #     sh pov_test.sh WHIT COMPARE flake|glass|hollow|wine|mesh
+# Flat colours of each object (masks) or all of it (colors) with each commit by turns (WHIT_TEST_OFFSET), with
+# WHIT_TEST_TIMES both.
 # Bounces: POV-Ray counts the eye's ray, and ends rays that add less than adc_bailout.
 set -u
 whit=$1 compare=$2 name=$3
@@ -11,7 +13,10 @@ command -v povray >/dev/null || { echo "SKIPPED: no povray (Debian: apt-get inst
 out=$(mktemp -d) || exit 1
 trap 'rm -rf "$out"' EXIT
 failed=0
+turn=${WHIT_TEST_OFFSET:-0}
 for mode in masks colors; do
+    turn=$((turn + 1))
+    [ -n "${WHIT_TEST_TIMES:-}" ] || [ $((turn % 2)) -eq 0 ] || continue
     mkdir "$out/$mode" && cd "$out/$mode" || exit 1
     sh "$here/scenes.sh" "$name" $mode $width $height $depth "$out/$mode" || exit 1
     "$whit" render "$name.json" -o whit.pfm --size ${width}x$height --aa 1 --depth $depth \
