@@ -64,6 +64,7 @@ if [ "${3:-}" = all ]; then
         holds '[.tables[0].rows[] | select(.start | endswith(", 320x240"))] |
             length == 6 and all(.beside_ms.median > 0 and .figure > 0 and .must > 0)'
     check "caches that are filled" holds '.tables[0].rows | any(.start == "cube, 1280x720, filled")'
+    rm "$OUT/files"/*
 fi
 
 # --- Refusals ---
