@@ -108,7 +108,7 @@ if in_mounts "mount -t tmpfs -o size=16k tmpfs /mnt"; then
     check "a full disk: says so" \
         grep -q "^whit: error: /mnt/t: cannot write: No space left on device" "$OUT/stderr"
     # The folder stays the current one when another one is mounted over /tmp.
-    in_mounts "unset TMPDIR; mount -t tmpfs -o ro tmpfs /tmp &&
+    in_mounts "unset TMPDIR MESA_SHADER_CACHE_DIR; mount -t tmpfs -o ro tmpfs /tmp &&
         /proc/self/fd/9 render model.obj -o a.pfm $small"
     check "no /tmp: a picture" test $? -eq 0 -a -s a.pfm
     check "no /tmp: nothing to say" test ! -s "$OUT/stderr"
