@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "bench/table.h"
@@ -237,12 +238,21 @@ static void note_hand(enum hand hand, const json_t *state, struct hand_times *ti
         sample_add(&times->pictures, number_at(state, "measure", "gap_ms", "max"));
 }
 
+/* Who types saves when he has seen what the save before has made, not in the same moment, in which
+   the window still compares pictures. */
+static void look_on(void)
+{
+    nanosleep(&(struct timespec){.tv_sec = 1}, NULL);
+}
+
 /* One round: a save but in the first ones, and what the viewer says of it. */
 static whit_result watch_round(struct saves *s, struct viewer *viewer, const struct edited *edit,
                                uint32_t at, struct save_times *times)
 {
     enum hand hand = hand_of(s, at);
     json_t *state = NULL;
+    if (hand == HAND_NONE && !s->bench->ask.quick)
+        look_on();
     whit_result result = at < ALONE ? WHIT_OK : save(s, hand == HAND_ERROR ? broken : edit->text);
     if (result == WHIT_OK && is_held(hand)) {
         state = read_state(viewer);
@@ -482,9 +492,11 @@ whit_result bench_shaders(struct bench *bench)
     bench_file(bench, "edited.glsl", s->path);
     table_begin(&table, bench, "shaders", heads, false,
                 count * (EDITS * count_rounds(s, false) + ask->runs));
-    table_say(&table,
-              "From a save to the first changed picture on the screen and to the whole one, in the "
-              "viewer's window; a version takes the place of the one before last.");
+    table_say(
+        &table,
+        "From a save to the first changed picture on the screen and to the whole one, in the "
+        "viewer's window, a second after it stood still; a version takes the place of the one "
+        "before last.");
     table_say(
         &table,
         "Gaps: the most from one drawing of the window to the next in %.1f s from a save on, "
