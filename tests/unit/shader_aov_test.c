@@ -2,6 +2,7 @@
    means over samples, and that nothing else changes by them. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "hooks_fixture.h"
 
@@ -261,6 +262,43 @@ TEST_BY_TURNS(refined_pictures_have_those_of_all_samples, 1, 2)
     whit_refine_destroy(refine);
     whit_renderer_destroy(renderer);
     drop(&four);
+}
+
+/* What surface() gives comes from another kernel, number by number. */
+static const char changes[] =
+    "void surface(inout Surface s)\n{\n"
+    "    s.ns = vec3(0.6, 0.0, 0.8);\n    s.u = 0.25;\n    s.v = 0.5;\n"
+    "    s.color = vec3(0.125, 2.0, 3.0);\n    s.color_alpha = 0.75;\n}\n"
+    "//@ aov colors\nvec4 colors(Surface s) { return vec4(s.color, s.color_alpha); }\n"
+    "//@ aov coordinates\nvec4 coordinates(Surface s) { return vec4(s.u, s.v, 0.0, 0.0); }\n"
+    "//@ aov normals\nvec4 normals(Surface s)\n{\n    vec3 n = vec3(0.6, 0.0, 0.8);\n"
+    "    bool averted = dot(n, ray_dir()) > -1e-4;\n" /* gives way to that of the triangle */
+    "    return vec4(averted || length(s.ns - n) < 1e-5, averted, 0.0, 1.0);\n}\n";
+
+TEST(values_are_of_the_surface_as_it_is_changed)
+{
+    static const float expected[AOVS - 1][4] = {{0.125f, 2.0f, 3.0f, 0.75f},
+                                                {0.25f, 0.5f, 0.0f, 0.0f}};
+    whit_renderer_params params = usual(1);
+    whit_shader *changing;
+    uint32_t hits = 0, wrong = 0, turned = 0;
+    assert_int_equal(hooks_load(changes, &changing), WHIT_OK);
+    params.shader = changing;
+    struct drawn drawn = draw(&params);
+    for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
+        const float *normal = &floats(drawn.aovs[2])[4 * pixel];
+        if (is_miss(&drawn, pixel))
+            continue;
+        ++hits;
+        turned += normal[1] == 0.0f;
+        wrong += normal[0] != 1.0f;
+        for (uint32_t i = 0; i < AOVS - 1; ++i)
+            wrong += memcmp(&floats(drawn.aovs[i])[4 * pixel], expected[i], sizeof *expected) != 0;
+    }
+    assert_true(hits > PIXELS / 4 && turned > PIXELS / 8);
+    assert_int_equal(wrong, 0);
+    drop(&drawn);
+    whit_shader_destroy(changing);
 }
 
 static double render_ms(const whit_renderer *renderer)
