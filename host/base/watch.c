@@ -27,8 +27,8 @@ struct watch {
     uint32_t count, capacity;
 };
 
-/* What comes wakes once. The one who is woken reads it by watch_changed; until then the system may
-   put the same of the same file together with it, which wakes nobody. */
+/* inotify merges an event with an equal one that nobody has read yet, and then does not wake again:
+   whoever is woken reads all events by watch_changed. */
 static void wait_for_events(void *context)
 {
     const struct watch *watch = context;

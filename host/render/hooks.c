@@ -17,7 +17,7 @@ _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SH
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
 
-/* What its functions come to call that kernels have for it alone. */
+/* The part of shader_reaches that decides which effects kernels are compiled with. */
 static uint32_t effects_reached(const whit_shader *shader)
 {
     return shader_reaches(shader) & (SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS);

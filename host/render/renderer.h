@@ -183,7 +183,7 @@ struct target {
     struct buffer *dbg;     /* of a probe with dbg(x): as hook/record.glsl; NULL before the first */
 };
 
-/* What the colours of a picture follow from beside its kernels. */
+/* All that decides the colours of a picture, but for its kernels. */
 struct kept_view {
     struct gpu_frame frame;
     float sliders[SLIDERS_MAX];

@@ -1,6 +1,6 @@
-/* What another version of a user's file makes of a picture that is there already, without drawing
-   its colours once more. As post() is given them they stay on the device; what is beside them needs
-   no more than camera rays. */
+/* A picture by the next version of a user's file, made of the picture before where only post() or
+   aovs are other: the colours that post() was given are still on the device, and aovs take camera
+   rays alone. */
 #include <string.h>
 
 #include "render/renderer.h"
@@ -103,7 +103,8 @@ static whit_result draw_aovs(struct renderer *renderer, bool in_steps)
                     : render_pass(renderer, renderer->params.sampling.count, &progress);
 }
 
-/* Those of the picture, but for what was made for this version. */
+/* Statistics are those of the kept picture, but for kernels and memory, which this version has
+   made. */
 static void restore_stats(struct renderer *renderer)
 {
     struct target *picture = &renderer->picture;

@@ -528,7 +528,7 @@ static whit_result trace_generations(struct tile_run *run, uint32_t first, uint3
     return result == WHIT_OK ? finish_submission(run) : result;
 }
 
-/* What is beside the colours of a tile, and nothing else: without rays that surfaces call for. */
+/* Draws the aovs of a tile alone: camera rays, the aov stage, and the sums of aovs. */
 static whit_result draw_aovs(struct tile_run *run)
 {
     run->target->stages.times.on = false;

@@ -191,8 +191,8 @@ static whit_result take_status(struct view *view)
 {
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
-    /* What begins after a save is not worth a drawing, which would take from the cores that make
-     * it. */
+    /* After a save the window is not drawn only to say what the engine begins: drawing takes cores
+       from the compiler. */
     bool tells = !view->shaders.wait.goes_on;
     bool other_stage = old.stage != view->status.stage;
     bool other_drawing = old.drawing != view->status.drawing;

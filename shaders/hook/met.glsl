@@ -1,5 +1,5 @@
-// What a ray has met, as stages behind `closest` have it: the surface on the ray's side, as functions of users are
-// given it, and what its material does with light there.
+// What a ray has met: the hit, its surface on the side that the ray comes from, the media on both sides of it, and
+// what its material does with light. The stages hit, aov and shade share it.
 #ifndef HOOK_MET_GLSL
 #define HOOK_MET_GLSL
 

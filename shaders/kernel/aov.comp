@@ -24,11 +24,11 @@ void main()
     id = alive ? id : 0u;
     uint status = 0u;
     Met met = fetch_met(id, alive, false, status);
-    bool lost = false; // that is told by the stage that shades
+    bool lost = false; // shade.comp reports it
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
         fetch_changed(id, met.s, lost);
     look_at(met);
-    record_for(id, alive); // what functions before do is told by the stages that these are of
+    record_for(id, alive); // values of dbg(x) in camera() are recorded by closest.comp, in surface() by hit.comp
     for (uint i = 0u; i < SPEC_AOVS; i++) {
         begin_hook();
         vec4 value = aov(i, met.s);

@@ -14,6 +14,7 @@
 
 layout(local_size_x_id = 0) in;
 
+// Fields of the surface that surface() may not change stay; a normal that is no direction does too.
 void change_surface(uint id, bool alive, inout Surface s)
 {
     Surface changed = s;
@@ -40,7 +41,7 @@ void main()
     uint id = fetch_listed_hit(alive ? item : 0u);
     id = alive ? id : 0u;
     uint status = 0u;
-    record_for(id, false); // the camera's function is told of where it aims first
+    record_for(id, false); // values of dbg(x) in camera() are recorded by closest.comp
     Met met = fetch_met(id, alive, false, status);
     record_for(id, alive);
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)

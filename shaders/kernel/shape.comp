@@ -30,7 +30,7 @@ ShapeRay generation_ray()
     ShapeRay asked;
     asked.alive = id != ITEM_NONE;
     asked.at = asked.alive ? id : 0u;
-    record_for(asked.at, false); // the camera's function is told of where it aims first
+    record_for(asked.at, false); // values of dbg(x) in camera() are recorded by closest.comp
     Ray ray = fetch_ray(asked.at, slot);
     count_camera(0u, is_primary());
     uvec2 pixel = slot_pixel(slot);
