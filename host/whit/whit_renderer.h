@@ -102,7 +102,7 @@ typedef struct whit_renderer_params {
        faster. */
     bool many_pictures;
     /* If nothing but post() of `shader` and what it has beside the colour have changed since the
-       renderer's last picture (no other kernel, slider or parameter), and none of its functions
+       renderer's last picture (no other kernel, slider or parameter), and neither
        traces, the colours are not drawn once more: post() is given those of the last picture, and
        for values beside the colour camera rays alone are traced. The picture is the same;
        whit_stats are those of the last one. */
