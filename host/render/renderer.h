@@ -545,6 +545,8 @@ bool reuse_is_possible(const struct renderer *renderer);
 WHIT_CHECK whit_result reuse_render(struct renderer *renderer);
 /* After a picture was drawn: notes of which view, samples and sliders its colours are. */
 void reuse_note(struct renderer *renderer);
+/* Whether the picture that is kept stays what it is also where the next one is cancelled. */
+bool reuse_outlives(const struct renderer *renderer);
 
 /* retarget.c: buffers of pixels for the picture as it is now, in place of those that there are. */
 WHIT_CHECK whit_result retarget_pixels(struct renderer *renderer);

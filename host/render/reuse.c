@@ -5,6 +5,8 @@
 
 #include "render/renderer.h"
 
+/* Who shows a step is done with a quarter of the pixels sooner than with all of them. */
+enum { STEP_FIRST = 2 };
 enum { BLOCKS_AT_ONCE = 4096 }; /* below the 2^14 that slot_pixel() of the kernels divides right */
 
 static void describe(const struct renderer *renderer, struct kept_view *of)
@@ -51,12 +53,25 @@ void reuse_note(struct renderer *renderer)
     memcpy(kept->timed, picture->timed, sizeof kept->timed);
 }
 
-bool reuse_is_possible(const struct renderer *renderer)
+static bool keeps_view(const struct renderer *renderer)
 {
     struct kept_view wanted;
     describe(renderer, &wanted);
-    return renderer->params.reuse_rays && renderer->kept.known && can_keep(renderer) &&
+    return renderer->kept.known && can_keep(renderer) &&
            memcmp(&renderer->kept.view, &wanted, sizeof wanted) == 0;
+}
+
+bool reuse_is_possible(const struct renderer *renderer)
+{
+    return renderer->params.reuse_rays && keeps_view(renderer);
+}
+
+/* One sample of each pixel is written once, and in the same view it is what stands there already.
+ */
+bool reuse_outlives(const struct renderer *renderer)
+{
+    return keeps_view(renderer) && renderer->params.sampling.count == 1 &&
+           !steps_are_wanted(renderer);
 }
 
 static void dispatch_post(struct renderer *renderer, struct gpu_chunk *chunk)
@@ -126,7 +141,7 @@ whit_result reuse_render(struct renderer *renderer)
     if (has(renderer, STAGE_POST))
         result = draw_post(renderer);
     if (result == WHIT_OK && steps && !waits)
-        result = steps_give(renderer, 1); /* all of what is shown is there */
+        result = steps_give(renderer, STEP_FIRST);
     if (result == WHIT_OK && draws)
         result = draw_aovs(renderer, steps && waits);
     kept->aovs = result == WHIT_OK || !draws;

@@ -377,6 +377,7 @@ whit_result render_all(struct renderer *renderer)
         result = renderer_compile(renderer);
     if (result == WHIT_OK && reuse_is_possible(renderer))
         return reuse_render(renderer);
+    bool outlives = result == WHIT_OK && reuse_outlives(renderer);
     renderer->kept.known = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->color, params->width, rows, 4, false);
@@ -403,6 +404,8 @@ whit_result render_all(struct renderer *renderer)
     renderer->rendered = result == WHIT_OK;
     if (renderer->rendered)
         reuse_note(renderer);
+    else if (result == WHIT_ERROR_CANCELLED)
+        renderer->kept.known = outlives;
     return result;
 }
 

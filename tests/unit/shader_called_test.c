@@ -295,6 +295,70 @@ TEST_BY_TURNS(rays_are_taken_again_for_the_same_view, 0, 2)
     whit_shader_destroy(shader);
 }
 
+enum { CALLS_BEFORE_STOP = 3 };
+
+static struct {
+    uint32_t calls;
+    bool stop;
+} stopping;
+
+static void count_until_stop(void *user, double done)
+{
+    bool stops = *(bool *)user;
+    stopping.stop = ++stopping.calls >= CALLS_BEFORE_STOP && stops && done < 1.0;
+}
+
+/* Whether a post() of `samples` samples has to trace rays behind a picture that was cancelled. */
+static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders[2],
+                                    whit_image **out)
+{
+    bool stops = false;
+    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer *renderer;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.tile_size = 16;
+    params.sampling.count = samples;
+    params.shader = shaders[0];
+    params.reuse_rays = true;
+    params.progress = count_until_stop;
+    params.progress_user = &stops;
+    params.cancel = &stopping.stop;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    params.reuse_rays = false;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    stopping.calls = 0;
+    stops = true;
+    assert_int_equal(whit_renderer_render(renderer), WHIT_ERROR_CANCELLED);
+    stops = stopping.stop = false;
+    params.reuse_rays = true;
+    params.shader = shaders[1];
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+    bool traces = draw_in_place(renderer, &stopping.calls, out);
+    whit_renderer_destroy(renderer);
+    return traces;
+}
+
+/* A picture of one sample writes what stands there in the same view, so that the rest of it stays
+   of use where it is cancelled; sums of several samples are not whole then. */
+TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
+{
+    whit_shader *const shaders[2] = {load(POST("c")), load(POST("c.bgr"))};
+    whit_image *in_place, *alone;
+    uint64_t compiled;
+    uint32_t kernels;
+    assert_false(traces_behind_cancelled(1, shaders, &in_place));
+    alone = draw(shaders[1], 0, &compiled, &kernels);
+    assert_same(in_place, alone);
+    whit_image_destroy(alone);
+    whit_image_destroy(in_place);
+    assert_true(traces_behind_cancelled(4, shaders, &in_place));
+    whit_image_destroy(in_place);
+    whit_shader_destroy(shaders[0]);
+    whit_shader_destroy(shaders[1]);
+}
+
 /* The picture without the shader has the lights that the shader does not ask for. */
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
