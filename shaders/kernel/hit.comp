@@ -46,8 +46,8 @@ void main()
     record_for(id, alive);
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
         change_surface(id, alive, met.s);
-    Optics o = look_at(met);
     if ((SPEC_HOOKS & HOOK_SHADE) != 0u) {
+        Optics o = look_at(met);
         begin_hook();
         vec3 light = shade(met.s, o, -met.ray.dir);
         end_hook(true);
