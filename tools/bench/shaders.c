@@ -52,15 +52,24 @@ static const char broken[] = "vec3 miss(vec3 dir) { return vec3(%.9g) + dirr; }\
    one, by what is drawn. Nothing is asked of other scenes. */
 static const double FIRST_MUST_S = 0.15, FIRST_TRACES_MUST_S = 0.35;
 static const double INTERSECT_MUST_S = 1.2;
+static const double ERROR_MUST_S = 0.05, FUEL_MUST = 1.02, TESTS_MUST_S = 2.0;
 static const struct stage_must {
     const char *scene;
     double whole_s;
 } musts[] = {{"34k", 0.6}, {"default", 1.2}};
 enum { MUSTS = sizeof musts / sizeof *musts };
 
+enum { TESTS = 10, CHECKS_EACH = 100 };
+
+/* What of a scene has a bar, beside its saves; 0: not run. */
+struct reached {
+    double saves_ms[EDITS][2]; /* p95 to the first and the whole picture */
+    double error_ms, fuel, tests_ms;
+};
+
 struct saves {
     struct bench *bench;
-    double reached_ms[MUSTS][EDITS][2]; /* p95 to the first and the whole picture; 0: not run */
+    struct reached reached[MUSTS];
     struct bench_scene loaded;
     whit_accel *accel;
     whit_shader_compiler *compiler;
@@ -70,7 +79,7 @@ struct saves {
     double start_ms;
     whit_shader *looping[2];
     whit_renderer *renderers[2]; /* with fuel, and trusted */
-    struct sample_runs loops[2], errors;
+    struct sample_runs loops[2], errors, tests;
 };
 
 static whit_result save(struct saves *s, const char *form)
@@ -347,15 +356,24 @@ static void put_row(struct table *table, const char *scene, const struct edited 
     table_keep(table, row);
 }
 
+/* NULL: nothing is asked of the scene. */
+static struct reached *reached_of(struct saves *s, const char *scene)
+{
+    for (int i = 0; i < MUSTS; ++i) {
+        if (strcmp(musts[i].scene, scene) == 0)
+            return &s->reached[i];
+    }
+    return NULL;
+}
+
 static void keep_reached(struct saves *s, const char *scene, uint32_t edit,
                          const struct save_times *times)
 {
-    for (int i = 0; i < MUSTS; ++i) {
-        if (strcmp(musts[i].scene, scene) == 0) {
-            s->reached_ms[i][edit][0] = quantile(&times->first, 0.95);
-            s->reached_ms[i][edit][1] = quantile(&times->whole, 0.95);
-        }
-    }
+    struct reached *reached = reached_of(s, scene);
+    if (!reached)
+        return;
+    reached->saves_ms[edit][0] = quantile(&times->first, 0.95);
+    reached->saves_ms[edit][1] = quantile(&times->whole, 0.95);
 }
 
 /* Errors are those of the first function alone: the file that is broken is the same. */
@@ -414,6 +432,77 @@ static whit_result measure_fuel(struct saves *s, struct table *table, const char
               "with --trust; the median ratio is %.3f.",
               scene, ratio.count, sample_of(&s->loops[0]).median, sample_of(&s->loops[1]).median,
               sample_of(&ratio).median);
+    if (reached_of(s, scene))
+        reached_of(s, scene)->fuel = sample_of(&ratio).median;
+    return WHIT_OK;
+}
+
+/* ---- Tests ---- */
+
+/* Other numbers in each file, so that no cache has the kernel. */
+static whit_result write_tests(struct saves *s)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *to = open_memstream(&text, &bytes);
+    if (!to)
+        return WHIT_ERROR_MEMORY;
+    s->number += TESTS * CHECKS_EACH;
+    for (uint32_t i = 0; i < TESTS; ++i) {
+        fprintf(to, "//@ test\nvoid t%u(uint seed)\n{\n    float x = float(seed);\n", i);
+        for (uint32_t k = 0; k < CHECKS_EACH; ++k)
+            fprintf(to, "    check(x * %.9g >= x);\n", 1.0 + 1e-6 * (s->number - i * k));
+        fprintf(to, "}\n");
+    }
+    fprintf(to, "vec3 miss(vec3 dir) { return dir; }\n");
+    whit_result result =
+        fclose(to) == 0 ? whit_file_write(s->path, text, bytes, &cli_log) : WHIT_ERROR_MEMORY;
+    free(text);
+    return result;
+}
+
+/* From a file to what its checks have found. */
+static whit_result run_tests(struct saves *s, whit_shader **shader, whit_renderer **renderer)
+{
+    static whit_check_result results[TESTS * CHECKS_EACH];
+    double compile_ms, run_ms;
+    whit_result result = whit_shader_load(s->compiler, s->path, false, shader);
+    if (result == WHIT_OK)
+        result = whit_shader_compile_tests(s->compiler, *shader);
+    const whit_renderer_params params = params_of(s, *shader);
+    if (result == WHIT_OK)
+        result = whit_renderer_create(s->bench->device, s->accel, &params, renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_run_tests(*renderer, results, &compile_ms, &run_ms);
+    for (int i = 0; result == WHIT_OK && i < TESTS * CHECKS_EACH; ++i) {
+        if (!results[i].reached || results[i].failed)
+            result = WHIT_ERROR_FAILED;
+    }
+    return result;
+}
+
+static whit_result measure_tests(struct saves *s, struct table *table, const char *scene)
+{
+    whit_result result = WHIT_OK;
+    s->tests.count = 0;
+    for (uint32_t i = 0; result == WHIT_OK && i < s->bench->ask.runs; ++i) {
+        whit_shader *shader = NULL;
+        whit_renderer *renderer = NULL;
+        result = write_tests(s);
+        double start_ms = whit_clock_ms();
+        if (result == WHIT_OK)
+            result = run_tests(s, &shader, &renderer);
+        sample_add(&s->tests, whit_clock_ms() - start_ms);
+        whit_renderer_destroy(renderer);
+        whit_shader_destroy(shader);
+    }
+    if (result != WHIT_OK)
+        return result;
+    table_say(table, "%s, %d checks of %d seeds, from the file on: p50 %.0f ms, p95 %.0f ms of %u.",
+              scene, TESTS * CHECKS_EACH, WHIT_TEST_SEEDS, quantile(&s->tests, 0.5),
+              quantile(&s->tests, 0.95), s->tests.count);
+    if (reached_of(s, scene))
+        reached_of(s, scene)->tests_ms = quantile(&s->tests, 0.95);
     return WHIT_OK;
 }
 
@@ -430,12 +519,16 @@ static whit_result run_scene(struct saves *s, struct table *table, const char *s
         table_say(table,
                   "%s, from a save to its error in the window: p50 %.0f ms, p95 %.0f ms of %u.",
                   scene, quantile(&s->errors, 0.5), quantile(&s->errors, 0.95), s->errors.count);
+    if (result == WHIT_OK && reached_of(s, scene))
+        reached_of(s, scene)->error_ms = quantile(&s->errors, 0.95);
     if (result == WHIT_OK)
         result = bench_load(path, &s->loaded);
     if (result == WHIT_OK)
         result = whit_accel_create(s->loaded.scene, NULL, &s->accel);
     if (result == WHIT_OK)
         result = measure_fuel(s, table, scene);
+    if (result == WHIT_OK)
+        result = measure_tests(s, table, scene);
     whit_accel_destroy(s->accel);
     s->accel = NULL;
     bench_unload(&s->loaded);
@@ -458,19 +551,38 @@ static void put_must(struct table *table, const struct stage_must *must, const s
     }
 }
 
+static void put_rest(struct table *table, const struct stage_must *must,
+                     const struct reached *reached)
+{
+    const struct {
+        const char *what, *unit;
+        double value, must;
+    } rows[] = {{"error", "s", reached->error_ms * 1e-3, ERROR_MUST_S},
+                {"fuel, median", "", reached->fuel, FUEL_MUST},
+                {"1000 checks", "s", reached->tests_ms * 1e-3, TESTS_MUST_S}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+        char name[80];
+        snprintf(name, sizeof name, "%s: %s", must->scene, rows[i].what);
+        table_goal(table, "save", name, rows[i].value, rows[i].unit,
+                   (struct goal){rows[i].must, rows[i].must, false});
+    }
+}
+
 static whit_result judge(const struct saves *s)
 {
     static const char *const heads[] = {"save", NULL};
     struct table table;
     bool has_any = false;
     for (int i = 0; i < MUSTS; ++i)
-        has_any |= s->reached_ms[i][0][0] > 0.0;
+        has_any |= s->reached[i].saves_ms[0][0] > 0.0;
     if (!has_any)
         return WHIT_OK;
     table_begin(&table, s->bench, "shaders_goals", heads, true, 1);
     for (int i = 0; i < MUSTS; ++i) {
-        for (uint32_t k = 0; k < EDITS && s->reached_ms[i][k][0] > 0.0; ++k)
-            put_must(&table, &musts[i], &edits[k], s->reached_ms[i][k]);
+        for (uint32_t k = 0; k < EDITS && s->reached[i].saves_ms[k][0] > 0.0; ++k)
+            put_must(&table, &musts[i], &edits[k], s->reached[i].saves_ms[k]);
+        if (s->reached[i].tests_ms > 0.0)
+            put_rest(&table, &musts[i], &s->reached[i]);
     }
     return table_end(&table, "What 95 % of the saves must reach", WHIT_OK);
 }
