@@ -1,9 +1,9 @@
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "api/handles.h"
 #include "base/array.h"
+#include "base/same.h"
 #include "image/display.h"
 #include "image/flip.h"
 #include "image/heat.h"
@@ -83,7 +83,7 @@ void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params)
 {
-    image->image.display_scale = (float)exp2(params->exposure_ev);
+    image->image.display_scale = (float)same_pow(2.0, params->exposure_ev);
     image->image.display_soft = params->soft_highlights;
 }
 

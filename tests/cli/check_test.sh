@@ -1,7 +1,8 @@
 #!/bin/sh
-# whit check: verdicts and exit codes, what is accepted and why, bad suites and goldens.
+# whit check: verdicts and exit codes, what is accepted and why, bad suites and goldens. sh TEST WHIT SCENES LEAKY
 . "$(dirname "$0")/common.sh"
 needs jq
+LEAKY=$3
 cd "$OUT" || exit 1
 cp "$SCENES/cube.json" "$SCENES/balls.json" .
 
@@ -110,6 +111,9 @@ check "with what is" grep -q "line 7 expects pixel(0,0).instance == \"cube\", it
 check "they are no difference" grep -qx "1 case, 1 unmet" stdout
 expect 1 "what is not as expected" check hopes.whit --accept all
 check "is not accepted" grep -qx "1 case, 1 unmet" stdout
+printf 'cube cube.json --size 16x12\ncube expect leaks == 0\n' >leaks.whit
+"$LEAKY" check leaks.whit --accept all >stdout 2>stderr
+check "leaks are those of portable kernels" grep -qx "1 case, 1 accepted" stdout
 
 # Bad input.
 printf 'a cube.json\nb nowhere.json\nc cube.json -o x.png\n' >bad.whit

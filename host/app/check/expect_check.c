@@ -166,6 +166,7 @@ static whit_result read_leaks(drawing_t *drawing, expectation_t *one, struct exp
                                           .height = picture->height,
                                           .camera = picture->camera,
                                           .time_s = picture->time_s,
+                                          .portable = picture->portable,
                                           .numerics = picture->numerics,
                                           .instances = drawing->job.settings.trees.instances};
     uint64_t wrong = 0, other = 0;
