@@ -120,6 +120,9 @@ printf 'a cube.json\nb nowhere.json\nc cube.json -o x.png\n' >bad.whit
 expect 2 "two wrong lines" check bad.whit
 check "both are told" test "$(grep -c '^whit: error: bad.whit:[23]: ' stderr)" -eq 2
 check "nothing is drawn" test ! -s stdout
+sed -n 's/^ *REFUSED("\([^"]*\)".*/--\1/p' "$SCENES/../host/app/check/case_options.c" >refused
+check "each option that no case may have is in docs/check.md" test "$(wc -l <refused)" -gt 20 -a \
+    "$(while read -r option; do grep -qF -- "\`$option\`" "$SCENES/../docs/check.md" || echo "$option"; done <refused)" = ""
 refuse 2 "no suite" "a suite is missing" check
 refuse 2 "no such suite" "nowhere.whit: there is no such file" check nowhere.whit
 refuse 2 "no such case" "looks.whit has no such case" check looks.whit --accept cube nothing

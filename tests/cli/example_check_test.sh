@@ -76,7 +76,7 @@ follow() {
     check "all packages" test "$(grep -c . own/packages 2>/dev/null)" = "$(grep -c ^run "$SOURCE/tools/packages")"
     check "built and installed" test -n "${DESTDIR:-}" -o "$(grep -c . own/built 2>/dev/null)" = 3
 }
-awk '/^On a Debian/ { on = 1 } on && /^    / { print } on && /^    whit check looks.whit$/ { exit }' \
+awk '/^On Debian 12, / { on = 1 } on && /^    / { print } on && /^    whit check looks.whit$/ { exit }' \
     "$SOURCE/docs/check.md" >lines
 check "five lines" test "$(grep -c . lines)" -eq 5
 follow lines
