@@ -1,8 +1,12 @@
 /* A traversal on the CPU that loses a ray now and then: `whit hard` has to find out. And a device
-   whose kernels that are not portable lose one: `whit check` asks it for portable ones. */
+   whose kernels that are not portable lose one: `whit check` asks it for portable ones. With
+   WHIT_TEST_REFUSED no kernel can be made portable: who asks for one is told. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "accel/accel.h"
+#include "shader/portable.h"
 #include "twin/traverse.h"
 #include "whit.h"
 
@@ -37,4 +41,22 @@ whit_result __wrap_whit_hard_view(whit_device *device, const whit_scene *scene,
         __real_whit_hard_view(device, scene, params, log, wrong_pixels, other_pixels, out);
     *wrong_pixels += params == NULL || !params->portable;
     return result;
+}
+
+whit_result __real_shader_make_portable(const struct portable_params *params, const uint32_t *words,
+                                        size_t word_count, uint32_t **out, size_t *out_words,
+                                        char why[PORTABLE_WHY_BYTES]);
+whit_result __wrap_shader_make_portable(const struct portable_params *params, const uint32_t *words,
+                                        size_t word_count, uint32_t **out, size_t *out_words,
+                                        char why[PORTABLE_WHY_BYTES]);
+
+whit_result __wrap_shader_make_portable(const struct portable_params *params, const uint32_t *words,
+                                        size_t word_count, uint32_t **out, size_t *out_words,
+                                        char why[PORTABLE_WHY_BYTES])
+{
+    if (!getenv("WHIT_TEST_REFUSED"))
+        return __real_shader_make_portable(params, words, word_count, out, out_words, why);
+    snprintf(why, PORTABLE_WHY_BYTES, "portable kernels are refused");
+    *out = NULL;
+    return WHIT_ERROR_INPUT;
 }

@@ -1,8 +1,9 @@
 #!/bin/sh
 # --portable: pictures are the same bytes by the device's own division and by whit's, at every level of
-# numerics (exact hits and layers of glass with `all` as the third argument), and where functions of users stand in
-# kernels; what has no portable form is refused.
+# numerics (exact hits and layers of glass with `all` as the fourth argument), and where functions of users stand in
+# kernels; what has no portable form is refused. sh TEST WHIT SCENES LEAKY [all]
 . "$(dirname "$0")/common.sh"
+LEAKY=$3
 
 # both NAME SCENE OPTIONS...: twice, without the device's own division and root in the second.
 both() {
@@ -18,7 +19,7 @@ both() {
 }
 if part 0 2; then both fast "$CUBE" --numerics fast; fi
 if part 1 2; then both watertight "$SCENES/balls.json"; fi
-if [ "${3:-}" = all ]; then
+if [ "${4:-}" = all ]; then
     both layers "$SCENES/layers.json"
     both exact "$CUBE" --numerics exact
 fi
@@ -42,11 +43,33 @@ END
 both "all functions" "$CUBE" --shader "$OUT/all.glsl"
 
 for call in 'determinant(mat3(s.p, s.ns, s.p))' 'ldexp(s.p.x, 2)'; do
-    name=${call%%(*}
-    printf '%s\n' "vec3 unused(vec3 p) { return sinh(p); }" '' "vec3 other(Surface s) {" "    return vec3($call);" '}' \
-        "vec3 shade(Surface s, Optics o, vec3 to_eye) { return other(s); }" >"$OUT/none.glsl"
+    name=${call%%(*} at=none
+    [ "$name" = ldexp ] && at=included
+    printf '%s\n' "vec3 unused(vec3 p) { return sinh(p); }" '' "vec3 other(Surface s) {" "    return vec3($call);" '}' >"$OUT/$at.glsl"
+    [ $at = none ] || echo "#include \"$at.glsl\"" >"$OUT/none.glsl"
+    echo "vec3 shade(Surface s, Optics o, vec3 to_eye) { return other(s); }" >>"$OUT/none.glsl"
     set -- render "$CUBE" --size 16x16 -q --shader "$OUT/none.glsl" -o "$OUT/none.pfm"
-    refuse 2 "$name" "none.glsl:4: $name has no portable form" "$@" --portable on
+    refuse 2 "$name" "$at.glsl:4: $name has no portable form" "$@" --portable on
     check "$name: no picture" test ! -e "$OUT/none.pfm"
 done
+
+# A probe and rays are portable where the picture is.
+echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return sin(s.p * 9.0); }' >"$OUT/sin.glsl"
+set -- "$CUBE" --size 48x36 -q --shader "$OUT/sin.glsl" --portable on
+expect 0 "a picture of sines" render "$@" -o "$OUT/sin.pfm"
+at=$(($(wc -c <"$OUT/sin.pfm") - (18 * 48 + 24) * 12)) # of 24,18: rows are from below
+drawn=$(od -An -tf4 -j $at -N 12 "$OUT/sin.pfm")
+expect 0 "a probe of it" probe "$@" --pixel 24,18
+probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
+check "has its colour, to the last bit ($probed;$drawn)" sh -c 'echo "$1 $2" | awk "{
+    for (i = 1; i <= 3; i++) { d = \$i - \$(i + 3); if (d * d > 9e-16) exit 1 }
+    exit NF != 6 }"' sh "$drawn" "$probed"
+printf '\0\0\0\0\0\0\200\100\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\277\0\0\0\0\0\0\200\177' >"$OUT/rays"
+set -- trace "$CUBE" --input "$OUT/rays" -o "$OUT/hits" -q
+"$LEAKY" "$@" 2>"$OUT/stderr"
+check "rays: exit code 0" test $? -eq 0
+rm "$OUT/hits"
+WHIT_TEST_REFUSED=1 "$LEAKY" "$@" --portable on 2>"$OUT/stderr"
+check "rays by portable kernels, which this library refuses: exit code 2 or 3" test $? -gt 1
+check "says so" grep -q "portable kernels are refused" "$OUT/stderr"
 exit $FAILED

@@ -16,7 +16,7 @@
 #include "kernels.h"
 #include "unit.h"
 
-enum { BATCH = 1 << 18, RANDOM = 1 << 17, SPECIAL_MAX = 64 };
+enum { BATCH = 1 << 18, RANDOM = 1 << 17, SPECIAL_MAX = 80 };
 
 struct row {
     const char *name;
@@ -61,7 +61,25 @@ static double larger(double x, double y)
     return x < y ? y : x;
 }
 
+/* The whole number that there is next to it; 0 for NaN. */
+static double whole(double x, double least, double most)
+{
+    return isnan(x) ? 0.0 : trunc(x < least ? least : x > most ? most : x);
+}
+
+static double to_int(double x)
+{
+    return whole(x, -2147483648.0, 2147483647.0);
+}
+
+static double to_uint(double x)
+{
+    return whole(x, 0.0, 4294967295.0);
+}
+
 static const struct row rows[] = {
+    {"int", PORTABLE_INT, to_int, NULL, 0.0},
+    {"uint", PORTABLE_UINT, to_uint, NULL, 0.0},
     {"sum", PORTABLE_SUM, NULL, sum, 0.5},
     {"product", PORTABLE_PRODUCT, NULL, product, 0.5},
     {"divide", PORTABLE_DIVIDE, NULL, divide, 0.5},
@@ -164,7 +182,7 @@ static uint32_t make_special(uint32_t bits[SPECIAL_MAX])
                                    127.0f,        128.0f,        149.0f,      150.0f,
                                    88.75f,        104.0f,        0x1p24f,     0x1p31f,
                                    0x1.921fb6p0f, 0x1.921fb6p1f, 0x1p100f,    0x1.fffffep127f,
-                                   INFINITY,      0x1p-127f};
+                                   INFINITY,      0x1p-127f,     0x1p32f};
     uint32_t count = 0;
     for (size_t i = 0; i < sizeof values / sizeof *values; ++i) {
         bits[count++] = as_bits(values[i]);
@@ -174,6 +192,14 @@ static uint32_t make_special(uint32_t bits[SPECIAL_MAX])
     bits[count++] = 0x7f800001;
     bits[count++] = 0xffc00123;
     return count;
+}
+
+/* Of the answer beside the exact one; of whole numbers 0, or infinite. */
+static double answer_error(const struct row *row, uint32_t answer, double exact)
+{
+    if (row->function == PORTABLE_INT || row->function == PORTABLE_UINT)
+        return answer == (uint32_t)(int64_t)exact ? 0.0 : INFINITY;
+    return error_ulp(as_float(answer), exact);
 }
 
 struct tally {
@@ -193,7 +219,7 @@ static void judge(const struct row *row, uint32_t count, struct tally *tally)
             continue; /* the device's own operation gives whatever NaN it likes */
         double error = copies && isnan(exact) && isnan(as_float(answers[0][i]))
                            ? 0.0
-                           : error_ulp(as_float(answers[0][i]), exact);
+                           : answer_error(row, answers[0][i], exact);
         bool nan = isnan(as_float(answers[0][i])) && isnan(as_float(answers[1][i]));
         tally->apart += answers[0][i] != answers[1][i] && !nan;
         ++tally->tried;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "kernels.h"
+#include "shader/portable.h"
 #include "shader_fixture.h"
 #include "sources.h"
 
@@ -42,6 +43,48 @@ TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_
         shader_code_free(&code);
     }
     assert_string_equal(logged, "");
+}
+
+/* Each of them, where it stands alone. */
+TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
+{
+    static const char *const calls[] = {"sinh(x)",
+                                        "cosh(x)",
+                                        "tanh(x)",
+                                        "asinh(x)",
+                                        "acosh(x)",
+                                        "atanh(x)",
+                                        "determinant(mat2(x))",
+                                        "inverse(mat2(x))[0].x",
+                                        "modf(x, w)",
+                                        "frexp(x, e)",
+                                        "ldexp(x, n)",
+                                        "float(packSnorm4x8(vec4(x)))",
+                                        "float(packUnorm4x8(vec4(x)))",
+                                        "float(packSnorm2x16(vec2(x)))",
+                                        "float(packUnorm2x16(vec2(x)))",
+                                        "float(packHalf2x16(vec2(x)))",
+                                        "unpackSnorm2x16(uint(n)).x",
+                                        "unpackHalf2x16(uint(n)).x",
+                                        "unpackSnorm4x8(uint(n)).x"};
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; ++i) {
+        char text[256], why[PORTABLE_WHY_BYTES], name[64] = "";
+        const struct portable_params params = {.own_division = true};
+        struct shader_code code;
+        uint32_t *words;
+        size_t count;
+        const char *at = strncmp(calls[i], "float(", 6) == 0 ? calls[i] + 6 : calls[i];
+        snprintf(name, sizeof name, "%.*s has no portable form", (int)strcspn(at, "("), at);
+        snprintf(text, sizeof text,
+                 "float f(float x, int n) { float w = x; int e = n; return %s + w + float(e); }\n",
+                 calls[i]);
+        assert_int_equal(compile_files(text, NULL, false, &code), WHIT_OK);
+        assert_int_equal(
+            shader_make_portable(&params, code.words, code.bytes / 4, &words, &count, why),
+            WHIT_ERROR_INPUT);
+        assert_string_equal(why, name);
+        shader_code_free(&code);
+    }
 }
 
 TEST(all_shaders_are_embedded_as_they_are)
