@@ -27,12 +27,14 @@ v 1 1 0.5
 f 1 2 3
 f 2 4 3
 END
-echo 'vec3 post(ivec2 at, vec3 color) { return color; }' >work/suite/post.glsl
+printf '//@ slider gain 0 4 1\n#include "tint.glsl"\nvec3 post(ivec2 at, vec3 color) { return tint(color) * gain; }\n' >work/suite/post.glsl
+echo 'vec3 tint(vec3 color) { return color; }' >work/suite/tint.glsl
 (cd work/suite && for name in vertex gone two plain; do sed "s/tent.obj/$name.obj/" a.json >$name.json; cp tent.obj $name.obj; done)
 cat >work/suite/looks.whit <<'END'
 material a.json --size 48x36
 option plain.json --size 48x36 --depth 5
 functions plain.json --size 48x36 --shader post.glsl
+slider plain.json --size 48x36 --shader post.glsl --set gain=2
 {vertex,gone,two} {}.json --size 48x36
 new a.json --size 32x24
 END
@@ -48,19 +50,26 @@ refuse 2 "an option for a revision" "base --help: no revision" check suite/looks
 edit() { sed -i "$2" "suite/$1"; }
 edit a.json 's/"ior": 1.5/"ior": 1.6/; s/"diffuse": \[0.5/"diffuse": [0.9/; /"tent"/s/-1, 0, 0/9, 0, 9/'
 edit looks.whit 's/--depth 5/--depth 1/'
-edit post.glsl 's/return color/return color * 2.0/'
+edit tint.glsl 's/return color/return color * 2.0/'
+edit looks.whit 's/gain=2/gain=3/'
 edit vertex.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
 edit gone.json '/"name": "floor", "shape"/d'
 edit two.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
 edit two.json 's/"intensity": 20/"intensity": 21/; s/#202020/#203020/'
+expect 1 "without a base" check suite/looks.whit --only slider
+check "a file that is included and a slider are told" grep -q '; input changed: functions of .*, `plain.json .*--set gain=3`, was `plain.json .*--set gain=2`$' \
+    "$OUT/stdout"
 expect 1 "all of it" check suite/looks.whit --base HEAD --report page.html
 cp "$OUT/stdout" "$OUT/said"
-check "the page has what was" test "$(grep -o "\"before\":\"data:image/png" page.html | wc -l)" -eq 6
+check "the page has what was" test "$(grep -o "\"before\":\"data:image/png" page.html | wc -l)" -eq 7
+check "its causes, and commands" test "$(grep -o '"cause":"[0-9]* pixels other' page.html | wc -l)" -eq 7 -a \
+    "$(grep -o '"command":"whit render ' page.html | wc -l)" -eq 8
 # says CASE PATTERN
 says() { check "$1: \`$2\`" grep -q "^$1: differs: .*$2" "$OUT/said"; }
 says material 'cause: material "glass", ior from 1.5 to 1.6; and objects, node "tent" moved by 13; input changed, picture same: material "unused"; pixel [0-9]*,[0-9]*: '
 says option 'cause: --depth from 5 to 1; pixel'
 says functions 'cause: functions of suite/post.glsl; pixel'
+says slider 'cause: --set from gain=2 to gain=3; and functions of suite/post.glsl; pixel'
 says vertex ' pixels other, [0-9]* hit something else; cause: mesh "vertex.obj", vertex 3 moved by 0.25; pixel [0-9]*,[0-9]*: was nothing, is vertex.obj 1 at [0-9.]*$'
 says gone 'cause: objects, mesh "floor" is gone, .*, is nothing$'
 says two 'cause: mesh "two.obj", vertex 3 .*; and material "floor", texture of diffuse from "checker #ffffff #202020" to "checker #ffffff #203020"; and light "lamp", colour from 20 20 20 to 21 21 21; pixel'

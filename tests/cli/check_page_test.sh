@@ -48,6 +48,8 @@ if command -v chromium >/dev/null || command -v chromium-browser >/dev/null; the
     dom "$OUT/seen.html"
     check "by its script: two articles" test "$(count '<article>')" -eq 2
     check "and six pictures" test "$(count '<img ')" -eq 6
+    check "with the cause, and the command" test "$(count '<li>input changed: light ')" -eq 2 -a \
+        "$(count '<pre>whit render cube.json --size ')" -eq 2
     check "nothing stands for what is not there but what was not kept" test "$(count 'class="none"')" -eq 1
     look "$OUT/seen.html"
     check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0

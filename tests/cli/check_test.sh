@@ -93,6 +93,13 @@ cube cube.json --size 64x48
 cube expect pixel(32,24).instance == "cube", pixel(0,0).instance == none, pixel(32,24).t > 1, pixel(0,0).primitive != 0
 cube expect rays > 3072, rays.cut_by_depth == 0, min >= 0, max < 1, pixel(32,24).material == "cube"
 END
+cat >rays.whit <<'END'
+balls balls.json --size 64x48 --depth 1 --bailout 0.1
+balls expect rays.reflected > 200, rays.cut_by_depth > 200, rays.cut_by_bailout > 20, rays.refracted < 200
+balls expect rays.reflected < 200, rays.cut_by_depth < 200, rays.cut_by_bailout < 20
+END
+expect 1 "kinds of rays" check rays.whit
+check "each is what it is" grep -qx "balls: no golden; line 3 expects rays.reflected < 200, it is [2-9]..; line 3 expects rays.cut_by_depth < 200, it is [2-9]..; line 3 expects rays.cut_by_bailout < 20, it is 1.." stdout
 expect 1 "a number that there is none of" check hopes.whit
 check "is none" grep -qx "cube: no golden; line 3 expects pixel(0,0).primitive != 0, it is none" stdout
 sed -i 's/, pixel(0,0).primitive != 0//' hopes.whit
