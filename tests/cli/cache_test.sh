@@ -84,7 +84,28 @@ check "devices: how large" jq -e --argjson size "$(find "$KEPT" -maxdepth 1 -typ
     jq -s add)" '.cache | .why_not == null and .used_bytes == $size and .limit_bytes == 536870912 and
     .mesa_used_bytes > 0 and .mesa_limit == "128M"' "$OUT/stdout"
 check "others cannot look into it any more" test -z "$(find "$KEPT" -maxdepth 0 -perm /077)"
+# What was found out of a device's floats is read by the next run; damaged, or with the text of another file, it is
+# found out anew.
+floats=$(echo "$KEPT"/floats-*)
+found='[.devices[] | select(.kind == "cpu") | .floats] == [{own_division: true, keeps_denormals: true, rounds_nearest: true}]'
+check "devices: floats" jq -e "$found" "$OUT/stdout"
+cp "$floats" "$OUT/floats"
+anew() { # WHAT YES|NO: whether devices writes the file again, as it was.
+    touch -d 2001-01-01 "$floats"
+    before=$(stat -c %i "$floats")
+    run devices --json
+    check "$1: floats" jq -e "$found" "$OUT/stdout"
+    check "$1: found out anew: $2" test "$([ "$(stat -c %i "$floats")" = "$before" ] && echo no || echo yes)" = "$2"
+    check "$1: the file" cmp "$floats" "$OUT/floats"
+    check "$1: counts as new" test -z "$(find "$floats" -mtime +1)"
+}
+anew "kept" no
+printf '\0' | dd of="$floats" bs=1 seek=24 conv=notrunc 2>"$OUT/dd"
+anew "damaged" yes
+cp "$(echo "$KEPT"/reference-* | cut -d ' ' -f 1)" "$floats"
+anew "another file in its place" yes
 WHIT_CACHE_LIMIT=0 run devices
+check "floats as text" grep -qx "     portable  pictures, division by itself" "$OUT/stdout"
 check "the same as text" grep -q "^cache  $KEPT: 0.[0-9] of 0 MiB" "$OUT/stdout"
 
 # ---- Mesa's, by driver version and vector width ----

@@ -3,6 +3,7 @@
 # CI, in which packages are there, and whit is built and installed already, but with `whole`:
 # example_check_test.sh WHIT SCENES CMAKE BUILD [whole]
 . "$(dirname "$0")/common.sh"
+needs jq
 CMAKE=$3
 BUILD=$4
 CTEST=$(dirname "$CMAKE")/ctest
@@ -99,6 +100,14 @@ check "the part is made anew" with "Configuring done" "$CMAKE" --build build
 check "a millimetre more, and a case more: all fail" without "0% tests passed, 4 tests failed out of 4" tests
 check "three differ" test "$(grep -c ": differs: colours other, and what pixels hit" stderr)" -eq 3
 check "one is new" grep -q "^under: no golden" stderr
+
+# Words of the function.
+sed -i '$s/)$/ PREFIX part- LABELS pictures slow TIMEOUT 77)/' part/CMakeLists.txt
+check "a prefix, labels and a time" with "Configuring done" configure build
+"$CTEST" --test-dir build --show-only=json-v1 >tests.json
+check "are those of each test" jq -e '[.tests[] | [.name, (.properties | map({(.name): .value}) | add | .LABELS, .TIMEOUT)]]
+    | length == 4 and .[0] == ["part-front-watertight", ["pictures", "slow"], 77] and all(.[]; .[1:] == [["pictures", "slow"], 77])' tests.json
+sed -i '$s/ PREFIX.*/)/' part/CMakeLists.txt
 
 # What cannot be listed.
 echo 'lost nowhere.stl --sise 9x9' >>part/looks.whit
