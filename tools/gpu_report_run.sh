@@ -4,7 +4,7 @@
 # where it has a C++ library of its own), and no network. Writes nothing but FOLDER (whit-gpu-report), within
 # 8 minutes:
 #     report.txt    all results as text: read this first
-#     devices.json kernels.json hard.json rays.json frame.json    figures of single parts
+#     devices.json check.json kernels.json hard.json rays.json frame.json    figures of single parts
 #     log.txt       what went wrong
 # DEVICE: a number or a part of a name, as in `whit render --device` (auto: the best GPU).
 set -u
@@ -123,6 +123,12 @@ for scene in "$here"/scenes/*.json; do
             "$busybox" tee -a "$report"
     done
 done
+
+say ""
+say "== Portable pictures: cases of whit's own suite, each of which is to be the same bytes as lavapipe's"
+whit 180 check "$here/whit.suite" --root "$here" --device "$device" --time-limit 150 --json "$out/check.json" -q >"$scratch/check.txt"
+say "exit code $?"
+say "$(tail -n 12 "$scratch/check.txt")"
 
 say ""
 say "== Kernels: registers and the like, where the driver tells them"
