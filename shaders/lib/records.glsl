@@ -6,10 +6,14 @@
 // Where a ray has met something.
 struct Surface {
     vec3 p, error; // world; bound of the error of p
-    vec3 ng;       // unit geometric normal, to the outside of closed meshes
+    vec3 ng;       // unit geometric normal: of fetch_surface to the outside of closed meshes, then on the ray's side
     vec3 ns;       // unit shading normal, on the side of ng
-    vec3 e1, e2; // edges from the first vertex, world; of NORMAL_MAPS, MEDIA, TERMINATOR, MINIFICATION
-    vec3 footprint; // of what the ray stands for, see take_footprint; zero: a point
+    // Edges from the first vertex, world units; of a sphere the derivatives of p by u and v. Filled where the scene
+    // calls for normal maps, media, --minification or the shift of smooth shadows.
+    vec3 e1, e2;
+    // The part of the surface that the ray stands for, without unit: its mean square size is the sum of these times
+    // a.a, a.b and b.b, where a and b are what changes along e1 and e2, such as texels. Zero: a point.
+    vec3 footprint;
     vec3 color;              // of the vertices
     float color_alpha;
     uint shade_index; // index among the triangles of all meshes
@@ -24,9 +28,12 @@ struct Optics {
     vec3 diffuse, ambient, highlight, emission;
     vec3 reflected, refracted; // weights of the two rays
     float straight;            // share that passes undisturbed (opacity)
-    float shininess, alpha;    // of Blinn's highlight; of GGX
-    float eta;
-    bool thin, unlit, metal_rough;
+    float shininess; // exponent of Blinn's highlight (n.h)^shininess, 0 and above, without unit
+    float alpha;     // of GGX: roughness squared, 0.02 to 1, without unit
+    float eta;       // index of refraction of the side the ray comes from over that of the other
+    bool thin;       // a sheet without inside: what passes goes straight on
+    bool unlit;      // lights do not count: it sends diffuse and emission
+    bool metal_rough; // the highlight is GGX by alpha, else Blinn's by shininess
 };
 
 // The rays that go on from a surface.
