@@ -15,12 +15,13 @@ vec3 post(ivec2 at, vec3 color)
     return tint(stepped ? ceil(color * bands) / bands : color);
 }
 END
+# hash_of FILE: what whit calls it; its kernels need not be made.
+hash_of() { WHIT_TEST_NO_DEVICE=1 "$WHIT" shader "$1" --json 2>/dev/null | jq -r .hash; }
 # tint NAME COLOUR: live/part/tint.glsl as it will be, and what whit calls it.
 tint() {
     echo "vec3 tint(vec3 c) { return c * vec3($2); }" >"live/part/tint.glsl"
-    "$WHIT" shader live/a.glsl --json >"$OUT/$1.json"
     cp live/part/tint.glsl "$1.new"
-    eval "$1=$(jq -r .hash "$OUT/$1.json")"
+    eval "$1=$(hash_of live/a.glsl)"
 }
 tint green '0.2, 1.0, 0.2'
 tint blue '0.2, 0.2, 1.0'
@@ -197,8 +198,7 @@ END
     sed 's/dbg//g' looks.new >plain.new
     for version in plain looks; do
         cp $version.new live/d.glsl
-        "$WHIT" shader live/d.glsl --json >hash.json
-        eval "$version=$(jq -r .hash hash.json)"
+        eval "$version=$(hash_of live/d.glsl)"
     done
     cp plain.new live/d.glsl
     VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
@@ -219,6 +219,51 @@ END
         esac
     }
     follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
+fi
+
+# ---- Saves that mean harm: the window lives on, with the last good picture ----
+
+if part 1 2; then
+    post() { printf 'vec3 post(ivec2 at, vec3 color)\n{\n%s\n}\n' "$1"; }
+    post '    return color.bgr;' >good.new
+    post '    while (color.r >= 0.0) color.r += 1.0; return color;' >endless.new
+    post '    return vec3(sqrt(-1.0 - color.r));' >nan.new
+    post "    return color * $(head -c 100000 /dev/zero | tr '\0' '(' | fold -w 1000)1.0;" >deep.new
+    { echo '#define B0 color + color' && seq 39 | awk '{ print "#define B" $1 " B" $1 - 1 " + B" $1 - 1 }' &&
+        post '    return B39;'; } >bomb.new
+    for version in gbr grb rrr; do
+        post "    return color.$version;" >$version.new
+        cp $version.new live/h.glsl
+        eval "$version=$(hash_of live/h.glsl)"
+    done
+    cp good.new live/h.glsl
+    steps >"$OUT/replay" <<END
+start: | error =
+until shader.refused = 1
+endless: | error has live/h.glsl:3: | error has fuel | frame.pixels as start
+until shader.refused = 2
+nan: | error has not finite: in | error has h.glsl has functions of this picture | frame.pixels as start
+until shader.refused = 3
+deep: | error has live/h.glsl: | error has too deep | frame.pixels as start
+until shader.refused = 4
+bomb: | error has live/h.glsl: | frame.pixels as start
+until shader.hash = $gbr
+renamed: | error = | frame.pixels not as start | frame.ids as start
+until shader.hash = $rrr
+twice: | error = | frame.pixels not as renamed | frame.ids as start
+END
+    on_state() {
+        case $1 in
+        *'"at":"start"'*) cp endless.new live/h.glsl ;;
+        *'"at":"endless"'*) cp nan.new live/h.glsl ;;
+        *'"at":"nan"'*) cp deep.new live/h.glsl ;;
+        *'"at":"deep"'*) cp bomb.new live/h.glsl ;;
+        *'"at":"bomb"'*) cp gbr.new live/new && mv live/new live/h.glsl ;;
+        *'"at":"renamed"'*) cp grb.new live/h.glsl && cp rrr.new live/h.glsl ;;
+        esac
+    }
+    follow "saves that mean harm" cube.json --size 96x64 --shader live/h.glsl
+    check "the compiler's two errors are told once each" test "$(grep -c 'error: live/h.glsl' "$OUT/stderr")" -eq 2
 fi
 
 # A file that does not compile at the start is an error at once.
