@@ -265,7 +265,7 @@ static void fail_to_draw(const whit_shader *shader, const char *sliders, const c
 TEST_IN(loops_without_end_have_no_picture, begin, end)
 {
     whit_shader *shader =
-        load("//@ choice loop none,for,while,do,nested,camera,shade,miss\n"
+        load("//@ choice loop none,for,while,do,nested,camera,shade,miss,surface,scatter,aov\n"
              "void camera(vec2 at, inout vec3 origin, inout vec3 dir) {\n"
              " for (; loop == loop_camera;) dir.x += 1.0; }\n"
              "vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
@@ -279,19 +279,39 @@ TEST_IN(loops_without_end_have_no_picture, begin, end)
              " do color.r += 1.0; while (loop == loop_do);\n"
              " if (loop == loop_nested) for (int i = 0; i < 1000; ++i)\n"
              "  for (int k = 0; k < 1000; ++k) color.r += 1e-9;\n"
-             " return color; }\n");
+             " return color; }\n"
+             "void surface(inout Surface s) {\n"
+             " while (loop == loop_surface) s.ns.x += 1e-9; }\n"
+             "void scatter(Surface s, Optics o, inout Rays rays) {\n"
+             " while (loop == loop_scatter) rays.reflected += 1e-9; }\n"
+             "//@ aov high\n"
+             "vec4 high(Surface s) {\n"
+             " while (loop == loop_aov) s.p.y += 1e-9; return vec4(s.p.y); }\n");
     float pixels[PIXELS * 4];
     assert_int_equal(draw(shader, "loop=none", pixels), WHIT_OK);
     static const struct {
         const char *name, *place;
-    } cases[] = {{"for", "a.glsl:10: "},    {"while", "a.glsl:11: "}, {"do", "a.glsl:12: "},
-                 {"nested", "a.glsl:14: "}, {"camera", "a.glsl:3: "}, {"shade", "a.glsl:5: "},
-                 {"miss", "a.glsl:8: "}};
+    } cases[] = {{"for", "a.glsl:10: "},    {"while", "a.glsl:11: "},   {"do", "a.glsl:12: "},
+                 {"nested", "a.glsl:14: "}, {"camera", "a.glsl:3: "},   {"shade", "a.glsl:5: "},
+                 {"miss", "a.glsl:8: "},    {"surface", "a.glsl:17: "}, {"scatter", "a.glsl:19: "},
+                 {"aov", "a.glsl:22: "}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char sliders[32];
         snprintf(sliders, sizeof sliders, "loop=%s", cases[i].name);
         fail_to_draw(shader, sliders, cases[i].place, "fuel");
     }
+    whit_shader_destroy(shader);
+    all_are_reported();
+}
+
+TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
+{
+    whit_shader *shader = load("//@ fuel 30000\n//@ toggle more off\n" POST
+                               " for (int i = 0; i < (more ? 30001 : 29999); ++i)\n"
+                               "  color.r += 1e-9;\n return color; }\n");
+    float pixels[PIXELS * 4];
+    assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
+    fail_to_draw(shader, "more=on", "a.glsl:4: ", "fuel");
     whit_shader_destroy(shader);
     all_are_reported();
 }

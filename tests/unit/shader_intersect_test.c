@@ -223,6 +223,8 @@ TEST_BY_TURNS(answers_that_are_no_shape_s_are_told, 1, 2)
          ":3: intersect() meets something else with a larger `far`, in pixel "},
         {BOX INTERSECT MEET "    t = sqrt(-1.0 - t * t);\n    return true;\n}\n",
          ":2: intersect() gives what is no number, in pixel "},
+        {BOX INTERSECT MEET "    t = (1.0 + t * t) * 1e30 * 1e30;\n    return true;\n}\n",
+         ":2: intersect() gives what is no number, in pixel "},
         {BOX INTERSECT
          "    t = 0.5;\n    while (t > 0.0)\n        t += 1.0;\n    return false;\n}\n",
          ":5: `//@ fuel N` gives it more than 10000"},

@@ -45,6 +45,15 @@ TEST(lines_are_read)
     shader_text_free(&shader.text);
 }
 
+TEST(the_most_fuel_is_taken)
+{
+    whit_shader shader;
+    assert_int_equal(read_text("//@ fuel 30000\nvec3 miss(vec3 dir) { return dir; }\n", &shader),
+                     WHIT_OK);
+    assert_int_equal(shader.fuel, 30000);
+    shader_text_free(&shader.text);
+}
+
 TEST(sliders_are_declared_by_plain_names)
 {
     whit_shader shader;
@@ -124,6 +133,7 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"choice x", "names its words"},
                  {"choice x a,,b", "up to 16 words"},
                  {"fuel 0", "from 1 to 30000"},
+                 {"fuel 30001", "from 1 to 30000"},
                  {"fuel many", "from 1 to 30000"},
                  {"whit 2", "this whit has 1"},
                  {"aov", "has a name"},
