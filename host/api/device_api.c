@@ -227,6 +227,11 @@ void whit_device_keep_kernels(whit_device *device)
     device_keep_pipelines(device->device);
 }
 
+uint64_t whit_device_kernels_made(const whit_device *device)
+{
+    return device_pipelines_made(device->device);
+}
+
 bool whit_device_takes_peers(const whit_device *device)
 {
     return device_get_info(device->device)->kind == DEVICE_CPU &&

@@ -84,6 +84,9 @@ const struct device_info *device_get_info(const struct device *device);
    as there are cores. 1 while validation layers check, since those of Debian 12 crash where threads
    make devices at once and were not tried with pipelines; and while WHIT_FAULT counts calls. */
 uint32_t device_compile_threads(const struct device *device);
+/* Pipelines that the driver has been asked for so far, those of the device's own cache included;
+   none that device_keep_pipelines gave again. From any thread. */
+uint64_t device_pipelines_made(const struct device *device);
 /* `what` and by which device and driver it was found, for store_read; free() it. NULL: no memory.
  */
 char *device_kept_name(const struct device *device, const char *what);

@@ -15,6 +15,11 @@ void device_keep_pipelines(struct device *device)
     device->keeps = true;
 }
 
+uint64_t device_pipelines_made(const struct device *device)
+{
+    return device->pipelines_made;
+}
+
 static struct pipeline *take(struct device *device, size_t key_of_pipeline, const uint64_t key[2])
 {
     struct pipeline *found = NULL;

@@ -263,6 +263,7 @@ static whit_result make_pipeline(struct pipeline *pipeline, const struct pipelin
                       params->spec_count > 0 && !kernel->specialized ? &spec : NULL},
         .layout = pipeline->layout,
     };
+    ++device->pipelines_made;
     VK_TRY(device,
            vkCreateComputePipelines(device->vk, device->cache, 1, &info, NULL, &pipeline->vk));
     device_name_object(device, VK_OBJECT_TYPE_PIPELINE, (uint64_t)pipeline->vk, pipeline->name);

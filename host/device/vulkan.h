@@ -67,7 +67,8 @@ struct device {
     PFN_vkGetPipelineExecutablePropertiesKHR get_executables;
     PFN_vkGetPipelineExecutableStatisticsKHR get_executable_statistics;
 
-    bool keeps; /* pipelines: see kept.c */
+    _Atomic(uint64_t) pipelines_made; /* that the driver was asked for */
+    bool keeps;                       /* pipelines: see kept.c */
     pthread_mutex_t kept_lock;
     struct pipeline *kept; /* the youngest first */
     uint32_t kept_count;

@@ -75,7 +75,8 @@ struct engine_frame {
     whit_accel_info accel;
     whit_device_info device;
     double build_ms, compile_ms;
-    uint64_t effects; /* a bit for each that is compiled, in the order of whit_effect_name */
+    uint64_t made, kernels; /* session.made; kernels that its driver was asked for by now */
+    uint64_t effects;       /* a bit for each that is compiled, in the order of whit_effect_name */
 };
 void engine_frame_finish(struct engine_frame *frame);
 /* Moves hits and boxes of the picture before to one that is refined and has none of its own. */

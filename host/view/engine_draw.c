@@ -240,6 +240,7 @@ static struct engine_frame begin_frame(const struct engine_task *task, uint32_t 
         .device = session->device_info,
         .build_ms = session->build_ms,
         .compile_ms = session->compile_ms,
+        .made = session->made,
         .visits = -1.0,
     };
 }
@@ -304,6 +305,7 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
         result = count_visits(task, frame);
     for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
         frame->effects |= (uint64_t)whit_renderer_compiles(session->renderer, i) << i;
+    frame->kernels = whit_device_kernels_made(session->device);
     frame->draw_ms = fmax(whit_clock_ms() - start_ms, frame->stats.render_ms); /* of all rays */
     if (task->step_spacing > 0)
         frame->draw_ms /= STEPS_TAKE;

@@ -117,6 +117,7 @@ struct engine {
     uint32_t place_divisor;
     uint64_t places;                               /* how often that was set */
     struct engine_job *job;                        /* NULL: none */
+    uint64_t jobs;                                 /* that were started */
     struct session *sessions[ENGINE_SESSIONS_MAX]; /* of the drawing thread; NULL: free */
     struct session *drawing; /* whose cancel flag stops what is being drawn; NULL: nothing is */
     double drawing_since_ms; /* when it began */

@@ -186,6 +186,7 @@ bool engine_start_job(struct engine *engine, const struct settings *settings)
         session->ready = session->cancel = false;
         session->error[0] = session->errors[0] = '\0';
         session->owner = engine;
+        session->made = ++engine->jobs;
         job->session = session;
         job->reloads = version != NULL;
         job->settings = *settings;

@@ -44,6 +44,7 @@ static void on_key(struct view *view, const struct view_event *event)
         view->input.down[event->key] = event->down;
     if (own != UI_KEY_COUNT)
         ui_key_event(view->ui, own, event->down);
+    view->dirty |= ui_has_keys(view->ui);
     if (!event->down || ui_has_keys(view->ui) || flies(event))
         return;
     if (key_act(view, event->key, event->mods))
@@ -159,6 +160,7 @@ void input_event(struct view *view, const struct view_event *event)
         break;
     case EVENT_CHAR:
         ui_character(view->ui, event->code);
+        view->dirty |= ui_has_keys(view->ui); /* a field takes it when it is drawn */
         break;
     case EVENT_BUTTON:
         on_button(view, event);

@@ -67,6 +67,8 @@ struct session {
     double build_ms, compile_ms; /* of the trees; until the first pixels were there */
     _Atomic(float) part;         /* of the picture that is being drawn, 0..1; from any thread */
     uint64_t last_use;
+    uint64_t made; /* counts up: which of the engine's jobs it was made by, or made anew for another
+                      version of the shader */
 };
 
 /* How far it is; both may be NULL. Read by other threads while session_open works. */

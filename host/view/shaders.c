@@ -279,7 +279,9 @@ static void draw_color(struct view *view, const whit_slider *slider, const char 
         return;
     snprintf(text, sizeof text, "#%02x%02x%02x", (unsigned)(color[0] * 255.0f + 0.5f),
              (unsigned)(color[1] * 255.0f + 0.5f), (unsigned)(color[2] * 255.0f + 0.5f));
-    set_slider(view, slider, text);
+    /* A field that is typed in says with each drawing that it changed it. */
+    if (strcmp(text, value) != 0)
+        set_slider(view, slider, text);
 }
 
 void shaders_draw(struct view *view)

@@ -87,6 +87,8 @@ static json_t *frame_json(const struct engine_frame *frame)
     put_text(object, "drawn_words", words);
     put_text(object, "view", value_word(values_view, (int)frame->settings.paint));
     put_text(object, "builder", frame->accel.builder);
+    put_count(object, "made", frame->made);
+    put_count(object, "kernels", frame->kernels);
     put_number(object, "render_ms", frame->stats.render_ms);
     put_number(object, "visits", frame->visits);
     put_count(object, "visits_rays", frame->visits_rays);

@@ -77,6 +77,9 @@ void whit_device_open_abandon(whit_device_opening *opening);
 /* For programs that draw many small pictures: from here on kernels stay with the device, and who
    makes a renderer that needs the same ones has them at once. Before any renderer. */
 void whit_device_keep_kernels(whit_device *device);
+/* Kernels that the driver has been asked for so far: nothing was compiled between two equal counts.
+ */
+uint64_t whit_device_kernels_made(const whit_device *device);
 /* Whether a program that opens the same device again gets further by drawing with both at once: a
    CPU, unless validation layers check or a test counts calls. */
 bool whit_device_takes_peers(const whit_device *device);

@@ -221,9 +221,49 @@ END
     follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
 fi
 
+# ---- The widgets of sliders: each is in the next picture, and nothing is compiled ----
+
+if part 0 4; then
+    cat >live/w.glsl <<'END'
+//@ slider bands 1 8 3
+//@ color rim #204060
+//@ choice mode plain,warm
+vec3 miss(vec3 dir) { return rim; }
+vec3 post(ivec2 at, vec3 color)
+{
+    color = ceil(color * bands) / bands;
+    return mode == mode_warm ? color * vec3(1.0, 0.5, 0.2) : color;
+}
+END
+    sed 's/ceil/floor/' live/w.glsl >other.new
+    cp live/w.glsl own.glsl
+    cp other.new live/w.glsl
+    other=$(hash_of live/w.glsl)
+    cp own.glsl live/w.glsl
+    steps >"$OUT/replay" <<END
+start: press F2 x2, press X, press Tab, move 20 20 | error = | hud = off
+number: choose bands | render has bands= | frame.pixels not as start | picked = false
+opened: choose mode, wait 50, move 46 43, wait 50, move 46 42
+choice: choose warm | render has mode=warm | frame.pixels not as number | picked = false
+color: choose rim x2, char 70, char 48, char 56, char 48, char 49, char 48 | render has rim=#f08010 | frame.pixels not as choice
+same: choose bands | render as color | frame.pixels as color | picked = false
+until shader.hash = $other
+saved: | error = | frame.pixels not as color
+subtracted: press U | compare.mode = difference | compare.other_ids = 0 | compare.other_colors > 100
+END
+    on_state() { case $1 in *'"at":"same"'*) cp other.new live/w.glsl ;; esac }
+    follow "sliders" cube.json --size 320x240 --ui-scale 0.5 --shader live/w.glsl
+    for at in number choice color; do
+        same frame.made start $at
+        same frame.kernels start $at
+    done
+    differs frame.made color saved # so that it can be told
+    check "U subtracts the version before" test "$(value subtracted compare.b.pixels)" = "$(value color frame.pixels)"
+fi
+
 # ---- Saves that mean harm: the window lives on, with the last good picture ----
 
-if part 1 2; then
+if part 1 4; then
     post() { printf 'vec3 post(ivec2 at, vec3 color)\n{\n%s\n}\n' "$1"; }
     post '    return color.bgr;' >good.new
     post '    while (color.r >= 0.0) color.r += 1.0; return color;' >endless.new
