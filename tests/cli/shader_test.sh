@@ -93,6 +93,18 @@ check "it is in both files" test "$(grep -ac facing.R both.exr) $(grep -ac facin
 expect 2 "--aov without --shader" render "$CUBE" --aov facing -o aov.exr
 check "its fuel" test "$(jq .fuel all.json)" = 20000
 expect 0 "dump" shader all.glsl --dump spirv
+sed -n '/^  --[as]/s/ *$//p' "$OUT/stdout" >told
+cat >want <<'END'
+  --aov facing
+  --set bands=3 (1 to 8)  steps of light
+  --set rim=#ffcc88
+  --set on=on  whether
+  --set mode=plain
+END
+check "sliders as text: $(tr '\n' ';' <told)" cmp told want
+check "the SPIR-V instructions of a stage beside those of whit's own" \
+    holds "$(awk '$1 == "resolve" && $2 + 0 > 0 { print $2 " > " $3 " && " $3 " > 0" }' "$OUT/stdout")"
+check "and of a kernel that whit has not" grep -qE '^  post +[0-9]+ +- +[0-9.]+ ms$' "$OUT/stdout"
 check "SPIR-V" spirv-val --target-env vulkan1.2 spirv/post.spv
 check "GLSL with all that it includes" sh -c 'grep -q "^vec3 tint" spirv/post.comp && ! grep -q "^#include [^<]" spirv/post.comp'
 check "the text of the SPIR-V" sh -c 'spirv-as --target-env vulkan1.2 spirv/post.spvasm -o again.spv && spirv-val again.spv'
