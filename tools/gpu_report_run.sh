@@ -15,7 +15,7 @@ busybox=$here/bin/busybox
 trace_scenes="cube 34k 54k atrium room sphereflake"
 kernel_scenes="34k whitted default room"
 levels="watertight exact"
-for tool in awk basename cat cmp cut date ls mkdir rm sed sha256sum tail timeout wc; do
+for tool in awk basename cat cmp cut date ls mkdir rm sed sha256sum tail tar timeout wc xzcat; do
     eval "$tool() { \"\$busybox\" $tool \"\$@\"; }"
 done
 mkdir -p "$out" || exit 2
@@ -31,6 +31,9 @@ report=$out/report.txt
 begun=$(date +%s)
 ends=$((begun + 470))
 export XDG_CACHE_HOME="$scratch/cache" TMPDIR="$scratch"
+programs=$scratch/programs
+mkdir "$programs"
+xzcat "$here/programs.tar.xz" | tar -x -f - -C "$programs" || exit 2
 
 say() {
     echo "$*" | "$busybox" tee -a "$report"
@@ -46,13 +49,13 @@ whit() {
         echo "no time left for: whit $*" >>"$log"
         return 124
     fi
-    LD_LIBRARY_PATH=$libraries "$busybox" timeout -k 8 "$limit" "$here/bin/whit" "$@" 2>>"$log"
+    LD_LIBRARY_PATH=$libraries "$busybox" timeout -k 8 "$limit" "$programs/bin/whit" "$@" 2>>"$log"
 }
 
 # The machine's own C++ library where it will do: its driver may need a newer one than whit's.
-libraries=$here/lib
-if ! LD_LIBRARY_PATH=$libraries "$here/bin/whit" --version >/dev/null 2>&1; then
-    libraries=$here/lib:$here/cxx
+libraries=$programs/lib
+if ! LD_LIBRARY_PATH=$libraries "$programs/bin/whit" --version >/dev/null 2>&1; then
+    libraries=$programs/lib:$programs/cxx
 fi
 if ! version=$(whit 20 --version); then
     say "whit does not run here: it needs glibc 2.35 or later. What was said:"
