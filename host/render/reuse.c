@@ -5,7 +5,8 @@
 
 #include "render/renderer.h"
 
-/* Who shows a step is done with a quarter of the pixels sooner than with all of them. */
+/* The spacing of the first step: the window converts and shows a quarter of the pixels sooner than
+   all of them. */
 enum { STEP_FIRST = 2 };
 enum { BLOCKS_AT_ONCE = 4096 }; /* below the 2^14 that slot_pixel() of the kernels divides right */
 

@@ -247,8 +247,8 @@ static void note_hand(enum hand hand, const json_t *state, struct hand_times *ti
         sample_add(&times->pictures, number_at(state, "measure", "gap_ms", "max"));
 }
 
-/* Who types saves when he has seen what the save before has made, not in the same moment, in which
-   the window still compares pictures. */
+/* A person saves after looking at what the last save made. Without this second a save would fall
+   into the moment in which the window compares two pictures. */
 static void look_on(void)
 {
     nanosleep(&(struct timespec){.tv_sec = 1}, NULL);
