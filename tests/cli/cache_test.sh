@@ -90,10 +90,14 @@ floats=$(echo "$KEPT"/floats-*)
 found='[.devices[] | select(.kind == "cpu") | .floats] == [{own_division: true, keeps_denormals: true, rounds_nearest: true}]'
 check "devices: floats" jq -e "$found" "$OUT/stdout"
 cp "$floats" "$OUT/floats"
-anew() { # WHAT YES|NO: whether devices writes the file again, as it was.
+# anew WHAT YES|NO: whether devices writes the file again, as it was. The old file stays open meanwhile, so that a new
+# one cannot be given its inode number.
+anew() {
     touch -d 2001-01-01 "$floats"
     before=$(stat -c %i "$floats")
+    exec 9<"$floats"
     run devices --json
+    exec 9<&-
     check "$1: floats" jq -e "$found" "$OUT/stdout"
     check "$1: found out anew: $2" test "$([ "$(stat -c %i "$floats")" = "$before" ] && echo no || echo yes)" = "$2"
     check "$1: the file" cmp "$floats" "$OUT/floats"
