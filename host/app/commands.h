@@ -29,6 +29,7 @@ struct render_request {
     struct part part;
     bool resume;        /* what is finished is kept */
     bool many;          /* one of many pictures by one device */
+    bool keep_unread;   /* what no function of the shader reads is to be seen */
     bool scene_stays;   /* whole, for another renderer */
     bool leaves;        /* with `resume`: a picture that another process draws is not waited for */
     uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */

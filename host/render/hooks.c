@@ -17,27 +17,63 @@ _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SH
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
 
-/* The part of shader_reaches that decides which effects kernels are compiled with. */
-static uint32_t effects_reached(const whit_shader *shader)
+/* What is compiled for the user's functions where they come to one of these. */
+static const struct {
+    uint32_t reaches;
+    uint64_t effects;
+} asked[] = {
+    {SHADER_REACHES_LIGHTS, EFFECT(POINT_LIGHTS) | EFFECT(DIRECTIONAL_LIGHTS) |
+                                EFFECT(SPOT_LIGHTS) | EFFECT(AREA_LIGHTS) | EFFECT(TERMINATOR)},
+    {SHADER_REACHES_SHADOWS, EFFECT(SHADOWS)},
+    {SHADER_REACHES_TEXTURES, EFFECT(TEXTURES)},
+    {SHADER_REACHES_VERTEX_COLORS, EFFECT(VERTEX_COLORS)},
+    {SHADER_REACHES_METAL_ROUGH, EFFECT(METAL_ROUGH)},
+    {SHADER_REACHES_EMISSION, EFFECT(EMISSION)},
+    {SHADER_REACHES_HIGHLIGHTS, EFFECT(HIGHLIGHTS)},
+    {SHADER_REACHES_NORMALS, EFFECT(SMOOTH_NORMALS) | EFFECT(NORMAL_MAPS)},
+};
+
+/* Of which whit's own rays know nothing. */
+#define BY_FUNCTIONS_ALONE                                                                         \
+    (SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS | SHADER_REACHES_EMISSION |                    \
+     SHADER_REACHES_HIGHLIGHTS)
+
+/* Whether surfaces send rays on, or are looked through, by what they look like. */
+static bool has_rays(const struct renderer *renderer)
 {
-    return shader_reaches(shader) & (SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS);
+    static const enum scene_effect rays[] = {SCENE_EFFECT_REFLECTION, SCENE_EFFECT_REFRACTION,
+                                             SCENE_EFFECT_CUTOUTS};
+    const whit_renderer_params *params = &renderer->params;
+    bool has = false;
+    for (size_t i = 0; i < sizeof rays / sizeof *rays; ++i) {
+        bool removed = params->effects_removed >> rays[i] & 1;
+        has = has || (renderer->effects.called[rays[i]] && !removed) ||
+              (params->effects_added >> rays[i] & 1);
+    }
+    return has;
 }
 
-/* With a `shade` of the user's nothing else asks lights, but for shadow catchers. */
-static uint64_t effects_not_asked_for(const struct renderer *renderer)
+/* Bits SHADER_REACHES_* that decide with which effects kernels are compiled. With a `shade` of the
+   user's nothing of whit's asks for lights and shadows, but for shadow catchers, and nothing but
+   rays for the rest. */
+static uint32_t deciding(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
-    uint64_t effects = 0;
     if (!shader_has(params->shader, SHADER_HOOK_SHADE) || params->all_effects ||
         renderer->effects.called[SCENE_EFFECT_CATCHERS])
         return 0;
-    uint32_t reaches = shader_reaches(params->shader);
-    if (!(reaches & SHADER_REACHES_LIGHTS))
-        effects |= EFFECT(POINT_LIGHTS) | EFFECT(DIRECTIONAL_LIGHTS) | EFFECT(SPOT_LIGHTS) |
-                   EFFECT(AREA_LIGHTS) | EFFECT(TERMINATOR);
-    if (!(reaches & SHADER_REACHES_SHADOWS))
-        effects |= EFFECT(SHADOWS);
-    return effects & ~params->effects_added;
+    return (params->keep_unread ? SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS
+                                : SHADER_REACHES_ALL) &
+           (has_rays(renderer) ? BY_FUNCTIONS_ALONE : SHADER_REACHES_ALL);
+}
+
+static uint64_t effects_not_asked_for(const struct renderer *renderer)
+{
+    uint64_t effects = 0;
+    uint32_t unasked = renderer->reaches_decide & ~shader_reaches(renderer->params.shader);
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; ++i)
+        effects |= unasked & asked[i].reaches ? asked[i].effects : 0;
+    return effects & ~renderer->params.effects_added;
 }
 
 void hooks_take(struct renderer *renderer)
@@ -48,6 +84,7 @@ void hooks_take(struct renderer *renderer)
     params->compile_async = false; /* there is no general kernel of it yet */
     if (shader_has(params->shader, SHADER_HOOK_SCATTER))
         params->effects_added |= EFFECT(REFLECTION);
+    renderer->reaches_decide = deciding(renderer);
     renderer->effects_unasked = effects_not_asked_for(renderer) & ~params->effects_removed;
     params->effects_removed |= renderer->effects_unasked;
 }
@@ -101,7 +138,7 @@ bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *s
 {
     const whit_shader *own = renderer->params.shader;
     return own && shader && own->hooks == shader->hooks && same_aovs(own, shader) &&
-           effects_reached(own) == effects_reached(shader);
+           !((shader_reaches(own) ^ shader_reaches(shader)) & renderer->reaches_decide);
 }
 
 whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_params *params)

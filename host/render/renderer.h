@@ -223,6 +223,7 @@ struct renderer {
     struct gpu_frame frame;
     struct portable_params portable;    /* where params.portable asks for it */
     float sliders[SLIDERS_MAX];         /* of params.shader */
+    uint32_t reaches_decide;            /* bits SHADER_REACHES_*: by which effects are chosen */
     uint64_t effects_unasked;           /* of params.effects_removed, for the shader alone */
     struct bodies bodies;               /* of media, of the frame's pose */
     struct image color, ids, cuts;      /* of the last picture, where it has more than one band */

@@ -51,12 +51,19 @@ struct shader_open {
 
 enum { SHADER_OPENS_MAX = 8 }; /* of others the place is not known */
 
-/* What functions of a user may come to call of whit's; what is not among it they cannot read. */
+/* What functions of a user may come to call of whit's, and which parts of a surface and its
+   material they may come to read; what is not among it does not change what they do. */
 enum {
     SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
     SHADER_REACHES_SHADOWS = 2, /* what is on the way to a place */
     SHADER_REACHES_RAYS = 4,    /* rays of their own */
-    SHADER_REACHES_ALL = 7
+    SHADER_REACHES_TEXTURES = 8,
+    SHADER_REACHES_VERTEX_COLORS = 16,
+    SHADER_REACHES_METAL_ROUGH = 32, /* whether a material is */
+    SHADER_REACHES_EMISSION = 64,
+    SHADER_REACHES_HIGHLIGHTS = 128,
+    SHADER_REACHES_NORMALS = 256, /* of shading: smooth ones and normal maps */
+    SHADER_REACHES_ALL = 511
 };
 
 /* What whit_fuel_loop holds is 1 + the index in `loops`. */

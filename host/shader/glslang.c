@@ -23,6 +23,7 @@ struct compilation {
     struct glslang_answer answer;
     struct fuel fuel;
     struct refuse_variables variables;
+    struct reach reach;
     struct spv_words unset; /* variables of the user's function in hand: they begin as 0 */
 };
 
@@ -146,8 +147,8 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         report(c, m->place, why);
     if (user)
         note_open(c, m->place, portable_lacks(words));
-    if (m->user_function && op == SPV_FUNCTION_CALL)
-        c->answer.reaches |= reach_of(spv_name(m, words[3]));
+    if (m->user_function)
+        c->answer.reaches |= reach_of(&c->reach, m, words);
     begin_variables(c, m, words);
     c->answer.instructions += is_counted(op);
     if (user && !c->question->trust) {
@@ -219,6 +220,8 @@ static struct spv_words make_module(struct compilation *c, const uint32_t *words
         count = returned.count;
     }
     bool whole = spv_read(&m, words, count, c->question->own);
+    if (whole && has_user)
+        reach_begin(&c->reach, &m);
     for (size_t at = m.functions_at; whole && at < count; at += spv_length(words + at))
         take_instruction(c, &m, words + at);
     if (whole)

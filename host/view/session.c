@@ -181,6 +181,7 @@ static whit_result warm_up(struct session *session)
     params.height = WARM_HEIGHT;
     params.sampling.count = 1;
     params.many_pictures = true;
+    params.keep_unread = true; /* saves and probes may read it */
     params.shader = session->shader ? session->shader->shader : NULL;
     params.cancel = &session->cancel;
     params.progress = note_part;

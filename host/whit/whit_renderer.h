@@ -101,6 +101,9 @@ typedef struct whit_renderer_params {
     /* The renderer is for many pictures: kernels that take longer to make are right where they draw
        faster. */
     bool many_pictures;
+    /* Textures, normals and others that no function of `shader` reads are compiled all the same:
+       the renderer can take versions of it that read them (whit_renderer_takes_shader). */
+    bool keep_unread;
     /* If nothing but post() of `shader` and what it has beside the colour have changed since the
        renderer's last picture (no other kernel, slider or parameter), and neither
        traces, the colours are not drawn once more: post() is given those of the last picture, and

@@ -54,6 +54,15 @@ check "and where" grep -q "^primary .* at .* nothing " "$OUT/stdout"
 "$LEAKY" probe "$CUBE" $L --numerics fast >"$OUT/stdout" 2>"$OUT/stderr"
 check "which fast promises not: exit code 0" test $? -eq 0
 
+# With a shader that reads no normals they are not compiled into pictures, and seen all the same.
+R="$SCENES/8k.json --size 16x12 --pixel 9,8 --quiet"
+echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng; }' >"$OUT/flat.glsl"
+expect 0 "a smooth surface" probe $R --json "$J"
+jq -c .rays[0].normal "$J" >"$OUT/normal"
+expect 0 "the same with a flat shader" probe $R --json "$J" --shader "$OUT/flat.glsl"
+check "its normal is the smooth one" test "$(jq -c .rays[0].normal "$J")" = "$(cat "$OUT/normal")"
+check "and the shader had the flat one" jq -e '.pixel | (.color[0] - .normal[0] | fabs) > 0.001' "$J"
+
 rm "$J"
 refuse 2 "no pixel" "which pixel" probe "$CUBE"
 refuse 2 "a pixel outside" "pixel 640,10: outside of the picture of 640 x 480" probe "$CUBE" --pixel 640,10

@@ -62,7 +62,7 @@ static bool check_request(struct cli_reader *reader, const struct probe *probe)
 
 static whit_result find_out(struct probe *probe)
 {
-    const struct render_request request = {0};
+    const struct render_request request = {.keep_unread = true};
     struct frames_progress progress = {.count = 1};
     whit_renderer *renderer = NULL;
     cli_progress_init(&progress.bar, true);

@@ -1,0 +1,201 @@
+/* What no function of the user's reads of a surface and its material is not compiled, and the
+   picture is the same as with it. */
+#include <string.h>
+
+#include "hooks_fixture.h"
+
+enum { WIDTH = 48, HEIGHT = 36, NAMES_BYTES = 256 };
+
+static int begin(void **state)
+{
+    (void)state;
+    return hooks_begin(NULL) ? 0 : -1;
+}
+
+static int end(void **state)
+{
+    (void)state;
+    hooks_end();
+    return 0;
+}
+
+/* Bits of the effects that `names` holds, with blanks between them. */
+static uint64_t effects(const char *names)
+{
+    char text[NAMES_BYTES], *rest;
+    uint64_t bits = 0;
+    snprintf(text, sizeof text, "%s", names);
+    for (char *name = strtok_r(text, " ", &rest); name; name = strtok_r(NULL, " ", &rest)) {
+        uint32_t i = 0;
+        while (whit_effect_name(i) && strcmp(whit_effect_name(i), name) != 0)
+            ++i;
+        if (!whit_effect_name(i))
+            fail_msg("no effect %s", name);
+        bits |= UINT64_C(1) << i;
+    }
+    return bits;
+}
+
+static void open_scene(const char *path)
+{
+    assert_int_equal(whit_scene_load(path, NULL, &keeps, &scene), WHIT_OK);
+    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
+}
+
+static void close_scene(void)
+{
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    accel = NULL;
+    scene = NULL;
+}
+
+static whit_image *draw(const whit_renderer_params *params, uint64_t *compiled)
+{
+    whit_renderer *renderer;
+    whit_image *color;
+    assert_int_equal(whit_renderer_create(device, accel, params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &color), WHIT_OK);
+    *compiled = 0;
+    for (uint32_t i = 0; whit_effect_name(i); ++i)
+        *compiled |= (uint64_t)whit_renderer_compiles(renderer, i) << i;
+    whit_renderer_destroy(renderer);
+    return color;
+}
+
+static whit_renderer_params params_of(const whit_shader *shader, const char *removed)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.shader = shader;
+    params.effects_removed = effects(removed);
+    return params;
+}
+
+#define SHADE  "vec3 shade(Surface s, Optics o, vec3 to_eye) { return "
+#define RAYS   "reflection fresnel"
+#define SHAPES "/gallery/shapes.json"
+#define STUDS  "/gallery/normal-map.json"
+#define LAMPS  "/gallery/emissive.json"
+#define LOOKS  "textures vertex-colors highlights smooth-normals normal-maps metal-rough emission"
+
+/* `read`: those of LOOKS that are compiled. */
+static const struct {
+    const char *scene, *removed, *content, *read;
+} cases[] = {
+    {SHAPES, RAYS, SHADE "s.ng; }\n", ""},
+    {SHAPES, RAYS, SHADE "s.ns; }\n", "smooth-normals"},
+    {SHAPES, RAYS, SHADE "s.color; }\n", "vertex-colors"},
+    {SHAPES, RAYS, SHADE "o.diffuse; }\n", "textures vertex-colors"},
+    {SHAPES, RAYS, SHADE "o.diffuse + s.ns; }\n", "textures vertex-colors smooth-normals"},
+    {SHAPES, RAYS, SHADE "o.reflected; }\n", "textures vertex-colors smooth-normals"},
+    {SHAPES, RAYS,
+     "Optics[2] both(Optics a, Optics b) { Optics all[2]; all[0] = a; all[1] = b; return all; "
+     "}\n" SHADE "vec3(both(o, o)[1].shininess); }\n",
+     "textures highlights"},
+    {SHAPES, RAYS,
+     "vec3 look(int i, Optics o) { Optics all[2] = Optics[2](o, o); return all[i & 1].ambient; "
+     "}\n" SHADE "look(3, o); }\n",
+     "textures vertex-colors"},
+    {SHAPES, RAYS, "//@ aov n\nvec4 n(Surface s) { return vec4(s.ns, 1.0); }\n" SHADE "s.ng; }\n",
+     "smooth-normals"},
+    {SHAPES, RAYS, "void surface(inout Surface s) { s.color = vec3(0.5); }\n" SHADE "s.ng; }\n",
+     "vertex-colors"},
+    {SHAPES, RAYS,
+     SHADE "vec3(0.1); }\nvec3 post(ivec2 at, vec3 color) { Surface met; float t;\n"
+           "return trace(eye(), vec3(0.0, 0.0, -1.0), met, t) ? met.ns : color; }\n",
+     "smooth-normals"},
+    {SHAPES, RAYS, SHADE "light(0u, 0u, s).arriving; }\n", "smooth-normals"},
+    {SHAPES, RAYS, SHADE "whit_shade(s, o, to_eye); }\n",
+     "textures vertex-colors highlights smooth-normals"},
+    {SHAPES, "", SHADE "s.ng; }\n", "textures vertex-colors smooth-normals"},
+    {SHAPES, RAYS, "vec3 miss(vec3 dir) { return dir; }\n",
+     "textures vertex-colors highlights smooth-normals"},
+    {STUDS, RAYS, SHADE "vec3(o.eta); }\n", ""},
+    {STUDS, RAYS, SHADE "s.ns; }\n", "normal-maps"},
+    {STUDS, RAYS, SHADE "s.e1; }\n", "normal-maps textures"},
+    {STUDS, RAYS, SHADE "vec3(o.metal_rough); }\n", "metal-rough"},
+    {STUDS, RAYS, SHADE "vec3(o.alpha); }\n", "metal-rough highlights textures"},
+    {LAMPS, RAYS, SHADE "s.ng; }\n", ""},
+    {LAMPS, RAYS, SHADE "o.emission; }\n", "emission"},
+    {LAMPS, "", SHADE "s.p; }\n", "smooth-normals"},
+};
+
+static uint64_t called_by_scene(void)
+{
+    uint64_t called = 0;
+    for (uint32_t i = 0; whit_effect_name(i); ++i) {
+        whit_effect_info info;
+        whit_scene_get_effect(scene, i, &info);
+        called |= (uint64_t)info.called << i;
+    }
+    return called;
+}
+
+static void check(const char *content, const char *removed, const char *read)
+{
+    uint64_t called = called_by_scene() & effects(LOOKS), expected = effects(read) & called;
+    uint64_t compiled, whole;
+    whit_shader *shader;
+    if (hooks_load(content, &shader) != WHIT_OK)
+        fail_msg("%s", logged);
+    whit_renderer_params params = params_of(shader, removed);
+    whit_image *usual = draw(&params, &compiled);
+    compiled &= called;
+    if (compiled != expected)
+        fail_msg("%#llx is compiled, %#llx was expected: %s", (unsigned long long)compiled,
+                 (unsigned long long)expected, content);
+    params.effects_added = called & ~compiled;
+    whit_image *other = draw(&params, &whole);
+    assert_int_equal(whole & called, called);
+    if (memcmp(whit_image_floats(usual), whit_image_floats(other),
+               WIDTH * HEIGHT * 4 * sizeof(float)) != 0)
+        fail_msg("another picture: %s", content);
+    whit_image_destroy(other);
+    whit_image_destroy(usual);
+    whit_shader_destroy(shader);
+}
+
+TEST(what_is_not_read_is_not_compiled)
+{
+    const char *opened = "";
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char path[512];
+        snprintf(path, sizeof path, "%s%s", WHIT_SCENES_DIR, cases[i].scene);
+        if (strcmp(opened, cases[i].scene) != 0) {
+            close_scene();
+            open_scene(path);
+            opened = cases[i].scene;
+        }
+        check(cases[i].content, cases[i].removed, cases[i].read);
+    }
+    close_scene();
+}
+
+/* What a save may read is there in a renderer that keeps it, and one that does not is made anew. */
+TEST(another_version_may_read_more)
+{
+    whit_shader *flat, *smooth;
+    open_scene(WHIT_SCENES_DIR SHAPES);
+    assert_int_equal(hooks_load(SHADE "s.ng; }\n", &flat), WHIT_OK);
+    assert_int_equal(hooks_load(SHADE "s.ns; }\n", &smooth), WHIT_OK);
+    for (int keeps_all = 0; keeps_all < 2; ++keeps_all) {
+        whit_renderer_params params = params_of(flat, RAYS);
+        whit_renderer *renderer;
+        params.keep_unread = keeps_all;
+        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        assert_int_equal(whit_renderer_takes_shader(renderer, smooth), keeps_all);
+        assert_true(whit_renderer_takes_shader(renderer, flat));
+        whit_renderer_destroy(renderer);
+    }
+    whit_shader_destroy(smooth);
+    whit_shader_destroy(flat);
+    close_scene();
+}
+
+int main(void)
+{
+    return unit_run(begin, end);
+}
