@@ -452,6 +452,32 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : renderer->packet_rays;
 }
 
+/* Takes out of the kernel of surface() and shade() what neither comes to read, whatever the stages
+   of whit's own need. What surface() may change is read by these. */
+static void narrow_to_functions(const struct target *target, struct gpu_spec *spec)
+{
+    const struct renderer *renderer = target->renderer;
+    const struct shader_code *code = hooks_code(target, hook_kernels[HOOK_KERNEL_HIT].name);
+    if (!code || renderer->params.all_effects || renderer->params.shader->stages)
+        return;
+    uint32_t reaches = code->reaches;
+    if (!(reaches & SHADER_REACHES_TEXTURES))
+        spec->SPEC_TEXTURES = 0;
+    if (!(reaches & SHADER_REACHES_METAL_ROUGH))
+        spec->SPEC_METAL_ROUGH = 0;
+    if (!(reaches & SHADER_REACHES_EMISSION))
+        spec->SPEC_EMISSION = 0;
+    if (!(reaches & SHADER_REACHES_HIGHLIGHTS))
+        spec->SPEC_HIGHLIGHTS = 0;
+    if (!(reaches & SHADER_REACHES_SHARES))
+        spec->SPEC_FRESNEL = FRESNEL_NONE;
+    if (!(reaches & SHADER_REACHES_NORMALS))
+        spec->SPEC_NORMAL_MAPS = 0;
+    bool changes = shader_has(renderer->params.shader, SHADER_HOOK_SURFACE);
+    if (!(reaches & SHADER_REACHES_VERTEX_COLORS) && !changes)
+        spec->SPEC_VERTEX_COLORS = 0;
+}
+
 void variant_job_init(const struct target *target, const struct gpu_spec *set_spec,
                       uint32_t classes, enum stage stage, struct variant_job *job)
 {
@@ -490,6 +516,8 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     choose_packets(renderer, stage, spec);
     if (classes > 1 && stages[stage].kernel == &kernels[KERNEL_SHADE])
         narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN, spec);
+    if (stage == STAGE_HIT)
+        narrow_to_functions(target, spec);
     job->params = pass_params(target, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
                               sizeof(struct gpu_chunk), stages[stage].name);
     job->params.bindings = job->kinds;

@@ -63,7 +63,8 @@ enum {
     SHADER_REACHES_EMISSION = 64,
     SHADER_REACHES_HIGHLIGHTS = 128,
     SHADER_REACHES_NORMALS = 256, /* of shading: smooth ones and normal maps */
-    SHADER_REACHES_ALL = 511
+    SHADER_REACHES_SHARES = 512,  /* of light that is mirrored or let through */
+    SHADER_REACHES_ALL = 1023
 };
 
 /* What whit_fuel_loop holds is 1 + the index in `loops`. */

@@ -22,7 +22,7 @@ void main()
     bool alive = item != ITEM_NONE;
     uint id = fetch_listed_hit(alive ? item : 0u);
     id = alive ? id : 0u;
-    uint status = 0u;
+    uint status = 0u; // shade.comp reports it
     Met met = fetch_met(id, alive, false, status);
     bool lost = false; // shade.comp reports it
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
@@ -37,7 +37,7 @@ void main()
             aovs[met.slot * SPEC_AOVS + i] = value;
     }
     if (alive) {
-        report_status(status | hook_status);
+        report_status(hook_status);
         report_hooks();
         tally_traced(hook_traced);
     }

@@ -40,7 +40,7 @@ void main()
     bool alive = item != ITEM_NONE;
     uint id = fetch_listed_hit(alive ? item : 0u);
     id = alive ? id : 0u;
-    uint status = 0u;
+    uint status = 0u;      // shade.comp reports it: what is not read here of the way through is not compiled
     record_for(id, false); // values of dbg(x) in camera() are recorded by closest.comp
     Met met = fetch_met(id, alive, false, status);
     record_for(id, alive);
@@ -55,7 +55,7 @@ void main()
             store_own_light(id, light);
     }
     if (alive) {
-        report_status(status | hook_status);
+        report_status(hook_status);
         report_hooks();
         tally_traced(hook_traced);
     }

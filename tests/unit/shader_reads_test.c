@@ -2,6 +2,7 @@
    picture is the same as with it. */
 #include <string.h>
 
+#include "../cases.h"
 #include "hooks_fixture.h"
 
 enum { WIDTH = 48, HEIGHT = 36, NAMES_BYTES = 256 };
@@ -170,6 +171,53 @@ TEST(what_is_not_read_is_not_compiled)
             opened = cases[i].scene;
         }
         check(cases[i].content, cases[i].removed, cases[i].read);
+    }
+    close_scene();
+}
+
+/* Instructions of the kernel of surface() and shade(). */
+static uint32_t instructions_of(const whit_renderer_params *params)
+{
+    whit_kernel list[WHIT_KERNELS_MAX];
+    uint32_t count, instructions = 0;
+    assert_int_equal(whit_kernels_list(device, accel, params, list, &count), WHIT_OK);
+    for (uint32_t i = 0; i < count; ++i)
+        instructions += strcmp(list[i].name, "hit") == 0 ? list[i].instructions : 0;
+    return instructions;
+}
+
+/* Rays that go on read textures and others in kernels of their own. */
+TEST(the_kernel_of_functions_has_what_they_read)
+{
+    static const char *const contents[] = {
+        SHADE "s.ng; }\n",
+        SHADE "o.emission; }\n",
+        SHADE "o.diffuse + o.reflected; }\n",
+        "void surface(inout Surface s) { s.ns = normalize(s.ns + 0.1 * s.p); s.color *= 0.5; }\n",
+    };
+    uint32_t least = 0;
+    open_scene(WHIT_SCENES_DIR "/default.json");
+    for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
+        uint64_t compiled;
+        whit_shader *shader;
+        assert_int_equal(hooks_load(contents[i], &shader), WHIT_OK);
+        whit_renderer_params params = params_of(shader, "");
+        uint32_t instructions = instructions_of(&params);
+        assert_true(i == 0 || i == 3 || instructions > least);
+        least = i == 0 ? instructions : least;
+        params.all_effects = true;
+        assert_true(instructions_of(&params) > instructions);
+        if (cases_turn(i, 4)) {
+            params.all_effects = false;
+            whit_image *usual = draw(&params, &compiled);
+            params.all_effects = true;
+            whit_image *whole = draw(&params, &compiled);
+            assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
+                                WIDTH * HEIGHT * 4 * sizeof(float));
+            whit_image_destroy(whole);
+            whit_image_destroy(usual);
+        }
+        whit_shader_destroy(shader);
     }
     close_scene();
 }
