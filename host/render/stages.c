@@ -241,7 +241,9 @@ whit_result stages_compile(struct target *target)
         return stages_bind(target);
     stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
     whit_result result = stages_job_run(target->renderer->device, &job, &set);
-    return result == WHIT_OK ? stages_take(target, &set) : result;
+    if (result == WHIT_OK)
+        result = stages_take(target, &set);
+    return result == WHIT_OK ? translation_share(target, &job) : result;
 }
 
 static uint32_t count_bits(uint64_t bits)

@@ -10,6 +10,7 @@ void stats_clear(struct target *target)
                                  .compile_ms = before.compile_ms,
                                  .device_bytes = before.device_bytes,
                                  .kernel_instructions = before.kernel_instructions,
+                                 .kernels_beside = before.kernels_beside,
                                  .general = before.general,
                                  .load_path = before.load_path};
     memset(target->timed, 0, sizeof target->timed);

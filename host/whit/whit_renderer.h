@@ -323,7 +323,8 @@ typedef struct whit_stats {
     double bailout_bound;
     uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS];
     uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
-    bool general;                 /* drawn by the general kernel: see params.compile_async */
+    uint32_t kernels_beside; /* of these kernels, translated to machine code by a second device */
+    bool general;            /* drawn by the general kernel: see params.compile_async */
     uint32_t dispatches, tiles, tile_size;
     uint32_t deferred;     /* exact numerics: steps of pixels' rays that took more than floats */
     const char *load_path; /* "storage" or "texel" */

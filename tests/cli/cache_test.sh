@@ -144,6 +144,23 @@ MESA_SHADER_CACHE_DIR=$OUT/mine run devices --json
 check "what the user says stays" jq -e --arg mine "$OUT/mine" \
     '.cache.mesa_folder == $mine and .cache.mesa_limit == null' "$OUT/stdout"
 
+# ---- What is translated by a second device ----
+
+# beside WHAT NUMBER OPTION...: a picture for which so many kernels are; `some`: one or more.
+beside() {
+    how=$1
+    wanted=$2
+    shift 2
+    XDG_CACHE_HOME=$OUT/second run render "$CUBE" -o "$OUT/$how.pfm" --size 16x16 --quiet --stats json "$@"
+    got=$(jq .kernel.translated_beside "$OUT/stdout")
+    check "$how: $wanted kernels by a second device ($got)" test "$([ "$got" -gt 0 ] && echo some || echo 0)" = "$wanted"
+    check "$how: the same picture" cmp -s "$OUT/empty.pfm" "$OUT/$how.pfm"
+}
+mkdir "$OUT/second"
+beside empty "$([ "$(nproc)" -lt 2 ] && echo 0 || echo some)"
+beside full 0
+beside none 0 --no-cache
+
 # ---- No place at all ----
 
 # quiet_without WHAT COMMAND...: whit, by a command that sets the environment, draws and says nothing.

@@ -106,6 +106,7 @@ static json_t *kernel_document(const struct figures *figures)
     document_count(kernel, "instructions", figures->kernel.instructions);
     document_count(kernel, "largest_instructions", figures->kernel.largest_instructions);
     document_count(kernel, "general_instructions", figures->kernel.general_instructions);
+    document_count(kernel, "translated_beside", figures->render->kernels_beside);
     document_count(kernel, "bindings", figures->kernel.bindings);
     document_count(kernel, "general_bindings", figures->kernel.general_bindings);
     document_flag(kernel, "general", figures->render->general);

@@ -1,0 +1,187 @@
+/* lavapipe translates a kernel to machine code when it is first dispatched, one after another on
+   one core, and keeps that in a cache of files. Where it has none yet, a second device translates
+   half of a picture's kernels on another core meanwhile, and the first finds them there. Dispatches
+   of no workgroup do: they translate and run nothing. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/threads.h"
+#include "render/renderer.h"
+
+/* The smallest kernel takes less out of the cache, and more where it is translated. */
+static const double CACHED_MS = 10.0;
+/* What a second device takes to begin with, in instructions that are translated meanwhile. */
+enum { START_INSTRUCTIONS = 1000, KERNELS_MIN = 3, KERNELS_MAX = 2 * STAGE_COUNT };
+
+struct kernel {
+    const struct pass *pass;
+    const struct variant_job *job;
+    bool deferred;
+    uint32_t instructions;
+};
+
+struct share {
+    const struct renderer *renderer;
+    struct kernel kernels[KERNELS_MAX];
+    uint32_t count, instructions, done;
+};
+
+static void add(struct share *share, const struct kernel *kernel)
+{
+    share->kernels[share->count++] = *kernel;
+    share->instructions += kernel->instructions;
+}
+
+static struct kernel kernel_of(const struct pass *pass, const struct variant_job *job,
+                               bool deferred)
+{
+    struct pipeline_info info;
+    pipeline_get_info(deferred ? pass->deferred : pass->pipeline, &info);
+    return (struct kernel){pass, job, deferred, info.instructions};
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const struct kernel *x = a, *y = b;
+    return (x->instructions < y->instructions) - (x->instructions > y->instructions);
+}
+
+/* The largest first. */
+static struct share all_kernels(const struct target *target, const struct stages_job *job)
+{
+    struct share all = {.renderer = target->renderer};
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        const struct pass *pass = &target->stages.set.passes[i];
+        for (int deferred = 0; pass->pipeline && deferred < 1 + (pass->deferred != NULL);
+             ++deferred) {
+            struct kernel kernel = kernel_of(pass, &job->stages[i], deferred);
+            add(&all, &kernel);
+        }
+    }
+    qsort(all.kernels, all.count, sizeof *all.kernels, by_size);
+    return all;
+}
+
+static whit_result submit_nothing(struct commands *commands, struct pipeline *pipeline,
+                                  struct binding_set *set)
+{
+    const struct gpu_chunk chunk = {0};
+    whit_result result = commands_begin(commands);
+    commands_bind(commands, pipeline, set);
+    commands_push(commands, &chunk, sizeof chunk);
+    commands_dispatch(commands, 0, 0, 0);
+    return result == WHIT_OK ? commands_submit(commands) : result;
+}
+
+static whit_result submit_here(const struct renderer *renderer, const struct kernel *kernel)
+{
+    const struct pass *pass = kernel->pass;
+    return kernel->deferred ? submit_nothing(renderer->commands, pass->deferred, pass->deferred_set)
+                            : submit_nothing(renderer->commands, pass->pipeline, pass->set);
+}
+
+/* Whether the picture is to stop: it does before its first dispatch. */
+static bool stop_is_due(const struct renderer *renderer)
+{
+    const whit_renderer_params *params = &renderer->params;
+    return (params->cancel && *params->cancel) ||
+           (params->time_limit_s > 0.0 &&
+            clock_ms() - renderer->create_ms > params->time_limit_s * 1e3);
+}
+
+static whit_result translate_here(const struct share *share)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < share->count; ++i) {
+        if (stop_is_due(share->renderer))
+            return WHIT_OK;
+        result = submit_here(share->renderer, &share->kernels[i]);
+        if (result == WHIT_OK)
+            result = commands_wait(share->renderer->commands, -1.0);
+    }
+    return result;
+}
+
+static whit_result translate_there(struct device *device, struct commands *commands,
+                                   struct buffer *buffer, const struct kernel *kernel)
+{
+    struct buffer *buffers[BIND_STAGES_COUNT];
+    struct pipeline *pipeline = NULL;
+    struct binding_set *set = NULL;
+    struct gpu_spec spec;
+    struct pipeline_params params = kernel->job->params;
+    if (kernel->deferred && variant_defers(&kernel->job->params, &spec))
+        params.spec = (const uint32_t *)&spec;
+    for (uint32_t i = 0; i < BIND_STAGES_COUNT; ++i)
+        buffers[i] = buffer;
+    whit_result result = pipeline_create(device, &params, &pipeline);
+    if (result == WHIT_OK)
+        result = binding_set_create(pipeline, buffers, BIND_STAGES_COUNT, &set);
+    if (result == WHIT_OK)
+        result = submit_nothing(commands, pipeline, set);
+    if (result == WHIT_OK)
+        result = commands_wait(commands, -1.0);
+    binding_set_destroy(set);
+    pipeline_destroy(pipeline);
+    return result;
+}
+
+/* What is not done here is translated by the first device, when it comes to it. */
+static void translate_share(void *context)
+{
+    struct share *share = context;
+    const whit_log silent = {0};
+    char selector[16];
+    struct device *device = NULL;
+    struct commands *commands = NULL;
+    struct buffer *buffer = NULL;
+    snprintf(selector, sizeof selector, "%u", device_get_info(share->renderer->device)->index);
+    const struct device_params params = {.selector = selector};
+    whit_result result = device_create(&silent, &params, &device);
+    if (result == WHIT_OK)
+        result = commands_create(device, "translation", &commands);
+    if (result == WHIT_OK)
+        result = buffer_create(device, 16, BUFFER_STORAGE | BUFFER_TEXELS, "translation", &buffer);
+    while (result == WHIT_OK && share->done < share->count && !stop_is_due(share->renderer)) {
+        result = translate_there(device, commands, buffer, &share->kernels[share->done]);
+        share->done += result == WHIT_OK;
+    }
+    buffer_destroy(buffer);
+    commands_destroy(commands);
+    device_destroy(device);
+}
+
+static bool keeps_machine_code(const struct renderer *renderer)
+{
+    const char *off = getenv("MESA_SHADER_CACHE_DISABLE");
+    return device_get_info(renderer->device)->kind == DEVICE_CPU &&
+           device_compile_threads(renderer->device) != 1 && threads_available() > 1 &&
+           !(off && (strcmp(off, "1") == 0 || strcmp(off, "true") == 0));
+}
+
+whit_result translation_share(struct target *target, const struct stages_job *job)
+{
+    const struct renderer *renderer = target->renderer;
+    struct share all = all_kernels(target, job), here = {.renderer = renderer}, there = here;
+    if (!keeps_machine_code(renderer) || all.count < KERNELS_MIN || stop_is_due(renderer))
+        return WHIT_OK;
+    const struct kernel *smallest = &all.kernels[--all.count];
+    whit_result result = submit_here(renderer, smallest);
+    if (result == WHIT_OK)
+        result = commands_wait(renderer->commands, CACHED_MS);
+    if (result != WHIT_ERROR_TIME_LIMIT)
+        return result;
+    here.instructions = smallest->instructions;
+    there.instructions = START_INSTRUCTIONS;
+    for (uint32_t i = 0; i < all.count; ++i)
+        add(here.instructions <= there.instructions ? &here : &there, &all.kernels[i]);
+    struct thread *thread = thread_start(translate_share, &there);
+    result = commands_wait(renderer->commands, -1.0);
+    if (result == WHIT_OK)
+        result = translate_here(&here);
+    thread_join(thread);
+    target->stats.kernels_beside = there.done;
+    return result;
+}
