@@ -309,6 +309,17 @@ END
     refused "no number from miss" 1 "not finite" <<'END'
 vec3 miss(vec3 dir) { return vec3(sqrt(-1.0 - dir.x * dir.x)); }
 END
+    refused "a shape that is not in its box" 1 "bad\.glsl:3: intersect\(\) meets .* outside of the box .*, in pixel [0-9]+, [0-9]+ of 48 x 32" <<'END'
+//@ box -0.9 -0.9 -0.9  0.3 0.9 0.9  0.001
+// A ball of radius 0.8.
+bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)
+{
+    float b = dot(origin, dir), root = b * b - dot(origin, origin) + 0.64;
+    t = max(-b - sqrt(max(root, 0.0)), 0.0);
+    normal = normalize(origin + t * dir);
+    return root > 0.0 && b < 0.0;
+}
+END
     cat >trusted.glsl <<'END'
 vec3 miss(vec3 dir) { for (int i = 0; i < 12000; ++i) dir.x += 1e-9; return dir * dir; }
 END
