@@ -107,6 +107,12 @@ interrupted() {
     check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
 }
 
+# commands_of PAGE HEAD: whit's, of that section of a page, without what is said beside them: of lines that are indented
+# and of tables.
+commands_of() {
+    sed -n "/^## $2/,/^## /{s/^    \(whit [^#]*\).*/\1/p;s/^|.*| \`\(whit [^\`]*\)\` |\$/\1/p;}" "$1"
+}
+
 # Nothing but what the test made lies in the folder, hidden files included.
 is_empty() {
     test -z "$(ls -A "$1")"

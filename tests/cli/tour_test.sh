@@ -15,13 +15,11 @@ export PATH
 
 # ---- Functions of your own ----
 
-# commands_of HEAD: those of a section, without what is said beside them.
-commands_of() { sed -n "/^## $1/,/^## /s/^    \(whit [^#]*\).*/\1/p" "$README"; }
 if part 0 4; then
     ln -s "$SCENES/../shaders" shaders
     sed -n '/^## Functions of your own/,/^## [^F]/p' "$README" >section
     check "the section has 20 lines at most" test "$(grep -c . section)" -le 21 # and the next head
-    commands_of "Functions of your own" >commands
+    commands_of "$README" "Functions of your own" >commands
     check "it has three commands" test "$(cut -d ' ' -f 2 commands | tr '\n' ' ')" = "shader view render "
     # What stands there, in a shell; the window does what a replay does that begins with the picture.
     while read -r line; do
@@ -50,7 +48,7 @@ fi
 
 # ---- The tour ----
 
-commands_of "A tour" >commands
+commands_of "$README" "A tour" >commands
 check "the tour has ten commands or more" test "$(grep -c . commands)" -ge 10
 check "and 25 lines at most" test "$(sed -n '/^## A tour/,/^## /s/^    //p' "$README" | grep -c .)" -le 25
 grep -v "^whit view" commands >ended
