@@ -154,6 +154,23 @@ dropped: drop whit-0001.view | toast has whit-0001.view has --shader | frame.pix
 END
     expect 2 "by a picture, without an answer" view whit-0001.png
     check "says what to do" grep -q 'no terminal to ask at; --yes' "$OUT/stderr"
+    # At a terminal it says what it would load, asks once, and opens that or nothing.
+    printf '%s\n' still 'state picture' >"$OUT/replay"
+    for answer in n y; do
+        command -v script >/dev/null || break
+        echo $answer | timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) script -qec \
+            "'$WHIT' view whit-0001.png --replay '$OUT/replay' >'$OUT/states'" /dev/null >"$OUT/asked"
+        eval "$answer=$?"
+        check "$answer: names the scene" grep -q '^  scene      cube.json' "$OUT/asked"
+        check "$answer: and all functions" test "$(grep -c '^  functions  a.glsl, 9 lines\|^             part/tint.glsl, 1 line' "$OUT/asked")" -eq 2
+        check "$answer: asks once" test "$(grep -c 'Load and compile it? \[y/N\]' "$OUT/asked")" -eq 1
+        test $answer = y || check "no opens nothing" test ! -s "$OUT/states"
+    done
+    if command -v script >/dev/null; then
+        check "exit codes ($n, $y)" test "$n $y" = "2 0"
+        read_states
+        again picture
+    fi
     printf -- '--shader live/a.glsl\n--trust\n' >bad.view
     refuse 2 "a file that trusts" "bad.view:2: --trust is nothing to be saved" view cube.json --state bad.view
     for option in --allow-path=/ --memory-limit=900G --import-limit=99 --require-sandbox; do
