@@ -66,6 +66,21 @@ apart: | frame.samples > 4 | compare.known = true | compare.other_colors > 10 | 
 END
 check "B goes as far as A" test "$(value apart compare.b.samples)" -eq "$(value apart frame.samples)"
 
+# So does what a path tracer of the user's makes, whose rays go at random.
+PATHS=$SCENES/../shaders/examples/paths.glsl
+# shellcheck disable=SC2086
+play "paths" "$SCENES/cube.json" --size 24x18 --shader "$PATHS" $camera,90 <<END
+start: | frame.samples = 1 | shader.files = 1
+refined
+better: | frame.samples > 4 | frame.whole = true | frame.pixels not as start | frame.ids as start
+press F12
+END
+samples=$(value better frame.samples)
+# shellcheck disable=SC2086
+expect 0 "paths of $samples samples" render "$SCENES/cube.json" --size 24x18 --shader "$PATHS" $camera,90 --aa "$samples" \
+    -o paths.png --quiet
+expect 0 "are the window's" compare paths.png whit-0002.png --metric largest --tolerance 0
+
 # What is to stay as the settings say does, until the switch is turned in the panel of settings.
 play "left alone" "$SCENES/cube.json" --size 48x36 --at-rest stay <<END
 start: | frame.samples = 1
