@@ -146,9 +146,15 @@ static whit_result explain(const struct place *place, enum child_end end,
                          limits->cpu_s, child_clock_limit_s(limits));
         return WHIT_ERROR_INPUT;
     case CHILD_MEMORY:
-        shader_error_add(place->log, place->errors, name, 0,
-                         "the compiler asked for more than %.4g MiB of memory for it",
-                         (double)limits->memory_bytes / 1048576.0);
+        if (reply->signal)
+            shader_error_add(place->log, place->errors, name, 0,
+                             "the compiler was killed (signal %d), as where the machine runs out "
+                             "of memory",
+                             reply->signal);
+        else
+            shader_error_add(place->log, place->errors, name, 0,
+                             "the compiler asked for more than %.4g MiB of memory for it",
+                             (double)limits->memory_bytes / 1048576.0);
         return WHIT_ERROR_INPUT;
     case CHILD_CRASHED: /* C++ ends by abort(), signal 6, where memory runs out */
         shader_error_add(place->log, place->errors, name, 0,

@@ -323,6 +323,55 @@ END
     check "the compiler's two errors are told once each" test "$(grep -c 'error: live/h.glsl' "$OUT/stderr")" -eq 2
 fi
 
+# ---- The compiler's process ends while it compiles: an error as others, and the next save is as ever ----
+
+if part 3 4; then
+    child_of() { cat /proc/[0-9]*/stat 2>/dev/null | awk -v parent="$1" '$4 == parent { print $1; exit }'; }
+    kept() { child_of "$(child_of "$viewer")"; } # by the window, which `timeout` runs; each file is compiled in a child of it
+    # end_compiler SIGNAL: to that child, while it compiles.
+    end_compiler() {
+        keeper=$(kept) child=
+        until [ "$child" ]; do
+            kill -0 "$viewer" || return
+            child=$(child_of "$keeper")
+        done
+        kill -s "$1" "$child"
+    }
+    { echo '#define B0 color + color' && seq 39 | awk '{ print "#define B" $1 " B" $1 - 1 " + B" $1 - 1 }' &&
+        echo 'vec3 post(ivec2 at, vec3 color) { return B39; }'; } >long.new # to compile
+    for version in rgb gbr brg; do
+        echo "vec3 post(ivec2 at, vec3 color) { return color.$version; }" >$version.new
+        cp $version.new live/k.glsl
+        eval "$version=$(hash_of live/k.glsl)"
+    done
+    cp rgb.new live/k.glsl
+    steps >"$OUT/replay" <<END
+start: | error = | shader.hash = $rgb
+until error
+killed: | error has live/k.glsl: the compiler was killed (signal 9) | frame.pixels as start | shader.hash = $rgb
+until shader.hash = $gbr
+mended: | error = | frame.pixels not as start
+until error
+crashed: | error has live/k.glsl: the compiler crashed on it (signal 11) | frame.pixels as mended | shader.hash = $gbr
+until shader.hash = $brg
+again: | error = | frame.pixels not as mended | frame.ids as start
+END
+    on_state() {
+        case $1 in
+        *'"at":"start"'*) cp long.new live/k.glsl && end_compiler KILL ;;
+        *'"at":"killed"'*) cp gbr.new live/k.glsl ;;
+        *'"at":"mended"'*) cp long.new live/k.glsl && end_compiler SEGV ;;
+        *'"at":"crashed"'*)
+            check "the process that is kept can be ended" kill -s KILL "$(kept)"
+            cp brg.new live/k.glsl
+            ;;
+        esac
+    }
+    follow "a compiler that ends" cube.json --size 96x64 --shader live/k.glsl
+    check "the terminal says both" test "$(grep -c 'error: live/k.glsl: ' "$OUT/stderr")" -eq 2
+    check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
+fi
+
 # A file that does not compile at the start is an error at once.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
 expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet
