@@ -115,11 +115,21 @@ static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint
     return false;
 }
 
+/* What a call is given, for which glslang makes a variable: numbers and vectors, which drivers keep
+   in registers. */
+static bool is_argument(const struct spv_module *m, const uint32_t *words, const uint32_t *pointer)
+{
+    const uint32_t *type = pointer && spv_length(pointer) == 4 ? spv_def(m, pointer[3]) : NULL;
+    uint32_t op = type ? spv_op(type) : SPV_TYPE_STRUCT;
+    return op >= SPV_TYPE_BOOL && op <= SPV_TYPE_VECTOR &&
+           strcmp(spv_name(m, words[2]), "param") == 0;
+}
+
 const char *refuse_variable(struct refuse_variables *all, struct spv_module *m,
                             const uint32_t *words)
 {
     const uint32_t *pointer = spv_def(m, words[1]);
-    if (spv_length(words) == 5 && was_counted(all, m, words[4]))
+    if (is_argument(m, words, pointer) || (spv_length(words) == 5 && was_counted(all, m, words[4])))
         return NULL;
     uint64_t bytes = pointer && spv_length(pointer) == 4 ? spv_size(m, pointer[3]) : UINT64_MAX;
     bool before = all->refused;

@@ -134,6 +134,18 @@ void rays(uint seed)
 END
     expect 0 "tests" shader tests.glsl
     check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
+    # Calls may be given as much as they like; arrays of all tests are counted.
+    many() { # DECLARATION: a hundred tests of ten checks, each with it
+        echo 'float both(vec3 a, vec3 b) { return dot(a, b); }'
+        seq 100 | sed "s/.*/\/\/@ test\nvoid t&(uint seed)\n{\n    vec3 v = vec3(random(seed), 0.5, 1.0); $1/" |
+            sed 's/^    vec3 v.*/&\n    check(both(v, v) >= 1.25); check(both(v, -v) < 0.0); check(both(v, v) < 2.25);\n    check(both(v.zyx, v) > 0.0); check(both(v, v.yzx) > 0.0); check(both(v, v.xyz) > 1.0); check(both(v, v.xzy) > 0.5);\n    check(both(v, vec3(1.0)) > 1.0); check(both(v, vec3(0.0)) == 0.0); check(both(-v, -v) > 1.0); }/'
+    }
+    many "" >many.glsl
+    expect 0 "a hundred tests of ten checks" shader many.glsl
+    check "pass" test "$(grep -c "passed, 10 checks of 4096 seeds" "$OUT/stdout")" -eq 100
+    many "float a[100]; a[seed % 100u] = 1.0; v.y = a[seed % 100u];" >many.glsl
+    expect 2 "a hundred arrays" shader many.glsl
+    said "that they are too much" "variables of more than 16 KiB together"
     # What the linking of a file into whit's kernels has to keep: numbers that are no ids, what global
     # variables begin with, functions and records that whit has by the same name.
     cat >linked.glsl <<'END'
