@@ -17,7 +17,8 @@ _Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SH
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
 
-/* What is compiled for the user's functions where they come to one of these. */
+/* Effects that are compiled for the user's functions only where these call or read what `reaches`
+ * names. */
 static const struct {
     uint32_t reaches;
     uint64_t effects;
@@ -33,7 +34,7 @@ static const struct {
     {SHADER_REACHES_NORMALS, EFFECT(SMOOTH_NORMALS) | EFFECT(NORMAL_MAPS)},
 };
 
-/* Of which whit's own rays know nothing. */
+/* Effects of these bits change no ray that whit itself sends on from a surface. */
 #define BY_FUNCTIONS_ALONE                                                                         \
     (SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS | SHADER_REACHES_EMISSION |                    \
      SHADER_REACHES_HIGHLIGHTS)

@@ -415,8 +415,9 @@ WHIT_CHECK whit_result stages_replace(struct target *target, const whit_shader *
 WHIT_CHECK whit_result stages_compile(struct target *target);
 /* Binds the set to the buffers that there are, where it is not bound. */
 WHIT_CHECK whit_result stages_bind(struct target *target);
-/* Has the kernels of a set that was just made translated by two cores, where the driver would do
-   it by one. */
+/* Has the kernels of a set that was just made and bound translated to machine code by two cores,
+   where the driver's cache has none of it and the driver would use one core. Errors are the
+   device's; where a stop is asked for, what is left is translated when it is dispatched. */
 WHIT_CHECK whit_result translation_share(struct target *target, const struct stages_job *job);
 bool stage_set_is_made(const struct stage_set *set);
 bool stages_are_made(const struct target *target);

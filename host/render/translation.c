@@ -12,7 +12,7 @@
 
 /* The smallest kernel takes less out of the cache, and more where it is translated. */
 static const double CACHED_MS = 10.0;
-/* What a second device takes to begin with, in instructions that are translated meanwhile. */
+/* START_INSTRUCTIONS: the first device translates about so many while the second one is made. */
 enum { START_INSTRUCTIONS = 1000, KERNELS_MIN = 3, KERNELS_MAX = 2 * STAGE_COUNT };
 
 struct kernel {
@@ -128,7 +128,8 @@ static whit_result translate_there(struct device *device, struct commands *comma
     return result;
 }
 
-/* What is not done here is translated by the first device, when it comes to it. */
+/* The second device's share. The first device translates a kernel that is missing in the cache when
+   it dispatches it, so that an error here costs time alone. */
 static void translate_share(void *context)
 {
     struct share *share = context;

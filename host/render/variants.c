@@ -452,8 +452,9 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : renderer->packet_rays;
 }
 
-/* Takes out of the kernel of surface() and shade() what neither comes to read, whatever the stages
-   of whit's own need. What surface() may change is read by these. */
+/* Takes out of the kernel of surface() and shade() what neither of them reads, though other kernels
+   may need it. Vertex colours stay where there is a surface(): its kernel stores them for
+   shade.comp. */
 static void narrow_to_functions(const struct target *target, struct gpu_spec *spec)
 {
     const struct renderer *renderer = target->renderer;

@@ -51,8 +51,8 @@ struct shader_open {
 
 enum { SHADER_OPENS_MAX = 8 }; /* of others the place is not known */
 
-/* What functions of a user may come to call of whit's, and which parts of a surface and its
-   material they may come to read; what is not among it does not change what they do. */
+/* Which functions of whit's a user's functions call, and which parts of a surface and its material
+   they read. What a bit stands for changes nothing of what they give where the bit is not set. */
 enum {
     SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
     SHADER_REACHES_SHADOWS = 2, /* what is on the way to a place */

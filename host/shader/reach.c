@@ -4,7 +4,7 @@
 
 #define HAS(name) SHADER_REACHES_##name
 
-/* Of a filter on a shadow ray's way. */
+/* The colour of glass on a shadow ray's way is made of these. */
 #define FILTERS   (HAS(TEXTURES) | HAS(VERTEX_COLORS) | HAS(METAL_ROUGH))
 
 /* Beginnings of names of hook/interface.glsl as glslang writes them, and what their functions need
@@ -87,7 +87,8 @@ void reach_begin(struct reach *reach, const struct spv_module *m)
     }
 }
 
-/* Of member `index` of a type, which becomes that of the member; 0 where it has no such parts. */
+/* Gives the bits of member `index` of struct or array *type, and sets *type to the member's type, 0
+   where there is none. */
 static uint32_t bits_of_part(const struct reach *reach, const struct spv_module *m, uint32_t *type,
                              uint32_t index)
 {

@@ -1,5 +1,5 @@
-/* What of whit's the functions of a user come to call, and what they read of what whit tells them.
- */
+/* Which functions of whit's a user's functions call, and which members of Surface and Optics they
+   read. */
 #ifndef SHADER_REACH_H
 #define SHADER_REACH_H
 

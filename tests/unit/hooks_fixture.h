@@ -46,6 +46,20 @@ static inline void hooks_end(void)
     whit_shader_compiler_destroy(compiler);
 }
 
+/* Setup and teardown of tests that load scenes of their own. */
+static inline int hooks_setup(void **state)
+{
+    (void)state;
+    return hooks_begin(NULL) ? 0 : -1;
+}
+
+static inline int hooks_teardown(void **state)
+{
+    (void)state;
+    hooks_end();
+    return 0;
+}
+
 /* From a file of `text`, which is gone afterwards. */
 static inline whit_result hooks_load(const char *text, whit_shader **shader)
 {

@@ -7,19 +7,6 @@
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
-static int begin(void **state)
-{
-    (void)state;
-    return hooks_begin(NULL) ? 0 : -1;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    hooks_end();
-    return 0;
-}
-
 /* A floor and a mirror behind it, with a ball or without. */
 static const char room[] =
     "{\"camera\":{\"eye\":[0,1.2,4],\"target\":[0,0.8,0],\"fov\":45},\n"
@@ -256,5 +243,5 @@ TEST(files_with_half_a_shape_are_refused)
 
 int main(void)
 {
-    return unit_run(begin, end);
+    return unit_run(hooks_setup, hooks_teardown);
 }

@@ -7,19 +7,6 @@
 
 enum { WIDTH = 48, HEIGHT = 36, NAMES_BYTES = 256 };
 
-static int begin(void **state)
-{
-    (void)state;
-    return hooks_begin(NULL) ? 0 : -1;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    hooks_end();
-    return 0;
-}
-
 /* Bits of the effects that `names` holds, with blanks between them. */
 static uint64_t effects(const char *names)
 {
@@ -245,5 +232,5 @@ TEST(another_version_may_read_more)
 
 int main(void)
 {
-    return unit_run(begin, end);
+    return unit_run(hooks_setup, hooks_teardown);
 }
