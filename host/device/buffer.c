@@ -13,7 +13,7 @@ enum { TEXEL_BYTES = 16, POISON = 0xa5, LARGE_PAGE_BYTES = 2 << 20 };
 enum placement {
     PLACE_DEVICE,  /* fast for the device, out of the host's reach */
     PLACE_UNIFIED, /* one memory for both */
-    PLACE_HOST,    /* written, and above all read, by the host */
+    PLACE_HOST,    /* written, and above all read, by the host, or by copies alone */
 };
 
 /* Wanted properties of a memory type, best first. Vulkan promises every buffer a type that is
@@ -56,12 +56,15 @@ static bool find_memory_type(const struct device *device, uint32_t type_bits,
     return false;
 }
 
+/* A device with a memory of its own reaches the host's through a bus of some 25 GB/s: kernels have
+   nothing there, and what the host reads or writes is copied by way of the staging buffer. */
 static enum placement placement_for(const struct device *device, uint32_t uses)
 {
     bool one_memory = device->info.kind == DEVICE_CPU || device->info.kind == DEVICE_INTEGRATED;
-    if (uses & BUFFER_HOST)
-        return PLACE_HOST;
-    return one_memory && !device->staged ? PLACE_UNIFIED : PLACE_DEVICE;
+    bool in_kernels = uses & (BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT);
+    if (in_kernels && (!one_memory || device->staged))
+        return PLACE_DEVICE;
+    return uses & BUFFER_HOST ? PLACE_HOST : PLACE_UNIFIED;
 }
 
 /* "128 MiB", or bytes where that would not be exact. */

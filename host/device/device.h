@@ -98,8 +98,9 @@ enum buffer_use {
     BUFFER_STORAGE = 1,  /* storage buffer descriptor */
     BUFFER_TEXELS = 2,   /* uniform texel buffer view, four uint32 per element */
     BUFFER_INDIRECT = 4, /* arguments of a dispatch */
-    BUFFER_HOST = 8,     /* read or written by the host often: prefer host-visible memory */
-    BUFFER_ZEROED = 16,  /* contents start as zeros, else as they come */
+    BUFFER_HOST = 8, /* read or written by the host often: the host's memory, where kernels do not
+                        reach the buffer, or reach that memory as fast as any */
+    BUFFER_ZEROED = 16, /* contents start as zeros, else as they come */
 };
 
 /* Over the device's limits is WHIT_ERROR_DEVICE, logged with name, size

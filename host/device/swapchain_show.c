@@ -103,8 +103,8 @@ whit_result swapchain_set_picture(struct swapchain *swapchain, const uint8_t *rg
         buffer_destroy(swapchain->picture);
         swapchain->picture = NULL;
         swapchain->picture_width = swapchain->picture_height = 0;
-        result = buffer_create(swapchain->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
-                               "window picture", &swapchain->picture);
+        result = buffer_create(swapchain->device, bytes, BUFFER_HOST, "window picture",
+                               &swapchain->picture);
     }
     if (result == WHIT_OK)
         result = write_pixels(swapchain, rgba, bytes / 4);
@@ -216,8 +216,8 @@ static whit_result record_capture(struct swapchain *swapchain, const struct wind
         return WHIT_OK;
     if (!swapchain->capture || buffer_size(swapchain->capture) < bytes) {
         buffer_destroy(swapchain->capture);
-        result = buffer_create(swapchain->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
-                               "window copy", &swapchain->capture);
+        result = buffer_create(swapchain->device, bytes, BUFFER_HOST, "window copy",
+                               &swapchain->capture);
     }
     if (result != WHIT_OK)
         return result;

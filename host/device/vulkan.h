@@ -9,7 +9,7 @@
    WHIT_POISON=1        buffers without BUFFER_ZEROED start as bytes 0xa5, so that what relies on
                         zeros shows.
 
-   WHIT_STAGING=1       buffers without BUFFER_HOST are treated as not host-visible, so that the
+   WHIT_STAGING=1       buffers that kernels reach are treated as not host-visible, so that the
                         path of discrete GPUs can be tested on a CPU device. */
 #ifndef DEVICE_VULKAN_H
 #define DEVICE_VULKAN_H
