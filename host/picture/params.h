@@ -5,7 +5,7 @@
 #include "base/log.h"
 #include "whit/whit_renderer.h"
 
-enum { TILE_MIN = 16, TILE_MAX = 512 }; /* sides of tiles, pixels */
+enum { TILE_MIN = 16, TILE_MAX = 1024 }; /* sides of tiles, pixels */
 
 /* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */
 WHIT_CHECK whit_result params_check(const whit_log *log, whit_renderer_params *params);

@@ -44,6 +44,7 @@ whit_result frame_fill(struct renderer *renderer)
         frame->shade_base = mesh->shade_base;
     }
     frame->depth = renderer->params.depth;
+    frame->slot_shift = pixels_slot_shift(renderer->params.depth);
     double bailout = renderer->params.bailout;
     frame->bailout = bailout > 0.0 ? (float)bailout : FLT_MIN;
     return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);

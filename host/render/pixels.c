@@ -1,9 +1,32 @@
 /* The buffers of pixels: as many rows and ray trees as the device holds at once. */
 #include "render/renderer.h"
 
-/* What the stages of a tile leave to each other should stay in caches; larger only when asked for.
- */
-enum { TILE_USUAL = 192 };
+/* Pixels on a side of the largest tile, where no size is asked for. What the stages of a tile leave
+   to each other should stay in a processor's caches. Another device has more threads than such a
+   tile has rays, and each dispatch costs the same: there a tile may take a share of the memory. */
+enum { TILE_CPU = 192, TILE_OTHER = 768, MEMORY_SHARE = 16 };
+/* What a slot takes of all queues and of the largest one, about and at most. */
+enum { SLOT_BYTES = 2048, SLOT_LARGEST_BYTES = 1024 };
+
+uint32_t pixels_slot_shift(uint32_t depth)
+{
+    uint32_t bits = STATE_BOUNCES_SHIFT;
+    while (depth >> (bits - STATE_BOUNCES_SHIFT))
+        ++bits;
+    return bits;
+}
+
+static uint32_t usual_tile(const struct device *device)
+{
+    const struct device_info *info = device_get_info(device);
+    if (info->kind == DEVICE_CPU)
+        return TILE_CPU;
+    uint32_t tile = TILE_OTHER;
+    while (tile > TILE_CPU &&
+           (uint64_t)tile * tile * SLOT_BYTES > info->memory_bytes / MEMORY_SHARE)
+        tile /= 2;
+    return tile;
+}
 
 uint32_t pixels_blocks_across(uint32_t pixels)
 {
@@ -27,9 +50,11 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     struct device *device = renderer->device;
     uint32_t width = renderer->params.width;
     uint64_t limit = device_get_info(device)->max_storage_range_bytes;
-    uint32_t tile = tile_size ? tile_size : TILE_USUAL;
-    uint64_t slots = (uint64_t)tile * tile;
-    slots = slots > QUEUED_SLOTS_MAX ? QUEUED_SLOTS_MAX : slots;
+    uint32_t tile = tile_size ? tile_size : usual_tile(device);
+    uint64_t slots = (uint64_t)tile * tile,
+             slots_max = UINT64_C(1) << (32 - pixels_slot_shift(renderer->params.depth));
+    slots_max = slots_max < limit / SLOT_LARGEST_BYTES ? slots_max : limit / SLOT_LARGEST_BYTES;
+    slots = slots > slots_max ? slots_max : slots;
     p->levels = pixels_levels(&renderer->params);
     /* The sums of samples are in the same buffer, behind the pixels. */
     bool posts = shader_has(renderer->params.shader, SHADER_HOOK_POST);

@@ -257,6 +257,9 @@ void renderer_finish(struct renderer *renderer);
 /* The kernel of the picture, where there is none yet. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
+/* pixels.c: the bits of the steps of a ray of a picture of this depth, 8..16: gpu_frame. */
+uint32_t pixels_slot_shift(uint32_t depth);
+
 /* pixels.c: target->buffers, for the parameters and effects of the renderer, for bands of up to
    `height` rows and chunks of `tile_size` (0: as large as is fit). */
 WHIT_CHECK whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_size);

@@ -13,7 +13,7 @@
 #include "base/clock.h"
 #include "render/renderer.h"
 
-enum { TILE_FIRST = 96 };
+enum { TILE_FIRST_CPU = 96, TILE_FIRST = 192 };
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
 static const double SUBMISSION_LIMIT_MS = 100.0;
 
@@ -345,13 +345,15 @@ struct progress render_progress(const struct renderer *renderer)
 {
     uint32_t asked = renderer->params.tile_size;
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
+    bool cpu = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    uint32_t first = cpu ? TILE_FIRST_CPU : TILE_FIRST;
     return (struct progress){
         .lattice = lattice_whole(renderer),
         .start_ms = clock_ms(),
-        .tile = asked                                         ? asked
-                : renderer->accel->no_trees                   ? TILE_MIN
-                : largest < TILE_FIRST && largest >= TILE_MIN ? largest
-                                                              : TILE_FIRST,
+        .tile = asked                                    ? asked
+                : renderer->accel->no_trees              ? TILE_MIN
+                : largest < first && largest >= TILE_MIN ? largest
+                                                         : first,
         .share = 1.0,
     };
 }

@@ -8,7 +8,8 @@
 
 enum {
     TRACE_CAPACITY = 1 << 20,   /* rays in device memory */
-    TRACE_FIRST = 1 << 14,      /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_FIRST_CPU = 1 << 14,  /* rays of the first dispatch, whose time sets the next one's */
+    TRACE_FIRST = 1 << 20,      /* the same of devices that have more threads than that */
     TRACE_FIRST_BARE = 1 << 10, /* the same without trees */
     TRACE_BEAMS_MIN = 1 << 17,  /* rays of a batch that are worth the kernel of beams */
 };
@@ -28,10 +29,16 @@ void trace_finish(struct trace_state *trace)
     *trace = (struct trace_state){0};
 }
 
-/* Pieces grow fourfold: a capacity is the first one times a power of 4. */
-static uint32_t choose_capacity(uint32_t max_rays)
+/* Pieces grow fourfold, up to the capacity. */
+static uint32_t first_piece(const struct renderer *renderer)
 {
-    uint32_t capacity = TRACE_FIRST;
+    bool cpu = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    return renderer->accel->no_trees ? TRACE_FIRST_BARE : cpu ? TRACE_FIRST_CPU : TRACE_FIRST;
+}
+
+static uint32_t choose_capacity(uint32_t max_rays, uint32_t first)
+{
+    uint32_t capacity = first;
     while (capacity < TRACE_CAPACITY && (max_rays == 0 || capacity < max_rays))
         capacity *= 4;
     return capacity;
@@ -50,7 +57,7 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
     beams = beams && renderer->packet_stack_size <= PACKET_STACK_MAX;
     uint32_t loads = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     if (result == WHIT_OK && !trace->rays) {
-        trace->capacity = choose_capacity(renderer->params.trace_rays);
+        trace->capacity = choose_capacity(renderer->params.trace_rays, first_piece(renderer));
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
                                loads | BUFFER_HOST, "rays", &trace->rays);
     }
@@ -172,7 +179,7 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     whit_result result = prepare(renderer, any, beams);
     if (result == WHIT_OK)
         result = deferred_clear(&renderer->picture);
-    uint64_t piece = renderer->accel->no_trees ? TRACE_FIRST_BARE : TRACE_FIRST;
+    uint64_t piece = first_piece(renderer);
     for (uint64_t done = 0; result == WHIT_OK && done < count;) {
         result = cancelled(renderer);
         if (result != WHIT_OK)

@@ -453,8 +453,9 @@ const struct setting settings_table[] = {
     {"quiet", 'q', NULL, "no notes, no progress, only errors", AT(FLAG, quiet),
      .commands = IN_SCENES | IN_COMPARE | IN_MERGE | IN_BATCH | IN_BENCH | IN_CHECK},
 
-    {"tile-size", 0, "N", "pixels on a tile's side, 16 to 512", "by measured time",
-     AT(COUNT, picture.tile_size), .min = 16, .max = 512, .developer = true, .commands = IN_RENDER},
+    {"tile-size", 0, "N", "pixels on a tile's side, 16 to 1024", "by measured time",
+     AT(COUNT, picture.tile_size), .min = 16, .max = 1024, .developer = true,
+     .commands = IN_RENDER},
     {"packets", 0, NULL,
      "whether camera rays and the shadow rays of what they meet\n"
      "walk together; auto: where that is quicker",

@@ -110,7 +110,7 @@ typedef struct whit_renderer_params {
        for values beside the colour camera rays alone are traced. The picture is the same;
        whit_stats are those of the last one. */
     bool reuse_rays;
-    uint32_t tile_size; /* pixels on a side, 16..512; 0: by measured time */
+    uint32_t tile_size; /* pixels on a side, 16..1024; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */
     void (*progress)(void *user, double done);

@@ -14,9 +14,6 @@
 #define OWN_SURFACE_ROWS 3u /* of a hit that a user's surface() has changed */
 #define OWN_LIGHT_ROWS   1u /* of a hit whose light a user's shade() has said, behind these */
 
-/* The state of a queued ray: its steps in the low bits, and above them the slot of its pixel. */
-#define STATE_SLOT_SHIFT  16u
-#define QUEUED_SLOTS_MAX 65536u
 
 /* The sizes in rows of gpu_tally, gpu_generation and gpu_items. */
 #define TALLY_ROWS      2u

@@ -164,7 +164,8 @@ struct gpu_frame {
     gpu_uint root8;     /* of eight children a node, see accel_bvh8 */
     gpu_uint shape_material; /* of a user's shape; SHAPE_IS_GLASS: light passes through it */
     gpu_float shape_error; /* how far from it answers may be */
-    gpu_uint pad0, pad1, pad2;
+    gpu_uint slot_shift; /* of the state of a queued ray */
+    gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_frame, 224)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
@@ -205,7 +206,8 @@ struct gpu_media {
 };
 GPU_ASSERT_SIZE(gpu_media, 16)
 
-/* The steps of a ray: surfaces passed unseen in the low bits, and above them bounces so far. */
+/* The state of a queued ray: surfaces passed unseen in the low bits, above them bounces so far, and
+   above these, from frame.slot_shift on, the slot of its pixel. */
 #define STATE_BOUNCES_SHIFT 8u
 
 /* Push constants of the stages: a chunk is a run of 8x8 pixel blocks of a band of rows. */

@@ -168,8 +168,8 @@ Ray queued_ray(uint id, out uint slot)
     ray.dir = row_vec3(r1);
     ray.weight = row_vec3(r2);
     ray.media = SPEC_MEDIA != 0u ? fetch_ray_row(row + 3u) : uvec4(0u);
-    ray.steps = r0.w & ((1u << STATE_SLOT_SHIFT) - 1u);
-    slot = r0.w >> STATE_SLOT_SHIFT;
+    ray.steps = r0.w & ((1u << frame.slot_shift) - 1u);
+    slot = r0.w >> frame.slot_shift;
     uint kind = HAS_KINDS ? ray_kinds[id] : 0u;
     ray.kind = kind & KIND_BITS;
     ray.way = uintBitsToFloat(kind & ~KIND_BITS);
@@ -208,7 +208,7 @@ Ray fetch_ray(uint id, out uint slot)
 void store_ray(uint id, Ray ray, uint slot)
 {
     uint place = ray_place(id, chunk.generation + 1u);
-    uvec4 r0 = uvec4(floatBitsToUint(ray.origin), ray.steps | slot << STATE_SLOT_SHIFT);
+    uvec4 r0 = uvec4(floatBitsToUint(ray.origin), ray.steps | slot << frame.slot_shift);
     uvec4 r1 = uvec4(floatBitsToUint(ray.dir), ray.skip_record);
     uvec4 r2 = uvec4(floatBitsToUint(ray.weight), ray.skip_instance);
     if (SPEC_WIDE_ROWS != 0u) {

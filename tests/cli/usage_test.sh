@@ -39,7 +39,7 @@ for samples in 0 4097 -1 4x four ""; do
     refuse 2 "--aa '$samples'" "a whole number from 1 to 4096 or adaptive:X" render "$CUBE" -o "$P" --aa "$samples"
 done
 refuse 2 "--depth -1" "whole number" render "$CUBE" -o "$P" --depth -1
-refuse 2 "--tile-size 5" "from 16 to 512" render "$CUBE" -o "$P" --tile-size 5
+refuse 2 "--tile-size 5" "from 16 to 1024" render "$CUBE" -o "$P" --tile-size 5
 refuse 2 "--tile 32" "\`--tile-size\` now" render "$CUBE" -o "$P" --tile 32
 refuse 2 "--packets some" "auto, on, off" render "$CUBE" -o "$P" --packets some
 refuse 2 "--classes two" "auto, one, many" render "$CUBE" -o "$P" --classes two
