@@ -5,6 +5,10 @@
 #include "base/log.h"
 #include "whit/whit_renderer.h"
 
+/* Shadow rays are not traced that can add no more than this times the bailout of what their light
+   sends. Highlights fade without an end, and far from their middle nobody sees them. */
+#define BAILOUT_SHADOW_SHARE 0x1p-14
+
 enum { TILE_MIN = 16, TILE_MAX = 1024 }; /* sides of tiles, pixels */
 
 /* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */

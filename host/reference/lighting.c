@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/same.h"
+#include "picture/params.h"
 #include "reference/inside.h"
 
 #define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: beyond it a mesh is no smooth surface */
@@ -149,7 +150,8 @@ static void add_point(struct tracer *tracer, const struct receiver *at, const st
     struct dvec3 highlight =
         optics_highlight(o, s->ns, from.to_light, d3_scale(at->ray->dir, -1.0));
     struct dvec3 reflected = d3_along(highlight, o->diffuse, cos_light);
-    wanted = wanted && !(reflected.x + reflected.y + reflected.z <= 0.0);
+    wanted = wanted && !(reflected.x + reflected.y + reflected.z <=
+                         tracer->reference->bailout * BAILOUT_SHADOW_SHARE);
     struct dvec3 share = d3_all(0.0);
     if (wanted)
         share = light_share(tracer, at, &from, index, point);

@@ -1,5 +1,6 @@
 /* By how much a picture can differ from one for which no ray was too weak to be traced: the weights
-   that were cut from a pixel, times the most radiance that a ray can bring. */
+   that were cut from a pixel, times the most radiance that a ray can bring, and what shadow rays
+   would have added. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -120,38 +121,53 @@ static bool *worn_materials(const struct scene *scene)
     return worn;
 }
 
-/* The most that a ray can bring: the sky, or a surface's own light and what its rays bring. */
-static double ray_max(const struct renderer *renderer, const bool *worn)
+/* The most that a ray of weight 1 can bring: the sky, or a surface's own light and what its rays
+   bring; and the most light that is left out for shadow rays at all that it meets, of weights of
+   the bailout and more. A surface that is passed unseen in parts may be followed by many before the
+   next bounce. */
+struct brought {
+    double radiance, unshadowed;
+};
+
+static struct brought ray_max(const struct renderer *renderer, const bool *worn)
 {
     const struct scene *scene = renderer->scene;
     bool highlights = false;
-    for (uint32_t i = 0; i < scene->material_count; ++i)
+    double passed = 1.0;
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
         highlights |= worn[i] && has_highlight(&scene->materials[i]);
+        if (worn[i] && scene->materials[i].alpha == SCENE_ALPHA_BLEND)
+            passed = 1u << STATE_BOUNCES_SHIFT;
+    }
     double arriving = arriving_max(renderer, highlights), sky = sky_max(renderer);
     if (arriving < 0.0 || sky < 0.0)
-        return -1.0;
-    double radiance = 0.0;
+        return (struct brought){-1.0, -1.0};
+    double radiance = 0.0, hits = 0.0;
     for (uint32_t level = 0; level <= renderer->params.depth; ++level) {
-        double next = sky;
+        double next = sky, called = 0.0;
         for (uint32_t i = 0; i < scene->material_count; ++i) {
             if (!worn[i])
                 continue;
             const struct scene_material m = material_drawn(renderer, i);
             struct max max = material_max(renderer, &m, arriving);
             next = fmax(next, max.own + max.weights * radiance);
+            called = fmax(called, max.weights * hits);
         }
         radiance = next;
+        hits = passed + called;
     }
-    return isfinite(radiance) ? radiance : -1.0;
+    double unshadowed = BAILOUT_SHADOW_SHARE * arriving * hits;
+    return isfinite(radiance) ? (struct brought){radiance, unshadowed}
+                              : (struct brought){-1.0, -1.0};
 }
 
 double bailout_bound(const struct renderer *renderer)
 {
     double cut = renderer->picture.stats.weight_cut_bailout;
-    if (cut == 0.0)
+    if (!(renderer->params.bailout > 0.0))
         return 0.0;
     bool *worn = worn_materials(renderer->scene);
-    double max = worn ? ray_max(renderer, worn) : -1.0;
+    struct brought max = worn ? ray_max(renderer, worn) : (struct brought){-1.0, -1.0};
     free(worn);
-    return max < 0.0 ? -1.0 : cut * max;
+    return max.radiance < 0.0 ? -1.0 : cut * max.radiance + max.unshadowed;
 }

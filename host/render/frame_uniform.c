@@ -1,5 +1,6 @@
 /* The record that every ray of a picture reads: camera, sky, where trees begin, limits. */
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "picture/mipmap.h"
@@ -47,6 +48,7 @@ whit_result frame_fill(struct renderer *renderer)
     frame->slot_shift = pixels_slot_shift(renderer->params.depth);
     double bailout = renderer->params.bailout;
     frame->bailout = bailout > 0.0 ? (float)bailout : FLT_MIN;
+    frame->bailout_shadow = fmaxf(frame->bailout * (float)BAILOUT_SHADOW_SHARE, FLT_MIN);
     return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);
 }
 

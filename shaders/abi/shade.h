@@ -165,7 +165,9 @@ struct gpu_frame {
     gpu_uint shape_material; /* of a user's shape; SHAPE_IS_GLASS: light passes through it */
     gpu_float shape_error; /* how far from it answers may be */
     gpu_uint slot_shift; /* of the state of a queued ray */
-    gpu_uint pad0, pad1;
+    gpu_float bailout_shadow; /* shadow rays that can add no more than this share of what their light sends
+                                 are not traced */
+    gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_frame, 224)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)

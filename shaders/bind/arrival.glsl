@@ -53,7 +53,7 @@ Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
         a.reflected += a.highlight;
     }
     // NaN is wanted too: it must be seen in the picture.
-    a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= 0.0);
+    a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= frame.bailout_shadow);
     aim_at_light(lit, at, a);
     return a;
 }
