@@ -256,7 +256,8 @@ whit_result whit_device_find_floats(whit_device *device, whit_device_floats *flo
 {
     struct portable_device found = {0};
     whit_result result = portable_find(&device->log, device->device, &found);
-    *floats = (whit_device_floats){found.own_division, found.keeps_denormals, found.rounds_nearest};
+    *floats = (whit_device_floats){found.own_division, found.keeps_denormals, found.rounds_nearest,
+                                   found.own_comparison};
     return result;
 }
 

@@ -37,6 +37,15 @@ static whit_result trace(const struct hard_device *device, const whit_log *log, 
     return result;
 }
 
+/* Whether hits of this device are to have the bits of the twin's: see docs/numerics.md. */
+static whit_result find_equal_bits(whit_device *device, bool portable, bool *equal)
+{
+    whit_device_floats floats = {.own_division = true, .own_comparison = true};
+    whit_result result = device && !portable ? whit_device_find_floats(device, &floats) : WHIT_OK;
+    *equal = floats.own_division && floats.own_comparison;
+    return result;
+}
+
 whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
                           const whit_hard_params *params, const whit_log *log,
                           whit_hard_report **out)
@@ -44,7 +53,11 @@ whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
     const whit_hard_params defaults = {0};
     params = params ? params : &defaults;
     struct traced_on on = {device ? device->device : NULL, params->cancel, params->portable};
-    const struct hard_device hard_device = {trace, &on};
+    struct hard_device hard_device = {trace, &on, true};
+    *out = NULL;
+    whit_result result = find_equal_bits(device, params->portable, &hard_device.equal_bits);
+    if (result != WHIT_OK)
+        return result;
     return hard_run(device ? &hard_device : NULL, scene ? scene->scene : NULL,
                     scene && api_one_tree(scene, params->instances), params, log, out);
 }
@@ -60,7 +73,7 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
 {
     whit_hard_view_params own = params ? *params : (whit_hard_view_params){0};
     struct traced_on on = {device ? device->device : NULL, NULL, own.portable};
-    const struct hard_device hard_device = {trace, &on};
+    const struct hard_device hard_device = {trace, &on, true};
     *out = NULL;
     own.width = own.width ? own.width : WIDTH_DEFAULT;
     own.height = own.height ? own.height : HEIGHT_DEFAULT;

@@ -143,8 +143,9 @@ static whit_result trace_level(struct hard_run *run, const struct hard_scene *ha
 
 static whit_result keep_row(struct hard_run *run, whit_hard_row *row)
 {
-    row->kept = hard_promise_kept((uint32_t)row->numerics, row->promised, &row->tally) &&
-                (row->numerics == WHIT_NUMERICS_FAST || row->differing == 0);
+    row->kept =
+        hard_promise_kept((uint32_t)row->numerics, row->promised, &row->tally) &&
+        (row->numerics == WHIT_NUMERICS_FAST || row->differing == 0 || !run->report->equal_bits);
     if (!run->device || row->unanswered)
         row->device_ms = -1.0;
     run->report->broken += !row->kept;
@@ -322,8 +323,10 @@ whit_result hard_run(const struct hard_device *device, const struct scene *scene
     whit_result result = check_params(&run);
     if (result == WHIT_OK)
         result = allocate(&run);
-    if (result == WHIT_OK)
+    if (result == WHIT_OK) {
+        run.report->equal_bits = !device || device->equal_bits;
         result = scene ? run_scene(&run, scene, flatten) : run_cases(&run);
+    }
     free(run.rays);
     free(run.plain);
     free(run.exact);

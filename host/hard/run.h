@@ -13,6 +13,7 @@ struct hard_device {
                          double time_s, uint32_t numerics, const struct gpu_ray *rays,
                          uint64_t count, struct gpu_hit *hits, double *device_ms);
     void *user;
+    bool equal_bits; /* as of whit_hard_report */
 };
 
 /* As whit_hard_run; `device` and `scene` may be NULL; `flatten`: the scene as one tree. */

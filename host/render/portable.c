@@ -1,5 +1,6 @@
 #include "render/portable.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,8 @@ whit_result portable_rewrite(const void *user, const uint32_t *words, size_t wor
 uint32_t portable_number(const struct portable_params *params)
 {
     return (uint32_t)params->own_division | (uint32_t)params->asks_nearest << 1 |
-           (uint32_t)params->asks_special << 2 | (uint32_t)params->asks_denormals << 3;
+           (uint32_t)params->asks_special << 2 | (uint32_t)params->asks_denormals << 3 |
+           (uint32_t)params->own_comparison << 4;
 }
 
 /* One function of kernel/portable.comp, on a device. */
@@ -48,7 +50,7 @@ static whit_result run_init(struct run *run, struct device *device,
                             const struct portable_params *asks, uint32_t function)
 {
     static const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_STORAGE};
-    const uint32_t spec[] = {1, function};
+    const uint32_t spec[] = {1, function, 1};
     const struct pipeline_params params = {
         .spirv = portable_kernel.words,
         .spirv_bytes = portable_kernel.bytes,
@@ -56,7 +58,7 @@ static whit_result run_init(struct run *run, struct device *device,
         .rewrite_user = asks,
         .rewrite_as = portable_number(asks),
         .spec = spec,
-        .spec_count = 2,
+        .spec_count = 3,
         .bindings = bindings,
         .binding_count = 2,
         .name = "floats of the device",
@@ -121,7 +123,22 @@ static bool is_denormal(uint32_t bits)
     return (bits & 0x7f800000) == 0 && (bits & 0x7fffffff) != 0;
 }
 
-/* Sums or products of a few floats beside those of this processor, which are IEEE's. */
+/* The answer of kernel/portable.comp as this processor gives it, which is IEEE's. */
+static uint32_t right_answer(uint32_t function, float x, float y)
+{
+    float right = function == PORTABLE_SUM       ? x + y
+                  : function == PORTABLE_PRODUCT ? x * y
+                                                 : fabsf(x);
+    uint32_t bits;
+    if (function == PORTABLE_RELATIONS)
+        return (uint32_t)(x < y) | (uint32_t)(x <= y) << 1 | (uint32_t)(x == y) << 2 |
+               (uint32_t)(x != y) << 3 | (uint32_t)(x > y) << 4 | (uint32_t)(x >= y) << 5 |
+               (uint32_t) !(y < x) << 6;
+    memcpy(&bits, &right, sizeof bits);
+    return bits;
+}
+
+/* Sums, products, relations or absolute values of a few floats. */
 static whit_result compare_plain(struct device *device, const struct portable_params *asks,
                                  uint32_t function, struct portable_device *out)
 {
@@ -141,11 +158,12 @@ static whit_result compare_plain(struct device *device, const struct portable_pa
         result = buffer_read(run.out, 0, answers, sizeof answers);
     for (uint32_t i = 0; result == WHIT_OK && i < CASES; ++i) {
         float x = as_float(cases[i][0]), y = as_float(cases[i][1]);
-        float right = function == PORTABLE_SUM ? x + y : x * y;
-        uint32_t bits;
-        memcpy(&bits, &right, sizeof bits);
+        uint32_t bits = right_answer(function, x, y);
+        bool rounds = function == PORTABLE_SUM || function == PORTABLE_PRODUCT;
         bool small = is_denormal(cases[i][0]) || is_denormal(cases[i][1]) || is_denormal(bits);
-        bool *fine = small ? &out->keeps_denormals : &out->rounds_nearest;
+        bool *fine = !rounds ? &out->own_comparison
+                     : small ? &out->keeps_denormals
+                             : &out->rounds_nearest;
         *fine = *fine && answers[i] == bits;
     }
     run_finish(&run);
@@ -156,6 +174,7 @@ static struct portable_params asks_of(const struct device *device)
 {
     const struct device_info *info = device_get_info(device);
     return (struct portable_params){.own_division = true,
+                                    .own_comparison = true,
                                     .asks_nearest = info->asked_nearest,
                                     .asks_special = info->asked_special,
                                     .asks_denormals = info->asked_denormals};
@@ -164,12 +183,12 @@ static struct portable_params asks_of(const struct device *device)
 static whit_result find_out(struct device *device, struct portable_device *out)
 {
     const struct portable_params asks = asks_of(device);
-    *out = (struct portable_device){false, true, true};
+    static const uint32_t plain[] = {PORTABLE_SUM, PORTABLE_PRODUCT, PORTABLE_RELATIONS,
+                                     PORTABLE_ABS};
+    *out = (struct portable_device){false, true, true, true};
     whit_result result = compare_division(device, &asks, &out->own_division);
-    if (result == WHIT_OK)
-        result = compare_plain(device, &asks, PORTABLE_SUM, out);
-    if (result == WHIT_OK)
-        result = compare_plain(device, &asks, PORTABLE_PRODUCT, out);
+    for (size_t i = 0; result == WHIT_OK && i < sizeof plain / sizeof *plain; ++i)
+        result = compare_plain(device, &asks, plain[i], out);
     return result;
 }
 
@@ -183,11 +202,12 @@ whit_result portable_find(const whit_log *log, struct device *device, struct por
     uint64_t hash = hash_bytes(HASH_START, driver, strlen(driver)); /* not all tell by their UUID */
     snprintf(what, sizeof what, "floats-%016llx", (unsigned long long)hash);
     name = device_kept_name(device, what);
-    if (name && store_read(log, name, &kept, &bytes) && bytes == 3) {
-        *out = (struct portable_device){kept[0] == 1, kept[1] == 1, kept[2] == 1};
+    if (name && store_read(log, name, &kept, &bytes) && bytes == 4) {
+        *out = (struct portable_device){kept[0] == 1, kept[1] == 1, kept[2] == 1, kept[3] == 1};
     } else {
         result = find_out(device, out);
-        const uint8_t found[] = {out->own_division, out->keeps_denormals, out->rounds_nearest};
+        const uint8_t found[] = {out->own_division, out->keeps_denormals, out->rounds_nearest,
+                                 out->own_comparison};
         if (result == WHIT_OK && name)
             store_write(log, name, found, sizeof found);
     }
@@ -204,14 +224,15 @@ static bool is_off(const char *variable)
 
 whit_result portable_choose(const whit_log *log, struct device *device, struct portable_params *out)
 {
-    struct portable_device found = {true, true, true};
-    *out = (struct portable_params){.own_division = true};
+    struct portable_device found = {true, true, true, true};
+    *out = (struct portable_params){.own_division = true, .own_comparison = true};
     whit_result result = device ? portable_find(log, device, &found) : WHIT_OK;
     if (result != WHIT_OK)
         return result;
     if (device)
         *out = asks_of(device);
     out->own_division = found.own_division && !is_off("WHIT_OWN_DIVISION");
+    out->own_comparison = found.own_comparison && !is_off("WHIT_OWN_COMPARISON");
     if (found.keeps_denormals && found.rounds_nearest)
         return WHIT_OK;
     log_error(log, "%s %s, so that no picture of it is portable", device_get_info(device)->name,

@@ -10,6 +10,7 @@ struct portable_device {
     bool own_division;    /* its own division and square root are rounded correctly */
     bool keeps_denormals; /* in sums and products, where kernels ask for it */
     bool rounds_nearest;  /* the same of what is no denormal */
+    bool own_comparison;  /* its comparisons and absolute values tell denormals from 0 */
 };
 
 /* Found out once for a device and its driver, in about a second, and kept (base/store.h). */
@@ -18,8 +19,8 @@ WHIT_CHECK whit_result portable_find(const whit_log *log, struct device *device,
 
 /* What kernels are made with for a device; WHIT_ERROR_DEVICE, logged, where it cannot be: it
    flushes denormals, or rounds sums otherwise. WHIT_OWN_DIVISION=0 in the environment: with the
-   functions in place of the device's own division, for tests. `device` NULL: as for one that has
-   everything. */
+   functions in place of the device's own division, for tests; WHIT_OWN_COMPARISON=0: the same of
+   comparisons. `device` NULL: as for one that has everything. */
 WHIT_CHECK whit_result portable_choose(const whit_log *log, struct device *device,
                                        struct portable_params *out);
 

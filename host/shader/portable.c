@@ -23,9 +23,12 @@ struct portable {
 /* --- what is left to the driver ----------------------------------------------------------------
  */
 
+/* Where the device's own stays. */
+enum stays { NOWHERE, RIGHT_DIVISION, RIGHT_COMPARISON };
+
 struct stand_in {
     uint16_t number;
-    bool division;        /* where the device's own is rounded correctly, it stays */
+    enum stays stays;
     const char *function; /* behind "portable_"; NULL: there is none */
     const char *name;     /* for messages; NULL: as the function */
 };
@@ -33,81 +36,95 @@ struct stand_in {
 /* Numbers of SPIR-V 1.5, 3.32. "Precision and Operation of SPIR-V Instructions" of Vulkan 1.2 tells
    which of them are open; the others that kernels may have are exact, or rounded correctly. */
 static const struct stand_in operations[] = {
-    {109, false, "uint", NULL},       {110, false, "int", NULL},
-    {115, false, NULL, "OpFConvert"}, {116, false, NULL, "OpQuantizeToF16"},
-    {136, true, "divide", NULL},      {140, false, NULL, "OpFRem"},
-    {141, false, "mod", NULL},        {144, false, "times", NULL},
-    {145, false, "times", NULL},      {146, false, "times", NULL},
-    {148, false, "dot", NULL},        {156, false, "isnan", NULL},
-    {157, false, "isinf", NULL},
+    {109, NOWHERE, "uint", NULL},
+    {110, NOWHERE, "int", NULL},
+    {115, NOWHERE, NULL, "OpFConvert"},
+    {116, NOWHERE, NULL, "OpQuantizeToF16"},
+    {136, RIGHT_DIVISION, "divide", NULL},
+    {140, NOWHERE, NULL, "OpFRem"},
+    {141, NOWHERE, "mod", NULL},
+    {144, NOWHERE, "times", NULL},
+    {145, NOWHERE, "times", NULL},
+    {146, NOWHERE, "times", NULL},
+    {148, NOWHERE, "dot", NULL},
+    {156, NOWHERE, "isnan", NULL},
+    {157, NOWHERE, "isinf", NULL},
+    {180, RIGHT_COMPARISON, "equal", NULL},
+    {183, RIGHT_COMPARISON, "unequal", NULL},
+    {184, RIGHT_COMPARISON, "less", NULL},
+    {186, RIGHT_COMPARISON, "more", NULL},
+    {188, RIGHT_COMPARISON, "at_most", NULL},
+    {190, RIGHT_COMPARISON, "at_least", NULL},
 };
 
-/* Of GLSL.std.450. What is not here is exact: RoundEven, Trunc, FAbs, SAbs, SSign, Floor, Ceil,
-   UMin, SMin, UMax, SMax, UClamp, SClamp, Step, and the finding of bits. */
+/* Of GLSL.std.450. What is not here is exact: RoundEven, Trunc, SAbs, SSign, Floor, Ceil,
+   UMin, SMin, UMax, SMax, UClamp, SClamp, and the finding of bits. */
 static const struct stand_in instructions[] = {
-    {1, false, "round", NULL},
-    {6, false, "sign", NULL},
-    {10, false, "fract", NULL},
-    {11, false, "radians", NULL},
-    {12, false, "degrees", NULL},
-    {13, false, "sin", NULL},
-    {14, false, "cos", NULL},
-    {15, false, "tan", NULL},
-    {16, false, "asin", NULL},
-    {17, false, "acos", NULL},
-    {18, false, "atan", NULL},
-    {19, false, NULL, "sinh"},
-    {20, false, NULL, "cosh"},
-    {21, false, NULL, "tanh"},
-    {22, false, NULL, "asinh"},
-    {23, false, NULL, "acosh"},
-    {24, false, NULL, "atanh"},
-    {25, false, "atan", NULL},
-    {26, false, "pow", NULL},
-    {27, false, "exp", NULL},
-    {28, false, "log", NULL},
-    {29, false, "exp2", NULL},
-    {30, false, "log2", NULL},
-    {31, true, "sqrt", NULL},
-    {32, false, "inversesqrt", NULL},
-    {33, false, NULL, "determinant"},
-    {34, false, NULL, "inverse"},
-    {35, false, NULL, "modf"},
-    {36, false, NULL, "modf"},
-    {37, false, "min", NULL},
-    {40, false, "max", NULL},
-    {43, false, "clamp", NULL},
-    {46, false, "mix", NULL},
-    {49, false, "smoothstep", NULL},
-    {50, false, "fma", NULL},
-    {51, false, NULL, "frexp"},
-    {52, false, NULL, "frexp"},
-    {53, false, NULL, "ldexp"},
-    {54, false, NULL, "packSnorm4x8"},
-    {55, false, NULL, "packUnorm4x8"},
-    {56, false, NULL, "packSnorm2x16"},
-    {57, false, NULL, "packUnorm2x16"},
-    {58, false, NULL, "packHalf2x16"},
-    {59, false, NULL, "packDouble2x32"},
-    {60, false, NULL, "unpackSnorm2x16"},
-    {61, false, "unpackUnorm2x16", NULL},
-    {62, false, NULL, "unpackHalf2x16"},
-    {63, false, NULL, "unpackSnorm4x8"},
-    {64, false, "unpackUnorm4x8", NULL},
-    {65, false, NULL, "unpackDouble2x32"},
-    {66, false, "length", NULL},
-    {67, false, "distance", NULL},
-    {68, false, "cross", NULL},
-    {69, false, "normalize", NULL},
-    {70, false, "faceforward", NULL},
-    {71, false, "reflect", NULL},
-    {72, false, "refract", NULL},
-    {76, false, NULL, "interpolateAtCentroid"},
-    {77, false, NULL, "interpolateAtSample"},
-    {78, false, NULL, "interpolateAtOffset"},
-    {79, false, NULL, "NMin"},
-    {80, false, NULL, "NMax"},
-    {81, false, NULL, "NClamp"},
+    {1, NOWHERE, "round", NULL},
+    {4, RIGHT_COMPARISON, "abs", NULL},
+    {6, NOWHERE, "sign", NULL},
+    {10, NOWHERE, "fract", NULL},
+    {11, NOWHERE, "radians", NULL},
+    {12, NOWHERE, "degrees", NULL},
+    {13, NOWHERE, "sin", NULL},
+    {14, NOWHERE, "cos", NULL},
+    {15, NOWHERE, "tan", NULL},
+    {16, NOWHERE, "asin", NULL},
+    {17, NOWHERE, "acos", NULL},
+    {18, NOWHERE, "atan", NULL},
+    {19, NOWHERE, NULL, "sinh"},
+    {20, NOWHERE, NULL, "cosh"},
+    {21, NOWHERE, NULL, "tanh"},
+    {22, NOWHERE, NULL, "asinh"},
+    {23, NOWHERE, NULL, "acosh"},
+    {24, NOWHERE, NULL, "atanh"},
+    {25, NOWHERE, "atan", NULL},
+    {26, NOWHERE, "pow", NULL},
+    {27, NOWHERE, "exp", NULL},
+    {28, NOWHERE, "log", NULL},
+    {29, NOWHERE, "exp2", NULL},
+    {30, NOWHERE, "log2", NULL},
+    {31, RIGHT_DIVISION, "sqrt", NULL},
+    {32, NOWHERE, "inversesqrt", NULL},
+    {33, NOWHERE, NULL, "determinant"},
+    {34, NOWHERE, NULL, "inverse"},
+    {35, NOWHERE, NULL, "modf"},
+    {36, NOWHERE, NULL, "modf"},
+    {37, NOWHERE, "min", NULL},
+    {40, NOWHERE, "max", NULL},
+    {43, NOWHERE, "clamp", NULL},
+    {46, NOWHERE, "mix", NULL},
+    {48, RIGHT_COMPARISON, "step", NULL},
+    {49, NOWHERE, "smoothstep", NULL},
+    {50, NOWHERE, "fma", NULL},
+    {51, NOWHERE, NULL, "frexp"},
+    {52, NOWHERE, NULL, "frexp"},
+    {53, NOWHERE, NULL, "ldexp"},
+    {54, NOWHERE, NULL, "packSnorm4x8"},
+    {55, NOWHERE, NULL, "packUnorm4x8"},
+    {56, NOWHERE, NULL, "packSnorm2x16"},
+    {57, NOWHERE, NULL, "packUnorm2x16"},
+    {58, NOWHERE, NULL, "packHalf2x16"},
+    {59, NOWHERE, NULL, "packDouble2x32"},
+    {60, NOWHERE, NULL, "unpackSnorm2x16"},
+    {61, NOWHERE, "unpackUnorm2x16", NULL},
+    {62, NOWHERE, NULL, "unpackHalf2x16"},
+    {63, NOWHERE, NULL, "unpackSnorm4x8"},
+    {64, NOWHERE, "unpackUnorm4x8", NULL},
+    {65, NOWHERE, NULL, "unpackDouble2x32"},
+    {66, NOWHERE, "length", NULL},
+    {67, NOWHERE, "distance", NULL},
+    {68, NOWHERE, "cross", NULL},
+    {69, NOWHERE, "normalize", NULL},
+    {70, NOWHERE, "faceforward", NULL},
+    {71, NOWHERE, "reflect", NULL},
+    {72, NOWHERE, "refract", NULL},
+    {76, NOWHERE, NULL, "interpolateAtCentroid"},
+    {77, NOWHERE, NULL, "interpolateAtSample"},
+    {78, NOWHERE, NULL, "interpolateAtOffset"},
+    {79, NOWHERE, NULL, "NMin"},
+    {80, NOWHERE, NULL, "NMax"},
+    {81, NOWHERE, NULL, "NClamp"},
 };
 
 static const struct stand_in *find_stand_in(const uint32_t *words)
@@ -199,12 +216,24 @@ static void want(struct portable *p, uint32_t function)
         p->g.base.failed = true;
 }
 
-/* The one specialization constant, which is set here. */
+static uint32_t spec_id(const struct spv_module *m, uint32_t id)
+{
+    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        if (spv_op(words) == SPV_DECORATE && words[1] == id && words[2] == SPV_DECORATION_SPEC_ID)
+            return words[3];
+    }
+    return UINT32_MAX;
+}
+
+/* OWN_DIVISION or OWN_COMPARISON, which is set here. */
 static void take_switch(struct portable *p, const uint32_t *words)
 {
     enum { CONSTANT_FALSE = 42 };
     struct spv_module *base = &p->g.base;
-    uint32_t op = p->params->own_division ? SPV_CONSTANT_TRUE : CONSTANT_FALSE;
+    bool own =
+        spec_id(&p->g.user, words[2]) == 0 ? p->params->own_division : p->params->own_comparison;
+    uint32_t op = own ? SPV_CONSTANT_TRUE : CONSTANT_FALSE;
     const uint32_t constant[] = {spv_head(op, 3), p->g.ids[words[1]], graft_id(&p->g, words[2])};
     spv_put(base, &base->globals, constant, 3);
 }
@@ -279,13 +308,19 @@ static bool replace(struct portable *p, const struct stand_in *row, const uint32
     return true;
 }
 
+static bool stays(const struct portable_params *params, const struct stand_in *row)
+{
+    return (row->stays == RIGHT_DIVISION && params->own_division) ||
+           (row->stays == RIGHT_COMPARISON && params->own_comparison);
+}
+
 static bool replace_all(struct portable *p)
 {
     struct spv_module *base = &p->g.base;
     for (size_t at = base->functions_at; at < base->count; at += spv_length(base->words + at)) {
         const uint32_t *words = base->words + at;
         const struct stand_in *row = find_stand_in(words);
-        if (row && !(row->division && p->params->own_division)) {
+        if (row && !stays(p->params, row)) {
             if (!replace(p, row, words))
                 return false;
         } else if (!spv_is_remark(spv_op(words))) {

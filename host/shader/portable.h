@@ -11,7 +11,8 @@
 #include "whit/whit_base.h"
 
 struct portable_params {
-    bool own_division; /* the device's own division and square root are rounded correctly */
+    bool own_division;   /* the device's own division and square root are rounded correctly */
+    bool own_comparison; /* its comparisons and absolute values tell denormals from 0 */
     /* What kernels ask of the device, which has to offer it: sums rounded to nearest; NaN, infinity
        and the sign of 0 kept; denormals kept. */
     bool asks_nearest, asks_special, asks_denormals;

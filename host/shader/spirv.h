@@ -109,7 +109,7 @@ enum {
     SPV_STORAGE_BUFFER = 12,
 };
 
-enum { SPV_DECORATION_NO_CONTRACTION = 42 };
+enum { SPV_DECORATION_SPEC_ID = 1, SPV_DECORATION_NO_CONTRACTION = 42 };
 enum { SPV_GLSL_UMIN = 38, SPV_GLSL_UMAX = 41 }; /* of GLSL.std.450 */
 
 static inline uint32_t spv_op(const uint32_t *words)

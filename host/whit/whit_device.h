@@ -43,6 +43,8 @@ typedef struct whit_device_floats {
                              them tell */
     bool keeps_denormals; /* numbers below 2^-126 are no zeros to sums and products */
     bool rounds_nearest;  /* sums and products are rounded to nearest */
+    bool own_comparison;  /* such numbers are no zeros to comparisons either, nor to absolute values
+                           */
 } whit_device_floats;
 
 /* Found out once for a device and its driver, in about a second, and kept. WHIT_ERROR_DEVICE,

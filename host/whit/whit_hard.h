@@ -65,6 +65,8 @@ typedef struct whit_hard_report {
     uint32_t row_count;
     uint64_t hash;       /* of the exact identities of a fixed set of rays; 0 for a user's scene */
     uint64_t hash_met;   /* of the device's at WHIT_NUMERICS_EXACT; 0 when not traced */
+    bool equal_bits;     /* hits of this device are to have the bits of the twin's: it divides and
+                            compares as the twin does, by itself or for params.portable */
     uint32_t broken;     /* rows that did not keep a promise */
     uint32_t unanswered; /* rows without an answer of the device */
     /* Counts for a user's scene; vertices with equal coordinates count as one. */

@@ -21,6 +21,8 @@
 #define PORTABLE_MAX         16u
 #define PORTABLE_INT         17u
 #define PORTABLE_UINT        18u
+#define PORTABLE_RELATIONS   22u /* bits: less, at most, equal, unequal, more, at least, step */
+#define PORTABLE_ABS         23u
 /* Of a device: whether it is one that portable kernels run on (host/render/portable.c). */
 #define PORTABLE_SUM      19u /* the device's own */
 #define PORTABLE_PRODUCT  20u /* the same */

@@ -24,6 +24,12 @@ uint answer(const float x, const float y)
     float found = x + y; // PORTABLE_SUM
     if (FUNCTION == PORTABLE_PRODUCT)
         found = x * y;
+    if (FUNCTION == PORTABLE_RELATIONS)
+        return uint(portable_less(x, y)) | uint(portable_at_most(x, y)) << 1 | uint(portable_equal(x, y)) << 2 |
+               uint(portable_unequal(x, y)) << 3 | uint(portable_more(x, y)) << 4 |
+               uint(portable_at_least(x, y)) << 5 | uint(portable_step(x, y) != 0.0) << 6;
+    if (FUNCTION == PORTABLE_ABS)
+        found = portable_abs(x);
     if (FUNCTION == PORTABLE_INT)
         return uint(portable_int(x));
     if (FUNCTION == PORTABLE_UINT)

@@ -16,6 +16,9 @@
 // Whether the device's own division and square root are rounded correctly: they then give the same
 // bits as `divided` and `rooted`, and take less time. What else stands here has one form.
 layout(constant_id = 0) const bool OWN_DIVISION = true;
+// Whether comparisons of the device, and its absolute values, tell denormals from 0. NVIDIA's do not, where
+// sums and products do.
+layout(constant_id = 2) const bool OWN_COMPARISON = true;
 
 const uint INFINITE_BITS = 0x7f800000u, SIGN_BIT = 0x80000000u;
 
@@ -45,6 +48,51 @@ float scaled(const float x, const int n)
 {
     int first = n >> 1;
     return x * power_of_two(first) * power_of_two(n - first);
+}
+
+// ---- Comparisons ----
+
+// A difference is 0 for equal numbers alone, as denormals are kept, and negative from the bits of -2^-149 to
+// those of -infinity.
+bool is_below(const float difference)
+{
+    return floatBitsToUint(difference) - (SIGN_BIT + 1u) < INFINITE_BITS;
+}
+
+bool portable_less(const float x, const float y)
+{
+    return OWN_COMPARISON ? x < y : is_below(x - y);
+}
+
+// What the device says of NaN, of infinities, and of all that is no denormal, is right.
+bool portable_at_most(const float x, const float y)
+{
+    return x <= y && (OWN_COMPARISON || !is_below(y - x));
+}
+
+bool portable_equal(const float x, const float y)
+{
+    return x == y && (OWN_COMPARISON || !(is_below(x - y) || is_below(y - x)));
+}
+
+bool portable_unequal(const float x, const float y)
+{
+    return !portable_equal(x, y);
+}
+
+bool portable_more(const float x, const float y)
+{
+    return portable_less(y, x);
+}
+
+bool portable_at_least(const float x, const float y)
+{
+    return portable_at_most(y, x);
+}
+
+float portable_abs(const float x)
+{
+    return OWN_COMPARISON ? abs(x) : uintBitsToFloat(floatBitsToUint(x) & ~SIGN_BIT);
 }
 
 // ---- Division and square root: rounded to nearest, ties to even, for all floats ----
@@ -357,7 +405,7 @@ float arc_tangent(const float x)
 float portable_atan(const float x)
 {
     uint bits = floatBitsToUint(x);
-    float angle = arc_tangent(abs(x));
+    float angle = arc_tangent(portable_abs(x));
     return is_nan_bits(bits) ? portable_nan() : bits >= SIGN_BIT ? -angle : angle;
 }
 
@@ -366,7 +414,7 @@ float portable_atan(const float y, const float x)
 {
     uint a = floatBitsToUint(y), b = floatBitsToUint(x);
     bool equal = ((a ^ b) & ~SIGN_BIT) == 0u, zero = (a & ~SIGN_BIT) == 0u;
-    float slope = zero ? 0.0 : equal ? 1.0 : portable_divide(abs(y), abs(x)); // of infinities too
+    float slope = zero ? 0.0 : equal ? 1.0 : portable_divide(portable_abs(y), portable_abs(x)); // of infinities too
     float angle = arc_tangent(slope);
     angle = b >= SIGN_BIT ? 2.0 * HALF_PI.x - (angle - 2.0 * HALF_PI.y) : angle;
     angle = a >= SIGN_BIT ? -angle : angle;
@@ -383,7 +431,7 @@ float arc_sine_part(const float z)
 // 2.31 ulp; NaN beyond -1 and 1, as for acos.
 float portable_asin(const float x)
 {
-    float size = abs(x);
+    float size = portable_abs(x);
     bool steep = size > 0.5;
     float z = steep ? 0.5 * (1.0 - size) : size * size;
     float r = steep ? portable_sqrt(z) : size;
@@ -411,12 +459,12 @@ float portable_acos(const float x)
 
 float portable_min(const float x, const float y)
 {
-    return y < x ? y : x;
+    return portable_less(y, x) ? y : x;
 }
 
 float portable_max(const float x, const float y)
 {
-    return x < y ? y : x;
+    return portable_less(x, y) ? y : x;
 }
 
 // An end that is NaN is none; low goes before high.
@@ -427,7 +475,12 @@ float portable_clamp(const float x, const float low, const float high)
 
 float portable_sign(const float x) // 0 for NaN
 {
-    return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
+    return portable_less(0.0, x) ? 1.0 : portable_less(x, 0.0) ? -1.0 : 0.0;
+}
+
+float portable_step(const float edge, const float x)
+{
+    return portable_less(x, edge) ? 0.0 : 1.0;
 }
 
 float portable_fract(const float x)
@@ -538,6 +591,25 @@ vec4 portable_unpackUnorm4x8(const uint bits)
                     name(x.w, y.w, z.w));                                                          \
     }
 
+#define PORTABLE_RELATION(name)                                                                    \
+    bvec2 name(const vec2 x, const vec2 y) { return bvec2(name(x.x, y.x), name(x.y, y.y)); }       \
+    bvec3 name(const vec3 x, const vec3 y)                                                         \
+    {                                                                                              \
+        return bvec3(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z));                              \
+    }                                                                                              \
+    bvec4 name(const vec4 x, const vec4 y)                                                         \
+    {                                                                                              \
+        return bvec4(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z), name(x.w, y.w));              \
+    }
+
+PORTABLE_RELATION(portable_less)
+PORTABLE_RELATION(portable_at_most)
+PORTABLE_RELATION(portable_equal)
+PORTABLE_RELATION(portable_unequal)
+PORTABLE_RELATION(portable_more)
+PORTABLE_RELATION(portable_at_least)
+PORTABLE_UNARY(portable_abs)
+PORTABLE_BINARY(portable_step)
 PORTABLE_BINARY(portable_divide)
 PORTABLE_UNARY(portable_sqrt)
 PORTABLE_UNARY(portable_inversesqrt)
@@ -612,8 +684,14 @@ PORTABLE_VECTOR(vec4)
 
 // Written out, so that vectors are compared as such.
 #define PORTABLE_WRITTEN(T)                                                                       \
-    T portable_min(const T x, const T y) { return mix(x, y, lessThan(y, x)); }                     \
-    T portable_max(const T x, const T y) { return mix(x, y, lessThan(x, y)); }                     \
+    T portable_min(const T x, const T y)                                                           \
+    {                                                                                              \
+        return OWN_COMPARISON ? mix(x, y, lessThan(y, x)) : mix(x, y, portable_less(y, x));        \
+    }                                                                                              \
+    T portable_max(const T x, const T y)                                                           \
+    {                                                                                              \
+        return OWN_COMPARISON ? mix(x, y, lessThan(x, y)) : mix(x, y, portable_less(x, y));        \
+    }                                                                                              \
     T portable_clamp(const T x, const T low, const T high)                                         \
     {                                                                                              \
         return portable_min(portable_max(x, low), high);                                           \

@@ -87,7 +87,7 @@ check "others cannot look into it any more" test -z "$(find "$KEPT" -maxdepth 0 
 # What was found out of a device's floats is read by the next run; damaged, or with the text of another file, it is
 # found out anew.
 floats=$(echo "$KEPT"/floats-*)
-found='[.devices[] | select(.kind == "cpu") | .floats] == [{own_division: true, keeps_denormals: true, rounds_nearest: true}]'
+found='[.devices[] | select(.kind == "cpu") | .floats] == [{own_division: true, own_comparison: true, keeps_denormals: true, rounds_nearest: true}]'
 check "devices: floats" jq -e "$found" "$OUT/stdout"
 cp "$floats" "$OUT/floats"
 # anew WHAT YES|NO: whether devices writes the file again, as it was. The old file stays open meanwhile, so that a new
@@ -109,7 +109,7 @@ anew "damaged" yes
 cp "$(echo "$KEPT"/reference-* | cut -d ' ' -f 1)" "$floats"
 anew "another file in its place" yes
 WHIT_CACHE_LIMIT=0 run devices
-check "floats as text" grep -qx "     portable  pictures, division by itself" "$OUT/stdout"
+check "floats as text" grep -qx "     portable  pictures, division by itself, comparison by itself" "$OUT/stdout"
 check "the same as text" grep -q "^cache  $KEPT: 0.[0-9] of 0 MiB" "$OUT/stdout"
 
 # ---- Mesa's, by driver version and vector width ----

@@ -46,7 +46,13 @@ widths() {
     unset LP_NATIVE_VECTOR_WIDTH LP_NUM_THREADS
 }
 
-case $what in installed | all) widths installed ;; esac
+case $what in installed | all)
+    widths installed
+    export WHIT_STAGING=1 WHIT_OWN_DIVISION=0 WHIT_OWN_COMPARISON=0
+    row "installed, with memory, division and comparisons as on a GPU"
+    unset WHIT_STAGING WHIT_OWN_DIVISION WHIT_OWN_COMPARISON
+    ;;
+esac
 case $what in second | all)
     if [ -f "$second" ]; then
         export VK_DRIVER_FILES="$second" VK_ICD_FILENAMES="$second"

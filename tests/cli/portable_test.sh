@@ -1,18 +1,19 @@
 #!/bin/sh
-# --portable: pictures are the same bytes by the device's own division and by whit's, at every level of
+# --portable: pictures are the same bytes by the device's own operations and as on a GPU, at every level of
 # numerics (exact hits and layers of glass with `all` as the fourth argument), and where functions of users stand in
 # kernels; what has no portable form is refused. sh TEST WHIT SCENES LEAKY [all]
 . "$(dirname "$0")/common.sh"
 LEAKY=$3
 
-# both NAME SCENE OPTIONS...: twice, without the device's own division and root in the second.
+# both NAME SCENE OPTIONS...: twice; the second time without the device's own division, root and comparisons, and with
+# buffers that the host does not reach.
 both() {
     name=$1
     scene=$2
     shift 2
     set -- render "$scene" --size 48x36 --portable on -q "$@"
     expect 0 "$name" "$@" -o "$OUT/own.pfm" --ids "$OUT/own.exr"
-    WHIT_OWN_DIVISION=0 expect 0 "$name by whit's own division" "$@" -o "$OUT/functions.pfm" \
+    WHIT_STAGING=1 WHIT_OWN_DIVISION=0 WHIT_OWN_COMPARISON=0 expect 0 "$name as on a GPU" "$@" -o "$OUT/functions.pfm" \
         --ids "$OUT/functions.exr"
     check "$name: the same colours" cmp "$OUT/own.pfm" "$OUT/functions.pfm"
     check "$name: the same ids" cmp "$OUT/own.exr" "$OUT/functions.exr"
@@ -35,6 +36,8 @@ vec3 shade(Surface s, Optics o, vec3 to_eye)
     r += clamp(p, min(p, q), max(p, q)) + fma(p, q, r) + radians(p) + degrees(q) * 0.01;
     r += normalize(p) + reflect(p, s.ns) + refract(normalize(p), s.ns, 0.9) + cross(p, q);
     r += faceforward(p, q, r) + length(p) + distance(p, q) + dot(p, q) + vec3(ivec3(p * 40.0));
+    r += step(p, q) + vec3(lessThan(p, q)) + vec3(equal(p, p.yzx)) + vec3(notEqual(q, q.zxy)) + vec3(p.x >= q.y);
+    r += vec3(lessThanEqual(q, p)) + vec3(greaterThan(p, q.yzx)) + vec3(greaterThanEqual(p, q.zxy));
     mat3 m = mat3(p, q, r);
     r = fract(m * (q * m) + (m * m)[1] + unpackUnorm4x8(uint(abs(p.x) * 1e6)).xyz);
     return mix(r, vec3(0.25), isnan(r));

@@ -134,7 +134,7 @@ change(shaders/lib/portable.glsl [[q += uint(off);]] [[off = 0;]])
 
 mutation(roots_left_to_drivers spirv RED ".* with .*: drivers decide .*Sqrt"
   GREEN ": 0 of [0-9]+ float operations" TARGET kernel_dump)
-change(host/shader/portable.c [[{31, true, "sqrt", NULL},]] [[]])
+change(host/shader/portable.c [[{31, RIGHT_DIVISION, "sqrt", NULL},]] [[]])
 
 mutation(fused_edges hard_mesh RED no_ray_gets_through)
 change(host/twin/intersect.h shear_triangle

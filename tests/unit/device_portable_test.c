@@ -14,6 +14,7 @@
 
 #include "abi/portable.h"
 #include "kernels.h"
+#include "render/portable.h"
 #include "unit.h"
 
 enum { BATCH = 1 << 18, RANDOM = 1 << 17, SPECIAL_MAX = 80 };
@@ -61,6 +62,12 @@ static double larger(double x, double y)
     return x < y ? y : x;
 }
 
+static double relations(double x, double y)
+{
+    return (x < y) | (x <= y) << 1 | (x == y) << 2 | (x != y) << 3 | (x > y) << 4 | (x >= y) << 5 |
+           !(y < x) << 6;
+}
+
 /* The whole number that there is next to it; 0 for NaN. */
 static double whole(double x, double least, double most)
 {
@@ -97,6 +104,8 @@ static const struct row rows[] = {
     {"acos", PORTABLE_ACOS, acos, NULL, 1.5},
     {"atan", PORTABLE_ATAN, atan, NULL, 2.5},
     {"atan2", PORTABLE_ATAN2, NULL, atan2, 2.5},
+    {"abs", PORTABLE_ABS, fabs, NULL, 0.5},
+    {"relations", PORTABLE_RELATIONS, NULL, relations, 0.0},
     {"min", PORTABLE_MIN, NULL, smaller, 0.5},
     {"max", PORTABLE_MAX, NULL, larger, 0.5},
 };
@@ -134,11 +143,13 @@ static double error_ulp(float found, double exact)
     return fabs(of - exact) / ldexp(1.0, exponent - 24 < -149 ? -149 : exponent - 24);
 }
 
-/* The library's kernel for one function, with the device's own division and without. */
+/* The library's kernel for one function, with the device's own division and comparisons, where
+   these are right, and without. */
 struct runner {
     struct device *device;
     struct buffer *in, *out;
     struct kernel_run runs[2];
+    struct portable_params asks; /* nothing but modes: the library has no need of itself */
 };
 
 static void runner_begin(struct runner *r, struct device *device, uint32_t function)
@@ -146,12 +157,20 @@ static void runner_begin(struct runner *r, struct device *device, uint32_t funct
     *r = (struct runner){.device = device,
                          .in = buffer_make(device, sizeof cases, BUFFER_STORAGE, "cases"),
                          .out = buffer_make(device, sizeof *answers, BUFFER_STORAGE, "answers")};
+    const whit_log quiet = {0};
+    struct portable_params asks;
+    assert_int_equal(portable_choose(&quiet, device, &asks), WHIT_OK);
+    r->asks = asks;
+    r->asks.own_division = r->asks.own_comparison = true;
     for (uint32_t own = 0; own < 2; ++own) {
-        const uint32_t spec[] = {own, function};
+        const uint32_t spec[] = {own && asks.own_division, function, own && asks.own_comparison};
         struct pipeline_params params =
             storage_params(portable_kernel.words, portable_kernel.bytes, 2, "portable");
         params.spec = spec;
-        params.spec_count = 2;
+        params.spec_count = 3;
+        params.rewrite = portable_rewrite;
+        params.rewrite_user = &r->asks;
+        params.rewrite_as = portable_number(&r->asks);
         r->runs[own] = kernel_make(device, &params, (struct buffer *const[]){r->in, r->out});
     }
 }
@@ -197,7 +216,8 @@ static uint32_t make_special(uint32_t bits[SPECIAL_MAX])
 /* Of the answer beside the exact one; of whole numbers 0, or infinite. */
 static double answer_error(const struct row *row, uint32_t answer, double exact)
 {
-    if (row->function == PORTABLE_INT || row->function == PORTABLE_UINT)
+    if (row->function == PORTABLE_INT || row->function == PORTABLE_UINT ||
+        row->function == PORTABLE_RELATIONS)
         return answer == (uint32_t)(int64_t)exact ? 0.0 : INFINITY;
     return error_ulp(as_float(answer), exact);
 }
@@ -213,7 +233,8 @@ static void judge(const struct row *row, uint32_t count, struct tally *tally)
     for (uint32_t i = 0; i < count; ++i) {
         float x = as_float(cases[i][0]), y = as_float(cases[i][1]);
         double exact = row->unary ? row->unary((double)x) : row->binary((double)x, (double)y);
-        bool copies = row->function == PORTABLE_MIN || row->function == PORTABLE_MAX;
+        bool copies = row->function == PORTABLE_MIN || row->function == PORTABLE_MAX ||
+                      row->function == PORTABLE_ABS;
         bool own = row->function == PORTABLE_SUM || row->function == PORTABLE_PRODUCT;
         if (own && isnan(exact))
             continue; /* the device's own operation gives whatever NaN it likes */

@@ -69,7 +69,7 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
                                         "unpackSnorm4x8(uint(n)).x"};
     for (size_t i = 0; i < sizeof calls / sizeof *calls; ++i) {
         char text[256], why[PORTABLE_WHY_BYTES], name[64] = "";
-        const struct portable_params params = {.own_division = true};
+        const struct portable_params params = {.own_division = true, .own_comparison = true};
         struct shader_code code;
         uint32_t *words;
         size_t count;
@@ -83,6 +83,62 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
             shader_make_portable(&params, code.words, code.bytes / 4, &words, &count, why),
             WHIT_ERROR_INPUT);
         assert_string_equal(why, name);
+        shader_code_free(&code);
+    }
+}
+
+/* How many of the first `functions` of a module's functions have the operation, of GLSL.std.450
+   where `number` is below 100. *ends: how many functions there are in all. */
+static uint32_t count_in(const uint32_t *words, size_t count, uint32_t functions, uint32_t number,
+                         uint32_t *ends)
+{
+    uint32_t found = 0;
+    *ends = 0;
+    for (size_t at = 5; at < count; at += words[at] >> 16) {
+        uint32_t op = words[at] & 0xffff;
+        *ends += op == 56;
+        if (*ends < functions)
+            found += number < 100 ? op == 12 && words[at + 4] == number : op == number;
+    }
+    return found;
+}
+
+/* Where the device's own comparisons are not right, functions stand in for all that GLSL has; the
+   numbers are those of SPIR-V. */
+TEST_IN(comparisons_are_left_to_devices_that_are_right, compiler_begin, compiler_end)
+{
+    static const struct {
+        const char *text;
+        uint32_t number;
+    } all[] = {{"x == y", 180},
+               {"x != y", 183},
+               {"x < y", 184},
+               {"x > y", 186},
+               {"x <= y", 188},
+               {"x >= y", 190},
+               {"any(lessThan(vec3(x), vec3(y)))", 184},
+               {"any(equal(vec4(x), vec4(y)))", 180},
+               {"bool(abs(x))", 4},
+               {"bool(abs(vec2(x)).y)", 4},
+               {"bool(step(x, y))", 48}};
+    for (size_t i = 0; i < 2 * sizeof all / sizeof *all; ++i) {
+        const struct portable_params params = {.own_division = true, .own_comparison = i & 1};
+        char text[128], why[PORTABLE_WHY_BYTES];
+        struct shader_code code;
+        uint32_t *words, functions, all_functions;
+        size_t count;
+        snprintf(text, sizeof text, "bool f(float x, float y) { return %s; }\n", all[i / 2].text);
+        assert_int_equal(compile_files(text, NULL, false, &code), WHIT_OK);
+        assert_int_equal(
+            shader_make_portable(&params, code.words, code.bytes / 4, &words, &count, why),
+            WHIT_OK);
+        uint32_t number = all[i / 2].number;
+        uint32_t before = count_in(code.words, code.bytes / 4, UINT32_MAX, number, &functions);
+        uint32_t after = count_in(words, count, functions, number, &all_functions);
+        assert_true(before > 0);
+        assert_int_equal(after, params.own_comparison ? before : 0);
+        assert_int_equal(all_functions > functions, !params.own_comparison);
+        free(words);
         shader_code_free(&code);
     }
 }

@@ -37,6 +37,7 @@ static json_t *floats_document(const whit_device_info *info)
         return json_null();
     json_t *document = document_object();
     document_flag(document, "own_division", floats.own_division);
+    document_flag(document, "own_comparison", floats.own_comparison);
     document_flag(document, "keeps_denormals", floats.keeps_denormals);
     document_flag(document, "rounds_nearest", floats.rounds_nearest);
     return document;
@@ -48,8 +49,9 @@ static void print_floats(const whit_device_info *info)
     if (!find_floats(info, &floats))
         return;
     bool portable = floats.keeps_denormals && floats.rounds_nearest;
-    printf("     portable  %s, division by %s%s%s\n", portable ? "pictures" : "no pictures",
-           floats.own_division ? "itself" : "whit",
+    printf("     portable  %s, division by %s, comparison by %s%s%s\n",
+           portable ? "pictures" : "no pictures", floats.own_division ? "itself" : "whit",
+           floats.own_comparison ? "itself" : "whit",
            floats.keeps_denormals ? "" : ", denormals are 0 to it",
            floats.rounds_nearest ? "" : ", sums are not rounded to nearest");
 }

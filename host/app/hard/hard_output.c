@@ -36,6 +36,10 @@ static struct widths measure(const whit_hard_report *report)
 static void print_verdict(const whit_hard_report *report)
 {
     printf("promises   %u of %u rows broke one\n", report->broken, report->row_count);
+    if (!report->equal_bits)
+        puts("bits       the twin's are not promised, as this device divides or compares in its "
+             "own way "
+             "(--portable on: they are)");
     if (report->unanswered)
         printf("answers    none in %u rows\n", report->unanswered);
     if (report->hash)
@@ -196,6 +200,7 @@ whit_result hard_save_json(const struct hard *hard)
         document_hash(out, "hash_met", report->hash_met);
     if (hard->job.settings.scene[0])
         document_put(out, "surface", surface_document(report));
+    document_flag(out, "equal_bits", report->equal_bits);
     document_count(out, "broken", report->broken);
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(rows, row_document(&report->rows[i]));
