@@ -87,22 +87,28 @@ fi
 
 say ""
 say "== Hits: rays whose hits differ by a bit from lavapipe's"
-"$busybox" printf '%-24s %-11s %8s %10s\n' rays numerics rays differing | "$busybox" tee -a "$report"
-while read -r name numerics hash; do
-    scene=$here/scenes/${name%%-*}.json
-    rays=$(($(wc -c <"$here/rays/$name.rays") / 32))
+"$busybox" printf '%-28s %-11s %8s %10s %10s\n' rays numerics rays differing portable | "$busybox" tee -a "$report"
+# count_differing NAME NUMERICS HASH PORTABLE: rays whose hits are not lavapipe's, or what went wrong.
+count_differing() {
+    scene=$here/scenes/${1%%-*}.json
     rm -f "$scratch/hits" "$scratch/twin"
-    if ! whit 30 trace "$scene" --input "$here/rays/$name.rays" -o "$scratch/hits" --numerics "$numerics" --device "$device" -q; then
-        differing=failed
-    elif [ "$(sha256sum <"$scratch/hits" | cut -d ' ' -f 1)" = "$hash" ]; then
-        differing=0
-    elif ! whit 60 trace "$scene" --input "$here/rays/$name.rays" -o "$scratch/twin" --numerics "$numerics" --on cpu -q; then
-        differing="some: its twin failed"
+    if ! whit 30 trace "$scene" --input "$here/rays/$1.rays" -o "$scratch/hits" --numerics "$2" --portable "$4" --device "$device" -q; then
+        echo failed
+    elif [ "$(sha256sum <"$scratch/hits" | cut -d ' ' -f 1)" = "$3" ]; then
+        echo 0
+    elif ! whit 60 trace "$scene" --input "$here/rays/$1.rays" -o "$scratch/twin" --numerics "$2" --on cpu -q; then
+        echo "some: its twin failed"
+    elif [ "$(sha256sum <"$scratch/twin" | cut -d ' ' -f 1)" != "$3" ]; then
+        echo "some: its twin differs too"
     else # the twin has lavapipe's bits
-        differing=$(cmp -l "$scratch/twin" "$scratch/hits" | awk '{ ray = int(($1 - 1) / 32); count += ray != last || NR == 1; last = ray } END { print count + 0 }')
-        [ "$(sha256sum <"$scratch/twin" | cut -d ' ' -f 1)" = "$hash" ] || differing="$differing, and the twin's differ from lavapipe's"
+        cmp -l "$scratch/twin" "$scratch/hits" | awk '{ ray = int(($1 - 1) / 32); count += ray != last || NR == 1; last = ray } END { print count + 0 }'
     fi
-    "$busybox" printf '%-24s %-11s %8d %10s\n' "$name" "$numerics" "$rays" "$differing" | "$busybox" tee -a "$report"
+}
+while read -r name numerics hash; do
+    rays=$(($(wc -c <"$here/rays/$name.rays") / 32))
+    "$busybox" printf '%-28s %-11s %8d %10s %10s\n' "$name" "$numerics" "$rays" \
+        "$(count_differing "$name" "$numerics" "$hash" off)" "$(count_differing "$name" "$numerics" "$hash" on)" |
+        "$busybox" tee -a "$report"
 done <"$here/hits.txt"
 
 say ""
@@ -151,10 +157,12 @@ whit 60 scene "$here/scenes/default.json" --kernels --size 1280x720 --device "$d
 say "$(cat "$scratch/k.txt")"
 
 say ""
-say "== whit hard --quick"
-whit 120 hard --quick --device "$device" --json "$out/hard.json" -q >"$scratch/hard.txt"
-say "exit code $?"
-say "$(tail -n 6 "$scratch/hard.txt")"
+for portable in off on; do
+    say "== whit hard --quick --portable $portable"
+    whit 120 hard --quick --portable "$portable" --device "$device" --json "$out/hard.json" -q >"$scratch/hard.txt"
+    say "exit code $?"
+    say "$("$busybox" grep '^promises\|^bits\|^hash\|^all' "$scratch/hard.txt")"
+done
 say "lavapipe's $("$busybox" grep -o '"hash_met": "[^"]*"' "$here/hard.json")"
 
 # bench NAME LIMIT_S ARGUMENT...: what is done when the time is over is kept.
