@@ -4,6 +4,7 @@
    the halves in proportion to their records; what is not used is squeezed out at the end. So
    subtrees can be built by any thread at any time, the nodes are the same for any number of
    threads, and the spare references are never exceeded. */
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,24 +13,24 @@
 #include "bvh/build.h"
 
 enum {
-    TASK_MIN = 2048,       /* smaller subtrees are not worth a task of their own */
-    TASKS_PER_THREAD = 16, /* evens out subtrees of unequal cost */
+    TASK_MIN = 2048, /* smaller subtrees are not worth a task of their own */
     TASKS_MAX = 4096,
+};
+
+/* Subtrees that wait for a thread, the oldest first, which is about the largest. */
+struct build_queue {
+    struct build_range *ranges; /* TASKS_MAX, around */
+    uint32_t first, count;
+    uint32_t working; /* threads that may still add some */
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
 };
 
 struct build {
     struct build_output output;
     const struct builder *builder;
     uint32_t count, spare, thread_count;
-    struct build_task *tasks;
-    uint32_t task_count;
-};
-
-/* A subtree still to be built. */
-struct build_task {
-    struct build_range range;
-    struct build_range halves[2];
-    bool split;
+    struct build_queue queue;
 };
 
 /* ---- Subtrees ---- */
@@ -79,16 +80,55 @@ static bool range_split(struct build *build, const struct build_range *range, ui
     return true;
 }
 
-static void build_subtree(void *context, uint32_t index)
+/* False: it has no room. */
+static bool queue_add(struct build_queue *queue, const struct build_range *range)
 {
-    struct build *build = context;
+    pthread_mutex_lock(&queue->lock);
+    bool room = queue->count < TASKS_MAX;
+    if (room)
+        queue->ranges[(queue->first + queue->count++) % TASKS_MAX] = *range;
+    pthread_cond_signal(&queue->changed);
+    pthread_mutex_unlock(&queue->lock);
+    return room;
+}
+
+/* Waits for the next one. False: nothing is left, and nothing will come. */
+static bool queue_take(struct build_queue *queue, struct build_range *range)
+{
+    pthread_mutex_lock(&queue->lock);
+    while (queue->count == 0 && queue->working > 0)
+        pthread_cond_wait(&queue->changed, &queue->lock);
+    bool some = queue->count > 0;
+    if (some) {
+        *range = queue->ranges[queue->first];
+        queue->first = (queue->first + 1) % TASKS_MAX;
+        --queue->count;
+        ++queue->working;
+    }
+    pthread_mutex_unlock(&queue->lock);
+    return some;
+}
+
+static void queue_done(struct build_queue *queue)
+{
+    pthread_mutex_lock(&queue->lock);
+    if (--queue->working == 0)
+        pthread_cond_broadcast(&queue->changed);
+    pthread_mutex_unlock(&queue->lock);
+}
+
+/* Leaves to other threads what is worth it. */
+static void build_subtree(struct build *build, struct build_range range)
+{
     const struct builder *builder = build->builder;
-    struct build_range stack[BVH_DEPTH_MAX], halves[2], range = build->tasks[index].range;
+    struct build_range stack[BVH_DEPTH_MAX], halves[2];
     uint32_t top = 0;
     for (;;) {
         bool small = range.count <= builder->small_count;
         if (!small && range_split(build, &range, 1, halves)) {
-            stack[top++] = halves[1];
+            bool shared = build->thread_count > 1 && halves[1].count > TASK_MIN;
+            if (!shared || !queue_add(&build->queue, &halves[1]))
+                stack[top++] = halves[1];
             range = halves[0];
             continue;
         }
@@ -100,62 +140,50 @@ static void build_subtree(void *context, uint32_t index)
     }
 }
 
-static void split_task(void *context, uint32_t index)
+static void build_subtrees(void *context, uint32_t index)
 {
     struct build *build = context;
-    struct build_task *task = &build->tasks[index];
-    task->split = range_split(build, &task->range, 1, task->halves);
+    struct build_range range;
+    (void)index;
+    while (queue_take(&build->queue, &range)) {
+        build_subtree(build, range);
+        queue_done(&build->queue);
+    }
 }
 
-/* Splits the first `large` tasks, each into itself and one at the end. */
-static void split_tasks(struct build *build, uint32_t large)
+/* All threads split the top of the tree together, until there is a subtree for each. */
+static void build_top(struct build *build)
 {
-    uint32_t threads = build->thread_count;
-    if (large >= threads || !build->builder->threaded) {
-        threads_for(threads, large, split_task, build);
-    } else {
-        for (uint32_t i = 0; i < large; ++i) {
-            struct build_task *task = &build->tasks[i];
-            task->split = range_split(build, &task->range, threads, task->halves);
-        }
-    }
-    for (uint32_t i = 0; i < large; ++i) {
-        struct build_task *task = &build->tasks[i];
-        if (!task->split)
+    struct build_queue *queue = &build->queue;
+    struct build_range range, halves[2];
+    while (queue->count > 0 && queue->count < build->thread_count) {
+        range = queue->ranges[queue->first % TASKS_MAX];
+        if (range.count <= TASK_MIN)
+            return;
+        queue->first = (queue->first + 1) % TASKS_MAX;
+        --queue->count;
+        if (!range_split(build, &range, build->thread_count, halves))
             continue;
-        build->tasks[build->task_count++] = (struct build_task){.range = task->halves[1]};
-        task->range = task->halves[0];
+        queue_add(queue, &halves[0]);
+        queue_add(queue, &halves[1]);
     }
 }
 
-static int larger_first(const void *a, const void *b)
-{
-    const struct build_task *x = a, *y = b;
-    if (x->range.count != y->range.count)
-        return x->range.count < y->range.count ? 1 : -1;
-    return x->range.first < y->range.first ? -1 : x->range.first > y->range.first;
-}
-
-/* Splits the top of the tree until there are enough subtrees for all threads, then builds these. */
 static void build_tree(struct build *build, const struct build_bounds *bounds)
 {
-    uint32_t threads = build->thread_count;
-    build->tasks[0] = (struct build_task){
-        .range = {.bounds = *bounds, .count = build->count, .spare = build->spare}};
-    build->task_count = 1;
-    uint32_t limit = build->count / (threads * TASKS_PER_THREAD);
-    if (limit < TASK_MIN)
-        limit = TASK_MIN;
-    while (threads > 1) {
-        qsort(build->tasks, build->task_count, sizeof *build->tasks, larger_first);
-        uint32_t large = 0;
-        while (large < build->task_count && build->tasks[large].range.count > limit)
-            ++large;
-        if (large == 0 || build->task_count + large > TASKS_MAX)
-            break;
-        split_tasks(build, large);
+    struct build_range all = {.bounds = *bounds, .count = build->count, .spare = build->spare};
+    if (build->thread_count == 1) {
+        build_subtree(build, all);
+        return;
     }
-    threads_for(threads, build->task_count, build_subtree, build);
+    pthread_mutex_init(&build->queue.lock, NULL);
+    pthread_cond_init(&build->queue.changed, NULL);
+    queue_add(&build->queue, &all);
+    if (build->builder->threaded)
+        build_top(build);
+    threads_for(build->thread_count, build->thread_count, build_subtrees, build);
+    pthread_cond_destroy(&build->queue.changed);
+    pthread_mutex_destroy(&build->queue.lock);
 }
 
 /* ---- The finished tree ---- */
@@ -200,10 +228,11 @@ static whit_result grow_alloc(const whit_log *log, struct build *build, struct b
 {
     size_t room = (size_t)build->count + build->spare;
     build->output.slots = array_alloc_zeroed(room, sizeof *build->output.slots);
-    build->tasks = build_alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->tasks);
+    build->queue.ranges =
+        build_alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->queue.ranges);
     build->output.nodes = out->nodes = build_alloc_lines(2 * room, sizeof *out->nodes);
     out->order = array_alloc(room, sizeof *out->order);
-    if (build->output.slots && build->tasks && out->nodes && out->order)
+    if (build->output.slots && build->queue.ranges && out->nodes && out->order)
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", build->count);
     return WHIT_ERROR_MEMORY;
@@ -223,6 +252,6 @@ whit_result topdown_grow(const whit_log *log, const struct builder *builder,
         out->node_count = squeeze(&build.output, count + spare - 1);
     }
     free(build.output.slots);
-    free(build.tasks);
+    free(build.queue.ranges);
     return result;
 }
