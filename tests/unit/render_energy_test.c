@@ -116,6 +116,36 @@ static double largest_difference(const struct image *a, const struct image *b)
     return worst;
 }
 
+/* A black surface with a highlight of (n . h)^4000 asks for the light where that is above 2^-24 of
+   it, or, with no bailout, above the least float: h is off the normal by 5 degrees, or by 12. */
+TEST(highlights_that_nobody_sees_take_no_shadow_rays)
+{
+    uint64_t rays[2];
+    struct image images[2];
+    for (int i = 0; i < 2; ++i) {
+        struct scene *scene = dark_scene((double[]){0, 4, 0.001}, (double[]){0, 0, 0});
+        struct scene_material shiny = matte(0, 0, 0);
+        set_rgb(shiny.specular, 1, 1, 1);
+        shiny.shininess = 4000;
+        add_object(scene, mesh_plane(20), shiny, 0, 0, 0);
+        scene_put_lamp(scene, 0, 4, 0.001, 1);
+        const whit_renderer_params params = {
+            .width = 64, .height = 64, .bailout = i ? 0.0 : WHIT_BAILOUT_DEFAULT};
+        struct picture picture = picture_of(scene, NULL, &params);
+        rays[i] = picture.stats.rays_shadow;
+        images[i] = picture.color;
+        picture.color = (struct image){0};
+        picture_finish(&picture);
+    }
+    double worst = largest_difference(&images[0], &images[1]);
+    print_message("  %llu shadow rays of %llu, off by %.3g\n", (unsigned long long)rays[0],
+                  (unsigned long long)rays[1], worst);
+    assert_true(rays[0] > 0 && rays[0] * 2 < rays[1]);
+    assert_true(worst > 0 && worst <= 0x1p-24);
+    image_finish(&images[0]);
+    image_finish(&images[1]);
+}
+
 /* No pixel is off by more than the statistics say, and that is no idle word. */
 TEST(bailout_keeps_its_bound)
 {

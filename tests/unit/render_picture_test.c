@@ -409,6 +409,25 @@ TEST(pictures_may_be_dropped)
     fixture_close(&f);
 }
 
+/* The state of a queued ray holds the most steps that a depth allows, and the slots of a picture's
+ * tiles. */
+TEST(a_slot_has_the_bits_that_steps_leave)
+{
+    for (uint32_t depth = 0; depth < 256; ++depth) {
+        uint32_t shift = pixels_slot_shift(depth);
+        uint32_t steps = depth << STATE_BOUNCES_SHIFT | ((1u << STATE_BOUNCES_SHIFT) - 1);
+        assert_true(steps >> shift == 0 && steps >> (shift - 1) == 1);
+        const whit_renderer_params params = {
+            .width = 1024, .height = 1024, .depth = depth, .tile_size = 1024};
+        if (depth % 85)
+            continue;
+        struct fixture f = fixture_open(plain_scene(), NULL, &params);
+        assert_int_equal(f.renderer->frame.slot_shift, shift);
+        assert_true(f.renderer->picture.buffers.chunk_slots <= (UINT32_MAX >> shift) + 1);
+        fixture_close(&f);
+    }
+}
+
 TEST(nonsense_is_refused)
 {
     struct fixture f = fixture_open(plain_scene(), NULL, NULL);
