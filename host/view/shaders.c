@@ -98,6 +98,7 @@ void shaders_refuse(struct view *view)
     if (settings_same_shader(&view->settings, &view->fallback) || view->frame.number == 0)
         return;
     snprintf(shaders->errors, sizeof shaders->errors, "%s", view_failure(view));
+    shaders->errors_reload = view->settings.shader_reload;
     view_log_failure(view);
 }
 
@@ -168,7 +169,7 @@ void shaders_shown(struct view *view)
     const struct engine_frame *frame = &view->frame;
     if (!wait->goes_on)
         return;
-    if (view->shaders.errors[0])
+    if (view->shaders.errors[0] && view->shaders.errors_reload == wait->asked.shader_reload)
         note_moment(&wait->error_ms, &counts->refused);
     if (frame->settings.shader_reload != wait->asked.shader_reload)
         return;

@@ -31,8 +31,9 @@ struct shaders {
     struct shader_ref *shown;    /* of the picture that is shown; NULL: none */
     char errors[SESSION_ERRORS]; /* why the file as it now stands is not shown, an error a line; "":
                                     it is, or may be yet */
-    uint32_t errors_drawn;       /* of them, in the window */
-    bool was_saved;              /* `before` is settings.shader_reload of the version before */
+    uint32_t errors_reload; /* the save that they are of: they stay until the next one is tried */
+    uint32_t errors_drawn;  /* of them, in the window */
+    bool was_saved;         /* `before` is settings.shader_reload of the version before */
     uint32_t before;
     struct shaders_wait wait;
     struct shaders_counts counts;

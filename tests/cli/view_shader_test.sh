@@ -45,7 +45,7 @@ broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/p
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
 until error = $NONE
 until shader.changed
-mended: | shader.changed has ms [ | shader.changed has ids equal  preview | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
+mended: | shader.changed has ms [ | shader.changed has ids equal  preview | shader.refused = 1 | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
 beside: press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors > 100
 alone: press I | compare.mode = off
 until shader.hash = $violet
