@@ -566,16 +566,18 @@ vec4 portable_unpackUnorm4x8(const uint bits)
     T3 name(const vec3 x) { return T3(name(x.x), name(x.y), name(x.z)); }                          \
     T4 name(const vec4 x) { return T4(name(x.x), name(x.y), name(x.z), name(x.w)); }
 #define PORTABLE_UNARY(name) PORTABLE_EACH(vec2, vec3, vec4, name)
-#define PORTABLE_BINARY(name)                                                                      \
-    vec2 name(const vec2 x, const vec2 y) { return vec2(name(x.x, y.x), name(x.y, y.y)); }         \
-    vec3 name(const vec3 x, const vec3 y)                                                          \
+#define PORTABLE_PAIRS(T2, T3, T4, name)                                                           \
+    T2 name(const vec2 x, const vec2 y) { return T2(name(x.x, y.x), name(x.y, y.y)); }             \
+    T3 name(const vec3 x, const vec3 y)                                                            \
     {                                                                                              \
-        return vec3(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z));                               \
+        return T3(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z));                                 \
     }                                                                                              \
-    vec4 name(const vec4 x, const vec4 y)                                                          \
+    T4 name(const vec4 x, const vec4 y)                                                            \
     {                                                                                              \
-        return vec4(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z), name(x.w, y.w));               \
+        return T4(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z), name(x.w, y.w));                 \
     }
+#define PORTABLE_BINARY(name)   PORTABLE_PAIRS(vec2, vec3, vec4, name)
+#define PORTABLE_RELATION(name) PORTABLE_PAIRS(bvec2, bvec3, bvec4, name)
 #define PORTABLE_TERNARY(name)                                                                     \
     vec2 name(const vec2 x, const vec2 y, const vec2 z)                                            \
     {                                                                                              \
@@ -589,17 +591,6 @@ vec4 portable_unpackUnorm4x8(const uint bits)
     {                                                                                              \
         return vec4(name(x.x, y.x, z.x), name(x.y, y.y, z.y), name(x.z, y.z, z.z),                 \
                     name(x.w, y.w, z.w));                                                          \
-    }
-
-#define PORTABLE_RELATION(name)                                                                    \
-    bvec2 name(const vec2 x, const vec2 y) { return bvec2(name(x.x, y.x), name(x.y, y.y)); }       \
-    bvec3 name(const vec3 x, const vec3 y)                                                         \
-    {                                                                                              \
-        return bvec3(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z));                              \
-    }                                                                                              \
-    bvec4 name(const vec4 x, const vec4 y)                                                         \
-    {                                                                                              \
-        return bvec4(name(x.x, y.x), name(x.y, y.y), name(x.z, y.z), name(x.w, y.w));              \
     }
 
 PORTABLE_RELATION(portable_less)
