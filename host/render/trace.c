@@ -33,12 +33,15 @@ void trace_finish(struct trace_state *trace)
 static uint32_t first_piece(const struct renderer *renderer)
 {
     bool cpu = device_get_info(renderer->device)->kind == DEVICE_CPU;
-    return renderer->accel->no_trees ? TRACE_FIRST_BARE : cpu ? TRACE_FIRST_CPU : TRACE_FIRST;
+    uint32_t first = renderer->accel->no_trees ? TRACE_FIRST_BARE
+                     : cpu                     ? TRACE_FIRST_CPU
+                                               : TRACE_FIRST;
+    return first < renderer->trace.capacity ? first : renderer->trace.capacity;
 }
 
-static uint32_t choose_capacity(uint32_t max_rays, uint32_t first)
+static uint32_t choose_capacity(uint32_t max_rays)
 {
-    uint32_t capacity = first;
+    uint32_t capacity = TRACE_FIRST_CPU;
     while (capacity < TRACE_CAPACITY && (max_rays == 0 || capacity < max_rays))
         capacity *= 4;
     return capacity;
@@ -57,7 +60,7 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
     beams = beams && renderer->packet_stack_size <= PACKET_STACK_MAX;
     uint32_t loads = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     if (result == WHIT_OK && !trace->rays) {
-        trace->capacity = choose_capacity(renderer->params.trace_rays, first_piece(renderer));
+        trace->capacity = choose_capacity(renderer->params.trace_rays);
         result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
                                loads | BUFFER_HOST, "rays", &trace->rays);
     }

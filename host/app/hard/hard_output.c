@@ -37,9 +37,8 @@ static void print_verdict(const whit_hard_report *report)
 {
     printf("promises   %u of %u rows broke one\n", report->broken, report->row_count);
     if (!report->equal_bits)
-        puts("bits       the twin's are not promised, as this device divides or compares in its "
-             "own way "
-             "(--portable on: they are)");
+        puts("bits       not promised to be the twin's, as this device divides or compares "
+             "otherwise: see --portable");
     if (report->unanswered)
         printf("answers    none in %u rows\n", report->unanswered);
     if (report->hash)
