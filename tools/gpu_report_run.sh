@@ -5,6 +5,7 @@
 # 8 minutes:
 #     report.txt    all results as text: read this first
 #     devices.json check.json kernels.json hard.json rays.json frame.json    figures of single parts
+#                   (hard.json: with --portable on)
 #     log.txt       what went wrong
 # DEVICE: a number or a part of a name, as in `whit render --device` (auto: the best GPU).
 set -u

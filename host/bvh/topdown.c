@@ -17,7 +17,8 @@ enum {
     TASKS_MAX = 4096,
 };
 
-/* Subtrees that wait for a thread, the oldest first, which is about the largest. */
+/* Subtrees that wait for a thread. The one that has waited longest is about the largest, and goes
+   first. */
 struct build_queue {
     struct build_range *ranges; /* TASKS_MAX, around */
     uint32_t first, count;

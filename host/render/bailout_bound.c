@@ -121,10 +121,11 @@ static bool *worn_materials(const struct scene *scene)
     return worn;
 }
 
-/* The most that a ray of weight 1 can bring: the sky, or a surface's own light and what its rays
-   bring; and the most light that is left out for shadow rays at all that it meets, of weights of
-   the bailout and more. A surface that is passed unseen in parts may be followed by many before the
-   next bounce. */
+/* The most that a ray of weight 1 can bring: `radiance` is the sky's, or a surface's own light and
+   what its rays bring. `unshadowed` is the light that is lost at all hits of its tree because
+   shadow rays are not traced; a hit loses at most BAILOUT_SHADOW_SHARE of its ray's weight, as rays
+   below the bailout are not traced themselves. Before its next bounce a ray may pass many blended
+   surfaces. */
 struct brought {
     double radiance, unshadowed;
 };

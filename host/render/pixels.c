@@ -5,7 +5,7 @@
    to each other should stay in a processor's caches. Another device has more threads than such a
    tile has rays, and each dispatch costs the same: there a tile may take a share of the memory. */
 enum { TILE_CPU = 192, TILE_OTHER = 768, MEMORY_SHARE = 16 };
-/* What a slot takes of all queues and of the largest one, about and at most. */
+/* A slot takes about SLOT_BYTES in all queues together, and at most SLOT_LARGEST_BYTES in one. */
 enum { SLOT_BYTES = 2048, SLOT_LARGEST_BYTES = 1024 };
 
 uint32_t pixels_slot_shift(uint32_t depth)

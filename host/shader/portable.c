@@ -23,7 +23,8 @@ struct portable {
 /* --- what is left to the driver ----------------------------------------------------------------
  */
 
-/* Where the device's own stays. */
+/* Which devices a kernel is left the operation for: none; those that round divisions correctly;
+   those that tell denormals from 0 in comparisons. */
 enum stays { NOWHERE, RIGHT_DIVISION, RIGHT_COMPARISON };
 
 struct stand_in {

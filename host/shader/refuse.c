@@ -115,8 +115,8 @@ static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint
     return false;
 }
 
-/* What a call is given, for which glslang makes a variable: numbers and vectors, which drivers keep
-   in registers. */
+/* Whether a variable holds a number or vector that a call is given. glslang makes one for each, and
+   drivers keep them in registers. */
 static bool is_argument(const struct spv_module *m, const uint32_t *words, const uint32_t *pointer)
 {
     const uint32_t *type = pointer && spv_length(pointer) == 4 ? spv_def(m, pointer[3]) : NULL;

@@ -37,14 +37,14 @@ void whit_device_destroy(whit_device *device);
 void whit_device_get_info(const whit_device *device, whit_device_info *info);
 
 /* What a device does with floats of 32 bits where Vulkan leaves that to it;
-   whit_renderer_params.portable asks for the last two. */
+   whit_renderer_params.portable asks for keeps_denormals and rounds_nearest, and has functions in
+   the place of what is not the device's own. */
 typedef struct whit_device_floats {
     bool own_division;    /* division and square root are rounded correctly, as far as 43 million of
                              them tell */
     bool keeps_denormals; /* numbers below 2^-126 are no zeros to sums and products */
     bool rounds_nearest;  /* sums and products are rounded to nearest */
-    bool own_comparison;  /* such numbers are no zeros to comparisons either, nor to absolute values
-                           */
+    bool own_comparison;  /* comparisons and absolute values tell numbers below 2^-126 from 0 */
 } whit_device_floats;
 
 /* Found out once for a device and its driver, in about a second, and kept. WHIT_ERROR_DEVICE,

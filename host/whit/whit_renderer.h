@@ -78,8 +78,9 @@ typedef struct whit_renderer_params {
     double time_s;      /* of the animation */
     whit_sampling sampling;
     uint32_t depth; /* most bounces; 0: what the camera ray sees, with its shadows */
-    double bailout; /* rays that can add less than this to a pixel are not traced;
-                       0: all are */
+    double bailout; /* rays that can add less than this to a pixel are not traced, nor shadow rays
+                       that can add at most 2^-14 of this, times what their light sends; 0: all are
+                       */
     whit_shadows shadows;
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
@@ -319,7 +320,8 @@ typedef struct whit_stats {
        params.depth; bailout, for params.bailout. */
     uint64_t rays_cut_depth, rays_cut_bailout;
     double weight_cut_depth, weight_cut_bailout;
-    /* No pixel channel is off by more than this for rays cut by bailout; < 0: not known. */
+    /* No pixel channel is off by more than this for rays and shadow rays that bailout leaves out; <
+       0: not known. */
     double bailout_bound;
     uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS];
     uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */

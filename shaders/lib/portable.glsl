@@ -64,7 +64,7 @@ bool portable_less(const float x, const float y)
     return OWN_COMPARISON ? x < y : is_below(x - y);
 }
 
-// What the device says of NaN, of infinities, and of all that is no denormal, is right.
+// The device may call two numbers equal that are both denormals, or one of them 0. Else its answer is right.
 bool portable_at_most(const float x, const float y)
 {
     return x <= y && (OWN_COMPARISON || !is_below(y - x));

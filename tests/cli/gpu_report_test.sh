@@ -47,7 +47,7 @@ for file in devices check kernels hard rays frame; do
 done
 rows=$(wc -l <"$BARE/report/hits.txt")
 check "every bit of every hit is lavapipe's ($rows rows)" \
-    test "$(grep -Ec '^[a-z0-9]+-(camera|shadow|bounce)[a-z-]* +(watertight|exact) +[0-9]+ +0$' "$BARE/out/report.txt")" -eq "$rows"
+    test "$(grep -Ec '^[a-z0-9]+-(camera|shadow|bounce)[a-z-]* +(watertight|exact) +[0-9]+ +0 +0$' "$BARE/out/report.txt")" -eq "$rows"
 pictures=$(ls "$BARE/report/pictures" | grep -vc -- -ids)
 check "every picture is ($pictures)" \
     test "$(grep -Ec '^[a-z0-9-]+ +(watertight|exact) +\(?0 +0 +0 +\(?0$' "$BARE/out/report.txt")" -eq "$pictures"
