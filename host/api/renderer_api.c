@@ -427,13 +427,20 @@ static whit_result draw_grid(whit_renderer *renderer, struct image *color)
     return result;
 }
 
-static whit_result draw_edges(whit_renderer *renderer, bool of_primitives, struct image *color)
+static whit_result draw_edges(whit_renderer *renderer, const whit_overlay *overlay,
+                              struct image *color)
 {
     whit_image *ids;
+    if (overlay->ids) {
+        const struct image given = {color->width, color->height, 2,
+                                    .words = (uint32_t *)(uintptr_t)overlay->ids};
+        image_draw_edges(color, &given, overlay->edges_of_primitives);
+        return WHIT_OK;
+    }
     whit_result result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
     if (result != WHIT_OK)
         return result;
-    image_draw_edges(color, &ids->image, of_primitives);
+    image_draw_edges(color, &ids->image, overlay->edges_of_primitives);
     whit_image_destroy(ids);
     return WHIT_OK;
 }
@@ -451,7 +458,7 @@ whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay 
     if (result == WHIT_OK && overlay->grid)
         result = draw_grid(renderer, &color->image);
     if (result == WHIT_OK && (overlay->edges_of_instances || overlay->edges_of_primitives))
-        result = draw_edges(renderer, overlay->edges_of_primitives, &color->image);
+        result = draw_edges(renderer, overlay, &color->image);
     return result;
 }
 

@@ -255,6 +255,48 @@ static void say_failure(struct engine *engine, whit_result result)
                  result == WHIT_ERROR_MEMORY ? "out of memory" : whit_result_name(result));
 }
 
+void engine_show_samples(const struct engine_task *task, struct engine_frame *frame)
+{
+    struct engine *engine = task->engine;
+    pthread_mutex_lock(&engine->lock);
+    if (task->lane->asked == task->asked)
+        take_picture(task, ENGINE_FULL, frame);
+    else
+        engine_frame_finish(frame);
+    engine_wake(engine);
+    pthread_mutex_unlock(&engine->lock);
+}
+
+/* Whether it is drawn behind the picture of one sample that is shown. */
+static bool follows_one(const struct engine_lane *lane, const struct engine_task *task)
+{
+    return task->quality == ENGINE_WHOLE && lane->quality == ENGINE_FULL &&
+           lane->drawn == lane->asked && !lane->stale && lane->session == task->session;
+}
+
+/* Lets samples be added to a picture that was drawn. `same`: it has the pixels of the one before.
+   With the lock. */
+static void begin_refine(struct engine *engine, const struct engine_task *task, bool same,
+                         struct engine_frame *frame)
+{
+    size_t index = (size_t)(task->lane - engine->lanes);
+    struct engine_refine *refine = &engine->refine[index];
+    struct engine_kept *single = &engine->single[index];
+    const struct engine_kept *kept = index ? &engine->other : &engine->last;
+    if (task->quality == ENGINE_FULL && engine_doubles(&task->settings)) {
+        engine_keep(single, frame);
+        engine_refine_begin(refine, frame);
+    }
+    if (!frame->whole)
+        return;
+    if (task->refine)
+        engine_refine_finish_whole(refine, frame);
+    else if (!(same && !engine->lanes[1].wanted &&
+               engine_refine_keep(refine, kept, task->session, frame)))
+        engine_refine_begin(refine, frame);
+    engine_kept_finish(single);
+}
+
 static void draw_one(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     struct engine_frame frame = {0};
@@ -268,9 +310,12 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     engine->drawing_since_ms = whit_clock_ms();
     atomic_store(&session->part, 0.0f);
     engine->brief = task->finishes;
+    bool follows = follows_one(lane, task);
     pthread_mutex_unlock(&engine->lock);
     settings_expose(&task->settings, &session->scene->info);
     whit_result result = settings_choose_camera(&task->settings, session->scene->scene);
+    if (result == WHIT_OK && follows)
+        engine_refine_join(engine, task);
     if (result == WHIT_OK)
         result = engine_draw(task, &frame);
     bool whole = result == WHIT_OK && frame.whole, window = lane == &engine->lanes[0];
@@ -280,9 +325,8 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     pthread_mutex_lock(&engine->lock);
     if (result == WHIT_OK)
         note_speed(lane, &frame);
-    struct engine_refine *refine = &engine->refine[lane - engine->lanes];
-    if (whole && !(same && !engine->lanes[1].wanted && engine_refine_keep(refine, &frame)))
-        engine_refine_begin(refine, &frame);
+    if (result == WHIT_OK)
+        begin_refine(engine, task, same, &frame);
     engine->busy = false;
     engine->drawing = NULL;
     if (result == WHIT_OK) {
@@ -480,8 +524,10 @@ uint32_t engine_destroy(struct engine *engine)
     engine_kept_finish(&engine->other);
     engine_kept_finish(&engine->reloading.before);
     engine_flip_destroy(engine->flip);
-    for (int i = 0; i < ENGINE_LANES; ++i)
+    for (int i = 0; i < ENGINE_LANES; ++i) {
         engine_refine_stop(&engine->refine[i]);
+        engine_kept_finish(&engine->single[i]);
+    }
     for (int i = 0; i < 2; ++i)
         shader_ref_drop(engine->versions[i]);
     engine_probe_finish(&engine->probe);

@@ -53,12 +53,14 @@ struct engine_frame {
     struct scene_ref *scene;   /* held */
     struct shader_ref *shader; /* held; NULL: none */
     whit_image *color;         /* floats: linear RGBA, or of one channel where costs are painted */
-    whit_image *ids;           /* hit identities; NULL but for whole pictures */
-    whit_image *cuts;          /* WHIT_AOV_CUTS of whole pictures that can be refined, else NULL */
+    whit_image *plain;         /* `color` without edges and grid; NULL where it has none */
+    whit_image *ids;           /* hit identities; NULL but for pictures of all pixels */
+    whit_image *cuts;          /* WHIT_AOV_CUTS of pictures that more samples are added to, else
+                                  NULL */
     uint8_t *rgba;             /* width * height * 4: as the window shows it */
     uint32_t width, height, divisor; /* the window's size is divided by `divisor` */
     uint32_t samples;                /* a pixel; adaptive: 0 */
-    bool refined;                    /* of more samples than the settings say; without ids, these
+    bool refined;                    /* of other samples than the settings say; without ids, these
                                         and boxes are those of the picture before */
     struct engine_estimate estimates[ENGINE_ESTIMATES_MAX]; /* while it was refined */
     uint32_t estimate_count;

@@ -92,14 +92,18 @@ void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
                                  .height = frame->height};
     kept->ids = malloc(pixels * 2 * sizeof *kept->ids);
     kept->color = colors ? malloc(pixels * 4 * sizeof *kept->color) : NULL;
+    kept->plain = frame->plain ? malloc(pixels * 4 * sizeof *kept->plain) : NULL;
     kept->cuts = frame->cuts ? malloc(pixels * 2 * sizeof *kept->cuts) : NULL;
-    if (!kept->ids || (colors && !kept->color) || (frame->cuts && !kept->cuts)) {
+    if (!kept->ids || (colors && !kept->color) || (frame->plain && !kept->plain) ||
+        (frame->cuts && !kept->cuts)) {
         engine_kept_finish(kept);
         return;
     }
     memcpy(kept->ids, whit_image_words(frame->ids), pixels * 2 * sizeof *kept->ids);
     if (frame->cuts)
         memcpy(kept->cuts, whit_image_floats(frame->cuts), pixels * 2 * sizeof *kept->cuts);
+    if (frame->plain)
+        memcpy(kept->plain, whit_image_floats(frame->plain), pixels * 4 * sizeof *kept->plain);
     if (colors)
         memcpy(kept->color, whit_image_floats(frame->color), pixels * 4 * sizeof *kept->color);
 }
@@ -108,7 +112,8 @@ void engine_kept_finish(struct engine_kept *kept)
 {
     free(kept->ids);
     free(kept->color);
+    free(kept->plain);
     free(kept->cuts);
     kept->ids = NULL;
-    kept->color = kept->cuts = NULL;
+    kept->color = kept->plain = kept->cuts = NULL;
 }

@@ -137,6 +137,17 @@ uint32_t engine_find_aov(const struct engine_frame *frame)
     return shader_ref_find_aov(frame->shader, frame->settings.aov);
 }
 
+/* Keeps the picture as it is below what is drawn over it, for more samples to be added. */
+static whit_result draw_over(whit_renderer *renderer, const whit_overlay *overlay,
+                             struct engine_frame *frame)
+{
+    if (!overlay->grid && !overlay->edges_of_instances && !overlay->edges_of_primitives)
+        return WHIT_OK;
+    whit_result result = whit_image_create(frame->width, frame->height, 4,
+                                           whit_image_floats(frame->color), &frame->plain);
+    return result == WHIT_OK ? whit_renderer_draw_over(renderer, overlay, frame->color) : result;
+}
+
 /* Colours, or the function of the shader that is shown in their place. */
 static whit_result paint_colors(const struct engine_task *task, struct engine_frame *frame)
 {
@@ -147,10 +158,17 @@ static whit_result paint_colors(const struct engine_task *task, struct engine_fr
         renderer, aov == UINT32_MAX ? WHIT_AOV_COLOR : (whit_aov)(WHIT_AOV_SHADER + aov),
         &frame->color);
     if (result == WHIT_OK && aov == UINT32_MAX)
-        result = whit_renderer_draw_over(renderer, &overlay, frame->color);
+        result = draw_over(renderer, &overlay, frame);
     if (result == WHIT_OK)
         whit_image_display_bytes(frame->color, frame->rgba);
     return result;
+}
+
+/* Whether samples are added to this picture later on. */
+static bool is_begun(const struct engine_task *task)
+{
+    bool whole = task->quality == ENGINE_WHOLE && engine_refines(&task->settings);
+    return whole || (task->quality == ENGINE_FULL && engine_doubles(&task->settings));
 }
 
 static whit_result read_picture(const struct engine_task *task, struct engine_frame *frame)
@@ -164,7 +182,7 @@ static whit_result read_picture(const struct engine_task *task, struct engine_fr
         task->settings.paint != PAINT_COLOR ? paint_costs(task, frame) : paint_colors(task, frame);
     if (result == WHIT_OK && task->divisor == 1)
         result = whit_renderer_image(renderer, WHIT_AOV_IDS, &frame->ids);
-    if (result == WHIT_OK && frame->whole && engine_refines(&task->settings))
+    if (result == WHIT_OK && is_begun(task))
         result = whit_renderer_image(renderer, WHIT_AOV_CUTS, &frame->cuts);
     return result;
 }
@@ -279,6 +297,18 @@ whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats)
     return result;
 }
 
+/* All samples of the task at once. */
+static whit_result draw_all(const struct engine_task *task, const whit_renderer_params *params,
+                            struct engine_frame *frame)
+{
+    whit_result result = draw_as(task->session, params);
+    if (result == WHIT_OK)
+        result = read_picture(task, frame);
+    if (result == WHIT_OK)
+        whit_renderer_get_stats(task->session->renderer, &frame->stats);
+    return result;
+}
+
 whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame)
 {
     struct session *session = task->session;
@@ -293,14 +323,11 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     session->step = engine_show_step;
     session->step_user = (void *)task;
     double start_ms = whit_clock_ms();
-    whit_result result = draw_as(session, &params);
+    whit_result result =
+        task->refine ? engine_refine_whole(task, frame) : draw_all(task, &params, frame);
     session->step = NULL;
     if (result == WHIT_OK)
-        result = read_picture(task, frame);
-    if (result == WHIT_OK)
         result = read_boxes(task, frame);
-    if (result == WHIT_OK)
-        whit_renderer_get_stats(session->renderer, &frame->stats);
     if (result == WHIT_OK)
         result = count_visits(task, frame);
     for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
@@ -325,6 +352,7 @@ void engine_frame_inherit(struct engine_frame *before, struct engine_frame *refi
 void engine_frame_finish(struct engine_frame *frame)
 {
     whit_image_destroy(frame->color);
+    whit_image_destroy(frame->plain);
     whit_image_destroy(frame->ids);
     whit_image_destroy(frame->cuts);
     free(frame->rgba);

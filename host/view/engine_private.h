@@ -63,6 +63,7 @@ struct engine_kept {
     whit_accel_info accel;
     uint32_t width, height;
     float *color;  /* RGBA; NULL where costs were painted */
+    float *plain;  /* as engine_frame.plain, or NULL */
     float *cuts;   /* as engine_frame.cuts, or NULL */
     uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
 };
@@ -70,6 +71,7 @@ struct engine_kept {
 /* A picture on its way to more samples (engine_refine.c); of the drawing thread. */
 struct engine_refine {
     struct engine_frame base; /* the whole picture of the settings, without what it owns */
+    double begun_ms;          /* that the picture took that it began with */
     uint32_t samples;         /* of what was displayed last; 0: there is nothing to refine */
     bool settled;             /* more samples change nothing that is seen */
     bool ended;               /* there are no more, or they could not be drawn */
@@ -147,6 +149,8 @@ struct engine {
     struct engine_probe probe; /* the newest; number 0: taken */
     struct engine_kept last;   /* of the drawing thread: the window's last whole picture */
     struct engine_kept other;  /* likewise: that of the other side of a split */
+    struct engine_kept single[ENGINE_LANES]; /* of a lane: one sample of the picture that its refine
+                                                goes on with; without ids: none */
 };
 
 /* What engine_draw is to draw. */
@@ -158,6 +162,8 @@ struct engine_task {
     uint32_t step_spacing; /* of the first step; 0: at once */
     bool moving, brief;    /* brief: the first picture of what is asked for */
     bool finishes;         /* it, or its first step, is within the budget, and is not cancelled */
+    struct engine_refine *refine; /* has some of its samples, and draws the others; NULL: none */
+    const struct engine_kept *single; /* that it began with */
     double asked_ms;
     struct engine *engine; /* that shows the steps, in `lane` */
     struct engine_lane *lane;
@@ -198,15 +204,29 @@ WHIT_CHECK whit_result engine_draw_step(const struct engine_task *task, const wh
                                         struct engine_frame *frame);
 /* engine.c: shows a step of the picture that is being drawn. */
 void engine_show_step(void *user, const whit_step *step);
+/* Shows *frame, which it takes, of fewer samples than the picture of the task will have. */
+void engine_show_samples(const struct engine_task *task, struct engine_frame *frame);
 /* engine_refine.c: whether pictures of these settings can be refined. */
 bool engine_refines(const struct settings *settings);
+/* Whether the samples that the settings say come by doubling those that there are. */
+bool engine_doubles(const struct settings *settings);
+/* With the lock: lets a whole picture of all samples go on from the one that is shown, where its
+   refine has that. */
+void engine_refine_join(struct engine *engine, struct engine_task *task);
+/* Draws the samples of the task that its refine lacks, in place of all, and shows steps on the way.
+   Without the lock. *frame then has colours, ids, cuts and statistics. */
+WHIT_CHECK whit_result engine_refine_whole(const struct engine_task *task,
+                                           struct engine_frame *frame);
+/* With the lock: the task's refine made *frame, and goes on beyond it. */
+void engine_refine_finish_whole(struct engine_refine *refine, const struct engine_frame *frame);
 /* Begins with a whole picture of the window; one that cannot be refined, by costs
    or adaptive samples, ends it. */
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame);
 void engine_refine_stop(struct engine_refine *refine);
 /* Goes on from where it was, as a whole picture of the window came to the same pixels as the one
    that it began with: *frame then shows as many samples as the picture before. False: it cannot. */
-WHIT_CHECK bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame);
+WHIT_CHECK bool engine_refine_keep(struct engine_refine *refine, const struct engine_kept *kept,
+                                   struct session *session, struct engine_frame *frame);
 /* With the lock: the lane whose picture is to be refined next; NULL: none, or something else is to
    be done. Of A beside B the one of fewer samples, until both look the same as before. */
 struct engine_lane *engine_refine_lane(struct engine *engine);

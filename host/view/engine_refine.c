@@ -26,7 +26,7 @@ void engine_refine_stop(struct engine_refine *refine)
 static void set_base(struct engine_refine *refine, const struct engine_frame *frame)
 {
     refine->base = *frame;
-    refine->base.color = refine->base.ids = refine->base.cuts = NULL;
+    refine->base.color = refine->base.plain = refine->base.ids = refine->base.cuts = NULL;
     refine->base.boxes = NULL;
     refine->base.rgba = NULL;
     refine->base.scene = NULL;
@@ -34,9 +34,14 @@ static void set_base(struct engine_refine *refine, const struct engine_frame *fr
 
 bool engine_refines(const struct settings *settings)
 {
-    bool drawn_over = settings->edges != EDGES_OFF || settings->grid; /* is no part of a sum */
-    return settings->paint == PAINT_COLOR && !settings->aov[0] && !drawn_over &&
+    return settings->paint == PAINT_COLOR && !settings->aov[0] &&
            settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
+}
+
+bool engine_doubles(const struct settings *settings)
+{
+    uint32_t count = settings->picture.sampling.count;
+    return engine_refines(settings) && count > 1 && (count & (count - 1)) == 0;
 }
 
 void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame)
@@ -46,6 +51,7 @@ void engine_refine_begin(struct engine_refine *refine, const struct engine_frame
         return;
     set_base(refine, frame);
     refine->samples = frame->samples;
+    refine->begun_ms = frame->stats.render_ms;
     refine->ended = frame->samples * ROUND > WHIT_SAMPLES_MAX;
 }
 
@@ -64,7 +70,8 @@ static whit_result begin_parts(struct engine_refine *refine, whit_renderer *rend
         return WHIT_ERROR_MEMORY;
     whit_result result = whit_refine_create(renderer, params, &refine->refine);
     if (result == WHIT_OK)
-        result = whit_refine_begin(refine->refine, refine->samples, kept->color, kept->cuts);
+        result = whit_refine_begin(refine->refine, refine->samples,
+                                   kept->plain ? kept->plain : kept->color, kept->cuts);
     if (result == WHIT_OK)
         result = whit_refine_image(refine->refine, &image);
     if (result == WHIT_OK)
@@ -85,10 +92,8 @@ static void note_estimate(struct engine_refine *refine, const whit_refine_info *
     if (info->error < 0.0 || known || count == ENGINE_ESTIMATES_MAX)
         return;
     whit_refine_get_stats(refine->refine, &stats);
-    refine->estimates[refine->estimate_count++] =
-        (struct engine_estimate){.samples = info->samples,
-                                 .error = info->error,
-                                 .ms = refine->base.stats.render_ms + stats.render_ms};
+    refine->estimates[refine->estimate_count++] = (struct engine_estimate){
+        .samples = info->samples, .error = info->error, .ms = refine->begun_ms + stats.render_ms};
 }
 
 /* Draws what comes next; the renderer is set to the picture of the settings again. */
@@ -118,19 +123,35 @@ static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
     return changed * PIXELS_A_CHANGE <= pixels;
 }
 
-/* What there is as a picture, and as it is displayed. */
-static whit_result show_sum(const struct engine_refine *refine, struct engine_frame *frame)
+/* The sum, and over it what the settings say. */
+static whit_result read_sum(const struct engine_refine *refine, const struct engine_kept *kept,
+                            struct session *session, whit_image **color)
 {
     const whit_renderer_params params = settings_picture(&refine->base.settings);
+    whit_overlay overlay = settings_overlay(&refine->base.settings);
+    overlay.ids = kept->ids;
+    whit_result result = whit_refine_image(refine->refine, color);
+    if (result == WHIT_OK)
+        result = whit_renderer_draw_over(session->renderer, &overlay, *color);
+    if (result == WHIT_OK)
+        whit_image_display_as(*color, &params);
+    return result;
+}
+
+/* What there is as a picture, and as it is displayed. `kept`: the picture that it began with; the
+   session's renderer has its view. */
+static whit_result show_sum(const struct engine_refine *refine, const struct engine_kept *kept,
+                            struct session *session, struct engine_frame *frame)
+{
     whit_refine_info info;
     whit_image *color = NULL;
     uint8_t *rgba = malloc(bytes_of(refine));
-    whit_result result = rgba ? whit_refine_image(refine->refine, &color) : WHIT_ERROR_MEMORY;
+    whit_result result = rgba ? read_sum(refine, kept, session, &color) : WHIT_ERROR_MEMORY;
     if (result != WHIT_OK) {
+        whit_image_destroy(color);
         free(rgba);
         return result;
     }
-    whit_image_display_as(color, &params);
     whit_image_display_bytes(color, rgba);
     whit_image_destroy(frame->color);
     free(frame->rgba);
@@ -145,21 +166,23 @@ static whit_result show_sum(const struct engine_refine *refine, struct engine_fr
 }
 
 /* The picture of four times as many samples. */
-static whit_result finish_round(struct engine_refine *refine, struct engine_frame *frame)
+static whit_result finish_round(struct session *session, struct engine_refine *refine,
+                                const struct engine_kept *kept, struct engine_frame *frame)
 {
     size_t bytes = bytes_of(refine);
     *frame = refine->base;
-    refine->samples *= ROUND;
-    whit_result result = show_sum(refine, frame);
+    whit_result result = show_sum(refine, kept, session, frame);
     if (result != WHIT_OK)
         return result;
+    refine->samples *= ROUND;
     refine->ended = refine->samples * ROUND > WHIT_SAMPLES_MAX;
     refine->settled = looks_same(refine->rgba, frame->rgba, bytes / 4);
     memcpy(refine->rgba, frame->rgba, bytes);
     return WHIT_OK;
 }
 
-bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame)
+bool engine_refine_keep(struct engine_refine *refine, const struct engine_kept *kept,
+                        struct session *session, struct engine_frame *frame)
 {
     const whit_sampling *sampling = &frame->settings.picture.sampling;
     bool goes_on = refine->refine && refine->samples > refine->base.samples &&
@@ -169,7 +192,7 @@ bool engine_refine_keep(struct engine_refine *refine, struct engine_frame *frame
     if (!goes_on)
         return false;
     set_base(refine, frame);
-    return show_sum(refine, frame) == WHIT_OK;
+    return show_sum(refine, kept, session, frame) == WHIT_OK;
 }
 
 /* Draws one part; without the lock. Behind the last part of a round *frame is a picture of four
@@ -179,16 +202,95 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
                              const struct engine_kept *kept, struct engine_frame *frame)
 {
     whit_refine_info info = {0};
+    whit_result result = WHIT_OK;
     *frame = (struct engine_frame){0};
-    whit_result result = draw_part(session, refine, kept, &info);
+    if (refine->refine)
+        whit_refine_get_info(refine->refine, &info);
+    if (info.samples < ROUND * refine->samples) /* else it was left while it was to be shown */
+        result = draw_part(session, refine, kept, &info);
     if (result == WHIT_OK && info.samples == ROUND * refine->samples) {
         struct scene_ref *scene = scene_ref_take(session->scene);
         struct shader_ref *shader = shader_ref_take(session->shader);
-        result = finish_round(refine, frame);
+        result = finish_round(session, refine, kept, frame);
         frame->scene = scene;
         frame->shader = shader;
     }
     return result;
+}
+
+/* ---- Up to the samples of the settings ---- */
+
+/* A picture of fewer samples than the settings say. */
+static void show_some(const struct engine_task *task)
+{
+    struct engine_frame frame;
+    struct session *session = task->session;
+    struct scene_ref *scene = scene_ref_take(session->scene);
+    struct shader_ref *shader = shader_ref_take(session->shader);
+    whit_result result = finish_round(session, task->refine, task->single, &frame);
+    frame.scene = scene;
+    frame.shader = shader;
+    if (result == WHIT_OK)
+        engine_show_samples(task, &frame);
+    else
+        engine_frame_finish(&frame);
+}
+
+static whit_result draw_missing(const struct engine_task *task)
+{
+    struct engine_refine *refine = task->refine;
+    struct session *session = task->session;
+    uint32_t samples = task->settings.picture.sampling.count;
+    whit_refine_info info = {.samples = refine->samples};
+    whit_result result = WHIT_OK;
+    if (refine->refine)
+        whit_refine_get_info(refine->refine, &info);
+    while (result == WHIT_OK && info.samples < samples) {
+        session->part_done = session->part_share = (float)info.samples / (float)samples;
+        result = draw_part(session, refine, task->single, &info);
+        if (result == WHIT_OK && info.samples < samples && info.samples >= ROUND * refine->samples)
+            show_some(task);
+    }
+    session->part_done = session->part_share = 0.0f;
+    return result;
+}
+
+/* Of all samples; what a picture has of them alone is right already. */
+static void sum_stats(const struct engine_task *task, whit_stats *stats)
+{
+    whit_stats sum;
+    *stats = task->single->stats;
+    whit_refine_get_stats(task->refine->refine, &sum);
+    whit_stats_add(&sum, stats);
+    stats->bailout_bound = sum.bailout_bound;
+    stats->weight_cut_bailout = sum.weight_cut_bailout;
+    stats->weight_cut_depth = sum.weight_cut_depth;
+    memcpy(stats->pixels_by_samples, sum.pixels_by_samples, sizeof stats->pixels_by_samples);
+}
+
+whit_result engine_refine_whole(const struct engine_task *task, struct engine_frame *frame)
+{
+    const struct engine_kept *single = task->single;
+    whit_result result = draw_missing(task);
+    if (result == WHIT_OK)
+        result = show_sum(task->refine, single, task->session, frame);
+    if (result == WHIT_OK)
+        result =
+            whit_image_create_words(single->width, single->height, 2, single->ids, &frame->ids);
+    frame->refined = false;
+    if (result == WHIT_OK)
+        sum_stats(task, &frame->stats);
+    return result;
+}
+
+void engine_refine_finish_whole(struct engine_refine *refine, const struct engine_frame *frame)
+{
+    set_base(refine, frame);
+    refine->base.estimate_count = 0;
+    refine->samples = frame->samples;
+    refine->settled = false;
+    refine->ended = frame->samples * ROUND > WHIT_SAMPLES_MAX;
+    memcpy(refine->rgba, frame->rgba, bytes_of(refine));
 }
 
 /* ---- When ---- */
@@ -200,6 +302,19 @@ static bool has_post(const struct session *session)
     for (uint32_t i = 0; session->shader && i < session->shader->info.hook_count; ++i)
         has = has || strcmp(session->shader->info.hooks[i], "post") == 0;
     return has;
+}
+
+void engine_refine_join(struct engine *engine, struct engine_task *task)
+{
+    size_t index = (size_t)(task->lane - engine->lanes);
+    struct engine_refine *refine = &engine->refine[index];
+    const struct engine_kept *single = &engine->single[index];
+    if (!engine_doubles(&task->settings) || has_post(task->session) || !single->ids ||
+        refine->samples == 0 || refine->samples >= task->settings.picture.sampling.count ||
+        !settings_same(&refine->base.settings, &task->settings))
+        return;
+    task->refine = refine;
+    task->single = single;
 }
 
 /* Its picture is there, was taken, and has something to be refined. */

@@ -163,7 +163,8 @@ static whit_result build(struct session *session)
 static void note_part(void *user, double done)
 {
     struct session *session = user;
-    atomic_store(&session->part, (float)done);
+    float share = session->part_share > 0.0f ? session->part_share : 1.0f;
+    atomic_store(&session->part, session->part_done + share * (float)done);
 }
 
 static void note_step(void *user, const whit_step *step)

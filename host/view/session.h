@@ -66,6 +66,8 @@ struct session {
     whit_device_info device_info;
     double build_ms, compile_ms; /* of the trees; until the first pixels were there */
     _Atomic(float) part;         /* of the picture that is being drawn, 0..1; from any thread */
+    float part_done,
+        part_share; /* of it before what the renderer is drawing, and by that; 0: all */
     uint64_t last_use;
     uint64_t made; /* counts up: which of the engine's jobs it was made by, or made anew for another
                       version of the shader */

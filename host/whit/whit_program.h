@@ -47,6 +47,9 @@ WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const wh
    written, and there is none. */
 WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
 void whit_image_strips_abandon(whit_image_strips *strips);
+/* Of integers, as hit identities are: width * height * channels, copied. */
+WHIT_CHECK whit_result whit_image_create_words(uint32_t width, uint32_t height, uint32_t channels,
+                                               const uint32_t *words, whit_image **out);
 /* The floats of a picture, to be changed; NULL where it has integers. */
 float *whit_image_edit(whit_image *image);
 
@@ -55,8 +58,10 @@ float *whit_image_edit(whit_image *image);
 typedef struct whit_overlay {
     bool grid; /* on the ground, behind what stands before it */
     bool edges_of_instances, edges_of_primitives;
+    const uint32_t *ids; /* hit identities that edges are of, two a pixel, borrowed; NULL: those of
+                            the picture that the renderer has just drawn */
 } whit_overlay;
-/* Draws over `color`, the picture that the renderer has just drawn. WHIT_ERROR_USAGE where nothing
+/* Draws over `color`, a picture of the renderer's view. WHIT_ERROR_USAGE where nothing
    was rendered, WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay *overlay,
                                                whit_image *color);

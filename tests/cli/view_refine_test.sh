@@ -9,7 +9,7 @@ camera="--camera 1.6,1.3,2.4,0,0,0,0,1,0"
 
 # shellcheck disable=SC2086
 play "refined" "$SCENES/cube.json" --size 48x36 --aa 4 $camera,90 <<END
-start: | frame.samples = 4 | frame.estimates = 0
+start: | frame.samples = 4 | frame.estimates = 2
 refined
 better: | frame.samples > 4 | frame.pixels not as start | frame.ids as start | words as start | frame.whole = true
     | frame.number > 2 | frame.estimates > 1 | frame.error > 0.0001
@@ -18,7 +18,7 @@ copied: press Ctrl+C | frame.pixels as better
 sharp: press T | frame.samples as better | frame.pixels as better | frame.ids as start | change.other_colors = 0
 back: press Shift+T | frame.pixels as better
 picked: click 24 18 | picked = true
-other: press Equal | frame.samples = 4 | frame.estimates = 0
+other: press Equal | frame.samples = 4 | frame.estimates = 2
 less: press Minus | frame.samples = 4 | frame.pixels as start
 refined
 again: | frame.pixels as better | frame.samples as better
@@ -38,7 +38,7 @@ check "A and B have as many samples" test "$(value split compare.b.pixels)" = "$
 samples=$(value better frame.samples)
 check "B is refined with A" test "$(value both compare.b.pixels)" = "$(value better frame.pixels)"
 check "the estimate is of what is shown" test "$(value better frame.error_samples)" -eq "$samples"
-doublings=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 2; k++ } print k }')
+doublings=$(awk -v n="$samples" 'BEGIN { while (n > 1) { n /= 2; k++ } print k }')
 check "one estimate each time that samples were doubled" test "$(value better frame.estimates)" -eq "$doublings"
 # shellcheck disable=SC2086
 expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 $camera,90 --aa "$samples" -o same.png --quiet
@@ -80,6 +80,24 @@ samples=$(value better frame.samples)
 expect 0 "paths of $samples samples" render "$SCENES/cube.json" --size 24x18 --shader "$PATHS" $camera,90 --aa "$samples" \
     -o paths.png --quiet
 expect 0 "are the window's" compare paths.png whit-0002.png --metric largest --tolerance 0
+
+# Lines are drawn over each step, and are no part of the sum.
+# shellcheck disable=SC2086
+play "lines" "$SCENES/cube.json" --size 48x36 --aa 16 --edges objects --grid on $camera,60 <<END
+start: | frame.samples = 16 | frame.whole = true
+press F12
+refined
+better: | frame.samples > 16 | frame.pixels not as start | frame.ids as start
+press F12
+END
+save=2
+for samples in 16 "$(value better frame.samples)"; do
+    save=$((save + 1))
+    # shellcheck disable=SC2086
+    expect 0 "$samples samples below lines" render "$SCENES/cube.json" --size 48x36 --edges objects --grid on $camera,60 \
+        --aa "$samples" -o lines.png --quiet
+    expect 0 "are the window's" compare lines.png "whit-000$save.png" --metric largest --tolerance 0
+done
 
 # What is to stay as the settings say does, until the switch is turned in the panel of settings.
 play "left alone" "$SCENES/cube.json" --size 48x36 --at-rest stay <<END

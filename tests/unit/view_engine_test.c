@@ -143,6 +143,21 @@ TEST(a_picture_comes_in_steps)
     close_engine(engine, &frame);
 }
 
+/* Behind one sample in steps, four and all of the settings are shown, and none is drawn twice. */
+TEST(samples_of_the_settings_are_added_to_the_first)
+{
+    struct engine_frame frame;
+    struct settings settings = settings_of("cube.json");
+    settings.picture.sampling.count = 16;
+    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    assert_int_equal(frame.number, 4 + 2);
+    assert_int_equal(frame.samples, 16);
+    assert_int_equal(frame.estimate_count, 4); /* of 2, 4, 8 and 16: it was not drawn at once */
+    assert_int_equal(frame.stats.rays_primary, 16 * WIDTH * HEIGHT);
+    assert_int_equal(frame.stats.pixels_by_samples[2], WIDTH * HEIGHT);
+    close_engine(engine, &frame);
+}
+
 /* What is asked for while the picture is refined comes next, and is refined in its turn. */
 TEST(whoever_moves_on_does_not_wait_for_refining)
 {
