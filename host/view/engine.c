@@ -140,7 +140,14 @@ static bool note_change(struct engine *engine, const struct engine_frame *frame)
     pthread_mutex_lock(&engine->lock);
     bool compared = change.number != engine->change.number;
     engine->change = change;
+    if (compared) {
+        engine->changing.settings[0] = before.settings;
+        engine->changing.settings[1] = frame->settings;
+        engine->change_left = false;
+    }
+    uint64_t reloads = engine->reload.number;
     engine_reload_note(engine, &before, &frame->settings, compared ? &change.difference : NULL);
+    engine->change_left |= engine->reload.number != reloads; /* that measures it */
     pthread_mutex_unlock(&engine->lock);
     engine_kept_finish(&before);
     return same;
@@ -451,12 +458,13 @@ static void run_engine(void *context)
             probe_one(engine);
             drew = true;
         }
-        drew = drew || engine_reload_step(engine);
+        drew = drew || engine_reload_step(engine) || engine_change_step(engine, false);
         struct engine_lane *lane = drew || engine->quit ? NULL : engine_refine_lane(engine);
         if (lane) {
             engine_refine_one(engine, lane);
             drew = true;
         }
+        drew = drew || engine_change_step(engine, true);
         if (!drew && !engine->quit && engine->littered)
             tidy_up(engine);
         else if (!drew && !engine->quit && !(engine->job && engine->job->done))
@@ -546,7 +554,9 @@ static void ask(struct engine *engine, struct engine_lane *lane, const struct se
         return;
     engine_refine_pause(engine);
     engine_reload_stop(engine);
+    engine_change_stop(engine);
     if (!same) {
+        engine->change_left = true;
         ++lane->asked;
         lane->asked_ms = whit_clock_ms();
         lane->failed = false;
@@ -652,6 +662,7 @@ void engine_ask_probe(struct engine *engine, uint32_t x, uint32_t y)
     engine->probe_y = y;
     engine_refine_pause(engine);
     engine_reload_stop(engine);
+    engine_change_stop(engine);
     pthread_cond_signal(&engine->work);
     pthread_mutex_unlock(&engine->lock);
 }

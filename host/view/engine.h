@@ -12,7 +12,7 @@ struct engine;
 
 struct engine_params {
     double budget_ms;         /* of a picture while something moves; 0: 1000 / 30 */
-    bool refine;              /* see engine_set_refine */
+    bool refine, times;       /* see engine_set_rest */
     uint32_t sessions;        /* kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* from any thread: there is something to take. May be NULL. */
     void *wake_user;
@@ -93,7 +93,11 @@ struct engine_change {
     struct settings settings; /* after it */
     char what[128];           /* "traversal distance -> sign" */
     struct difference difference;
-    double before_ms, after_ms; /* of drawing, on the device where it measures */
+    double before_ms, after_ms; /* of drawing, on the device where it measures: of one picture each,
+                                   or the medians of `ms` */
+    struct sample_median ms;    /* by how much it takes longer, of pairs that were drawn in turns;
+                                   count 0: not measured */
+    bool over;                  /* nothing more will be known */
 };
 
 /* What a new version of the shader makes of the window's picture, beside the version before. Both
@@ -164,10 +168,11 @@ void engine_stop_reload(struct engine *engine);
    is an error, and memory that is free was given back. Never while something moves. */
 bool engine_is_still(struct engine *engine);
 
-/* While it is on, a picture at rest that was taken is refined: 4, 16, 64 ... times the samples of
-   the settings, until hardly a displayed pixel changes (engine_refine.c says how few). */
-void engine_set_refine(struct engine *engine, bool on);
-/* True when that has come to its end, or cannot begin. */
+/* What is done at rest, once a picture was taken. `refine`: it gets 4, 16, 64 ... times the samples
+   of the settings, until hardly a displayed pixel changes (engine_refine.c says how few). `times`:
+   the last change is measured. */
+void engine_set_rest(struct engine *engine, bool refine, bool times);
+/* True when both have come to their end, or cannot begin. */
 bool engine_is_refined(struct engine *engine);
 
 /* Waits for the next thing to take, at most `ms`. For tests and replays. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sample.h"
 #include "view/choices.h"
 #include "view/difference.h"
 #include "view/engine_private.h"
@@ -66,8 +67,44 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
         .difference = difference,
         .before_ms = engine_drawn_ms(&before->stats),
         .after_ms = engine_drawn_ms(&after->stats),
+        .over = !colors, /* costs are painted by other kernels than pictures */
     };
     memcpy(change->what, what, sizeof what);
+}
+
+/* Pairs that take longer wait until nothing is left to refine, unless the picture that is shown
+   needs no more of it. */
+static const double SOON_MS = 2e3;
+
+bool engine_change_waits(const struct engine *engine)
+{
+    const struct engine_change *change = &engine->change;
+    return engine->params.times && change->number > 0 && !change->over && !engine->change_left;
+}
+
+bool engine_change_step(struct engine *engine, bool late)
+{
+    struct engine_change *change = &engine->change;
+    bool same = change->difference.other_colors == 0 && change->difference.other_ids == 0;
+    bool soon = (change->before_ms + change->after_ms) * ENGINE_PAIRS_MIN <= SOON_MS;
+    if (!engine_change_waits(engine) || !(late || same || soon) || !engine_is_idle(engine))
+        return false;
+    engine->changing.stopped = false;
+    const char *why = engine_turns_measure(engine, &engine->changing, &change->ms);
+    if (!why[0]) {
+        change->before_ms = sample_of(&engine->changing.ms[0]).median;
+        change->after_ms = sample_of(&engine->changing.ms[1]).median;
+    }
+    change->over = why != ENGINE_TURNS_STOPPED; /* a pixel that was clicked on comes first */
+    engine_wake(engine);
+    return true;
+}
+
+void engine_change_stop(struct engine *engine)
+{
+    engine->changing.stopped = true;
+    if (engine->timing == &engine->changing)
+        engine->drawing->cancel = true;
 }
 
 bool engine_is_same(const struct engine_kept *before, const struct engine_frame *after)

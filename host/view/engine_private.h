@@ -92,14 +92,21 @@ struct engine_flip {
     double mean;
 };
 
+/* Two pictures that are drawn in turns, before and after something changed; of the drawing thread.
+ */
+struct engine_turns {
+    struct settings settings[2];
+    struct sample_runs ms[2]; /* of drawing */
+    double start_ms;
+    bool stopped; /* something else came first */
+};
+enum { ENGINE_PAIRS_MIN = 6 };
+
 /* What is measured of a reload; of the drawing thread. */
 struct engine_reloading {
-    struct engine_kept before;   /* the picture that FLIP is still missing of; without ids: none */
-    struct settings settings[2]; /* of the picture by the version before and by the new one */
-    struct sample_runs ms[2];
-    double start_ms;
-    bool wanted;  /* engine_measure_reload */
-    bool stopped; /* something else came first */
+    struct engine_kept before; /* the picture that FLIP is still missing of; without ids: none */
+    struct engine_turns turns; /* of the version before and of the new one */
+    bool wanted;               /* engine_measure_reload */
 };
 
 struct engine {
@@ -108,8 +115,10 @@ struct engine {
     bool refining; /* something of it is being drawn */
     struct engine_reload reload;
     struct engine_reloading reloading;
-    struct engine_flip *flip; /* NULL: not at work */
-    bool timing;              /* a picture of `reloading` is being drawn */
+    struct engine_flip *flip;     /* NULL: not at work */
+    struct engine_turns changing; /* for `change` */
+    bool change_left; /* something else was asked for, or its time is measured elsewhere */
+    const struct engine_turns *timing; /* a picture of which is being drawn; NULL: of none */
     pthread_mutex_t lock;
     pthread_cond_t work, news;
     struct thread *thread;
@@ -252,7 +261,21 @@ bool engine_reload_step(struct engine *engine);
 void engine_reload_stop(struct engine *engine); /* with the lock: engine_stop_reload */
 void engine_flip_destroy(struct engine_flip *flip);
 
-/* engine_change.c: what differs between two whole pictures of one place; *change stays where they
+/* engine_turns.c, with the lock. */
+/* Whether pictures are there as they were asked for, and nothing else is to be done. */
+bool engine_is_idle(const struct engine *engine);
+/* Fills in turns->ms, and *difference by how much the second picture takes longer in ms. Gives the
+   lock back meanwhile. "" or why there were too few pairs; *difference is then untouched. */
+const char *engine_turns_measure(struct engine *engine, struct engine_turns *turns,
+                                 struct sample_median *difference);
+extern const char ENGINE_TURNS_STOPPED[]; /* one of these reasons */
+
+/* engine_change.c, with the lock: measures the last change, which takes a while, unless something
+   else comes first. `late`: there is nothing left to refine. False: there was nothing to do. */
+bool engine_change_step(struct engine *engine, bool late);
+void engine_change_stop(struct engine *engine);
+bool engine_change_waits(const struct engine *engine); /* whether it is to be measured as yet */
+/* What differs between two whole pictures of one place; *change stays where they
    are none, or differ in nothing that has a name. */
 void engine_compare(const struct engine_kept *before, const struct engine_frame *after,
                     struct engine_change *change);

@@ -391,14 +391,17 @@ void engine_refine_pause(struct engine *engine)
         engine->drawing->cancel = true;
 }
 
-void engine_set_refine(struct engine *engine, bool on)
+void engine_set_rest(struct engine *engine, bool refine, bool times)
 {
     pthread_mutex_lock(&engine->lock);
-    if (!on)
+    if (!refine)
         engine_refine_pause(engine);
-    if (on != engine->params.refine)
+    if (!times && engine->params.times)
+        engine_change_stop(engine);
+    if (refine != engine->params.refine || times != engine->params.times)
         pthread_cond_signal(&engine->work);
-    engine->params.refine = on;
+    engine->params.refine = refine;
+    engine->params.times = times;
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -407,7 +410,8 @@ bool engine_is_refined(struct engine *engine)
     pthread_mutex_lock(&engine->lock);
     const struct engine_lane *lanes = engine->lanes;
     bool taken = lanes[0].frame.number == 0 && (!lanes[1].wanted || lanes[1].frame.number == 0);
-    bool refined = !engine->refining && taken && !engine_refine_lane(engine);
+    bool refined =
+        !engine->refining && taken && !engine_change_waits(engine) && !engine_refine_lane(engine);
     pthread_mutex_unlock(&engine->lock);
     return refined;
 }

@@ -6,12 +6,6 @@
 #include "view/difference.h"
 #include "view/engine_private.h"
 
-/* Of 9 pairs the interval goes from the second to the eighth difference; 6 are the fewest that an
-   interval of 95 % takes (base/sample.h). */
-enum { PAIRS = 9, PAIRS_MIN = 6 };
-static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3; /* for 6 pairs; for as many as there are */
-static const char STOPPED[] = "something else came first";
-
 /* ---- How different they look ---- */
 
 static whit_result copy_picture(const struct engine_kept *kept, whit_image **image)
@@ -85,17 +79,6 @@ static void reap_flip(struct engine *engine)
 
 /* ---- How long they take ---- */
 
-static bool is_idle(const struct engine *engine)
-{
-    for (int i = 0; i < ENGINE_LANES; ++i) {
-        const struct engine_lane *lane = &engine->lanes[i];
-        if (!engine_is_done(lane) || (lane->wanted && (lane->moving || lane->failed)) ||
-            lane->frame.number > 0)
-            return false;
-    }
-    return !engine->quit && !engine->job && !engine->probe_wanted;
-}
-
 static void end_reload(struct engine *engine, const char *why)
 {
     engine->reload.over = true;
@@ -104,63 +87,9 @@ static void end_reload(struct engine *engine, const char *why)
     engine_wake(engine);
 }
 
-/* One picture of one version; with the lock, which it gives back meanwhile. */
-static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
-{
-    struct engine *engine = user;
-    struct engine_reloading *reloading = &engine->reloading;
-    struct engine_task task = {.settings = reloading->settings[way],
-                               .quality = ENGINE_WHOLE,
-                               .divisor = 1,
-                               .session = engine_find_session(engine, &reloading->settings[way])};
-    whit_stats stats;
-    double spent_ms = whit_clock_ms() - reloading->start_ms;
-    if (!task.session || !is_idle(engine) || reloading->stopped)
-        return WHIT_ERROR_CANCELLED;
-    if (spent_ms > PATIENCE_MS || (round >= PAIRS_MIN && spent_ms > ENOUGH_MS))
-        return WHIT_ERROR_CANCELLED;
-    task.session->cancel = false;
-    engine->drawing = task.session;
-    engine->timing = true;
-    engine->brief = false;
-    pthread_mutex_unlock(&engine->lock);
-    whit_result result = engine_draw_again(&task, &stats);
-    pthread_mutex_lock(&engine->lock);
-    engine->drawing = NULL;
-    engine->timing = false;
-    if (result == WHIT_OK)
-        sample_add(&reloading->ms[way], engine_drawn_ms(&stats));
-    else if (result == WHIT_ERROR_DEVICE)
-        engine_lose_device(engine, task.session);
-    return result;
-}
-
-/* Of too few pairs. */
-static const char *why_not(const struct engine *engine, whit_result result)
-{
-    const struct engine_reloading *reloading = &engine->reloading;
-    if (!engine_find_session(engine, &reloading->settings[0]))
-        return "the version before is gone";
-    if (reloading->stopped || !is_idle(engine))
-        return STOPPED;
-    return result == WHIT_ERROR_CANCELLED ? "pictures take too long" : "a picture failed";
-}
-
 static void measure_times(struct engine *engine)
 {
-    struct engine_reloading *reloading = &engine->reloading;
-    double differences[PAIRS];
-    struct sample_runs *before = &reloading->ms[0], *after = &reloading->ms[1];
-    before->count = after->count = 0;
-    reloading->start_ms = whit_clock_ms();
-    whit_result result = sample_in_turns(2, PAIRS, draw_turn, engine);
-    uint32_t pairs = before->count < after->count ? before->count : after->count;
-    if (pairs < PAIRS_MIN) {
-        end_reload(engine, why_not(engine, result));
-        return;
-    }
-    (void)sample_compare(after->values, before->values, pairs, differences, &engine->reload.ms);
-    end_reload(engine, "");
+    end_reload(engine, engine_turns_measure(engine, &engine->reloading.turns, &engine->reload.ms));
 }
 
 /* ---- When ---- */
@@ -169,7 +98,7 @@ bool engine_reload_step(struct engine *engine)
 {
     struct engine_reloading *reloading = &engine->reloading;
     reap_flip(engine);
-    if (!reloading->wanted || engine->reload.over || !is_idle(engine))
+    if (!reloading->wanted || engine->reload.over || !engine_is_idle(engine))
         return false;
     if (engine->flip)
         return false; /* it signals its end */
@@ -191,9 +120,9 @@ void engine_reload_note(struct engine *engine, struct engine_kept *before,
         !settings_same_shader(&same, &before->settings))
         return;
     engine_kept_finish(&reloading->before);
-    reloading->settings[0] = same;
-    reloading->settings[1] = *after;
-    reloading->wanted = reloading->stopped = false;
+    reloading->turns.settings[0] = same;
+    reloading->turns.settings[1] = *after;
+    reloading->wanted = reloading->turns.stopped = false;
     engine->reload =
         (struct engine_reload){.number = engine->reload.number + 1, .settings = *after, .why = ""};
     if (!difference || !settings_same(&same, &before->settings))
@@ -209,11 +138,11 @@ void engine_reload_stop(struct engine *engine)
 {
     if (engine->reload.number == 0 || engine->reload.over)
         return;
-    engine->reloading.stopped = true;
-    if (engine->timing)
+    engine->reloading.turns.stopped = true;
+    if (engine->timing == &engine->reloading.turns)
         engine->drawing->cancel = true;
     else
-        end_reload(engine, STOPPED);
+        end_reload(engine, ENGINE_TURNS_STOPPED);
 }
 
 void engine_measure_reload(struct engine *engine)

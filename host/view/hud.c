@@ -166,6 +166,20 @@ static void draw_reload(const char *line)
     }
 }
 
+/* In per cent of the time before, by the interval that holds the true difference. */
+static void draw_change_ms(const struct engine_change *c)
+{
+    double share = c->before_ms > 0.0 ? 100.0 / c->before_ms : 0.0;
+    double low = c->ms.low * share, high = c->ms.high * share;
+    if (c->ms.count == 0)
+        ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
+    else if (low <= 0.0 && high >= 0.0)
+        ui_text("no measurable difference, %+.1f to %+.1f %%", low, high);
+    else
+        ui_text("%.2f -> %.2f ms, %+.1f %% [%+.1f, %+.1f]", c->before_ms, c->after_ms,
+                c->ms.median * share, low, high);
+}
+
 /* "traversal distance -> sign", one change a line; then what that did. */
 static void draw_change(const struct view *view)
 {
@@ -183,7 +197,7 @@ static void draw_change(const struct view *view)
         draw_reload(view->shaders.line);
         return;
     }
-    ui_text("%.2f -> %.2f ms, of one picture each", c->before_ms, c->after_ms);
+    draw_change_ms(c);
     if (c->difference.other_ids == 0 && c->difference.other_colors == 0) {
         ui_text_color(COLOR_GOOD, "same picture");
         return;

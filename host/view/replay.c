@@ -193,10 +193,11 @@ static bool replay_event(struct view *view, const struct view_event *event)
         return is_there(view, event);
     case EVENT_REFINED:
         let_stand(view);
-        engine_set_refine(view->engine, view->settings.refines);
+        engine_set_rest(view->engine, view->settings.refines, true);
         if (!is_there(view, event))
             return false;
-        engine_set_refine(view->engine, false);
+        engine_set_rest(view->engine, false, false);
+        engine_get_status(view->engine, &view->status); /* with what was measured meanwhile */
         return true;
     case EVENT_PICTURE:
     case EVENT_PRICED:

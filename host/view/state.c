@@ -102,6 +102,11 @@ static json_t *change_json(const struct engine_change *change)
     json_t *object = json_object();
     put_count(object, "number", change->number);
     put_text(object, "what", change->what);
+    put_number(object, "before_ms", change->before_ms);
+    put_number(object, "after_ms", change->after_ms);
+    put_count(object, "pairs", change->ms.count);
+    put_number(object, "low_ms", change->ms.low);
+    put_number(object, "high_ms", change->ms.high);
     put_count(object, "pixels", change->difference.pixels);
     put_count(object, "other_ids", change->difference.other_ids);
     put_count(object, "other_colors", change->difference.other_colors);

@@ -199,6 +199,7 @@ static whit_result take_status(struct view *view)
     if ((other_stage && (tells || view->status.stage == SESSION_DONE)) ||
         (other_drawing && (tells || old.drawing)) || strcmp(old.error, view->status.error) != 0 ||
         old.change.number != view->status.change.number ||
+        old.change.over != view->status.change.over ||
         old.reload.over != view->status.reload.over || is_progress_due(view))
         view->dirty = true;
     /* Hidden, it is asked for nothing: the failure is that of something older. */
@@ -343,11 +344,11 @@ static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
         engine_ask(view->engine, &view->settings, view_is_moving(view));
-    /* Refining takes all cores: measurements beside the window come first. Replays ask for it. */
+    /* It takes all cores: measurements beside the window come first. Replays ask for it. */
+    bool rests = prices_are_still(view->prices) && prices_are_still(view->panels.measured) &&
+                 wish_is_still(view);
     if (!view->params->replay)
-        engine_set_refine(view->engine, view->settings.refines && prices_are_still(view->prices) &&
-                                            prices_are_still(view->panels.measured) &&
-                                            wish_is_still(view));
+        engine_set_rest(view->engine, rests && view->settings.refines, rests);
     if (!prices_are_still(view->prices) || !prices_are_still(view->panels.measured))
         engine_stop_reload(view->engine);
 }
@@ -429,6 +430,7 @@ static whit_result open_all(struct view *view)
                                          .fullscreen = params->fullscreen};
     const struct engine_params engine = {
         .refine = !params->replay && params->settings.refines,
+        .times = !params->replay,
         .budget_ms = 1e3 / params->settings.fps_goal,
         .wake = window_wake,
         .compiler = params->compiler,

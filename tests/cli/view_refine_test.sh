@@ -15,8 +15,10 @@ better: | frame.samples > 4 | frame.pixels not as start | frame.ids as start | w
     | frame.number > 2 | frame.estimates > 1 | frame.error > 0.0001
 press F12
 copied: press Ctrl+C | frame.pixels as better
-sharp: press T | frame.samples as better | frame.pixels as better | frame.ids as start | change.other_colors = 0
-back: press Shift+T | frame.pixels as better
+sharp: press T | change.pairs = 0 | frame.samples as better | frame.pixels as better | frame.ids as start | change.other_colors = 0
+refined
+measured: | change.pairs > 5 | change.number as sharp | frame.pixels as better | frame.samples as better
+back: press Shift+T | frame.pixels as better | change.pairs = 0
 picked: click 24 18 | picked = true
 other: press Equal | frame.samples = 4 | frame.estimates = 2
 less: press Minus | frame.samples = 4 | frame.pixels as start

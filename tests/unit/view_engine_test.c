@@ -190,7 +190,7 @@ TEST(whoever_moves_on_does_not_wait_for_refining)
         assert_int_equal(frame.settings.picture.depth, depth + 1);
     }
     assert_false(engine_is_refined(engine));
-    engine_set_refine(engine, false);
+    engine_set_rest(engine, false, false);
     close_engine(engine, &frame);
 }
 

@@ -1,0 +1,102 @@
+/* Two pictures of one place, drawn in turns while nothing else is to be done: by how much the one
+   takes longer. */
+#include "view/engine_private.h"
+
+/* Of 9 pairs the interval goes from the second to the eighth difference; 6 are the fewest that an
+   interval of 95 % takes (base/sample.h). */
+enum { PAIRS = 9, PAIRS_MIN = ENGINE_PAIRS_MIN };
+static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3; /* for 6 pairs; for as many as there are */
+const char ENGINE_TURNS_STOPPED[] = "something else came first";
+
+struct turn {
+    struct engine *engine;
+    struct engine_turns *turns;
+};
+
+bool engine_is_idle(const struct engine *engine)
+{
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        const struct engine_lane *lane = &engine->lanes[i];
+        if (!engine_is_done(lane) || (lane->wanted && (lane->moving || lane->failed)) ||
+            lane->frame.number > 0)
+            return false;
+    }
+    return !engine->quit && !engine->job && !engine->probe_wanted;
+}
+
+/* One picture of one side; with the lock, which it gives back meanwhile. */
+static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
+{
+    const struct turn *turn = user;
+    struct engine *engine = turn->engine;
+    struct engine_turns *turns = turn->turns;
+    struct engine_task task = {.settings = turns->settings[way],
+                               .quality = ENGINE_WHOLE,
+                               .divisor = 1,
+                               .session = engine_find_session(engine, &turns->settings[way])};
+    whit_stats stats;
+    double spent_ms = whit_clock_ms() - turns->start_ms;
+    if (!task.session || !engine_is_idle(engine) || turns->stopped)
+        return WHIT_ERROR_CANCELLED;
+    if (spent_ms > PATIENCE_MS || (round >= PAIRS_MIN && spent_ms > ENOUGH_MS))
+        return WHIT_ERROR_CANCELLED;
+    task.session->cancel = false;
+    engine->drawing = task.session;
+    engine->timing = turns;
+    engine->brief = false;
+    pthread_mutex_unlock(&engine->lock);
+    whit_result result = engine_draw_again(&task, &stats);
+    pthread_mutex_lock(&engine->lock);
+    engine->drawing = NULL;
+    engine->timing = NULL;
+    if (result == WHIT_OK)
+        sample_add(&turns->ms[way], engine_drawn_ms(&stats));
+    else if (result == WHIT_ERROR_DEVICE)
+        engine_lose_device(engine, task.session);
+    return result;
+}
+
+/* The renderers of the window's pictures have their views again: pixels are traced by them. */
+static void show_again(struct engine *engine)
+{
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        struct engine_lane *lane = &engine->lanes[i];
+        struct session *session = lane->session;
+        if (!session || (i > 0 && (!lane->wanted || session == engine->lanes[0].session)))
+            continue;
+        session->settings = lane->last;
+        const whit_renderer_params params = settings_picture(&session->settings);
+        if (whit_renderer_set_view(session->renderer, &params) != WHIT_OK)
+            lane->drawn = 0; /* once more, which says why */
+    }
+}
+
+/* Of too few pairs. */
+static const char *why_not(const struct engine *engine, const struct engine_turns *turns,
+                           whit_result result)
+{
+    for (int i = 0; i < 2; ++i) {
+        if (!engine_find_session(engine, &turns->settings[i]))
+            return "the version before is gone";
+    }
+    if (turns->stopped || !engine_is_idle(engine))
+        return ENGINE_TURNS_STOPPED;
+    return result == WHIT_ERROR_CANCELLED ? "pictures take too long" : "a picture failed";
+}
+
+const char *engine_turns_measure(struct engine *engine, struct engine_turns *turns,
+                                 struct sample_median *difference)
+{
+    struct turn turn = {engine, turns};
+    double differences[PAIRS];
+    struct sample_runs *before = &turns->ms[0], *after = &turns->ms[1];
+    before->count = after->count = 0;
+    turns->start_ms = whit_clock_ms();
+    whit_result result = sample_in_turns(2, PAIRS, draw_turn, &turn);
+    uint32_t pairs = before->count < after->count ? before->count : after->count;
+    show_again(engine);
+    if (pairs < PAIRS_MIN)
+        return why_not(engine, turns, result);
+    (void)sample_compare(after->values, before->values, pairs, differences, difference);
+    return "";
+}
