@@ -236,6 +236,24 @@ uint32_t cost_findings(const struct cost_report *report,
 enum { COST_SENTENCE_BYTES = 1024 };
 void cost_sentence(const struct cost_report *report, char text[COST_SENTENCE_BYTES]);
 
+/* ---- What is kept from one run to the next ---- */
+
+/* What figures are of: scene, size, device, and all settings that decide pixels or time but for
+   what is chosen. */
+struct cost_place {
+    const struct settings *settings; /* with the time or the error that is asked for */
+    whit_scene_info scene;
+    whit_device_info device;
+};
+
+/* Figures, and what was chosen by them for settings->budget_ms of their place. */
+struct cost_kept_figures {
+    struct cost_report report; /* without its reference */
+    struct cost_choice choice; /* not found: none was made as yet */
+    double choice_ms;          /* that its picture was expected to take, or took */
+    char made[32];             /* when it was measured, for people */
+};
+
 /* Marks the Pareto set by the report's clock and metric. */
 void cost_mark_best(struct cost_report *report, enum cost_metric metric);
 

@@ -305,6 +305,7 @@ static json_t *wish_json(const struct view *view)
     put_number(object, "predicted_ms", wish->predicted_ms);
     put_number(object, "predicted_error", wish->predicted_error);
     put_number(object, "took_ms", wish->took_ms);
+    put_bool(object, "known", wish->known);
     return object;
 }
 

@@ -2,6 +2,7 @@
 #ifndef VIEW_VIEW_H
 #define VIEW_VIEW_H
 
+#include "cost/cost.h"
 #include "view/engine.h"
 
 /* A picture to be saved with its recipe. */
@@ -18,7 +19,15 @@ struct view_params {
     struct settings settings;       /* to begin with; settings.picture's size is the window's */
     whit_shader_compiler *compiler; /* of settings.shader, whose log is silent; NULL: none */
     bool fullscreen, no_vsync;
-    double spend_s;     /* on measuring costs, more or less; 0: as it suits */
+    double spend_s; /* on measuring costs, more or less; 0: as it suits */
+    bool fresh;     /* for --budget-ms and --max-error what is kept is measured anew */
+    /* Figures for these two and the choices made by them, from one run to the next. load: false
+       where there are none; *figures is then untouched. NULL: nothing is kept. */
+    bool (*load_figures)(void *user, const struct cost_place *place,
+                         struct cost_kept_figures *figures);
+    void (*save_figures)(void *user, const struct cost_place *place,
+                         const struct cost_kept_figures *figures);
+    void *figures_user;
     uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */
     const char *record; /* where events go, or NULL */
     const char *replay; /* where they come from, or NULL */

@@ -1,6 +1,7 @@
 #include "view/wish.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "view/view_private.h"
@@ -47,11 +48,27 @@ static struct cost_goal goal_of(const struct view *view)
         .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * limit};
 }
 
-static void choose(struct view *view, const struct cost_report *report)
+static void take_choice(struct view *view, double predicted_ms)
+{
+    struct wish *wish = &view->wish;
+    const struct cost_choice *choice = &wish->figures->choice;
+    cost_choice_text(choice, wish->text, sizeof wish->text);
+    if (!wish->text[0])
+        snprintf(wish->text, sizeof wish->text, "what is usual");
+    wish->predicted_ms = predicted_ms;
+    wish->predicted_error = choice->error;
+    set_choice(choice, &view->settings);
+    wish->settings = view->settings;
+    wish->took_ms = 0.0;
+    wish->stage = WISH_TRIES;
+    ++wish->tries;
+}
+
+static void choose(struct view *view)
 {
     struct wish *wish = &view->wish;
     const struct cost_goal goal = goal_of(view);
-    const struct cost_choice choice = cost_choose(report, &goal);
+    const struct cost_choice choice = cost_choose(&wish->figures->report, &goal);
     view->dirty = true;
     if (!choice.found) {
         wish->stage = WISH_NO_CHOICE;
@@ -60,16 +77,56 @@ static void choose(struct view *view, const struct cost_report *report)
                                           : "no setting is as right as that here");
         return;
     }
-    cost_choice_text(&choice, wish->text, sizeof wish->text);
-    if (!wish->text[0])
-        snprintf(wish->text, sizeof wish->text, "what is usual");
-    wish->predicted_ms = choice.ms * wish->slower;
-    wish->predicted_error = choice.error;
-    set_choice(&choice, &view->settings);
-    wish->settings = view->settings;
-    wish->took_ms = 0.0;
-    wish->stage = WISH_TRIES;
-    ++wish->tries;
+    wish->figures->choice = choice;
+    take_choice(view, choice.ms * wish->slower);
+}
+
+static void fail(struct wish *wish, const char *why)
+{
+    wish->stage = WISH_FAILED;
+    snprintf(wish->text, sizeof wish->text, "%s", why);
+}
+
+/* What figures are kept by: their place, with the time that is asked for. */
+static struct cost_place place_of(const struct view *view, struct settings *settings)
+{
+    *settings = view->wish.place;
+    settings->budget_ms = view->params->settings.budget_ms;
+    settings->max_error = view->params->settings.max_error;
+    return (struct cost_place){
+        .settings = settings, .scene = view->scene->info, .device = view->frame.device};
+}
+
+static void save(const struct view *view)
+{
+    const struct view_params *params = view->params;
+    const struct wish *wish = &view->wish;
+    struct settings settings;
+    const struct cost_place place = place_of(view, &settings);
+    struct cost_kept_figures figures = *wish->figures;
+    figures.choice.found &= params->settings.budget_ms > 0.0 && wish->stage == WISH_CHOSEN;
+    figures.choice_ms = wish->took_ms;
+    if (params->save_figures)
+        params->save_figures(params->figures_user, &place, &figures);
+}
+
+/* By figures of an earlier run, and its choice, where there are any. */
+static bool choose_as_before(struct view *view)
+{
+    const struct view_params *params = view->params;
+    struct wish *wish = &view->wish;
+    struct settings settings;
+    const struct cost_place place = place_of(view, &settings);
+    if (wish->fresh || !params->load_figures ||
+        !params->load_figures(params->figures_user, &place, wish->figures))
+        return false;
+    wish->known = wish->figures->choice.found;
+    if (wish->known)
+        take_choice(view, wish->figures->choice_ms);
+    else
+        choose(view);
+    view->dirty = true;
+    return true;
 }
 
 static void measure(struct view *view)
@@ -78,6 +135,14 @@ static void measure(struct view *view)
     struct settings usual = view->frame.settings;
     double spend_s = view->params->spend_s;
     set_usual(&usual);
+    wish->scene = view->scene;
+    wish->slower = 1.0;
+    wish->tries = 0;
+    wish->place = usual;
+    free(wish->figures);
+    wish->figures = calloc(1, sizeof *wish->figures);
+    if (wish->figures && choose_as_before(view))
+        return;
     wish->prices =
         prices_start(&(struct prices_params){.settings = &usual,
                                              .scene = view->scene,
@@ -85,11 +150,10 @@ static void measure(struct view *view)
                                              .knobs = knobs_of_light(),
                                              .wake = window_wake,
                                              .wake_user = view->window});
-    wish->stage = wish->prices ? WISH_MEASURES : WISH_FAILED;
-    snprintf(wish->text, sizeof wish->text, wish->prices ? "" : "out of memory");
-    wish->scene = view->scene;
-    wish->slower = 1.0;
-    wish->tries = 0;
+    wish->stage = WISH_MEASURES;
+    wish->text[0] = '\0';
+    if (!wish->prices || !wish->figures)
+        fail(wish, "out of memory");
     view->dirty = true;
 }
 
@@ -102,10 +166,12 @@ static void take_figures(struct view *view)
     if (!state.finished)
         return;
     if (state.report && state.report->complete) {
-        choose(view, state.report);
+        wish->figures->report = *state.report;
+        wish->figures->report.reference = NULL; /* the prices' own */
+        save(view);
+        choose(view);
     } else {
-        wish->stage = WISH_FAILED;
-        snprintf(wish->text, sizeof wish->text, "%s", state.what);
+        fail(wish, state.what);
     }
 }
 
@@ -116,30 +182,38 @@ static void try_choice(struct view *view)
     struct wish *wish = &view->wish;
     const struct engine_frame *frame = &view->frame;
     double budget_ms = view->params->settings.budget_ms, took_ms = frame->stats.render_ms;
-    struct prices_state state;
     if (!frame->whole || !settings_same(&frame->settings, &view->settings))
         return;
     wish->took_ms = took_ms;
     wish->stage = WISH_CHOSEN;
     view->dirty = true;
     bool fits = took_ms <= budget_ms && took_ms >= COST_TOO_LITTLE * wish->predicted_ms;
-    if (budget_ms <= 0.0 || fits || wish->tries == TRIES_MAX || wish_is_left(view))
+    if (wish->known || budget_ms <= 0.0 || wish_is_left(view))
         return;
-    wish->slower *= took_ms / wish->predicted_ms;
-    prices_get_state(wish->prices, &state);
-    choose(view, state.report);
-    if (wish->stage == WISH_NO_CHOICE || settings_same(&frame->settings, &view->settings)) {
+    if (!fits && wish->tries < TRIES_MAX) {
+        wish->slower *= took_ms / wish->predicted_ms;
+        choose(view);
+        if (wish->stage == WISH_TRIES && !settings_same(&frame->settings, &view->settings))
+            return;
         wish->took_ms = took_ms; /* nothing is nearer */
         wish->stage = WISH_CHOSEN;
     }
+    save(view);
 }
 
-void wish_again(struct view *view)
+static void begin_again(struct view *view, bool fresh)
 {
     prices_leave(view, view->wish.prices);
     view->wish.prices = NULL;
     view->wish.stage = WISH_WAITS;
+    view->wish.fresh = fresh;
+    view->wish.known = false;
     view->dirty = true;
+}
+
+void wish_again(struct view *view)
+{
+    begin_again(view, true);
 }
 
 void wish_begin(struct view *view)
@@ -147,6 +221,7 @@ void wish_begin(struct view *view)
     const struct settings *asked = &view->params->settings;
     bool any = asked->budget_ms > 0.0 || asked->max_error > 0.0;
     view->wish.stage = any ? WISH_WAITS : WISH_NONE;
+    view->wish.fresh = view->params->fresh;
 }
 
 void wish_step(struct view *view)
@@ -155,7 +230,7 @@ void wish_step(struct view *view)
     if (wish->stage == WISH_NONE || !view->scene)
         return;
     if (wish->stage != WISH_WAITS && wish->scene != view->scene)
-        wish_again(view);
+        begin_again(view, view->params->fresh);
     if (wish->stage == WISH_WAITS && view->frame.whole && !view->status.drawing &&
         view->measure.number == view->frame.number)
         measure(view);
@@ -175,7 +250,9 @@ bool wish_is_still(const struct view *view)
 void wish_finish(struct view *view)
 {
     prices_stop(view->wish.prices);
+    free(view->wish.figures);
     view->wish.prices = NULL;
+    view->wish.figures = NULL;
 }
 
 /* ---- Figures ---- */
@@ -189,6 +266,8 @@ static void draw_chosen(const struct view *view)
     if (wish->took_ms > 0.0)
         ui_text_color(budget_ms > 0.0 && wish->took_ms > budget_ms ? COLOR_WARNING : COLOR_GOOD,
                       "it took %.4g ms", wish->took_ms);
+    if (wish->known)
+        ui_text_dim("kept, by figures of %s", wish->figures->made);
     if (wish_is_left(view))
         ui_text_dim("changed since");
     else if (!settings_same_camera(&wish->settings, &view->settings))

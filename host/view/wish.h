@@ -20,10 +20,14 @@ const char *wish_stage_name(enum wish_stage stage); /* "measures" */
 enum { WISH_TEXT = 256 };
 struct wish {
     enum wish_stage stage;
-    struct scene_ref *scene;  /* that it is of; only its address counts */
-    struct prices *prices;    /* NULL unless it was measured */
-    struct settings settings; /* chosen; of the view that was measured */
-    char text[WISH_TEXT];     /* the options chosen, or why there are none */
+    struct scene_ref *scene;           /* that it is of; only its address counts */
+    struct prices *prices;             /* NULL unless it was measured */
+    struct cost_kept_figures *figures; /* by which it is chosen; owned; NULL: none as yet */
+    struct settings place;             /* that they are of */
+    bool fresh;                        /* what is kept of earlier runs does not count */
+    bool known;                        /* the choice was made by an earlier run */
+    struct settings settings;          /* chosen; of the view that was measured */
+    char text[WISH_TEXT];              /* the options chosen, or why there are none */
     double predicted_ms, predicted_error;
     double took_ms; /* of the first picture with them; 0: not drawn yet */
     double slower;  /* than measured, at this moment */

@@ -78,15 +78,20 @@ struct cost_kept {
 };
 /* Under which name whit's cache has it: another one for each scene, device, driver, version of
    whit, and for all settings that decide pixels or time. */
-void cost_kept_name(const struct job *job, char name[COST_KEPT_NAME]);
+void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME]);
 /* False: there is none, or it is broken or of something else. */
-bool cost_kept_load(const struct job *job, const char *name, struct cost_kept *kept);
+bool cost_kept_load(const struct cost_place *place, const char *name, struct cost_kept *kept);
 /* Reports that are not complete are not kept. */
 void cost_kept_save(const struct cost_kept *kept, const char *name);
 void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
 /* The choice for that time, or NULL. */
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
+/* view_params.load_figures and save_figures: the same record. */
+bool cost_kept_load_figures(void *user, const struct cost_place *place,
+                            struct cost_kept_figures *figures);
+void cost_kept_save_figures(void *user, const struct cost_place *place,
+                            const struct cost_kept_figures *figures);
 
 /* ---- The page (cost_page.c) ---- */
 

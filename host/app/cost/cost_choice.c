@@ -39,11 +39,11 @@ static whit_result measure(struct job *job, struct cost_report **report)
 }
 
 /* As they are kept, or measured and then kept. */
-static whit_result find_figures(struct job *job, bool fresh, const char *name,
-                                struct cost_kept *kept)
+static whit_result find_figures(struct job *job, bool fresh, const struct cost_place *place,
+                                const char *name, struct cost_kept *kept)
 {
     struct cost_report *measured = NULL;
-    if (!fresh && cost_kept_load(job, name, kept)) {
+    if (!fresh && cost_kept_load(place, name, kept)) {
         if (!job->settings.quiet)
             cli_note("by figures of %s, kept with the scene; --fresh measures anew", kept->made);
         return WHIT_OK;
@@ -239,8 +239,11 @@ whit_result render_choose(struct job *job, const struct render_request *request,
                                       .progress = progress,
                                       .before = job->settings,
                                       .renderer = renderer};
-    cost_kept_name(job, name);
-    whit_result result = find_figures(job, request->fresh, name, kept);
+    struct cost_place place = {.settings = &choosing.before};
+    whit_scene_get_info(job->scene, &place.scene);
+    whit_device_get_info(job->device, &place.device);
+    cost_kept_name(&place, name);
+    whit_result result = find_figures(job, request->fresh, &place, name, kept);
     if (result == WHIT_OK)
         result = job->settings.budget_ms > 0.0 ? choose_within(&choosing, kept, name)
                                                : choose_under(&choosing);

@@ -11,20 +11,16 @@
 enum { KEPT_VERSION = 4 };
 
 /* All that decides pixels or time but for what is chosen. */
-void cost_kept_name(const struct job *job, char name[COST_KEPT_NAME])
+void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME])
 {
     char key[2048 + SETTING_TEXT_BYTES], line[1024 + SETTING_TEXT_BYTES];
-    const whit_renderer_params *picture = &job->settings.picture;
-    struct settings settings = job->settings;
-    whit_device_info device;
-    whit_scene_info scene;
+    struct settings settings = *place->settings;
+    const whit_renderer_params *picture = &settings.picture;
     settings.budget_ms = settings.max_error = 0.0;
     settings_write(&settings, SETTINGS_LINE, " ", line, sizeof line);
-    whit_device_get_info(job->device, &device);
-    whit_scene_get_info(job->scene, &scene);
     snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %s|%s|%s", KEPT_VERSION,
-             WHIT_VERSION, scene.hash, picture->width, picture->height, picture->time_s, line,
-             device.name, device.driver);
+             WHIT_VERSION, place->scene.hash, picture->width, picture->height, picture->time_s,
+             line, place->device.name, place->device.driver);
     snprintf(name, COST_KEPT_NAME, "cost-%016" PRIx64, cost_hash(key));
 }
 
@@ -131,20 +127,59 @@ static bool read_kept(json_t *root, struct cost_kept *kept)
     return good;
 }
 
-bool cost_kept_load(const struct job *job, const char *name, struct cost_kept *kept)
+bool cost_kept_load(const struct cost_place *place, const char *name, struct cost_kept *kept)
 {
     uint8_t *data;
     size_t bytes;
-    whit_device_info device;
-    whit_scene_info scene;
     bool good = whit_cache_read(name, &cli_log, &data, &bytes) &&
                 read_kept(json_loadb((const char *)data, bytes, 0, NULL), kept);
     whit_memory_destroy(data);
-    whit_device_get_info(job->device, &device);
-    whit_scene_get_info(job->scene, &scene);
-    return good && kept->report.scene_hash == scene.hash &&
-           kept->report.width == job->settings.picture.width &&
-           kept->report.height == job->settings.picture.height &&
-           strcmp(kept->report.device, device.name) == 0 &&
-           strcmp(kept->report.driver, device.driver) == 0;
+    return good && kept->report.scene_hash == place->scene.hash &&
+           kept->report.width == place->settings->picture.width &&
+           kept->report.height == place->settings->picture.height &&
+           strcmp(kept->report.device, place->device.name) == 0 &&
+           strcmp(kept->report.driver, place->device.driver) == 0;
+}
+
+/* ---- For the viewer ---- */
+
+bool cost_kept_load_figures(void *user, const struct cost_place *place,
+                            struct cost_kept_figures *figures)
+{
+    char name[COST_KEPT_NAME];
+    struct cost_kept *kept = calloc(1, sizeof *kept);
+    (void)user;
+    cost_kept_name(place, name);
+    bool found = kept && cost_kept_load(place, name, kept);
+    if (found) {
+        const struct cost_kept_choice *choice = cost_kept_find(kept, place->settings->budget_ms);
+        *figures = (struct cost_kept_figures){.report = kept->report};
+        memcpy(figures->made, kept->made, sizeof figures->made);
+        if (choice) {
+            figures->choice = choice->choice;
+            figures->choice_ms = choice->tried_ms;
+        }
+    }
+    free(kept);
+    return found;
+}
+
+/* Choices for other times by the same figures stay. */
+void cost_kept_save_figures(void *user, const struct cost_place *place,
+                            const struct cost_kept_figures *figures)
+{
+    char name[COST_KEPT_NAME];
+    struct cost_kept *kept = calloc(1, sizeof *kept);
+    (void)user;
+    if (!kept)
+        return;
+    cost_kept_name(place, name);
+    if (!figures->made[0] || !cost_kept_load(place, name, kept))
+        cost_kept_begin(kept, &figures->report);
+    if (figures->choice.found)
+        cost_kept_add(kept, &(struct cost_kept_choice){.budget_ms = place->settings->budget_ms,
+                                                       .tried_ms = figures->choice_ms,
+                                                       .choice = figures->choice});
+    cost_kept_save(kept, name);
+    free(kept);
 }

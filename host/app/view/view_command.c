@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "app/commands.h"
+#include "app/cost/cost.h"
 #include "app/view/state_file.h"
 #include "base/input.h"
 #include "view/view.h"
@@ -48,6 +49,10 @@ static const struct setting options[] = {
     REPEAT_OPTIONS(struct view_request, repeat),
     {"ui-scale", 0, "X", "of text and panels (the monitor's)",
      SETTING_AT_NUMBER(struct view_request, ui_scale), .min = 0.25, .max = 8.0},
+    {"fresh", 0, NULL,
+     "for --budget-ms and --max-error: measure anew what is kept\n"
+     "with the scene",
+     SETTING_AT_FLAG(struct view_request, view.fresh)},
     {"spend", 0, "S",
      "seconds that measuring costs may take, more or less: for\n"
      "--budget-ms and --max-error (20), for the list of P (12)",
@@ -209,6 +214,8 @@ static int work(struct job *job, struct view_params *view)
     view->save = save_shot;
     view->load_state = load_state;
     view->load_user = job;
+    view->load_figures = cost_kept_load_figures;
+    view->save_figures = cost_kept_save_figures;
     cli_keep_what_is_done(GRACE_MS);
     cli_set_saving();
     if (settings_compiles(&job->settings)) {
