@@ -32,9 +32,7 @@ struct accel_params {
        for the one it has. */
     enum accel_update update;
     bool validate;
-    uint32_t stack_floor; /* accel_stack_size is not below it: the size is part of a kernel, and so
-                             scenes of different depth share one */
-    bool flatten;         /* one tree for the whole scene, in world space */
+    bool flatten; /* one tree for the whole scene, in world space */
 };
 
 /* The same trees with up to eight children a node, for kernels of which each lane tests one child.
@@ -97,7 +95,9 @@ void accel_bvh8_finish(struct accel_bvh8 *bvh8);
 /* bvh_validate over everything. */
 WHIT_CHECK whit_result accel_validate(const struct accel *accel);
 uint64_t accel_bytes(const struct accel *accel);
-/* Refs that a traversal may have to keep: at least 1. */
+/* Refs that a traversal may have to keep, rounded up to a multiple of this: the size is part of
+   kernels, so that scenes of other depths share them, and drivers compile those once. */
+enum { ACCEL_STACK_STEP = 32 };
 uint32_t accel_stack_size(const struct accel *accel);
 /* The same of rays that walk together through bvh8, a multiple of 4. */
 uint32_t accel_packet_stack_size(const struct accel *accel);

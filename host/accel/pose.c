@@ -331,8 +331,8 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
 uint32_t accel_stack_size(const struct accel *accel)
 {
     uint32_t depth = accel->mesh_depth + (accel->single_identity ? 0 : accel->instance_depth);
-    uint32_t min = accel->params.stack_floor > 1 ? accel->params.stack_floor : 1;
-    return depth > min ? depth : min;
+    uint32_t steps = (depth + ACCEL_STACK_STEP - 1) / ACCEL_STACK_STEP;
+    return steps > 0 ? steps * ACCEL_STACK_STEP : ACCEL_STACK_STEP;
 }
 
 uint32_t accel_packet_stack_size(const struct accel *accel)

@@ -400,13 +400,9 @@ static void set_reach(const struct hard_case *hard, struct hard_scene *out)
     }
 }
 
-/* A kernel's stack is as deep as the trees, and part of its code: with one floor for all cases few
-   kernels serve them. */
-enum { STACK_FLOOR = 48 };
-
 static whit_result pose_and_build(const whit_log *log, double time_s, struct hard_scene *hard)
 {
-    const struct accel_params params = {.stack_floor = STACK_FLOOR, .flatten = hard->flatten};
+    const struct accel_params params = {.flatten = hard->flatten};
     whit_result result = scene_pose_init(hard->scene, time_s, &hard->pose);
     if (result == WHIT_OK)
         result = accel_create(log, hard->scene, &params, &hard->accel);

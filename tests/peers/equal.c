@@ -39,7 +39,6 @@ static const struct builder builders[] = {
     {"spatial+opt", {.builder = BVH_SPATIAL, .optimize = true}, BVH_MEDIAN},
 };
 enum { BUILDERS = sizeof builders / sizeof builders[0], ORDERS = 3 };
-enum { STACK_FLOOR = 64 }; /* trees of different depths share their kernels */
 static const char *const orders[ORDERS] = {
     [ORDER_DISTANCE] = "distance", [ORDER_SIGN] = "sign", [ORDER_BASIC] = "basic"};
 
@@ -145,10 +144,8 @@ static bool run_builder(struct bench *bench, uint32_t index)
 {
     const struct builder *builder = &builders[index];
     bool reference = index == 0;
-    const struct accel_params params = {.mesh = builder->params,
-                                        .instances = {.builder = builder->instances},
-                                        .stack_floor = STACK_FLOOR,
-                                        .validate = true};
+    const struct accel_params params = {
+        .mesh = builder->params, .instances = {.builder = builder->instances}, .validate = true};
     struct accel *accel = NULL;
     bool done = accel_create(&peers_log, bench->scene, &params, &accel) == WHIT_OK;
     for (uint32_t order = 0; done && order < ORDERS; ++order) {

@@ -113,20 +113,6 @@ static void check_file(const char *path, const char *width, const char *height)
 
 /* ---- Pictures of a scene ---- */
 
-/* Linked in the place of accel_stack_size (--wrap). The size of the node stack is part of a
-   kernel. A floor gives the same kernel to trees of different depths, and to different scenes: then
-   the driver compiles it once. */
-uint32_t __real_accel_stack_size(const void *accel);
-uint32_t __wrap_accel_stack_size(const void *accel);
-static uint32_t stack_floor, stack_needed;
-enum { STACK_OF_ALL = 64 };
-
-uint32_t __wrap_accel_stack_size(const void *accel)
-{
-    stack_needed = __real_accel_stack_size(accel);
-    return stack_needed > stack_floor ? stack_needed : stack_floor;
-}
-
 /* What a picture is drawn with. */
 struct subject {
     const char *path;
@@ -254,7 +240,6 @@ static void check_all_effects(const struct subject *subject, const struct drawn 
     struct drawn other;
     params.all_effects = true;
     params.effects_removed = removed;
-    stack_floor = STACK_OF_ALL;
     if (draw(subject, &params, &other)) {
         const whit_stats *own = &first->stats, *all = &other.stats;
         check(same_colors(first, &other), "--effects all gives the same picture");
@@ -267,7 +252,6 @@ static void check_all_effects(const struct subject *subject, const struct drawn 
         check_rays(subject, "reflection", own->rays_reflected, all->rays_reflected);
         check_rays(subject, "refraction", own->rays_refracted, all->rays_refracted);
     }
-    stack_floor = 0;
     drawn_finish(&other);
 }
 
@@ -296,10 +280,8 @@ static void check_median(const struct subject *subject, const struct drawn *firs
     struct subject other = *subject;
     bool made = whit_accel_create(subject->scene, &median, &other.accel) == WHIT_OK;
     check(made, "other trees are built");
-    stack_floor = stack_needed;
     if (made)
         check_same(&other, first, &usual, "--build median");
-    stack_floor = 0;
     if (made)
         whit_accel_destroy(other.accel);
 }

@@ -148,7 +148,7 @@ TEST_BY_TURNS(cameras_agree_with_the_reference, 0, 2)
 
 TEST_BY_TURNS(a_tree_in_the_world_agrees_too, 1, 2)
 {
-    const struct accel_params flat = {.flatten = true, .stack_floor = 32};
+    const struct accel_params flat = {.flatten = true};
     check("one tree", &flat, NULL, 1);
 }
 

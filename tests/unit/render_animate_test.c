@@ -65,10 +65,10 @@ static struct scene *leaves_its_place(void)
     return scene;
 }
 
-/* Even at first, then each twice as far as the one before: a tree by areas is deep there. */
+/* Even at first, then each 1.8 times as far as the one before: a tree by areas is deep there. */
 static struct scene *strung_out(void)
 {
-    enum { COUNT = 24 };
+    enum { COUNT = 64 };
     static const float times[] = {0, 1};
     struct scene *scene = scene_begin(&fixture_log, "animation");
     uint32_t mesh = scene_put_mesh(scene, mesh_sphere(0.4, 20, 12));
@@ -89,7 +89,7 @@ static struct scene *strung_out(void)
 
 static struct picture take_anew(const struct fixture *f, bool flatten, double time_s)
 {
-    const struct accel_params flat = {.flatten = flatten, .stack_floor = 32};
+    const struct accel_params flat = {.flatten = flatten};
     struct fixture anew = {.device = f->device};
     whit_renderer_params params = animate_params;
     params.time_s = time_s;
@@ -134,18 +134,15 @@ TEST(pictures_are_those_of_new_renderers)
         double times_s[TIMES];
         struct accel_params trees;
     } rows[] = {
-        {"a scene file", spin, {0.0, 0.7, 3.1}, {.stack_floor = 32}},
-        {"lights, cameras and glass", everything_moves, {0.0, 0.9, 2.0}, {.stack_floor = 32}},
+        {"a scene file", spin, {0.0, 0.7, 3.1}, {.flatten = false}},
+        {"lights, cameras and glass", everything_moves, {0.0, 0.9, 2.0}, {.flatten = false}},
         {"a refitted tree",
          strung_out,
          {0.0, 0.5, 1.0},
-         {.update = ACCEL_REFIT, .instances = {.builder = BVH_MEDIAN}, .stack_floor = 32}},
-        {"an object that leaves its place", leaves_its_place, {0.0, 0.5, 1.0}, {.stack_floor = 32}},
-        {"trees that get deeper", strung_out, {0.0, 0.5, 1.0}, {.stack_floor = 0}},
-        {"a flattened scene",
-         everything_moves,
-         {0.0, 0.9, 2.0},
-         {.flatten = true, .stack_floor = 32}},
+         {.update = ACCEL_REFIT, .instances = {.builder = BVH_MEDIAN}}},
+        {"an object that leaves its place", leaves_its_place, {0.0, 0.5, 1.0}, {.flatten = false}},
+        {"trees that get deeper", strung_out, {0.0, 0.5, 1.0}, {.flatten = false}},
+        {"a flattened scene", everything_moves, {0.0, 0.9, 2.0}, {.flatten = true}},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
         check_any_order(rows[i].name, rows[i].make(), rows[i].times_s, &rows[i].trees);
@@ -158,8 +155,7 @@ static const struct pipeline *shading_of(const struct fixture *f)
 
 TEST_BY_TURNS(a_deeper_tree_gets_a_larger_stack, 0, 2)
 {
-    const struct accel_params as_deep = {0}; /* as its tree, no deeper */
-    struct fixture f = fixture_open(strung_out(), &as_deep, &animate_params);
+    struct fixture f = fixture_open(strung_out(), NULL, &animate_params);
     uint32_t depth = f.accel->instance_depth, size = f.renderer->node_stack_size;
     const struct pipeline *pipeline = shading_of(&f);
     assert_int_equal(renderer_set_time(f.renderer, 0.01), WHIT_OK);

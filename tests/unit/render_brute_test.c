@@ -7,8 +7,7 @@
 enum { RAYS = 500 };
 
 /* As deep a stack as with trees, for the same kernels. */
-static const struct accel_params no_trees = {
-    .mesh = {.builder = BVH_NONE}, .update = ACCEL_REFIT, .stack_floor = 32};
+static const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}, .update = ACCEL_REFIT};
 
 /* Against the C twin, hits and costs, and against another one's trees. */
 static void check_hits(struct fixture *f, const struct accel *trees)

@@ -62,9 +62,6 @@ static inline int fixture_end(int failed)
     return failed + (fixture_validation > 0);
 }
 
-/* Scenes whose trees are of other depths take the same kernels. */
-static const struct accel_params fixture_accel = {.stack_floor = 32};
-
 /* Everything between a scene and its hits. */
 struct fixture {
     struct scene *scene;
@@ -85,11 +82,11 @@ static inline struct fixture fixture_open(struct scene *scene,
                                           const struct accel_params *accel_params,
                                           const whit_renderer_params *render_params)
 {
+    static const struct accel_params usual = {0};
     struct fixture f = {.scene = scene};
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(
-        accel_create(&fixture_log, scene, accel_params ? accel_params : &fixture_accel, &f.accel),
-        WHIT_OK);
+        accel_create(&fixture_log, scene, accel_params ? accel_params : &usual, &f.accel), WHIT_OK);
     assert_int_equal(accel_validate(f.accel), WHIT_OK);
     f.device = fixture_device();
     const whit_renderer_params small = {.width = 16, .height = 16, .depth = 4};

@@ -184,7 +184,7 @@ static void pictures_agree(void **state)
 static void trees_do_not_matter(void **state)
 {
     (void)state;
-    const struct accel_params none = {.mesh = {.builder = BVH_NONE}, .stack_floor = 32};
+    const struct accel_params none = {.mesh = {.builder = BVH_NONE}};
     whit_renderer_params params = glass_params;
     params.width = 24;
     params.height = 16;

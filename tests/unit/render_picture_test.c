@@ -330,7 +330,7 @@ static void check_shares(const struct accel_params *accel)
 
 TEST(shares_are_those_of_hits)
 {
-    const struct accel_params flat = {.stack_floor = 32, .flatten = true};
+    const struct accel_params flat = {.flatten = true};
     check_shares(NULL);
     check_shares(&flat);
 }

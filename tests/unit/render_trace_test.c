@@ -203,7 +203,7 @@ TEST(packets_equal_twin)
 {
     check_packets(scene_of(mesh_torus(1.0, 0.45, 60, 30)), NULL, "torus");
     check_packets(integer_ring(), NULL, "ring of integers");
-    const struct accel_params flat = {.stack_floor = 32, .flatten = true};
+    const struct accel_params flat = {.flatten = true};
     check_packets(forty_rings(), &flat, "one tree of 40 instances");
 }
 
