@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/color.h"
 #include "base/same.h"
+#include "base/threads.h"
 
 /* ---- Sizes ---- */
 
@@ -130,20 +131,65 @@ static void average(const struct level *level, uint32_t x, uint32_t y, bool cove
     for (int c = 0; covering && plain[3] > 0.0f && c < 3; ++c)
         plain[c] = covered[c] / plain[3];
     for (int c = 0; c < 4; ++c)
-        out[c] = fminf(plain[c], 1.0f); /* weights add up to 1 within rounding */
+        out[c] = plain[c] < 1.0f ? plain[c] : 1.0f; /* weights add up to 1 within rounding */
 }
 
-static void make_level(const struct level *from, bool covering, float *values, uint8_t *bytes)
+/* The same of two by two texels of even sides, whose weights are a quarter each: bit by bit what
+   average() gives, as products with a power of 2 are not rounded. */
+static void average_even(const struct level *level, uint32_t x, uint32_t y, float out[4])
 {
-    uint32_t width = mipmap_side(from->width, 1), height = mipmap_side(from->height, 1);
-    for (uint32_t y = 0; y < height; ++y) {
-        for (uint32_t x = 0; x < width; ++x, values += 4, bytes += 4) {
-            average(from, x, y, covering, values);
+    size_t at = (size_t)(2 * y) * level->width + 2 * x;
+    float a[4], b[4], c[4], d[4];
+    read_texel(level, at, a);
+    read_texel(level, at + 1, b);
+    read_texel(level, at + level->width, c);
+    read_texel(level, at + level->width + 1, d);
+    for (int i = 0; i < 4; ++i)
+        out[i] = 0.25f * (((a[i] + b[i]) + c[i]) + d[i]);
+}
+
+/* A level in the making, by several threads. */
+enum { BAND_ROWS = 64 };
+struct making {
+    const struct level *from;
+    bool covering;
+    uint32_t width, height;
+    float *values;
+    uint8_t *bytes;
+};
+
+static void make_band(void *context, uint32_t band)
+{
+    const struct making *making = context;
+    const struct level *from = making->from;
+    bool even = from->width % 2 == 0 && from->height % 2 == 0 && !making->covering;
+    uint32_t first = band * BAND_ROWS, left = making->height - first;
+    uint32_t end = first + (left < BAND_ROWS ? left : BAND_ROWS);
+    float *values = making->values + (size_t)first * making->width * 4;
+    uint8_t *bytes = making->bytes + (size_t)first * making->width * 4;
+    for (uint32_t y = first; y < end; ++y) {
+        for (uint32_t x = 0; x < making->width; ++x, values += 4, bytes += 4) {
+            if (even)
+                average_even(from, x, y, values);
+            else
+                average(from, x, y, making->covering, values);
             for (int c = 0; c < 3; ++c)
                 bytes[c] = encode(from->light, values[c]);
             bytes[3] = encode(from->plain, values[3]);
         }
     }
+}
+
+static void make_level(const struct level *from, bool covering, float *values, uint8_t *bytes)
+{
+    struct making making = {.from = from,
+                            .covering = covering,
+                            .width = mipmap_side(from->width, 1),
+                            .height = mipmap_side(from->height, 1),
+                            .values = values,
+                            .bytes = bytes};
+    uint32_t bands = (making.height + BAND_ROWS - 1) / BAND_ROWS;
+    threads_for(0, bands, make_band, &making);
 }
 
 uint8_t *mipmap_make(const uint8_t *rgba, uint32_t width, uint32_t height, enum mipmap_kind kind)
