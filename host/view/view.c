@@ -266,8 +266,6 @@ static whit_result draw_window(struct view *view)
         log_error(&view->log, "out of memory for the figures of the window");
         return WHIT_ERROR_MEMORY;
     }
-    if (!view->picture_set)
-        ui_rectangle(0, 0, (float)info.width, (float)info.height, 0xFF181410u, true);
     hud_draw(view);
     if (ui_end(view->ui))
         platform_trim_heaps();
@@ -401,6 +399,17 @@ static whit_result open_ui(struct view *view)
     return result;
 }
 
+/* Until there is a picture. It is scaled as the first steps are, which lavapipe compiles code for,
+   some 80 ms, that is then there when they are; other code where a side is a power of 2. */
+static whit_result set_background(struct view *view)
+{
+    enum { SIDE = 3 };
+    uint8_t dark[4 * SIDE * SIDE];
+    for (size_t i = 0; i < sizeof dark; i += 4)
+        memcpy(dark + i, (const uint8_t[4]){0x10, 0x14, 0x18, 0xFF}, 4);
+    return swapchain_set_picture(view->swapchain, dark, SIDE, SIDE);
+}
+
 static whit_result open_device(struct view *view)
 {
     const struct device_params params = {
@@ -416,6 +425,8 @@ static whit_result open_device(struct view *view)
         result = swapchain_create(view->device, &chain, &view->swapchain);
     if (result == WHIT_OK)
         result = fit_window(view);
+    if (result == WHIT_OK)
+        result = set_background(view);
     return result == WHIT_OK ? open_ui(view) : result;
 }
 
