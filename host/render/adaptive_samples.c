@@ -4,7 +4,9 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "render/adaptive_samples.h"
 #include "render/renderer.h"
+#include "render/tiles.h"
 
 static float displayed(float value)
 {

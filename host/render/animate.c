@@ -1,6 +1,9 @@
 /* Another time of the animation on a renderer that is there already. */
 #include "base/clock.h"
-#include "render/renderer.h"
+#include "render/async.h"
+#include "render/frame_uniform.h"
+#include "render/upload.h"
+#include "render/variants.h"
 
 /* Rebuilt trees are not equally deep at all times: a stack that has to grow grows by more than it
    has to, for a pipeline takes longer to compile than many a picture takes to render. */

@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "base/threads.h"
-#include "render/renderer.h"
+#include "render/async.h"
+#include "render/stages.h"
+#include "render/variants.h"
 
 struct async_job {
     struct device *device;

@@ -6,7 +6,8 @@
 
 #include "base/array.h"
 #include "oracle/nearest.h"
-#include "render/renderer.h"
+#include "render/bailout_bound.h"
+#include "render/textures.h"
 
 static double largest(const float rgb[3])
 {

@@ -2,7 +2,8 @@
    pixel's first sample. */
 #include <string.h>
 
-#include "render/renderer.h"
+#include "render/costs.h"
+#include "render/tiles.h"
 
 enum { COST_WORDS = sizeof(struct gpu_cost) / sizeof(uint32_t) };
 

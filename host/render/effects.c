@@ -1,7 +1,7 @@
 /* Effects and the specialization constants that they switch: the one list. */
 #include <stddef.h>
 
-#include "render/renderer.h"
+#include "render/effects.h"
 
 /* LIGHT_* of emitters that have an area: every kind but points, suns and spots. */
 #define AREA_LIGHT_BITS (255u & ~(1u << LIGHT_POINT | 1u << LIGHT_DIRECTIONAL | 1u << LIGHT_SPOT))

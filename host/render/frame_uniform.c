@@ -4,7 +4,10 @@
 #include <string.h>
 
 #include "picture/mipmap.h"
-#include "render/renderer.h"
+#include "render/frame_uniform.h"
+#include "render/lights.h"
+#include "render/pixels.h"
+#include "render/upload.h"
 
 whit_result frame_fill(struct renderer *renderer)
 {

@@ -5,6 +5,8 @@
 #include "base/array.h"
 #include "base/clock.h"
 #include "render/renderer.h"
+#include "render/tiles.h"
+#include "render/variants.h"
 
 _Static_assert(TEST_SEEDS == WHIT_TEST_SEEDS && TEST_SEEDS % RENDER_GROUP_SIZE == 0,
                "whole groups of all seeds");

@@ -5,7 +5,9 @@
 
 #include "base/array.h"
 #include "base/text.h"
-#include "render/renderer.h"
+#include "render/hooks.h"
+#include "render/pixels.h"
+#include "render/stages.h"
 
 _Static_assert(DBG_CALLS == SHADER_DBG_MAX, "room for all of them");
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");

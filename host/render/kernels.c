@@ -1,6 +1,10 @@
 /* The kernels of a picture, one by one, with what the driver tells of them. */
 #include "base/clock.h"
+#include "render/frame_uniform.h"
 #include "render/renderer.h"
+#include "render/stages.h"
+#include "render/upload.h"
+#include "render/variants.h"
 
 _Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MAX, "room for all kernels");
 

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/vec.h"
+#include "render/lights.h"
 #include "render/renderer.h"
 
 enum { ROW_BYTES = 16, SAMPLES_DEFAULT = 16 };

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "render/material_shares.h"
 #include "render/renderer.h"
+#include "render/variants.h"
 
 /* The lists and rows of hits of a tile, read back from the device: of `capacity` the first and the
    last, which is all that the tile has used. */

@@ -1,5 +1,10 @@
 /* The buffers of pixels: as many rows and ray trees as the device holds at once. */
-#include "render/renderer.h"
+#include "render/pixels.h"
+#include "render/costs.h"
+#include "render/hooks.h"
+#include "render/material_shares.h"
+#include "render/queues.h"
+#include "render/stages.h"
 
 /* Pixels on a side of the largest tile, where no size is asked for. What the stages of a tile leave
    to each other should stay in a processor's caches. Another device has more threads than such a

@@ -7,7 +7,12 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "render/hooks.h"
+#include "render/pixels.h"
 #include "render/renderer.h"
+#include "render/stages.h"
+#include "render/tiles.h"
+#include "render/views.h"
 
 enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 

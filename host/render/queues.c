@@ -2,7 +2,10 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "render/queues.h"
 #include "render/renderer.h"
+#include "render/textures.h"
+#include "render/variants.h"
 
 /* How many rays of a tile there is room for, and hits of one generation that lights are asked for;
    where that is too little, tiles get smaller. Generations: as many as a ray may bounce, and then

@@ -4,7 +4,11 @@
 #include <string.h>
 
 #include "picture/grid.h"
+#include "render/adaptive_samples.h"
+#include "render/hooks.h"
+#include "render/readback.h"
 #include "render/renderer.h"
+#include "render/views.h"
 
 bool readback_is_late(const struct renderer *renderer)
 {

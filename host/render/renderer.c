@@ -1,9 +1,25 @@
 /* A renderer from its making to its end. */
-#include "render/renderer.h"
+#include "render/async.h"
+#include "render/costs.h"
+#include "render/effects.h"
+#include "render/frame_uniform.h"
+#include "render/hooks.h"
+#include "render/pixels.h"
+#include "render/stages.h"
+#include "render/trace.h"
+#include "render/upload.h"
+#include "render/variants.h"
+#include "render/views.h"
 
 #include <stdlib.h>
 
 #include "base/clock.h"
+
+whit_result render_no_memory(const struct renderer *renderer, const char *what)
+{
+    log_error(&renderer->log, "out of memory for %s", what);
+    return WHIT_ERROR_MEMORY;
+}
 
 bool renderer_bounces(const struct renderer *renderer)
 {

@@ -1,5 +1,13 @@
 /* Another picture from a renderer that is there already: size, camera, time, samples, limits. */
+#include "render/retarget.h"
+#include "render/async.h"
+#include "render/frame_uniform.h"
+#include "render/hooks.h"
+#include "render/pixels.h"
 #include "render/renderer.h"
+#include "render/stats.h"
+#include "render/variants.h"
+#include "render/views.h"
 
 /* Parameters that other kernels, or other uploads, would be needed for stay as they are. */
 static whit_renderer_params merge(const whit_renderer_params *own, const whit_renderer_params *from)

@@ -3,7 +3,12 @@
    rays alone. */
 #include <string.h>
 
-#include "render/renderer.h"
+#include "render/hooks.h"
+#include "render/pixels.h"
+#include "render/readback.h"
+#include "render/reuse.h"
+#include "render/steps.h"
+#include "render/tiles.h"
 
 /* The spacing of the first step: the window converts and shows a quarter of the pixels sooner than
    all of them. */

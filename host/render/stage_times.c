@@ -5,7 +5,10 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "render/material_shares.h"
 #include "render/renderer.h"
+#include "render/stage_times.h"
+#include "render/stages.h"
 
 /* One tile in so many is timed, and the second. Which ones has no pattern in the picture. Never the
    first: drivers that make machine code at the first dispatch (lavapipe) do it there. */

@@ -8,7 +8,15 @@
 #include "base/clock.h"
 #include "base/threads.h"
 #include "base/vec.h"
-#include "render/renderer.h"
+#include "render/adaptive_samples.h"
+#include "render/costs.h"
+#include "render/hooks.h"
+#include "render/queues.h"
+#include "render/stage_times.h"
+#include "render/stages.h"
+#include "render/tiles.h"
+#include "render/translation.h"
+#include "render/variants.h"
 
 /* Generations of the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4, MORE_AT_ONCE = 2 };

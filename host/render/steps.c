@@ -3,7 +3,12 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "render/hooks.h"
+#include "render/readback.h"
 #include "render/renderer.h"
+#include "render/steps.h"
+#include "render/tiles.h"
+#include "render/views.h"
 
 enum { SIDE_MIN = 16 };
 

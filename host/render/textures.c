@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "picture/mipmap.h"
 #include "render/renderer.h"
+#include "render/textures.h"
 
 /* A picture that some material uses, in the size it gets on the device. Where it is averaged in two
    ways it is there twice. */

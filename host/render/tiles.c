@@ -1,8 +1,6 @@
 /* The order of a picture: tiles of pixel blocks, each sample of a tile in stages (stages.c). The
    size of tiles follows measured time (adapt_tile), so that no submission runs long. A pixel that
    is probed has one dispatch of its camera ray and one a ray as long as there are any left. */
-#include "render/render.h"
-
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -11,7 +9,20 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "render/adaptive_samples.h"
+#include "render/costs.h"
+#include "render/hooks.h"
+#include "render/lights.h"
+#include "render/material_shares.h"
+#include "render/pixels.h"
+#include "render/readback.h"
 #include "render/renderer.h"
+#include "render/reuse.h"
+#include "render/stages.h"
+#include "render/stats.h"
+#include "render/steps.h"
+#include "render/tiles.h"
+#include "render/views.h"
 
 enum { TILE_FIRST_CPU = 96, TILE_FIRST = 192 };
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */

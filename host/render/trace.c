@@ -1,5 +1,9 @@
 /* Batches of rays: in, traced, out, in pieces that the device holds and finishes soon. */
+#include "render/trace.h"
 #include "render/renderer.h"
+#include "render/tiles.h"
+#include "render/upload.h"
+#include "render/variants.h"
 
 #include <stdlib.h>
 

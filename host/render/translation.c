@@ -8,7 +8,9 @@
 
 #include "base/clock.h"
 #include "base/threads.h"
-#include "render/renderer.h"
+#include "render/stages.h"
+#include "render/translation.h"
+#include "render/variants.h"
 
 /* The smallest kernel takes less out of the cache, and more where it is translated. */
 static const double CACHED_MS = 10.0;

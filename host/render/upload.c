@@ -5,7 +5,12 @@
 
 #include "base/array.h"
 #include "base/same.h"
+#include "render/lights.h"
 #include "render/renderer.h"
+#include "render/textures.h"
+#include "render/upload.h"
+#include "render/variants.h"
+#include "render/views.h"
 #include "scene/afford.h"
 
 enum { ROW_BYTES = 16 };
@@ -132,12 +137,6 @@ static whit_result upload_trees(struct renderer *renderer)
                              (uint64_t)accel->record_count * sizeof *accel->triangles, "triangles",
                              &buffers->triangles);
     return result == WHIT_OK ? upload_instances(renderer) : result;
-}
-
-whit_result render_no_memory(const struct renderer *renderer, const char *what)
-{
-    log_error(&renderer->log, "out of memory for %s", what);
-    return WHIT_ERROR_MEMORY;
 }
 
 /* Writes one record of `words` words for a triangle. */
@@ -374,6 +373,25 @@ whit_result upload_choose_packets(struct renderer *renderer)
     return renderer->packets ? upload_wide(renderer) : WHIT_OK;
 }
 
+static whit_result upload_environment(struct renderer *renderer)
+{
+    struct scene_buffers *buffers = &renderer->scene_buffers;
+    uint32_t size;
+    float *texels;
+    buffers->environment_size = 0;
+    if (!renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
+        return WHIT_OK;
+    if (!environment_resample(&renderer->scene->environment, &size, &texels))
+        return render_no_memory(renderer, "the environment");
+    if (!texels)
+        return WHIT_OK;
+    buffers->environment_size = size;
+    whit_result result = upload_words(renderer, texels, (uint64_t)size * size * 4 * sizeof(float),
+                                      BUFFER_STORAGE, "environment", &buffers->environment);
+    free(texels);
+    return result;
+}
+
 void upload_choose(struct renderer *renderer)
 {
     renderer->scene_buffers.texel_loads = choose_texel_loads(renderer);
@@ -424,23 +442,4 @@ void upload_finish(struct scene_buffers *buffers)
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *buffers = (struct scene_buffers){0};
-}
-
-whit_result upload_environment(struct renderer *renderer)
-{
-    struct scene_buffers *buffers = &renderer->scene_buffers;
-    uint32_t size;
-    float *texels;
-    buffers->environment_size = 0;
-    if (!renderer->effects.called[SCENE_EFFECT_ENVIRONMENT_MAP])
-        return WHIT_OK;
-    if (!environment_resample(&renderer->scene->environment, &size, &texels))
-        return render_no_memory(renderer, "the environment");
-    if (!texels)
-        return WHIT_OK;
-    buffers->environment_size = size;
-    whit_result result = upload_words(renderer, texels, (uint64_t)size * size * 4 * sizeof(float),
-                                      BUFFER_STORAGE, "environment", &buffers->environment);
-    free(texels);
-    return result;
 }

@@ -3,7 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/renderer.h"
+#include "render/effects.h"
+#include "render/hooks.h"
+#include "render/lights.h"
+#include "render/stages.h"
+#include "render/textures.h"
+#include "render/upload.h"
+#include "render/variants.h"
 
 #include "kernels.h"
 

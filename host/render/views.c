@@ -5,7 +5,16 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "render/async.h"
+#include "render/frame_uniform.h"
+#include "render/pixels.h"
 #include "render/renderer.h"
+#include "render/retarget.h"
+#include "render/stages.h"
+#include "render/tiles.h"
+#include "render/upload.h"
+#include "render/variants.h"
+#include "render/views.h"
 
 uint32_t views_stride(const struct renderer *renderer)
 {

@@ -2,7 +2,7 @@
 #include "picture/mipmap.h"
 #include "picture_fixture.h"
 #include "reference_fixture.h"
-#include "render/renderer.h"
+#include "render/variants.h"
 #include "unit.h"
 
 enum { SIDE = 64 };

@@ -1,6 +1,6 @@
 /* Adaptive anti-aliasing: every pixel is that of the picture of 4, 16 or 64 samples, bit for bit,
    by the rule that docs/effects.md states. The rule is written down here once more, plainly. */
-#include "render/renderer.h"
+#include "render/adaptive_samples.h"
 #include "render_scenes.h"
 #include "unit.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/threads.h"
 #include "picture_fixture.h"
-#include "render/renderer.h"
+#include "render/variants.h"
 #include "render_scenes.h"
 #include "unit.h"
 

@@ -1,5 +1,6 @@
 /* Media that are nested, touch, leak, or hold the camera. */
 #include "media_fixture.h"
+#include "render/variants.h"
 #include "unit.h"
 
 static const double FOV = 0.5;

@@ -1,7 +1,11 @@
 /* What must not change a picture, and what ends one. Radiance by formula is in the tests of light,
    shadows, refraction and energy. */
 #include "picture_fixture.h"
+#include "render/pixels.h"
 #include "render/renderer.h"
+#include "render/stages.h"
+#include "render/tiles.h"
+#include "render/upload.h"
 #include "unit.h"
 
 TEST_BY_TURNS(glass_slab_passes_and_absorbs, 0, 4)

@@ -1,7 +1,8 @@
 /* Views of many cameras drawn together: each is the picture of its camera alone, byte for byte. */
 #include "../cases.h"
 #include "picture/camera.h"
-#include "render/renderer.h"
+#include "render/readback.h"
+#include "render/upload.h"
 #include "render_scenes.h"
 #include "twin/traverse.h"
 #include "unit.h"

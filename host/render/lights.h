@@ -1,0 +1,14 @@
+/* Lights as the kernel reads them. */
+#ifndef RENDER_LIGHTS_H
+#define RENDER_LIGHTS_H
+
+#include "render/renderer.h"
+
+/* The rows of all lights of the pose. */
+WHIT_CHECK whit_result lights_write(struct renderer *renderer);
+/* Bits 1 << LIGHT_* of the kinds in `pose`. */
+uint32_t lights_kinds(const struct scene_pose *pose);
+/* The number of points sampled on each flat emitter; 1 where the pose has none. */
+uint32_t lights_samples(const struct renderer *renderer);
+
+#endif

@@ -1,0 +1,17 @@
+/* Which share of the time each material takes. */
+#ifndef RENDER_MATERIAL_SHARES_H
+#define RENDER_MATERIAL_SHARES_H
+
+#include "render/renderer.h"
+
+/* Of the tile in hand, whose queues are as its generations and its camera rays
+   have left them. WHIT_ERROR_MEMORY, logged. */
+WHIT_CHECK whit_result material_shares_add(struct target *target,
+                                           const struct gpu_generation *generations,
+                                           uint32_t generation_count, uint32_t camera_rays);
+/* Before another picture. */
+void material_shares_clear(struct target *target);
+/* stats->shares. */
+void material_shares_get(const struct target *target, whit_stats *stats);
+
+#endif
