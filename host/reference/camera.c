@@ -1,7 +1,8 @@
 /* Where the ray tree of a pixel starts: the kernels' cameras and patterns of samples, in double. */
+#include "reference/camera.h"
 #include "base/same.h"
 #include "base/vec.h"
-#include "reference/inside.h"
+#include "reference/media.h"
 
 static struct dvec3 in_panorama(const struct gpu_frame *frame, double x, double y)
 {

@@ -6,7 +6,10 @@
 #include "accel/hit_order.h"
 #include "base/same.h"
 #include "oracle/conservative.h"
-#include "reference/inside.h"
+#include "reference/hits.h"
+#include "reference/meet.h"
+#include "reference/surface.h"
+#include "reference/texture.h"
 
 /* Boxes are of floats, and grow by more than their roundings and those of the walk. */
 #define BOX_GROWTH          0x1p-40

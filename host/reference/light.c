@@ -3,7 +3,9 @@
 
 #include "base/same.h"
 #include "base/vec.h"
-#include "reference/inside.h"
+#include "reference/light.h"
+
+#define LIGHT_MAX 1e24
 
 static struct dvec3 three(const double v[3])
 {

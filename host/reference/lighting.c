@@ -3,7 +3,12 @@
 
 #include "base/same.h"
 #include "picture/params.h"
+#include "reference/hits.h"
 #include "reference/inside.h"
+#include "reference/light.h"
+#include "reference/lighting.h"
+#include "reference/media.h"
+#include "reference/tree.h"
 
 #define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: beyond it a mesh is no smooth surface */
 #define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */

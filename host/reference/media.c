@@ -1,7 +1,8 @@
 /* Nested media (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images"), and
    surfaces of several of them that a ray crosses at one place. */
+#include "reference/media.h"
 #include "base/same.h"
-#include "reference/inside.h"
+#include "reference/hits.h"
 
 #include "picture/bodies.h"
 

@@ -1,6 +1,6 @@
 /* Triangles and spheres against a line, in double. Triangles go by edge functions of points sheared
    along the line (Woop, Benthin and Wald 2013), which have no cracks in any precision. */
-#include "reference/inside.h"
+#include "reference/meet.h"
 
 struct line line_make(const double origin[3], const double dir[3])
 {

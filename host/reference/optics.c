@@ -1,7 +1,8 @@
 /* Reflection, refraction and highlights of a surface, after its textures (docs/effects.md, "The
    model" and "glTF metallic-roughness"). */
+#include "reference/optics.h"
 #include "base/same.h"
-#include "reference/inside.h"
+#include "reference/texture.h"
 
 #define SCHLICK_POWER 5.0
 

@@ -1,7 +1,7 @@
 /* From a hit to what shading needs: point, normals, texture coordinates, material. */
+#include "reference/surface.h"
 #include "base/same.h"
 #include "base/vec.h"
-#include "reference/inside.h"
 
 /* By how much rays start off a surface, relative to the coordinates that the point is computed
    from: more than its rounding error. */

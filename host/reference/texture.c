@@ -1,5 +1,5 @@
 /* Pictures on surfaces: bilinear or nearest, wrapped, linear light; opacity; bent normals. */
-#include "reference/inside.h"
+#include "reference/texture.h"
 
 bool texture_used(const struct scene_material *m, enum scene_slot slot)
 {

@@ -5,7 +5,15 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "reference/camera.h"
+#include "reference/hits.h"
 #include "reference/inside.h"
+#include "reference/light.h"
+#include "reference/lighting.h"
+#include "reference/media.h"
+#include "reference/optics.h"
+#include "reference/surface.h"
+#include "reference/tree.h"
 
 /* ---- Keeping the tree ---- */
 

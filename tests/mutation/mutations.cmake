@@ -419,7 +419,7 @@ mutation(neighbours_alike_in_kernels reference_effects RED every_effect_agrees_w
 change(shaders/bind/camera.glsl [[pixel.x ^ pixel.y, pixel.x]] [[0u, pixel.x]])
 
 mutation(reference_samples_alike reference_effects RED every_effect_agrees_with_the_device)
-change(host/reference/picture.c draw_pixel [[->sample = ([a-z]+->sampling.first [+] [a-z]+);]]
+change(host/reference/reference.c draw_pixel [[->sample = ([a-z]+->sampling.first [+] [a-z]+);]]
   [[->sample = 0 * (\1);]])
 
 mutation(reference_fresnel_of_two_percent reference_scenes RED default_scenes_agree)

@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "base/color.h"
 #include "base/threads.h"
-#include "reference/inside.h"
+#include "reference/tree.h"
 
 enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
 
