@@ -1,4 +1,4 @@
-#include "device/vulkan.h"
+#include "device/buffer.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -7,6 +7,8 @@
 
 #include "base/array.h"
 #include "base/platform.h"
+#include "device/commands.h"
+#include "device/vulkan.h"
 
 enum { TEXEL_BYTES = 16, POISON = 0xa5, LARGE_PAGE_BYTES = 2 << 20 };
 

@@ -1,24 +1,12 @@
 /* The pipeline cache and what is kept of it, for each driver build apart. */
-#include "device/vulkan.h"
+#include "device/cache.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/store.h"
-
-/* The subgroup size is part of it, which kept pipelines may depend on. */
-char *device_kept_name(const struct device *device, const char *what)
-{
-    char uuid[2 * VK_UUID_SIZE + 1];
-    for (size_t i = 0; i < VK_UUID_SIZE; ++i)
-        snprintf(uuid + 2 * i, 3, "%02x", device->properties.pipelineCacheUUID[i]);
-    return string_format("%s-%04x-%04x-%s-%u%s", what, device->properties.vendorID,
-                         device->properties.deviceID, uuid, device->info.subgroup_size,
-                         device->validation ? "-validation" : "");
-}
 
 /* Whether the driver may be given it: not all look before they trust it. */
 static bool is_of_driver(const struct device *device, const uint8_t *data, size_t data_bytes)

@@ -1,4 +1,4 @@
-#include "device/vulkan.h"
+#include "device/commands.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -6,6 +6,8 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
+#include "device/vulkan.h"
 
 enum commands_state { COMMANDS_IDLE, COMMANDS_RECORDING, COMMANDS_IN_FLIGHT };
 

@@ -1,4 +1,4 @@
-#include "device/vulkan.h"
+#include "device/device.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,8 +6,12 @@
 
 #include "base/array.h"
 #include "base/child.h"
-#include "base/file.h"
 #include "base/threads.h"
+#include "device/buffer.h"
+#include "device/cache.h"
+#include "device/commands.h"
+#include "device/instance.h"
+#include "device/kept.h"
 
 const char *device_kind_name(enum device_kind kind)
 {
@@ -26,129 +30,9 @@ const char *device_kind_name(enum device_kind kind)
     return "other";
 }
 
-static const char *result_text(VkResult vk)
-{
-#define NAME(code)                                                                                 \
-    case code:                                                                                     \
-        return #code
-    switch (vk) {
-        NAME(VK_NOT_READY);
-        NAME(VK_TIMEOUT);
-        NAME(VK_INCOMPLETE);
-        NAME(VK_ERROR_OUT_OF_HOST_MEMORY);
-        NAME(VK_ERROR_OUT_OF_DEVICE_MEMORY);
-        NAME(VK_ERROR_INITIALIZATION_FAILED);
-        NAME(VK_ERROR_DEVICE_LOST);
-        NAME(VK_ERROR_MEMORY_MAP_FAILED);
-        NAME(VK_ERROR_LAYER_NOT_PRESENT);
-        NAME(VK_ERROR_EXTENSION_NOT_PRESENT);
-        NAME(VK_ERROR_FEATURE_NOT_PRESENT);
-        NAME(VK_ERROR_INCOMPATIBLE_DRIVER);
-        NAME(VK_ERROR_TOO_MANY_OBJECTS);
-        NAME(VK_ERROR_FORMAT_NOT_SUPPORTED);
-        NAME(VK_ERROR_FRAGMENTED_POOL);
-        NAME(VK_ERROR_OUT_OF_POOL_MEMORY);
-        NAME(VK_ERROR_FRAGMENTATION);
-        NAME(VK_ERROR_INVALID_SHADER_NV);
-    default:
-        return "VK_ERROR_UNKNOWN";
-    }
-#undef NAME
-}
-
-static whit_result result_map(VkResult vk)
-{
-    switch (vk) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-    case VK_ERROR_OUT_OF_POOL_MEMORY:
-    case VK_ERROR_MEMORY_MAP_FAILED:
-        return WHIT_ERROR_MEMORY;
-    case VK_ERROR_INCOMPATIBLE_DRIVER:
-        return WHIT_ERROR_NO_DEVICE;
-    default:
-        return WHIT_ERROR_DEVICE;
-    }
-}
-
-whit_result device_check(struct device *device, VkResult vk, const char *expression,
-                         const char *file, int line)
-{
-    if (vk == VK_TIMEOUT)
-        return WHIT_ERROR_TIME_LIMIT;
-    if (vk >= 0)
-        return WHIT_OK;
-    /* Of threads that make kernels at the same time each sees the loss, and the first tells of it.
-     */
-    bool told = vk == VK_ERROR_DEVICE_LOST ? atomic_exchange(&device->lost, true) : device->lost;
-    if (told)
-        return WHIT_ERROR_DEVICE;
-    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
-    log_error(&device->log, "%s (%d) from %s at %s:%d%s%s", result_text(vk), (int)vk, expression,
-              path_name(file), line, lacks ? ": " : "", lacks ? lacks : "");
-    return lacks ? WHIT_ERROR_MEMORY : result_map(vk);
-}
-
-void device_read_fault(struct device *device)
-{
-    const char *text = getenv("WHIT_FAULT");
-    const char *colon = text ? strchr(text, ':') : NULL;
-    char *rest = NULL;
-    if (!colon || (size_t)(colon - text) >= sizeof device->fault.call)
-        return;
-    memcpy(device->fault.call, text, (size_t)(colon - text));
-    device->fault.at = (uint32_t)strtoul(colon + 1, &rest, 10);
-    device->fault.result = *rest == ':' ? (int32_t)strtol(rest + 1, NULL, 10) : 0;
-}
-
 uint32_t device_compile_threads(const struct device *device)
 {
     return device->validation || device->fault.call[0] ? 1 : 0;
-}
-
-bool device_fault(struct device *device, const char *expression)
-{
-    struct fault *fault = &device->fault;
-    size_t length = strlen(fault->call);
-    bool named = strncmp(expression, fault->call, length) == 0 &&
-                 (expression[length] == '(' || expression[length] == '\0');
-    if (length == 0 || (!named && strcmp(fault->call, "*") != 0))
-        return false;
-    return ++fault->seen == fault->at;
-}
-
-bool device_may_call(struct device *device, const char *expression, VkResult *vk)
-{
-    bool loses = strncmp(expression, "vkQueueSubmit", 13) == 0 ||
-                 strncmp(expression, "vkWaitForFences", 15) == 0;
-    if (device->lost) {
-        *vk = VK_ERROR_DEVICE_LOST;
-        return false;
-    }
-    if (device_fault(device, expression)) {
-        int32_t result = device->fault.result;
-        if (result != 0) {
-            *vk = (VkResult)result;
-            return result > 0;
-        }
-        *vk = loses ? VK_ERROR_DEVICE_LOST : VK_ERROR_OUT_OF_DEVICE_MEMORY;
-        return false;
-    }
-    return true;
-}
-
-void device_name_object(struct device *device, VkObjectType type, uint64_t handle, const char *name)
-{
-    if (!device->set_object_name)
-        return;
-    VkDebugUtilsObjectNameInfoEXT info = {
-        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
-        .objectType = type,
-        .objectHandle = handle,
-        .pObjectName = name,
-    };
-    /* A name that cannot be kept is only missing from a debugger. */
-    (void)LAYERS_BESIDE(device->set_object_name(device->vk, &info));
 }
 
 static bool environment_on(const char *name)
@@ -329,4 +213,25 @@ const struct device_info *device_get_info(const struct device *device)
 uint32_t device_validation_messages(const struct device *device)
 {
     return atomic_load(&device->validation_messages);
+}
+
+void device_keep_pipelines(struct device *device)
+{
+    device->keeps = true;
+}
+
+uint64_t device_pipelines_made(const struct device *device)
+{
+    return device->pipelines_made;
+}
+
+/* The subgroup size is part of it, which kept pipelines may depend on. */
+char *device_kept_name(const struct device *device, const char *what)
+{
+    char uuid[2 * VK_UUID_SIZE + 1];
+    for (size_t i = 0; i < VK_UUID_SIZE; ++i)
+        snprintf(uuid + 2 * i, 3, "%02x", device->properties.pipelineCacheUUID[i]);
+    return string_format("%s-%04x-%04x-%s-%u%s", what, device->properties.vendorID,
+                         device->properties.deviceID, uuid, device->info.subgroup_size,
+                         device->validation ? "-validation" : "");
 }

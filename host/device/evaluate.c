@@ -1,4 +1,4 @@
-#include "device/evaluate.h"
+#include "device/evaluate_memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -92,21 +92,9 @@ struct evaluation {
    constant, for ids that have one. */
 bool evaluate_read(struct evaluation *e, uint32_t *spec_of);
 
-/* evaluate_memory.c */
-/* Counts writes, through calls too. */
-void evaluate_count_writes(struct evaluation *e);
-/* What `pointer` (source) is known to point to; 0: not known. */
-uint32_t evaluate_held(const struct evaluation *e, uint32_t pointer);
-void evaluate_load(struct evaluation *e, const uint32_t *instruction);
-void evaluate_store(struct evaluation *e, const uint32_t *instruction);
-/* Parameters become what the call at `call` hands over. */
-void evaluate_bind_parameters(struct evaluation *e, const uint32_t *call, uint32_t function_at);
-
-/* evaluate_output.c */
-/* malloc()ed; NULL when memory runs out. */
+/* evaluate_output.c: malloc()ed; NULL when memory runs out. */
 uint32_t *evaluate_write(struct evaluation *e, size_t *word_count);
 
-/* evaluate.c, for all of them */
 static inline uint32_t spirv_length(const uint32_t *instruction)
 {
     return instruction[0] >> 16;

@@ -1,6 +1,6 @@
 /* What variables hold. GLSL compilers hand every argument over in a variable of its own, so that
    most loads read what was stored a few instructions before. */
-#include "device/evaluate.h"
+#include "device/evaluate_memory.h"
 
 static uint32_t op_at(const struct evaluation *e, uint32_t id)
 {
@@ -59,7 +59,8 @@ void evaluate_count_writes(struct evaluation *e)
     }
 }
 
-uint32_t evaluate_held(const struct evaluation *e, uint32_t pointer)
+/* What `pointer` (source) is known to point to; 0: not known. */
+static uint32_t held_by(const struct evaluation *e, uint32_t pointer)
 {
     const struct source_id *source = &e->source[pointer];
     const struct result_id *variable = &e->results[source->to];
@@ -73,7 +74,7 @@ uint32_t evaluate_held(const struct evaluation *e, uint32_t pointer)
 /* A part of a value that is known, in place of a load of that part. */
 static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t *chain)
 {
-    uint32_t whole = evaluate_held(e, chain[3]), length = spirv_length(chain);
+    uint32_t whole = held_by(e, chain[3]), length = spirv_length(chain);
     if (!whole)
         return false;
     for (uint32_t i = 4; i < length; ++i) {
@@ -92,7 +93,7 @@ static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t
 
 void evaluate_load(struct evaluation *e, const uint32_t *load)
 {
-    uint32_t pointer = load[3], held = evaluate_held(e, pointer);
+    uint32_t pointer = load[3], held = held_by(e, pointer);
     if (held) {
         e->source[load[2]].to = held;
         return;
@@ -146,7 +147,7 @@ void evaluate_bind_parameters(struct evaluation *e, const uint32_t *call, uint32
         struct source_id *parameter = &e->source[at[2]];
         uint32_t to = evaluate_id(e, call[i]), held = 0;
         if (e->results[to].base && parameter->writes == 0 && !is_shared(e, call, i))
-            held = evaluate_held(e, call[i]);
+            held = held_by(e, call[i]);
         parameter->to = to;
         parameter->holds = held;
         at += spirv_length(at);

@@ -1,4 +1,4 @@
-#include "device/vulkan.h"
+#include "device/instance.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -5,20 +5,10 @@
 #include <string.h>
 
 #include "base/hash.h"
-#include "device/vulkan.h"
+#include "device/kept.h"
 
 /* Of more than so many those go that nobody uses, the oldest first. */
 enum { KEPT_MAX = 128 };
-
-void device_keep_pipelines(struct device *device)
-{
-    device->keeps = true;
-}
-
-uint64_t device_pipelines_made(const struct device *device)
-{
-    return device->pipelines_made;
-}
 
 static struct pipeline *take(struct device *device, size_t key_of_pipeline, const uint64_t key[2])
 {

@@ -1,10 +1,21 @@
-#include "device/vulkan.h"
+#include "device/pipeline.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
+#include "device/kept.h"
+
+/* A kernel as the driver gets it. */
+struct kernel_words {
+    uint32_t *whole; /* owned; NULL: as it came */
+    size_t whole_count;
+    uint32_t *specialized; /* owned; NULL: it cannot be */
+    size_t word_count;
+    struct spirv_info info;
+};
 
 static VkDescriptorType descriptor_type(enum binding_kind kind)
 {

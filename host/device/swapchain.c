@@ -3,7 +3,8 @@
 #include <stdlib.h>
 
 #include "base/array.h"
-#include "device/swapchain_inside.h"
+#include "device/buffer.h"
+#include "device/swapchain_show.h"
 
 static const struct known_format {
     VkFormat format;

@@ -40,9 +40,4 @@ struct swapchain {
     struct swapchain_info info;
 };
 
-/* swapchain_show.c: until the last picture is drawn; afterwards no image of it is in use. */
-WHIT_CHECK whit_result swapchain_wait(struct swapchain *swapchain);
-/* Frees the picture's own image, if there is one; nothing may be in flight. */
-void swapchain_drop_canvas(struct swapchain *swapchain);
-
 #endif

@@ -1,7 +1,8 @@
 /* The way of a picture onto the window. One picture is in flight at a time: the host is never more
    than one ahead of the screen. */
+#include "device/swapchain_show.h"
 #include "base/clock.h"
-#include "device/swapchain_inside.h"
+#include "device/buffer.h"
 
 enum { COPY_PIXELS = 4096 }; /* that are put in the window's order at a time */
 

@@ -19,8 +19,8 @@
 
 #include <vulkan/vulkan.h>
 
-#include "device/device.h"
 #include "device/layers.h"
+#include "device/pipeline.h"
 #include "device/specialize.h"
 
 enum { STAGING_BYTES = 16 << 20, OBJECT_NAME_BYTES = 64 };
@@ -114,50 +114,7 @@ struct binding_set {
     VkDescriptorSet vk; /* null when the pipeline binds nothing */
 };
 
-/* instance.c. Both work on a zeroed struct device that has its log, fault and validation. */
-whit_result instance_create(struct device *device);
-/* After instance_create, and before instance_select: sets surface, where one is asked for. */
-whit_result instance_make_surface(struct device *device);
-void instance_destroy(struct device *device);
-/* Sets physical, properties, memory and info. */
-whit_result instance_select(struct device *device, const char *selector);
-/* The family that the device's one queue comes from; false when none computes. */
-/* `surface`: not null: the family also draws, and presents to it. */
-bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t *family,
-                           uint32_t *timestamp_bits);
-
-/* kept.c: one whose params make the same code of the kernel as those of `made`, with one user more;
-   NULL: the device keeps none. Remembers the code's key in `made`. */
-WHIT_CHECK struct pipeline *kept_take_code(struct pipeline *made,
-                                           const struct pipeline_params *params,
-                                           const uint32_t *words, size_t word_count);
-/* kept.c: a pipeline of the same params, with one user more; false: the device keeps none.
-   `specializes`: whether constants are filled in before the driver sees the kernel. */
-bool kept_take(struct device *device, const struct pipeline_params *params, bool specializes,
-               struct pipeline **out);
-/* Keeps one that was just made, where the device keeps any. */
-void kept_add(struct pipeline *pipeline, const struct pipeline_params *params, bool specializes);
-/* Whether the device keeps it, which has one user less. */
-bool kept_give_back(struct pipeline *pipeline);
-void kept_finish(struct device *device);
-
-/* cache.c: the pipeline cache and its file. */
-whit_result cache_open(struct device *device);
-void cache_close(struct device *device); /* saves, destroys */
-
-/* A kernel as the driver gets it. */
-struct kernel_words {
-    uint32_t *whole; /* owned; NULL: as it came */
-    size_t whole_count;
-    uint32_t *specialized; /* owned; NULL: it cannot be */
-    size_t word_count;
-    struct spirv_info info;
-};
-
-/* device.c */
 void device_read_fault(struct device *device);
-/* True when the call named by the expression is to fail now. */
-bool device_fault(struct device *device, const char *expression);
 /* False when the call may not be made: *vk is then its result. Else *vk is what to give in place of
    VK_SUCCESS. */
 bool device_may_call(struct device *device, const char *expression, VkResult *vk);

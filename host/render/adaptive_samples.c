@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "render/adaptive_samples.h"
 #include "render/renderer.h"
 #include "render/tiles.h"

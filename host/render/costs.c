@@ -2,6 +2,7 @@
    pixel's first sample. */
 #include <string.h>
 
+#include "device/buffer.h"
 #include "render/costs.h"
 #include "render/tiles.h"
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "device/buffer.h"
 #include "picture/mipmap.h"
 #include "render/frame_uniform.h"
 #include "render/lights.h"

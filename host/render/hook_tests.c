@@ -4,6 +4,8 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "device/buffer.h"
+#include "device/commands.h"
 #include "render/renderer.h"
 #include "render/tiles.h"
 #include "render/variants.h"

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/text.h"
+#include "device/buffer.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
 #include "render/stages.h"

@@ -1,5 +1,6 @@
 /* The kernels of a picture, one by one, with what the driver tells of them. */
 #include "base/clock.h"
+#include "device/pipeline.h"
 #include "render/frame_uniform.h"
 #include "render/renderer.h"
 #include "render/stages.h"

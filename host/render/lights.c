@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/vec.h"
+#include "device/buffer.h"
 #include "render/lights.h"
 #include "render/renderer.h"
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "render/material_shares.h"
 #include "render/renderer.h"
 #include "render/variants.h"

@@ -1,5 +1,6 @@
 /* The buffers of pixels: as many rows and ray trees as the device holds at once. */
 #include "render/pixels.h"
+#include "device/buffer.h"
 #include "render/costs.h"
 #include "render/hooks.h"
 #include "render/material_shares.h"

@@ -8,6 +8,9 @@
 #include "abi/portable.h"
 #include "base/hash.h"
 #include "base/store.h"
+#include "device/buffer.h"
+#include "device/commands.h"
+#include "device/pipeline.h"
 #include "kernels.h"
 
 _Static_assert((int)REWRITE_WHY_BYTES == (int)PORTABLE_WHY_BYTES, "the same room");

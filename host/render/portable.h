@@ -3,7 +3,7 @@
 #ifndef RENDER_PORTABLE_H
 #define RENDER_PORTABLE_H
 
-#include "device/device.h"
+#include "device/pipeline.h"
 #include "shader/portable.h"
 
 struct portable_device {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
 #include "render/renderer.h"

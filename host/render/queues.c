@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "render/queues.h"
 #include "render/renderer.h"
 #include "render/textures.h"

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/buffer.h"
 #include "picture/grid.h"
 #include "render/adaptive_samples.h"
 #include "render/hooks.h"

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "device/commands.h"
 
 whit_result render_no_memory(const struct renderer *renderer, const char *what)
 {

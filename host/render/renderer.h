@@ -6,6 +6,7 @@
 #include "abi/queues.h"
 #include "abi/shade.h"
 #include "abi/spec.h"
+#include "device/commands.h"
 #include "picture/bodies.h"
 #include "picture/camera.h"
 #include "picture/environment.h"

@@ -3,6 +3,7 @@
    rays alone. */
 #include <string.h>
 
+#include "device/commands.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
 #include "render/readback.h"

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
+#include "device/commands.h"
 #include "render/material_shares.h"
 #include "render/renderer.h"
 #include "render/stage_times.h"

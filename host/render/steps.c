@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "render/hooks.h"
 #include "render/readback.h"
 #include "render/renderer.h"

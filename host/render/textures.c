@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "picture/mipmap.h"
 #include "render/renderer.h"
 #include "render/textures.h"

@@ -9,6 +9,8 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "device/buffer.h"
+#include "device/commands.h"
 #include "render/adaptive_samples.h"
 #include "render/costs.h"
 #include "render/hooks.h"

@@ -9,6 +9,8 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "device/buffer.h"
+#include "device/commands.h"
 
 enum {
     TRACE_CAPACITY = 1 << 20,   /* rays in device memory */

@@ -8,6 +8,9 @@
 
 #include "base/clock.h"
 #include "base/threads.h"
+#include "device/buffer.h"
+#include "device/commands.h"
+#include "device/pipeline.h"
 #include "render/stages.h"
 #include "render/translation.h"
 #include "render/variants.h"

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/same.h"
+#include "device/buffer.h"
 #include "render/lights.h"
 #include "render/renderer.h"
 #include "render/textures.h"

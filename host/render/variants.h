@@ -2,6 +2,7 @@
 #ifndef RENDER_VARIANTS_H
 #define RENDER_VARIANTS_H
 
+#include "device/pipeline.h"
 #include "render/renderer.h"
 
 struct gpu_spec variant_spec(const struct target *target);

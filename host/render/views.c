@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "device/buffer.h"
 #include "render/async.h"
 #include "render/frame_uniform.h"
 #include "render/pixels.h"

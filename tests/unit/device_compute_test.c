@@ -3,6 +3,9 @@
 
 #include "affine_fixture.h"
 
+#include "device/buffer.h"
+#include "device/commands.h"
+#include "device/pipeline.h"
 #include "device_count.h"
 #include "device_spin.h"
 #include "device_texels.h"

@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include "affine_fixture.h"
+#include "device/buffer.h"
+#include "device/commands.h"
+#include "device/pipeline.h"
 #include "unit.h"
 
 /* Everything a user does with a device, once. */

@@ -11,7 +11,10 @@
 
 #include <cmocka.h>
 
+#include "device/buffer.h"
+#include "device/commands.h"
 #include "device/device.h"
+#include "device/pipeline.h"
 
 struct messages {
     int errors, validation, lines; /* lines: errors and warnings */

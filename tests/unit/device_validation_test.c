@@ -1,6 +1,8 @@
 /* The Khronos layer is part of the test suite's requirements: its absence fails these tests. */
 #include "affine_fixture.h"
 
+#include "device/buffer.h"
+#include "device/commands.h"
 #include "device_overrun.h"
 #include "unit.h"
 

@@ -2,6 +2,7 @@
 #ifndef TESTS_MEDIA_FIXTURE_H
 #define TESTS_MEDIA_FIXTURE_H
 
+#include "device/buffer.h"
 #include "picture_fixture.h"
 #include "render/renderer.h"
 

@@ -1,6 +1,7 @@
 /* Only what a scene calls for: kernels made for a scene draw the picture of the one with every
    effect, and what is not called for is in no kernel, descriptor or buffer. */
 #include "../cases.h"
+#include "device/pipeline.h"
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "render_scenes.h"

@@ -1,6 +1,7 @@
 /* Probed pixels: their rays are those of the picture, all of them, with its colour; the CPU agrees
    with every one; and nothing of it is left in other kernels. */
 #include "../cases.h"
+#include "device/pipeline.h"
 #include "picture_fixture.h"
 #include "render/probe.h"
 #include "render/renderer.h"

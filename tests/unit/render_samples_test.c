@@ -2,6 +2,7 @@
  * the whole. */
 #include <math.h>
 
+#include "device/buffer.h"
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "unit.h"

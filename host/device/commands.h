@@ -1,0 +1,35 @@
+/* A command buffer with its fence and timestamps: begin, record, submit, wait, and again. */
+#ifndef DEVICE_COMMANDS_H
+#define DEVICE_COMMANDS_H
+
+#include "device/device.h"
+
+WHIT_CHECK whit_result commands_create(struct device *device, const char *name,
+                                       struct commands **out);
+void commands_destroy(struct commands *commands); /* waits first */
+WHIT_CHECK whit_result commands_begin(struct commands *commands);
+void commands_bind(struct commands *commands, struct pipeline *pipeline, struct binding_set *set);
+void commands_push(struct commands *commands, const void *data, uint32_t size_bytes);
+void commands_dispatch(struct commands *commands, uint32_t groups_x, uint32_t groups_y,
+                       uint32_t groups_z);
+void commands_dispatch_indirect(struct commands *commands, struct buffer *buffer,
+                                uint64_t offset_bytes);
+/* Everything before is visible to everything after: shader, transfer, indirect, host. */
+void commands_barrier(struct commands *commands);
+void commands_fill(struct commands *commands, struct buffer *buffer, uint64_t offset_bytes,
+                   uint64_t size_bytes, uint32_t word);
+void commands_copy(struct commands *commands, struct buffer *from, uint64_t from_offset_bytes,
+                   struct buffer *to, uint64_t to_offset_bytes, uint64_t size_bytes);
+/* A labelled stretch whose time is measured; at most COMMANDS_SPANS a recording, not nested. */
+enum { COMMANDS_SPANS = 256 };
+void commands_span_begin(struct commands *commands, const char *label);
+void commands_span_end(struct commands *commands);
+/* A recording error (out of memory) surfaces here. */
+WHIT_CHECK whit_result commands_submit(struct commands *commands);
+/* Waits up to `timeout_ms` (< 0: for ever). WHIT_ERROR_TIME_LIMIT leaves it in flight. */
+WHIT_CHECK whit_result commands_wait(struct commands *commands, double timeout_ms);
+/* Device time of span i of the last finished submission; < 0 without timestamps. */
+double commands_span_ms(const struct commands *commands, uint32_t span);
+uint32_t commands_span_count(const struct commands *commands);
+
+#endif
