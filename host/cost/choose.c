@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cost/choose.h"
+#include "cost/within.h"
 
 const char *cost_metric_name(enum cost_metric metric)
 {

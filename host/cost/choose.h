@@ -28,8 +28,8 @@ struct search {
 double choose_from_sum(double sum, enum cost_metric metric);
 /* Whether settings of the knob are chosen: those that change light alone. */
 bool choose_is_searched(const struct search *search, uint32_t knob);
-/* The best picture within a time (within.c): search->best. `search` has what is known, and the
-   usual settings but for knobs that change nothing, of which it has the fastest. */
-void choose_within(struct search *search);
+
+/* Marks the Pareto set by the report's clock and metric. */
+void cost_mark_best(struct cost_report *report, enum cost_metric metric);
 
 #endif

@@ -7,44 +7,8 @@
 #ifndef COST_COST_H
 #define COST_COST_H
 
-#include "base/sample.h"
 #include "cost/knobs.h"
-
-enum cost_clock { COST_WALL, COST_CPU, COST_DEVICE, COST_CLOCKS };
-const char *cost_clock_name(enum cost_clock clock); /* "wall" */
-
-/* Two renderers in turns. */
-enum { COST_ROUNDS_MAX = 41, COST_ROUNDS_MIN = 7 };
-struct cost_price {
-    uint32_t rounds, width, height;
-    struct sample_median usual_ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
-    struct sample_median setting_ms[COST_CLOCKS];
-    struct sample_median ratio[COST_CLOCKS];      /* setting / usual, of each pair */
-    struct sample_median difference[COST_CLOCKS]; /* setting - usual */
-    int verdict; /* by the report's clock: 1 dearer, -1 cheaper, 0 not distinguishable */
-};
-/* Renders both `rounds` times in turns (once before the clocks count). `first`, `second`: what they
-   are set to draw; NULL where they stay as they are. The same renderer twice: with both. For the
-   viewer's price list too: stops at the renderers' cancel flag. */
-WHIT_CHECK whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
-                                  whit_renderer *setting, const whit_renderer_params *second,
-                                  enum cost_clock clock, uint32_t rounds, struct cost_price *out);
-/* The same for a reference in double: the device's clock is the wall's for it. */
-WHIT_CHECK whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *first,
-                                         whit_reference *reference, enum cost_clock clock,
-                                         uint32_t rounds, struct cost_price *out);
-/* One renderer, `rounds` times after one that warms up, set to draw `view`. */
-struct cost_times {
-    struct sample_median ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
-    double wall_max_ms;                   /* 90 % took at most this, by the wall clock */
-};
-WHIT_CHECK whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
-                                 uint32_t rounds, struct cost_times *out);
-/* The colours of two renderers' pictures, without FLIP. */
-WHIT_CHECK whit_result cost_colors(whit_renderer *a, whit_renderer *b, const whit_log *log,
-                                   whit_difference *out);
-/* The clock that counts: the device's where it has one, the CPU's where that is the device. */
-enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer);
+#include "cost/price.h"
 
 /* ---- Effects (effects.c) ---- */
 
@@ -205,10 +169,6 @@ struct cost_choice {
     bool found;
 };
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal);
-/* How many things are given up for time, one after the other (within.c), and which one in that
-   order is that setting of that knob; WHIT_NONE: none, it is the usual one or better. */
-uint32_t cost_steps(void);
-uint32_t cost_step_of(const char *knob, const char *setting);
 void cost_choice_apply(const struct cost_choice *choice, struct settings *settings);
 /* As options of `whit render`. */
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);
@@ -253,8 +213,5 @@ struct cost_kept_figures {
     double choice_ms;          /* that its picture was expected to take, or took */
     char made[32];             /* when it was measured, for people */
 };
-
-/* Marks the Pareto set by the report's clock and metric. */
-void cost_mark_best(struct cost_report *report, enum cost_metric metric);
 
 #endif

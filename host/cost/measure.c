@@ -1,4 +1,8 @@
-#include "cost/measure.h"
+#include "cost/choose.h"
+#include "cost/rays.h"
+#include "cost/reference.h"
+#include "cost/row.h"
+#include "cost/within.h"
 #include "whit/whit_program.h"
 
 #include <math.h>

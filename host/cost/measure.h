@@ -31,22 +31,7 @@ whit_result measure_still_wanted(const struct measure *measure);
 double measure_left_s(const struct measure *measure);
 /* Tells `what` is being done. */
 void measure_say(const struct measure *measure, const char *what);
-/* The target's picture at another size, in what is left of the time limit. */
-whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,
-                                   uint32_t width, uint32_t height);
 
-/* Both references, at the largest size that `seconds` allow (reference.c). */
-WHIT_CHECK whit_result measure_references(struct measure *measure, double seconds);
-/* The sets of rays (rays.c) for the usual trees, and the hits of a renderer of `target`. */
-WHIT_CHECK whit_result measure_judges(struct measure *measure);
-WHIT_CHECK whit_result measure_hits(struct measure *measure, whit_renderer *renderer,
-                                    const struct settings *target, struct cost_row *row);
-/* One row: renderer, errors, price, hits, within about `seconds` (row.c). What a device or a scene
-   refuses is a note in the row, and WHIT_OK. */
-WHIT_CHECK whit_result measure_row(struct measure *measure, const struct settings *target,
-                                   enum knob_level level, double seconds, struct cost_row *row);
-/* The usual settings' row, from measure->renderer, within about `seconds`. */
-WHIT_CHECK whit_result measure_usual(struct measure *measure, double seconds, struct cost_row *row);
 /* Opens what rows are measured with. */
 WHIT_CHECK whit_result measure_open(struct measure *measure, const struct cost_request *request,
                                     struct cost_report *report);

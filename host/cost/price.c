@@ -1,4 +1,4 @@
-#include "cost/cost.h"
+#include "cost/price.h"
 #include "whit/whit_program.h"
 
 #include <string.h>

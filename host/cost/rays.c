@@ -1,7 +1,7 @@
 /* Hits of a renderer on the two sets of rays. */
 #include <stdlib.h>
 
-#include "cost/measure.h"
+#include "cost/rays.h"
 #include "whit/whit_program.h"
 
 enum { TRACES = 3 };

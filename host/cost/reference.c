@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cost/measure.h"
+#include "cost/reference.h"
 #include "whit/whit_program.h"
 
 /* Raised when pictures of the reference change: then those that are kept are of no use. */

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cost/measure.h"
+#include "cost/rays.h"
+#include "cost/row.h"
 #include "whit/whit_program.h"
 
 enum { SHRINK_MAX = 16, BUILDS = 3, WARM_SIDE = 16, FULL_MIN = 6 };

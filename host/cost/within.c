@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cost/choose.h"
+#include "cost/within.h"
 
 struct step {
     const char *knob, *setting;

@@ -1,7 +1,7 @@
 /* What `whit cost` and --budget-ms give up for time, by reports that nobody measured. */
 #include <string.h>
 
-#include "cost/cost.h"
+#include "cost/within.h"
 #include "unit.h"
 
 enum { REPORTS = 400, SAMPLES_MOST = 64 };
