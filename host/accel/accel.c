@@ -1,8 +1,12 @@
 /* The trees of a scene: one a mesh, concatenated behind room for the tree over instances. */
 #include <stdlib.h>
 
-#include "accel/accel.h"
-#include "accel/accel_inside.h"
+#include "accel/bvh8.h"
+#include "accel/extent.h"
+#include "accel/flat.h"
+#include "accel/material_bits.h"
+#include "accel/pose.h"
+#include "accel/validate.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/text.h"

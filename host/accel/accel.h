@@ -80,39 +80,6 @@ struct accel {
 WHIT_CHECK whit_result accel_create(const whit_log *log, const struct scene *scene,
                                     const struct accel_params *params, struct accel **out);
 void accel_destroy(struct accel *accel);
-/* Whether `flatten` suits a frozen scene, which stands at `pose`: no mesh but a single ball is
-   there twice, nothing moves, vertices are rounded by next to nothing when they are placed, and
-   memory is enough. It is no news for one instance that is where its mesh is. The same on every
-   machine, but for memory. WHIT_ERROR_MEMORY, logged. */
-WHIT_CHECK whit_result accel_flat_suits(const struct scene *scene, const struct scene_pose *pose,
-                                        bool *out);
-/* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */
-WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *pose);
-/* Makes bvh8 of the trees that there are now, to be called again after accel_pose: mesh trees that
-   did not change are kept. */
-WHIT_CHECK whit_result accel_widen(struct accel *accel);
-void accel_bvh8_finish(struct accel_bvh8 *bvh8);
-/* bvh_validate over everything. */
-WHIT_CHECK whit_result accel_validate(const struct accel *accel);
 uint64_t accel_bytes(const struct accel *accel);
-/* Refs that a traversal may have to keep, rounded up to a multiple of this: the size is part of
-   kernels, so that scenes of other depths share them, and drivers compile those once. */
-enum { ACCEL_STACK_STEP = 32 };
-uint32_t accel_stack_size(const struct accel *accel);
-/* The same of rays that walk together through bvh8, a multiple of 4. */
-uint32_t accel_packet_stack_size(const struct accel *accel);
-/* Whether any record has TRIANGLE_FILTER_DETAIL. */
-bool accel_filters_vary(const struct accel *accel);
-/* Whether textures or vertex colours have a say in any of them; else these absorb, and that is all.
- */
-bool accel_filters_patterned(const struct accel *accel);
-/* TRIANGLE_* that the records of a primitive have, but those of its place in a tree. */
-uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uint32_t primitive);
-
-/* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf
-   sizes, depth as stated. `boxes` may be NULL when only the structure is to be checked. Logs the
-   first violation. */
-WHIT_CHECK whit_result bvh_validate(const whit_log *log, const struct bvh *bvh,
-                                    const struct bvh_box *boxes, uint32_t leaf_limit);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/accel_inside.h"
+#include "accel/bvh8.h"
 #include "base/array.h"
 
 /* A node of eight still to be made: the one at `at`, `depth` levels down (root: 1), out of the two

@@ -78,6 +78,23 @@ struct accel_extent {
     double lo[3], hi[3], size[3];
 };
 
-struct accel_extent accel_transformed_box(const double rows[12], const struct bvh_box *box);
+static inline struct accel_extent accel_transformed_box(const double rows[12],
+                                                        const struct bvh_box *box)
+{
+    struct accel_extent out;
+    for (int r = 0; r < 3; ++r) {
+        double t = rows[4 * r + 3];
+        out.lo[r] = out.hi[r] = t;
+        out.size[r] = fabs(t);
+        for (int c = 0; c < 3; ++c) {
+            double a = rows[4 * r + c] * (double)box->lo[c];
+            double b = rows[4 * r + c] * (double)box->hi[c];
+            out.lo[r] += a < b ? a : b;
+            out.hi[r] += a < b ? b : a;
+            out.size[r] += fabs(a) > fabs(b) ? fabs(a) : fabs(b);
+        }
+    }
+    return out;
+}
 
 #endif

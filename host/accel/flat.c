@@ -7,7 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/accel_inside.h"
+#include "accel/extent.h"
+#include "accel/flat.h"
+#include "accel/flat_choice.h"
+#include "accel/material_bits.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/text.h"

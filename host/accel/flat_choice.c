@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/accel_inside.h"
+#include "accel/extent.h"
+#include "accel/flat.h"
+#include "accel/flat_choice.h"
 #include "base/array.h"
 #include "scene/afford.h"
 

@@ -4,7 +4,7 @@
 
 #include "base/same.h"
 
-#include "accel/accel_inside.h"
+#include "accel/material_bits.h"
 
 static uint32_t optical_depth(double transmittance)
 {

@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/accel_inside.h"
+#include "accel/extent.h"
+#include "accel/flat.h"
+#include "accel/pose.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/text.h"
@@ -15,24 +17,6 @@ enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
 /* Traversal takes rays into object space in float. That moves a hit by a few roundings (2^-24 each)
    of the coordinates involved; boxes in world space are wider by 16 of them. */
 static const double WIDENING = 0x1p-20;
-
-struct accel_extent accel_transformed_box(const double rows[12], const struct bvh_box *box)
-{
-    struct accel_extent out;
-    for (int r = 0; r < 3; ++r) {
-        double t = rows[4 * r + 3];
-        out.lo[r] = out.hi[r] = t;
-        out.size[r] = fabs(t);
-        for (int c = 0; c < 3; ++c) {
-            double a = rows[4 * r + c] * (double)box->lo[c];
-            double b = rows[4 * r + c] * (double)box->hi[c];
-            out.lo[r] += a < b ? a : b;
-            out.hi[r] += a < b ? b : a;
-            out.size[r] += fabs(a) > fabs(b) ? fabs(a) : fabs(b);
-        }
-    }
-    return out;
-}
 
 /* A point p reaches object space as inverse * (p - origin): errors relative to |p - origin| on one
    world axis come back on the others as |forward| * |inverse|. */

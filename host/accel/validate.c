@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/accel_inside.h"
+#include "accel/extent.h"
+#include "accel/flat.h"
+#include "accel/validate.h"
 #include "base/array.h"
 
 /* One tree inside arrays that may hold others. */

@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "accel/accel_inside.h"
+#include "accel/extent.h"
+#include "accel/validate.h"
 #include "base/array.h"
 
 /* Corners, middles of edges and inside, in sixths: one bit each. */

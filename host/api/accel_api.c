@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "accel/boxes.h"
+#include "accel/validate.h"
 #include "api/handles.h"
 #include "base/array.h"
 #include "twin/report.h"

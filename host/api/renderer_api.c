@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/pose.h"
 #include "api/handles.h"
 #include "base/threads.h"
 #include "image/edges.h"

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "accel/flat_choice.h"
 #include "api/handles.h"
 #include "base/array.h"
 #include "base/vec.h"

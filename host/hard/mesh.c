@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/pose.h"
 #include "base/array.h"
 #include "hard/hard.h"
 

@@ -2,6 +2,7 @@
 #include <float.h>
 #include <stdlib.h>
 
+#include "accel/pose.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/color.h"

@@ -1,4 +1,5 @@
 /* Another time of the animation on a renderer that is there already. */
+#include "accel/pose.h"
 #include "base/clock.h"
 #include "render/async.h"
 #include "render/frame_uniform.h"

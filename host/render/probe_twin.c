@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "accel/material_bits.h"
 #include "oracle/rational.h"
 #include "render/probe.h"
 #include "render/renderer.h"

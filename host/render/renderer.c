@@ -13,6 +13,7 @@
 
 #include <stdlib.h>
 
+#include "accel/pose.h"
 #include "base/clock.h"
 #include "device/commands.h"
 

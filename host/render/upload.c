@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/bvh8.h"
+#include "accel/pose.h"
 #include "base/array.h"
 #include "base/same.h"
 #include "device/buffer.h"

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/material_bits.h"
 #include "device/pipeline.h"
 #include "render/effects.h"
 #include "render/hooks.h"

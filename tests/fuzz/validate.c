@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/validate.h"
 #include "trees.h"
 
 enum { BUILD_COUNT = 6, FLAT = 2, PATCH_BYTES = 7, PATCHES_MAX = 64 };

@@ -4,6 +4,7 @@
 
 #include "accel_fixture.h"
 
+#include "accel/validate.h"
 #include "base/hash.h"
 
 __extension__ typedef __float128 quad;

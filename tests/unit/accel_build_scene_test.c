@@ -1,5 +1,7 @@
 /* The arrays of a whole scene: where each mesh lies, what its triangles say, and instances posed
    anywhere. */
+#include "accel/pose.h"
+#include "accel/validate.h"
 #include "accel_fixture.h"
 #include "unit.h"
 

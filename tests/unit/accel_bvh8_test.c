@@ -1,4 +1,6 @@
 /* Trees of eight children a node have the leaves of the trees of two, each once, boxes and all. */
+#include "accel/bvh8.h"
+#include "accel/pose.h"
 #include "accel_fixture.h"
 #include "unit.h"
 

@@ -1,6 +1,9 @@
 /* One tree over all triangles in world space, against the same scene with instances. */
 #include "accel_fixture.h"
 
+#include "accel/flat_choice.h"
+#include "accel/pose.h"
+#include "accel/validate.h"
 #include "oracle/oracle.h"
 #include "unit.h"
 

@@ -1,5 +1,6 @@
 /* One renderer at one time after another: the pictures are those of renderers made at these times,
    byte for byte. */
+#include "accel/pose.h"
 #include "ray_fixture.h"
 #include "render_scenes.h"
 #include "unit.h"

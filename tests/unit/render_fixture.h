@@ -15,6 +15,7 @@
 
 #include "../random.h"
 #include "../scenes.h"
+#include "accel/validate.h"
 #include "base/array.h"
 #include "render/render.h"
 
