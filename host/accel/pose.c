@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "base/threads.h"
 #include "base/vec.h"
+#include "bvh/complete.h"
 
 enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
 

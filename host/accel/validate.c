@@ -9,6 +9,7 @@
 #include "accel/flat.h"
 #include "accel/validate.h"
 #include "base/array.h"
+#include "bvh/complete.h"
 
 /* One tree inside arrays that may hold others. */
 struct view {

@@ -21,8 +21,9 @@ whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32
 whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 
-/* bvh_complete by several threads: the same bits for any number of them. */
-void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count);
+/* In `flags` of a record. */
+#define SPATIAL_WHOLE 1u /* must not be split */
+#define SPATIAL_PART  2u /* was split: the box is that of a part */
 
 /* A box with the primitive it belongs to: a reference. Records are moved, not indices to them, so
    that a subtree is one run of memory. */
@@ -95,96 +96,9 @@ struct builder {
     uint32_t small_count;
 };
 
-/* Grows the tree over `count` records within `bounds`, with room for `spare` more behind them.
-   Allocates out->order, for all of them, and gives out->nodes, of which leaves name runs of
-   records: the order, and what follows from nodes, are the builder's to fill in. */
-whit_result topdown_grow(const whit_log *log, const struct builder *builder,
-                         const struct build_bounds *bounds, uint32_t count, uint32_t spare,
-                         struct bvh *out);
-
-/* Not zeroed: slots that stay empty should cost no memory. */
-void *build_alloc_lines(size_t count, size_t element_bytes);
-
-/* ---- Records (records.c) ---- */
-
-/* In the order of the input, zeros without sign, and room for `spare` more behind them. free() */
-whit_result records_make(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                         uint32_t spare, uint32_t thread_count, struct build_record **records,
-                         struct build_bounds *bounds);
-
-/* The bounds of the first halves->count[0] records, and of the rest of `count`. */
-void records_bound(const struct build_record *records, uint32_t count, struct build_halves *halves);
-
-/* ---- Equal bins (split_binned.c) ---- */
-
-/* Bin of a centroid: (centroid - origin) * scale, truncated. Partitioning evaluates the very same
-   expression, so a record never lands on the other side of where it was counted. */
-struct bin_grid {
-    f4 origin, scale, last;
-    uint32_t bins;
-};
-
-struct bin_plane {
-    struct bin_grid grid;
-    uint32_t axis, bin;  /* records of bins below `bin` go left */
-    float cost;          /* relative to one primitive of the node's scaled area */
-    uint32_t left_count; /* and the boxes of both sides, if the cost is below infinity */
-    struct build_box side[2];
-};
-
-/* The best of equally spaced planes on all axes; of infinite cost where none separates anything. */
-void bins_find(const struct build_record *records, const struct build_range *range, uint32_t bins,
-               f4 scale, uint32_t thread_count, struct bin_plane *plane);
-
-static inline f4 bin_grid_position(const struct bin_grid *grid, f4 centroid)
-{
-    return f4_min(f4_mul(f4_sub(centroid, grid->origin), grid->scale), grid->last);
-}
-
-/* 1: a record of this centroid goes left, else 0. */
-static inline uint32_t bin_plane_left(const struct bin_plane *plane, f4 centroid)
-{
-    f4 position = bin_grid_position(&plane->grid, centroid);
-    return f4_below(position, f4_splat((float)plane->bin)) >> plane->axis & 1u;
-}
-
-/* ---- The ways to split ---- */
-
-/* builder->split: bins_find, and partitions. */
-enum build_choice split_binned(const struct builder *builder, const struct build_range *range,
-                               uint32_t thread_count, void *scratch, struct build_halves *halves);
-
 /* builder->halve: along the axis of the widest centroids; equal centroids by primitive. */
 void split_median(const struct builder *builder, const struct build_range *range, void *scratch,
                   struct build_halves *halves);
-
-/* ---- Small subtrees (sweep_small.c) ---- */
-
-/* At most BUILD_SMALL boxes, and their order along each axis. */
-enum { BUILD_SMALL = 16 };
-struct small {
-    struct build_box box[BUILD_SMALL];
-    alignas(16) float centroid[BUILD_SMALL][4];
-    uint8_t order[2][3]
-                 [BUILD_SMALL];  /* nodes read one side and write the other for their children */
-    uint8_t leaves[BUILD_SMALL]; /* the result: boxes leaf by leaf */
-};
-
-struct small_cut {
-    uint32_t axis, left_count; /* of order[0][axis] */
-    float cost;
-};
-
-void small_put(struct small *small, uint32_t index, const struct build_record *record);
-/* Fills order[0]: by centroid, equal ones by position. */
-void small_sort(struct small *small, uint32_t count);
-/* The best cut of `count` boxes, not at infinite cost, at any position of order[0] on an axis along
-   which not all are equal. */
-struct small_cut small_find(const struct small *small, uint32_t count, f4 scale);
-/* Grows the subtree over the boxes of `range` by sweeping over every position along order[0] that
-   separates centroids. */
-void small_grow(struct small *small, const struct builder *builder,
-                const struct build_output *output, const struct build_range *range);
 
 /* ---- Boxes ---- */
 

@@ -5,6 +5,8 @@
 #include "base/clock.h"
 #include "base/threads.h"
 #include "bvh/build.h"
+#include "bvh/complete.h"
+#include "bvh/optimize.h"
 
 static bool builder_known(enum bvh_builder builder)
 {

@@ -81,17 +81,6 @@ static inline struct bvh_box bvh_node_box(const struct gpu_bvh_node *node)
                             {node->hi[0], node->hi[1], node->hi[2]}};
 }
 
-/* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
-   and depth. Whatever builds a tree ends with it. */
-void bvh_complete(struct bvh *bvh, double traversal_cost);
-/* Sets only the axis bits of the pair of sibling nodes at `first`. */
-void bvh_set_axis(struct gpu_bvh_node *first);
-
-/* Improves a finished tree by moving subtrees to where they cost less: Meister and Bittner 2018,
-   "Parallel reinsertion for bounding volume hierarchy optimization". Keeps leaves as they are; the
-   depth stays within BVH_DEPTH_MAX. Deterministic whatever the thread count. */
-WHIT_CHECK whit_result bvh_optimize(const whit_log *log, uint32_t thread_count,
-                                    double traversal_cost, struct bvh *bvh);
 enum { BVH_DEPTH_MAX = 128 };
 
 #endif

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "base/threads.h"
-#include "bvh/build.h"
+#include "bvh/complete.h"
 
 void bvh_set_axis(struct gpu_bvh_node *first)
 {

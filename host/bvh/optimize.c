@@ -13,6 +13,8 @@
 #include "base/clock.h"
 #include "base/threads.h"
 #include "bvh/build.h"
+#include "bvh/complete.h"
+#include "bvh/optimize.h"
 
 enum {
     ROUNDS_MAX = 10,

@@ -3,7 +3,10 @@
 #include <stdlib.h>
 
 #include "base/threads.h"
-#include "bvh/build.h"
+#include "bvh/records.h"
+#include "bvh/split_binned.h"
+#include "bvh/sweep_small.h"
+#include "bvh/topdown.h"
 
 enum {
     RECORD_CHUNK = 16384, /* records made by one call */

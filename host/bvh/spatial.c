@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "bvh/clip.h"
-#include "bvh/spatial.h"
+#include "bvh/records.h"
+#include "bvh/spatial_object.h"
+#include "bvh/spatial_split.h"
+#include "bvh/topdown.h"
 
 static double extent_area(struct build_box box)
 {

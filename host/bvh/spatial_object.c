@@ -2,7 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "bvh/spatial.h"
+#include "bvh/records.h"
+#include "bvh/spatial_object.h"
 
 enum { BINS = 16 };
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "bvh/clip.h"
-#include "bvh/spatial.h"
+#include "bvh/spatial_split.h"
 
 struct bins {
     struct build_box axis[3][SPATIAL_BINS];

@@ -6,7 +6,7 @@
 
 #include "base/array.h"
 #include "base/threads.h"
-#include "bvh/build.h"
+#include "bvh/split_binned.h"
 
 enum {
     BINS_MAX = 256,

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bvh/build.h"
+#include "bvh/records.h"
 
 /* All keys differ, so the median is the same whatever the order of the records. */
 static uint64_t record_key(const struct build_record *record, uint32_t axis)

@@ -8,6 +8,9 @@
 #include "base/array.h"
 #include "base/threads.h"
 #include "bvh/build.h"
+#include "bvh/records.h"
+#include "bvh/sweep_small.h"
+#include "bvh/topdown.h"
 
 enum { THREADED_MIN = 4096 }; /* records from which the axes of one node are given to threads */
 

@@ -1,7 +1,7 @@
 /* Whole subtrees over so few boxes that bins would cost more than the boxes in them: surface area
    heuristic over every position. Sorted once; the three axes are the lanes of one sweep. Most nodes
    of a tree are made here. */
-#include "bvh/build.h"
+#include "bvh/sweep_small.h"
 
 struct small_range {
     struct build_box box;

@@ -10,7 +10,7 @@
 
 #include "base/array.h"
 #include "base/threads.h"
-#include "bvh/build.h"
+#include "bvh/topdown.h"
 
 enum {
     TASK_MIN = 2048, /* smaller subtrees are not worth a task of their own */

@@ -1,5 +1,7 @@
 /* Trees over triangles that builders get wrong, every way to build on each of them. */
 #include "accel_build_fixture.h"
+#include "bvh/complete.h"
+#include "bvh/optimize.h"
 #include "unit.h"
 
 /* ---- Meshes ---- */

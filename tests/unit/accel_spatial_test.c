@@ -3,6 +3,7 @@
 #include "accel_build_fixture.h"
 
 #include "bvh/clip.h"
+#include "bvh/complete.h"
 #include "unit.h"
 
 /* ---- Clipping ---- */

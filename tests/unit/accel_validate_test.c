@@ -2,6 +2,7 @@
 #include "accel_build_fixture.h"
 #include "unit.h"
 
+#include "bvh/complete.h"
 #include <stdalign.h>
 
 /* ---- Broken trees ---- */

@@ -7,6 +7,7 @@
 
 #include "accel/accel.h"
 #include "base/array.h"
+#include "bvh/complete.h"
 
 /* Triangle i of a caterpillar: in the plane z = i, hit by any ray along the z axis. */
 static inline void caterpillar_corners(uint32_t i, float corners[9])

@@ -1,33 +1,8 @@
-/* Inside of the builder with spatial splits: what spatial.c asks of the splits. */
-#ifndef BVH_SPATIAL_H
-#define BVH_SPATIAL_H
+/* Spatial splits. */
+#ifndef BVH_SPATIAL_SPLIT_H
+#define BVH_SPATIAL_SPLIT_H
 
 #include "bvh/build.h"
-
-/* In `flags` of a record. */
-#define SPATIAL_WHOLE 1u /* must not be split */
-#define SPATIAL_PART  2u /* was split: the box is that of a part */
-
-/* ---- Object splits (spatial_object.c) ---- */
-
-/* Over all positions of up to BUILD_SMALL references, else over equal bins. */
-struct object_plane {
-    float cost; /* relative to one primitive of the node's scaled area */
-    struct build_box side[2];
-    struct bin_plane bins;
-    struct small small;
-    struct small_cut cut;
-    uint8_t index[BUILD_SMALL]; /* in the node, of each box of `small` */
-};
-
-/* The best plane, of infinite cost where none separates anything. */
-void object_find(const struct build_record *records, const struct build_range *range, f4 scale,
-                 struct object_plane *plane);
-/* Moves the references on its left to the front. */
-void object_apply(struct build_record *records, uint32_t count, const struct object_plane *plane,
-                  struct build_halves *halves);
-
-/* ---- Spatial splits (spatial_split.c) ---- */
 
 enum { SPATIAL_BINS = 16 };
 

@@ -1,0 +1,15 @@
+/* What finished nodes get. */
+#ifndef BVH_COMPLETE_H
+#define BVH_COMPLETE_H
+
+#include "bvh/bvh.h"
+
+/* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
+   and depth. Whatever builds a tree ends with it. */
+void bvh_complete(struct bvh *bvh, double traversal_cost);
+/* bvh_complete by several threads: the same bits for any number of them. */
+void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count);
+/* Sets only the axis bits of the pair of sibling nodes at `first`. */
+void bvh_set_axis(struct gpu_bvh_node *first);
+
+#endif

@@ -1,0 +1,33 @@
+/* Small subtrees. */
+#ifndef BVH_SWEEP_SMALL_H
+#define BVH_SWEEP_SMALL_H
+
+#include "bvh/build.h"
+
+/* At most BUILD_SMALL boxes, and their order along each axis. */
+enum { BUILD_SMALL = 16 };
+struct small {
+    struct build_box box[BUILD_SMALL];
+    alignas(16) float centroid[BUILD_SMALL][4];
+    uint8_t order[2][3]
+                 [BUILD_SMALL];  /* nodes read one side and write the other for their children */
+    uint8_t leaves[BUILD_SMALL]; /* the result: boxes leaf by leaf */
+};
+
+struct small_cut {
+    uint32_t axis, left_count; /* of order[0][axis] */
+    float cost;
+};
+
+void small_put(struct small *small, uint32_t index, const struct build_record *record);
+/* Fills order[0]: by centroid, equal ones by position. */
+void small_sort(struct small *small, uint32_t count);
+/* The best cut of `count` boxes, not at infinite cost, at any position of order[0] on an axis along
+   which not all are equal. */
+struct small_cut small_find(const struct small *small, uint32_t count, f4 scale);
+/* Grows the subtree over the boxes of `range` by sweeping over every position along order[0] that
+   separates centroids. */
+void small_grow(struct small *small, const struct builder *builder,
+                const struct build_output *output, const struct build_range *range);
+
+#endif
