@@ -24,7 +24,7 @@ static inline bool api_one_tree(const struct whit_scene *scene, whit_instances i
     return instances == WHIT_INSTANCES_OFF || (instances == WHIT_INSTANCES_AUTO && scene->one_tree);
 }
 
-/* scene_api.c: derives the pose and the choice of trees of a scene that was made. After a failure
+/* Derives the pose and the choice of trees of a scene that was made. After a failure
    the scene is destroyed. */
 WHIT_CHECK whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out);
 
@@ -48,7 +48,7 @@ struct whit_renderer {
     whit_log log;
 };
 
-/* renderer_api.c: WHIT_ERROR_USAGE, logged, for a renderer that was made without one. */
+/* WHIT_ERROR_USAGE, logged, for a renderer that was made without one. */
 WHIT_CHECK whit_result api_need_device(const whit_renderer *renderer);
 
 struct whit_image {

@@ -105,14 +105,6 @@ void whit_renderer_destroy(whit_renderer *renderer)
     free(renderer);
 }
 
-whit_result api_need_device(const whit_renderer *renderer)
-{
-    if (renderer->renderer)
-        return WHIT_OK;
-    log_error(&renderer->log, "this renderer was made without a device");
-    return WHIT_ERROR_USAGE;
-}
-
 whit_result whit_renderer_render(whit_renderer *renderer)
 {
     whit_result result = api_need_device(renderer);

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "accel/flat_choice.h"
 #include "api/handles.h"
 #include "base/array.h"
 #include "base/vec.h"
@@ -19,21 +18,6 @@ static whit_result begin(const whit_log *log, whit_scene **out)
         return WHIT_ERROR_MEMORY;
     }
     (*out)->log = log_or_silence(log);
-    return WHIT_OK;
-}
-
-whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out)
-{
-    if (result == WHIT_OK)
-        result = scene_pose_init(scene->scene, 0.0, &scene->pose);
-    if (result == WHIT_OK)
-        result = accel_flat_suits(scene->scene, &scene->pose, &scene->one_tree);
-    if (result != WHIT_OK) {
-        whit_scene_destroy(scene);
-        return result;
-    }
-    scene_effects_scan(scene->scene, &scene->effects);
-    *out = scene;
     return WHIT_OK;
 }
 

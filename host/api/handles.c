@@ -1,0 +1,27 @@
+/* What several files of api/ do with handles. */
+#include "api/handles.h"
+
+#include "accel/flat_choice.h"
+
+whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out)
+{
+    if (result == WHIT_OK)
+        result = scene_pose_init(scene->scene, 0.0, &scene->pose);
+    if (result == WHIT_OK)
+        result = accel_flat_suits(scene->scene, &scene->pose, &scene->one_tree);
+    if (result != WHIT_OK) {
+        whit_scene_destroy(scene);
+        return result;
+    }
+    scene_effects_scan(scene->scene, &scene->effects);
+    *out = scene;
+    return WHIT_OK;
+}
+
+whit_result api_need_device(const whit_renderer *renderer)
+{
+    if (renderer->renderer)
+        return WHIT_OK;
+    log_error(&renderer->log, "this renderer was made without a device");
+    return WHIT_ERROR_USAGE;
+}
