@@ -1,6 +1,6 @@
 /* A thin table-driven layer over getopt_long, so that help and parser cannot drift apart. */
 #define _GNU_SOURCE
-#include "app/cli.h"
+#include "app/arguments.h"
 
 #include <ctype.h>
 #include <getopt.h>

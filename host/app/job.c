@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/cache.h"
 
 enum { NOTES_SHOWN = 20 };

@@ -2,7 +2,7 @@
 #ifndef APP_JOB_H
 #define APP_JOB_H
 
-#include "app/cli.h"
+#include "app/arguments.h"
 #include "whit/whit_program.h"
 
 struct job {

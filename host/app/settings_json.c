@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/settings_json.h"
 
 /* Whether the JSON of a command tells a setting: those of heat maps (SETTING_PAINT) mean nothing
    for pictures of colours. */

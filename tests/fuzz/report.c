@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cost/cost.h"
+#include "app/cost/cost_json.h"
 
 static void choose(const struct cost_report *report)
 {

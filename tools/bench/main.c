@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/arguments.h"
 #include "bench/bench.h"
 #include "whit/whit_program.h"
 

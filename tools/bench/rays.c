@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/bvh/study_rays.h"
 #include "base/path.h"
 #include "bench/rays.h"
 

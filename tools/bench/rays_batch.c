@@ -3,6 +3,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "app/bvh/study_rays.h"
 #include "bench/rays.h"
 #include "whit/whit_program.h"
 

@@ -1,7 +1,12 @@
 /* Many pictures and parts in one process: lines share scene, trees, kernels and device. */
 #include <stdlib.h>
 
+#include "app/arguments.h"
 #include "app/batch/lines.h"
+#include "app/commands.h"
+#include "app/render/recipe.h"
+#include "app/render/render_command.h"
+#include "app/render/resume.h"
 #include "whit/whit_program.h"
 
 struct batch_request {

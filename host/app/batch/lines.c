@@ -3,6 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
+#include "app/commands.h"
+#include "app/render/render_command.h"
 #include "base/array.h"
 #include "base/file.h"
 

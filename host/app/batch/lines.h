@@ -2,7 +2,7 @@
 #ifndef APP_BATCH_LINES_H
 #define APP_BATCH_LINES_H
 
-#include "app/commands.h"
+#include "app/render/render_command.h"
 
 enum { LINE_BYTES_MAX = 64 << 10 };
 

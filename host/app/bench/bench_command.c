@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/arguments.h"
 #include "app/bench/request.h"
 #include "app/cache.h"
 #include "app/commands.h"

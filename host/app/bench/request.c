@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "app/arguments.h"
 #include "base/sample.h"
 #include "base/text.h"
 

@@ -3,7 +3,7 @@
 #ifndef APP_BENCH_REQUEST_H
 #define APP_BENCH_REQUEST_H
 
-#include "app/cli.h"
+#include "app/arguments.h"
 
 enum bench_which {
     BENCH_REPORT,

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "app/bvh/study.h"
-#include "app/commands.h"
 #include "app/document.h"
+#include "app/render/stats.h"
 
 /* ---- Text ---- */
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/bvh/study.h"
+#include "app/bvh/study_rays.h"
 #include "base/random.h"
 #include "base/vec.h"
 

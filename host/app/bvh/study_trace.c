@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "app/bvh/study.h"
+#include "app/bvh/study_rays.h"
 #include "whit/whit_program.h"
 
 /* Hits of the first row, and those to compare with them. */

@@ -2,7 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/check/check.h"
+#include "app/check/accept.h"
+#include "app/check/thumbnails.h"
 #include "base/array.h"
 
 static bool can_accept(const struct check_result *result)

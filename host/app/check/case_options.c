@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/check/suite.h"
 #include "base/array.h"
 #include "base/input.h"

@@ -2,6 +2,7 @@
 #ifndef APP_CHECK_CHECK_H
 #define APP_CHECK_CHECK_H
 
+#include "app/arguments.h"
 #include "app/check/base.h"
 #include "app/check/verdict.h"
 
@@ -35,9 +36,6 @@ struct check {
 /* Whether one of the patterns is `name`; "all" stands for every name. */
 bool check_names_match(const struct check_names *names, const char *name);
 
-/* accept.c: takes into the golden what was found of the cases that --accept names, and saves it.
-   What cannot be accepted was said. Gives the exit code. */
-int check_accept(struct check *check);
 /* accept_from.c: fills the results of cases that --accept names with what the reports of
    --accept-from say. False, with an error, where one is damaged, or does not fit the suite. */
 bool check_read_reports(struct check *check);
@@ -48,19 +46,5 @@ struct json_t *check_document(const struct check *check, int status);
 WHIT_CHECK whit_result check_save_junit(const struct check *check);
 WHIT_CHECK whit_result check_save_page(const struct check *check, int status);
 extern const char check_page_html[]; /* page.html, ended by 0; CMake makes it */
-
-/* thumbnails.c: reads what the case was, where thumbnails were kept, and compares. What cannot be
-   read is left out with a warning. WHIT_ERROR_MEMORY, said. */
-WHIT_CHECK whit_result check_compare_thumbnail(const struct check *check,
-                                               const struct drawing *drawing,
-                                               struct check_result *result);
-/* Writes that of a case into the folder, which is made where it is not there; removes it. */
-WHIT_CHECK whit_result check_save_thumbnail(const struct check *check,
-                                            const struct check_result *result);
-void check_drop_thumbnail(const struct check *check, const char *name);
-
-/* accept.c: takes out of the golden those cases that the suite has not, and saves it. Gives the
-   exit code. */
-int check_prune(struct check *check);
 
 #endif

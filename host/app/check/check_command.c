@@ -1,9 +1,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
+#include "app/check/accept.h"
+#include "app/check/describe.h"
 #include "app/check/lanes.h"
 #include "app/check/strength.h"
+#include "app/check/thumbnails.h"
 #include "app/commands.h"
+#include "app/document.h"
 #include "base/array.h"
 
 /* A driver that makes a kernel, which nothing stops, has this long before a run ends without the

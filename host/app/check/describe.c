@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/check/draw.h"
+#include "app/check/describe.h"
 #include "base/array.h"
 #include "base/hash.h"
 

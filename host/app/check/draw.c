@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/render/render_command.h"
 #include "base/array.h"
 
 struct studio_tree {

@@ -63,16 +63,6 @@ WHIT_CHECK whit_result reference_check(const struct job *job);
 void studio_forget(struct studio *studio);
 void studio_close(struct studio *studio);
 
-/* Hashes of colours, or whatever is painted in floats, and of hit identities. Devices give NaN any
-   sign and any bits: it counts as one value. */
-uint64_t drawing_hash_floats(const whit_image *image);
-uint64_t drawing_hash_ids(const whit_image *image);
-
-/* What a golden keeps of a drawing; its name is the case's. *found gets the keys of parts too, as
-   the parts of a golden with that one case. WHIT_ERROR_MEMORY, said. */
-WHIT_CHECK whit_result drawing_describe(const struct drawing *drawing,
-                                        const struct check_case *item, struct golden *found);
-
 /* Whether the picture is one that could not fail (vacuous.c): *why says it, else it is NULL.
    WHIT_ERROR_MEMORY, said. */
 WHIT_CHECK whit_result drawing_refuse(const struct drawing *drawing, const char **why);

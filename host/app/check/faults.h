@@ -2,6 +2,7 @@
 #ifndef APP_CHECK_FAULTS_H
 #define APP_CHECK_FAULTS_H
 
+#include "app/check/mutate.h"
 #include "app/check/trial.h"
 
 /* A case as it is, and its picture. */

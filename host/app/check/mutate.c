@@ -3,7 +3,7 @@
 
 #include "app/check/cause.h"
 #include "app/check/faults.h"
-#include "app/check/strength.h"
+#include "app/check/mutate.h"
 #include "base/random.h"
 
 /* One fault in so many has another beside it, which nobody sees. */

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 
 #include "app/check/check.h"
-#include "app/commands.h"
 #include "app/document.h"
 #include "settings/quote.h"
 

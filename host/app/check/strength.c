@@ -1,6 +1,7 @@
 #include "app/check/strength.h"
 
 #include "app/check/faults.h"
+#include "app/check/mutate.h"
 #include "app/job.h"
 
 static whit_result try_case(struct check *check, struct studio *studio, uint32_t index,

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/check/check.h"
+#include "app/check/thumbnails.h"
 #include "base/array.h"
 #include "base/file.h"
 

@@ -1,6 +1,7 @@
 #include "app/check/trial.h"
 
-#include "app/commands.h"
+#include "app/check/describe.h"
+#include "app/render/render_command.h"
 
 whit_result trial_draw(struct trial *trial, const struct trial_input *input)
 {

@@ -1,5 +1,8 @@
+#include "app/arguments.h"
 #include "app/commands.h"
 #include "app/document.h"
+#include "app/job.h"
+#include "app/render/view_image.h"
 #include <math.h>
 
 enum metric {

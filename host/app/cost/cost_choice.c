@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cost/cost.h"
+#include "app/cost/cost_choice.h"
+#include "app/cost/cost_kept.h"
 
 enum { SAMPLES = 16, TRIALS = 5, TRIES = 6 };
 /* What takes less tells more of who else had the processor. */

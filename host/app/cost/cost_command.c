@@ -2,7 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
+#include "app/commands.h"
 #include "app/cost/cost.h"
+#include "app/cost/cost_json.h"
+#include "app/cost/cost_table.h"
 #include "base/text.h"
 #include "settings/quote.h"
 

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cost/cost.h"
+#include "app/cost/cost_json.h"
 
 static const struct cost_row *find(const struct cost_report *report, const struct cost_row *row)
 {

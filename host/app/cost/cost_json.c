@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cost/cost.h"
+#include "app/cost/cost_json.h"
+#include "app/settings_json.h"
 #include "whit/whit_program.h"
 
 /* ---- Writing ---- */

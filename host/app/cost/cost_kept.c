@@ -6,7 +6,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/cost/cost.h"
+#include "app/cost/cost_json.h"
+#include "app/cost/cost_kept.h"
 
 enum { KEPT_VERSION = 4 };
 

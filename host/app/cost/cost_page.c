@@ -1,6 +1,7 @@
 /* The report of `whit cost` as one page: page.html, which draws itself from the JSON that stands in
    it. */
-#include "app/cost/cost.h"
+#include "app/cost/cost_json.h"
+#include "app/cost/cost_table.h"
 #include "app/page.h"
 
 /* ---- Pictures ---- */

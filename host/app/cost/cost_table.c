@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cost/cost.h"
+#include "app/cost/cost_table.h"
 #include "whit/whit_program.h"
 
 const struct cost_column cost_columns[COST_COLUMNS] = {

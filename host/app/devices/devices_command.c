@@ -1,6 +1,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "app/arguments.h"
 #include "app/cache.h"
 #include "app/commands.h"
 #include "app/devices/device_hints.h"

@@ -19,9 +19,4 @@ struct hard {
     double seconds; /* that it took */
 };
 
-/* On standard output. */
-int hard_print(const struct hard *hard);
-/* To json_path. */
-whit_result hard_save_json(const struct hard *hard);
-
 #endif

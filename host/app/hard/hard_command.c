@@ -1,5 +1,6 @@
+#include "app/arguments.h"
 #include "app/commands.h"
-#include "app/hard/hard.h"
+#include "app/hard/hard_output.h"
 
 enum { RAYS_MIN = 512, RAYS_MAX = 100000000, RAYS_QUICK = 512 };
 

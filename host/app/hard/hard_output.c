@@ -1,9 +1,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
 #include "app/document.h"
-#include "app/hard/hard.h"
+#include "app/hard/hard_output.h"
+#include "app/render/stats.h"
 
 /* ---- Text ---- */
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/render/recipe.h"
 #include "base/path.h"
 
 /* ---- Recipes ---- */

@@ -1,8 +1,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/commands.h"
 #include "app/merge/merge.h"
+#include "app/render/recipe.h"
 #include "base/path.h"
 
 struct merge_request {

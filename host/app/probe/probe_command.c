@@ -1,9 +1,12 @@
-#include "app/probe/probe.h"
+#include "app/probe/probe_output.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 
+#include "app/arguments.h"
 #include "app/cache.h"
+#include "app/commands.h"
+#include "app/render/render_command.h"
 
 enum { RAYS_MAX = 16383 };
 

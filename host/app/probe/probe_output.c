@@ -1,7 +1,10 @@
-#include "app/probe/probe.h"
+#include "app/probe/probe_output.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+#include "app/probe/probe_shader.h"
+#include "app/settings_json.h"
 
 static bool was_traced(const whit_probe_ray *ray)
 {

@@ -2,7 +2,7 @@
    values of each dbg(x) of the user's file; as text and as JSON. */
 #include <string.h>
 
-#include "app/probe/probe.h"
+#include "app/probe/probe_shader.h"
 
 /* What the report lacks when a user's file has taken the place of whit's functions. */
 static const char own_rays[] = "rays that its functions trace, as by visible() and trace()";

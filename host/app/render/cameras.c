@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/arguments.h"
+#include "app/render/recipe.h"
+#include "app/render/render_command.h"
 
 enum { PIXELS_AT_ONCE = 1 << 22 };
 

@@ -2,6 +2,7 @@
 #ifndef APP_RENDER_CAMERAS_H
 #define APP_RENDER_CAMERAS_H
 
+#include "app/arguments.h"
 #include "app/job.h"
 
 struct frames_progress;

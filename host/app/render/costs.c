@@ -1,6 +1,6 @@
 /* The costs of a picture by kind of ray, for --stats. */
+#include "app/render/costs.h"
 #include "app/document.h"
-#include "app/render/view_image.h"
 #include "settings/values.h"
 
 enum { FIGURES = 7 };

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/arguments.h"
+#include "app/render/render_command.h"
+#include "app/render/resume.h"
 #include "base/sample.h"
 
 enum { FRAME_MAX = 1000000000 };

@@ -2,6 +2,7 @@
 #ifndef APP_RENDER_FRAMES_H
 #define APP_RENDER_FRAMES_H
 
+#include "app/arguments.h"
 #include "app/job.h"
 
 struct render_request;

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "app/commands.h"
+#include "app/render/recipe.h"
 
 whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
                         const whit_refine *refine, struct layers *layers)

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/arguments.h"
+#include "app/render/recipe.h"
+#include "app/render/render_command.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/path.h"

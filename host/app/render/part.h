@@ -3,6 +3,7 @@
 #ifndef APP_RENDER_PART_H
 #define APP_RENDER_PART_H
 
+#include "app/arguments.h"
 #include "app/job.h"
 
 struct recipe;

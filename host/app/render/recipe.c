@@ -2,7 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/render/recipe.h"
+#include "app/settings_json.h"
 
 enum { COMMAND_BYTES = 16384 };
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/commands.h"
+#include "app/arguments.h"
+#include "app/render/render_command.h"
 
 static const double ERROR_MIN = 1e-9, ERROR_MAX = 1e6, LIMIT_MIN_MS = 1e-3, LIMIT_MAX_MS = 1e9;
 

@@ -2,6 +2,7 @@
 #ifndef APP_RENDER_REFINE_H
 #define APP_RENDER_REFINE_H
 
+#include "app/arguments.h"
 #include "app/job.h"
 #include "app/render/layers.h"
 

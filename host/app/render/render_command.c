@@ -3,7 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
 #include "app/commands.h"
+#include "app/cost/cost_choice.h"
+#include "app/render/recipe.h"
+#include "app/render/render_command.h"
+#include "app/render/resume.h"
+#include "app/render/stats.h"
 #include "base/text.h"
 
 enum { CAMERA_NAMES_MAX = 4096 };

@@ -5,7 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/arguments.h"
 #include "app/commands.h"
+#include "app/render/cameras.h"
+#include "app/render/part.h"
 #include "base/input.h"
 #include "base/path.h"
 #include "base/roots.h"

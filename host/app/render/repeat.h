@@ -3,6 +3,7 @@
 #ifndef APP_RENDER_REPEAT_H
 #define APP_RENDER_REPEAT_H
 
+#include "app/arguments.h"
 #include "app/job.h"
 
 /* The options with which a command draws again what a picture says of itself. */

@@ -4,7 +4,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/commands.h"
+#include "app/arguments.h"
+#include "app/render/recipe.h"
+#include "app/render/render_command.h"
 #include "base/file.h"
 #include "settings/quote.h"
 

@@ -3,6 +3,7 @@
 #ifndef APP_RENDER_RESUME_H
 #define APP_RENDER_RESUME_H
 
+#include "app/arguments.h"
 #include "app/job.h"
 #include "base/lock.h"
 

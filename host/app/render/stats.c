@@ -1,7 +1,9 @@
 #include <string.h>
 
-#include "app/commands.h"
 #include "app/document.h"
+#include "app/render/costs.h"
+#include "app/render/stats.h"
+#include "app/settings_json.h"
 
 struct figures {
     whit_scene_info scene;

@@ -20,9 +20,4 @@ WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct settings
                                   const char *output, struct view_figures *figures,
                                   whit_image **out);
 
-/* The costs of a picture by kind of ray: a table on standard output, and JSON. Kinds without rays
-   are left out of the table. */
-void costs_print(const whit_stats *stats);
-struct json_t *costs_document(const whit_stats *stats);
-
 #endif

@@ -1,4 +1,4 @@
-#include "app/scene/receipt.h"
+#include "app/scene/receipt_output.h"
 
 #include <math.h>
 #include <stdlib.h>

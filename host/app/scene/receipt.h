@@ -2,7 +2,7 @@
 #ifndef APP_SCENE_RECEIPT_H
 #define APP_SCENE_RECEIPT_H
 
-#include "app/commands.h"
+#include "app/job.h"
 #include "cost/cost.h"
 
 enum { RECEIPT_ROWS_MAX = 64 };
@@ -18,9 +18,5 @@ struct receipt {
 /* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that
    the scene does not call for has to be the same. */
 int receipt_run(struct job *job, bool json);
-
-/* receipt_output.c */
-int receipt_print_text(const struct receipt *receipt);
-int receipt_print_json(const struct receipt *receipt);
 
 #endif

@@ -1,4 +1,6 @@
-#include "app/scene/receipt.h"
+#include "app/scene/receipt_output.h"
+#include "app/render/stats.h"
+#include "app/settings_json.h"
 
 static void print_head(const struct receipt *receipt)
 {

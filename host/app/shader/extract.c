@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/commands.h"
+#include "app/render/repeat.h"
 #include "base/path.h"
 
 enum { PATH_BYTES = 4096 };

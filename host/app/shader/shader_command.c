@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "app/arguments.h"
 #include "app/commands.h"
 #include "app/shader/attempt.h"
 #include "app/shader/extract.h"

@@ -1,7 +1,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "app/arguments.h"
 #include "app/commands.h"
+#include "app/job.h"
 #include "app/trace/ray_file.h"
 
 /* Rays in memory at a time. */

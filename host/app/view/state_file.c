@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/arguments.h"
+
 enum { STATE_BYTES_MAX = 65536, WORDS_MAX = 8, WHERE_BYTES = 600 };
 
 bool state_file_open(struct state_file *file, const char *path, char *said, size_t said_bytes)

@@ -4,8 +4,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "app/arguments.h"
 #include "app/commands.h"
-#include "app/cost/cost.h"
+#include "app/cost/cost_kept.h"
+#include "app/render/recipe.h"
+#include "app/render/repeat.h"
 #include "app/view/state_file.h"
 #include "base/input.h"
 #include "view/view.h"

@@ -1,0 +1,17 @@
+/* Thumbnails beside the golden. */
+#ifndef APP_CHECK_THUMBNAILS_H
+#define APP_CHECK_THUMBNAILS_H
+
+#include "app/check/check.h"
+
+/* Reads what the case was, where thumbnails were kept, and compares. What cannot be
+   read is left out with a warning. WHIT_ERROR_MEMORY, said. */
+WHIT_CHECK whit_result check_compare_thumbnail(const struct check *check,
+                                               const struct drawing *drawing,
+                                               struct check_result *result);
+/* Writes that of a case into the folder, which is made where it is not there; removes it. */
+WHIT_CHECK whit_result check_save_thumbnail(const struct check *check,
+                                            const struct check_result *result);
+void check_drop_thumbnail(const struct check *check, const char *name);
+
+#endif

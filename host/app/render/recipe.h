@@ -1,0 +1,38 @@
+/* What a picture says of how it was made. */
+#ifndef APP_RENDER_RECIPE_H
+#define APP_RENDER_RECIPE_H
+
+#include "app/document.h"
+#include "app/render/part.h"
+#include "app/render/view_image.h"
+
+/* The texts that a picture carries about itself: only what decides its pixels, so that the same
+   inputs give the same bytes. */
+enum { RECIPE_TEXTS = 11 };
+struct recipe {
+    whit_text texts[RECIPE_TEXTS];
+    uint32_t count;
+    char *command, *options, *counters, *view, *part, *camera, *scene, *name, *driver,
+        *functions; /* owned */
+    char hash[17];
+    whit_device_info device;
+};
+
+/* False when memory ran out, which was said. `shader`: NULL without one. `output`: whose ending
+   says what is saved. */
+bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
+                 const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
+                 const char *output);
+/* Adds what a picture of costs shows; false as above. */
+bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
+                     const struct view_figures *figures);
+/* Adds which part of a picture it is; false as above. */
+bool recipe_add_part(struct recipe *recipe, const struct part *part,
+                     const struct settings *settings);
+/* How many rays of each kind there were, as an object. */
+json_t *recipe_rays(const whit_stats *stats);
+/* whit:counters of these numbers; free() it. NULL: memory ran out. */
+char *recipe_counters(const whit_stats *stats);
+void recipe_finish(struct recipe *recipe);
+
+#endif

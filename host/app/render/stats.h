@@ -1,0 +1,16 @@
+/* Figures of `whit render`. */
+#ifndef APP_RENDER_STATS_H
+#define APP_RENDER_STATS_H
+
+#include "app/render/render_command.h"
+
+/* The device's driver without the name of the device in front. */
+const char *stats_driver(const whit_device_info *device);
+
+/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL; `refined`:
+   with --refine, else NULL. */
+int stats_print(const struct job *job, const struct render_request *request,
+                const whit_renderer *renderer, const whit_stats *stats, double save_ms,
+                const struct sequence *sequence, const struct refined *refined);
+
+#endif

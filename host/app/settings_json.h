@@ -1,0 +1,13 @@
+/* Settings in JSON. */
+#ifndef APP_SETTINGS_JSON_H
+#define APP_SETTINGS_JSON_H
+
+#include "app/document.h"
+#include "settings/settings.h"
+
+/* Adds to an object what decides the pixels of a picture, by those rows of the table of settings
+   that a command takes. */
+void settings_describe(const struct settings *settings, enum settings_command command,
+                       json_t *object);
+
+#endif
