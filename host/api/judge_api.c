@@ -4,7 +4,10 @@
 
 #include "api/handles.h"
 #include "base/array.h"
-#include "hard/hard.h"
+#include "hard/judge.h"
+#include "hard/mesh.h"
+#include "hard/rays.h"
+#include "hard/topology.h"
 #include "picture/camera.h"
 
 enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SEED = 77 };

@@ -8,7 +8,7 @@
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/threads.h"
-#include "hard/hard.h"
+#include "hard/judge.h"
 #include "oracle/oracle.h"
 #include "twin/ray.h"
 #include "twin/traverse.h"

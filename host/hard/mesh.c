@@ -5,7 +5,7 @@
 
 #include "accel/pose.h"
 #include "base/array.h"
-#include "hard/hard.h"
+#include "hard/mesh.h"
 
 static const struct hard_case cases[] = {
     {"sphere from inside", HARD_SPHERE, HARD_AIMED, 0, 1, false, false},

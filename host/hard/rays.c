@@ -4,7 +4,7 @@
 
 #include "accel/accel.h"
 #include "base/random.h"
-#include "hard/hard.h"
+#include "hard/rays.h"
 
 const char *hard_rays_name(enum hard_rays rays)
 {

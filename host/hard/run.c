@@ -7,6 +7,10 @@
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/hash.h"
+#include "hard/judge.h"
+#include "hard/mesh.h"
+#include "hard/rays.h"
+#include "hard/topology.h"
 
 /* Seeds are the cases' numbers: the hash is of the first rays of each. */
 enum {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "hard/hard.h"
+#include "hard/topology.h"
 
 struct corner {
     float at[3];

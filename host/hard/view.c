@@ -4,7 +4,11 @@
 
 #include "base/array.h"
 #include "base/vec.h"
+#include "hard/judge.h"
+#include "hard/mesh.h"
+#include "hard/rays.h"
 #include "hard/run.h"
+#include "hard/topology.h"
 #include "picture/camera.h"
 
 static const float red[3] = {1.0f, 0.0f, 0.0f}, yellow[3] = {1.0f, 0.7f, 0.0f};

@@ -10,7 +10,10 @@
 #include "base/array.h"
 #include "base/threads.h"
 #include "device/device.h"
-#include "hard/hard.h"
+#include "hard/judge.h"
+#include "hard/mesh.h"
+#include "hard/rays.h"
+#include "hard/topology.h"
 #include "peers.h"
 #include "render/render.h"
 

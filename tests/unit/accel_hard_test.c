@@ -3,7 +3,10 @@
 #include "accel_fixture.h"
 
 #include "base/hash.h"
-#include "hard/hard.h"
+#include "hard/judge.h"
+#include "hard/mesh.h"
+#include "hard/rays.h"
+#include "hard/topology.h"
 #include "unit.h"
 
 enum { RAYS = 512, THREADS = 2 };

@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 
 #include "base/clock.h"
-#include "hard/hard.h"
+#include "hard/mesh.h"
 #include "unit.h"
 
 enum { STEPS = 2237, RAYS = 20000 };

@@ -3,7 +3,9 @@
    error, and must still meet the sheet in front of them. */
 #include "hard_fixture.h"
 
-#include "hard/hard.h"
+#include "hard/judge.h"
+#include "hard/mesh.h"
+#include "hard/rays.h"
 #include "unit.h"
 
 /* In units of the last place of the largest coordinate: that is at least r = 2^-24 of it. A point

@@ -3,7 +3,7 @@
 #include "hard_triangle_fixture.h"
 
 #include "fraction_fixture.h"
-#include "hard/hard.h"
+#include "hard/judge.h"
 #include "oracle/oracle.h"
 #include "twin/ff_triangle.h"
 #include "unit.h"

@@ -1,0 +1,43 @@
+/* The judge of hits. */
+#ifndef HARD_JUDGE_H
+#define HARD_JUDGE_H
+
+#include "hard/rays.h"
+#include "hard/topology.h"
+
+/* Adds counts of other rays. */
+void hard_add_tally(whit_tally *sum, const whit_tally *more);
+
+struct hard_judgement {
+    const struct hard_scene *hard;
+    const struct hard_topology *topology;
+    const struct hard_ray *rays;
+    const struct rational_hit *exact;
+    const struct gpu_hit *hits;
+    uint32_t numerics; /* of the level that is judged: NUMERICS_* */
+    uint64_t count;
+};
+
+/* rational_trace of every ray. WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result hard_trace_exact(const struct hard_scene *hard, const struct hard_ray *rays,
+                                        uint64_t count, uint32_t thread_count,
+                                        struct rational_hit *exact);
+/* The C twin's hits. */
+WHIT_CHECK whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t numerics,
+                                       const struct hard_ray *rays, uint64_t count,
+                                       uint32_t thread_count, struct gpu_hit *hits);
+WHIT_CHECK whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
+                                  whit_tally *tally);
+/* Floats between the two. */
+double hard_ulps_between(float a, float b);
+/* Whether the ray goes further than its origin's coordinates are rounded by. */
+bool hard_goes_far(const struct gpu_ray *ray, float t);
+/* Rays whose hits differ by a bit. */
+uint64_t hard_count_differing(const struct gpu_hit *a, const struct gpu_hit *b, uint64_t count);
+/* Hashes the (instance, primitive) pairs of exact hits; `value` is the hash to continue from. */
+uint64_t hard_hash(uint64_t value, const struct rational_hit *exact, uint64_t count);
+
+/* Whether all promises of the level `numerics` are kept; `promised`: no leaks is one of them. */
+bool hard_promise_kept(uint32_t numerics, bool promised, const whit_tally *tally);
+
+#endif
