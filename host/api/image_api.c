@@ -4,9 +4,11 @@
 #include "api/handles.h"
 #include "base/array.h"
 #include "base/same.h"
+#include "image/compare.h"
 #include "image/display.h"
 #include "image/flip.h"
 #include "image/heat.h"
+#include "image/image_reply.h"
 #include "image/rows.h"
 #include "whit/whit_program.h"
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/color.h"
-#include "image/image.h"
+#include "image/compare.h"
 
 struct sums {
     double squares, relative_squares, differences[3];

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/color.h"
+#include "image/compare.h"
 
 void display_encoder_init(struct display_encoder *encoder)
 {

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/vec.h"
+#include "image/compare.h"
 
 /* ---- Colours ---- */
 

@@ -54,51 +54,6 @@ WHIT_CHECK whit_result image_save_layers(const whit_log *log, const struct image
 /* True for extensions that image_save writes; `integers`: that keep uint32 exactly (.exr). */
 bool image_format_known(const char *path, bool integers);
 
-/* PNG (sRGB to linear; palettes and 1 to 16 bits are converted), EXR (half, float or uint channels;
-   scanlines or tiles), PFM, HDR; told apart by content. At most 65535 pixels a side and 1 GiB. A
-   damaged file is one logged error; *image is then empty. */
-WHIT_CHECK whit_result image_load(const whit_log *log, const char *path, struct image *image);
-/* `roots` that the path may not lead out of, or NULL, as for file_read. Decoders run in a child
-   process; `params` are for that, and may be NULL. */
-WHIT_CHECK whit_result image_load_by(const whit_log *log, const struct roots *roots,
-                                     const char *path, const struct foreign_params *params,
-                                     struct image *image);
-/* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
-WHIT_CHECK whit_result image_load_texts(const whit_log *log, const char *path,
-                                        struct image_text **texts, uint32_t *text_count);
-/* The same in a child with other limits; `params` may be NULL. */
-WHIT_CHECK whit_result image_load_texts_by(const whit_log *log, const char *path,
-                                           const struct foreign_params *params,
-                                           struct image_text **texts, uint32_t *text_count);
-
-/* Pixel `index` of floats as RGBA: grey fills three channels, alpha is 1 where there is none. */
-void image_read_pixel(const struct image *image, size_t index, float rgba[4]);
-/* The same as it is displayed, still linear and not clamped. */
-void image_displayed_pixel(const struct image *image, size_t index, float rgba[4]);
-
-/* How `b` differs from `a`, the reference. */
-struct image_difference {
-    uint64_t pixel_count, differing_pixels; /* any channel differs in a bit */
-    uint64_t over_1_255;                    /* pixels with a channel over 1/255 (sRGB) apart */
-    uint64_t nonfinite_a, nonfinite_b;
-    uint64_t nonfinite_differing; /* of differing_pixels those not finite in one or both */
-    double rmse, largest;         /* linear, over RGB; largest also of integers (1: they differ) */
-    double relative_mse; /* mean over RGB of (b - a)^2 / (a^2 + IMAGE_RELATIVE_FLOOR), linear */
-    double mean[3];      /* of b - a, linear: above 0 where b is brighter */
-};
-#define IMAGE_RELATIVE_FLOOR 0.01
-
-/* Floats may differ in their channels: they are compared as image_read_pixel gives them, alpha only
-   for differing_pixels and over_1_255. WHIT_ERROR_INPUT when sizes or kinds differ. Pixels that are
-   not finite in one of the two count as differing and over_1_255 unless their bits are the same;
-   they are left out of all means and of largest. */
-WHIT_CHECK whit_result image_compare(const whit_log *log, const struct image *a,
-                                     const struct image *b, struct image_difference *out);
-/* b - a of each channel, RGB, linear; NAN in all three where either pixel is not finite.
- * WHIT_ERROR_INPUT as above, and for integers. */
-WHIT_CHECK whit_result image_subtract(const whit_log *log, const struct image *a,
-                                      const struct image *b, struct image *out);
-
 /* A PNG in memory; free() it. `texts` as for image_save. */
 WHIT_CHECK whit_result image_encode_png(const whit_log *log, const struct image *image,
                                         const struct image_text *texts, uint32_t text_count,

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/foreign.h"
 #include "image/formats.h"
+#include "image/image_reply.h"
 
 /* --- the child's side ----------------------------------------------------------------------- */
 

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "image/image.h"
+#include "image/image_reply.h"
 #include "load/load.h"
 #include "load/picture.h"
 #include "scene/afford.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shader/program.h"
+#include "shader/annotations.h"
 #include "shader/scan.h"
 #include "sources.h"
 

@@ -6,6 +6,8 @@
 
 #include "base/array.h"
 #include "kernels.h"
+#include "shader/annotations.h"
+#include "shader/sliders.h"
 
 enum { DEFINES_MAX = SHADER_HOOK_COUNT + 1, DEFINE_BYTES = 48 };
 

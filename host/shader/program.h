@@ -142,20 +142,4 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader,
 /* whit_shader_template */
 char *shader_template(const char *hook);
 
-/* annotations.c: the lines `//@ ...` of all files, into `shader`. WHIT_ERROR_INPUT, with what is
-   wrong in `errors` and logged. */
-WHIT_CHECK whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
-                                               struct shader_errors *errors);
-
-/* A colour as #ffcc88; false: it is none. */
-bool shader_color_read(const char *text, float srgb[3]);
-
-/* sliders.c: the GLSL that declares the sliders; free() it. NULL: no memory. */
-char *shader_sliders_declare(const whit_shader *shader);
-/* The values of all sliders, of which `text`, "NAME=VALUE,NAME=VALUE", changes some; NULL or "":
-   none. Colours come out linear. With `skip`, pairs that are no use are left out. False: why not,
-   and `values` means nothing. */
-bool shader_sliders_read(const whit_shader *shader, const char *text, bool skip,
-                         float values[SHADER_SLIDERS_MAX], char *why, size_t why_bytes);
-
 #endif

@@ -5,7 +5,8 @@
 
 #include "base/color.h"
 #include "base/text.h"
-#include "shader/program.h"
+#include "shader/annotations.h"
+#include "shader/sliders.h"
 
 enum { DECLARATION_BYTES = 256 };
 

@@ -6,7 +6,7 @@
 #include "base/threads.h"
 #include "base/vec.h"
 #include "bvh/clip.h"
-#include "twin/report.h"
+#include "twin/epo.h"
 
 /* ---- Areas ---- */
 

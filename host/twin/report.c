@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/threads.h"
 #include "base/vec.h"
+#include "twin/epo.h"
 #include "twin/report.h"
 #include "twin/traverse.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/child.h"
 #include "image/image.h"
+#include "image/image_reply.h"
 #include "load/picture.h"
 
 static struct {

@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "fuzz.h"
 #include "image/image.h"
+#include "image/image_reply.h"
 #include "load/picture.h"
 #include "trees.h"
 

@@ -1,6 +1,7 @@
 /* Reports on trees against other ways to the same numbers: by hand, by brute force, by rays. */
 #include "accel_fixture.h"
 
+#include "twin/epo.h"
 #include "twin/report.h"
 #include "unit.h"
 

@@ -1,6 +1,7 @@
 /* Damaged pictures: one error and no picture, or a picture; never more than that. Run under the
    sanitizers this also finds accesses out of bounds. */
 #include "../child_in_place.h"
+#include "image/image_reply.h"
 #include "image_fixture.h"
 
 enum { FLIPS = 3000 };

@@ -7,6 +7,7 @@
 #include <OpenEXR/openexr.h>
 
 #include "image/formats.h"
+#include "image/image_reply.h"
 
 static const struct image_text recipe[] = {{"scene", "scenes/default.json"},
                                            {"options", "--aa 4 --depth 8"},

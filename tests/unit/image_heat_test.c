@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "image/heat.h"
+#include "image/image_reply.h"
 
 static struct image values_of(uint32_t width, uint32_t height, float value)
 {

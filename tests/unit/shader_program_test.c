@@ -1,6 +1,7 @@
 /* What a file of hooks says of itself, and the values of its sliders. */
 #include "base/color.h"
-#include "shader/program.h"
+#include "shader/annotations.h"
+#include "shader/sliders.h"
 #include "unit.h"
 
 static struct shader_errors errors;
