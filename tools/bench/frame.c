@@ -1,11 +1,14 @@
 /* `whit bench frame`: whole pictures beside POV-Ray, another whit, the levels, and their own rays.
  */
-#include "bench/frame.h"
+#include "bench/frame_peers.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/path.h"
+#include "bench/frame_rays.h"
+#include "bench/frame_sides.h"
+#include "bench/process.h"
 
 static const char BAILOUT[] = "0.0009765625", POV_BAILOUT[] = "0.0005";
 

@@ -12,11 +12,6 @@ struct peers {
     bool has_pov, has_embree;
 };
 
-/* The whit that --against names, or says that there is none. WHIT_ERROR_INPUT: it is no whit. */
-WHIT_CHECK whit_result peers_find_against(struct peers *peers, struct table *table);
-/* Looks who else is here, and says who is left out. */
-void peers_find(struct peers *peers, struct table *table, bool wants_pov);
-
 enum frame_side {
     FRAME_WHIT, /* at `watertight` */
     FRAME_FAST,
@@ -43,18 +38,5 @@ struct frame {
     uint32_t side_count;
     struct sample_runs ms[FRAME_SIDES]; /* by side: of the processor, or by the clock */
 };
-
-/* The scene, its trees and the reference. */
-WHIT_CHECK whit_result frame_prepare(struct frame *frame);
-/* The rays of the picture as files, and whit-embree on its triangles: for FRAME_EMBREE
-   (frame_rays.c). */
-WHIT_CHECK whit_result frame_prepare_rays(struct frame *frame);
-/* Single rays; shadow rays from the end where Embree is quicker. */
-WHIT_CHECK whit_result frame_trace_rays(struct frame *frame, double *ms);
-/* All sides, once before the clock counts and then as often as the bench has runs. */
-WHIT_CHECK whit_result frame_run(struct frame *frame);
-/* Device memory of the picture beyond what the scene and the pixels take, in MB. */
-WHIT_CHECK whit_result frame_memory(const struct frame *frame, double *megabytes);
-void frame_finish(struct frame *frame);
 
 #endif

@@ -2,7 +2,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "bench/frame.h"
+#include "bench/frame_peers.h"
+#include "bench/process.h"
 
 /* Whether `program --version` runs, and its line with `word` into `line`. */
 static bool ask_version(const struct bench *bench, const char *program, const char *word,

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
-#include "bench/frame.h"
+#include "bench/frame_rays.h"
 
 static const char closest_name[] = "closest.rays", shadow_name[] = "shadow.rays";
 

@@ -3,7 +3,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "bench/frame.h"
+#include "bench/frame_rays.h"
+#include "bench/frame_sides.h"
+#include "bench/process.h"
 #include "whit/whit_program.h"
 
 static whit_renderer_params params_of(const struct frame *frame)

@@ -2,7 +2,7 @@
 #ifndef BENCH_PEER_H
 #define BENCH_PEER_H
 
-#include "bench/bench.h"
+#include "bench/process.h"
 
 struct peer {
     int socket;

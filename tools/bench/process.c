@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "bench/bench.h"
+#include "bench/process.h"
 #include "whit/whit_program.h"
 
 extern char **environ;

@@ -8,7 +8,7 @@
 
 #include "app/bvh/study_rays.h"
 #include "base/path.h"
-#include "bench/rays.h"
+#include "bench/rays_batch.h"
 
 enum { LARGE = 200000 }; /* triangles: above it the second goal counts */
 

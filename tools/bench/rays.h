@@ -41,11 +41,4 @@ struct model {
 
 extern const char *const rays_kind_names[RAYS_KINDS];
 
-/* Makes the rays, in tiles of 8x8 pixels or shuffled, and their file; times all sides; compares
-   their hits. With --keep the files stay. */
-WHIT_CHECK whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind,
-                                 bool shuffled, struct agreement *agreement);
-/* Shadow rays go both ways: the times of the one that Embree is quicker in. */
-const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_side side);
-
 #endif

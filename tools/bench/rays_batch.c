@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "app/bvh/study_rays.h"
-#include "bench/rays.h"
+#include "bench/rays_batch.h"
 #include "whit/whit_program.h"
 
 const char *const rays_kind_names[RAYS_KINDS] = {"camera", "shadow", "bounce"};

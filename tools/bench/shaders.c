@@ -7,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "bench/process.h"
 #include "bench/table.h"
 
 enum { TEXT_BYTES = 1024, MOVES = 60, MOVES_QUICK = 8, MOVE_MS = 16, HELD_SAVES = 2 };

@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/frame.h"
+#include "bench/frame_peers.h"
+#include "bench/process.h"
 
 enum { SIDES = 2 };
 

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "bench/process.h"
 #include "bench/table.h"
 #include "whit/whit_program.h"
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "app/arguments.h"
-#include "bench/bench.h"
+#include "bench/process.h"
 #include "whit/whit_program.h"
 
 static whit_result (*const benches[BENCH_COUNT])(struct bench *) = {
