@@ -104,6 +104,17 @@ static inline struct dvec3 dvec3_from(struct vec3 a)
     return (struct dvec3){a.x, a.y, a.z};
 }
 
+static inline struct dvec3 dvec3_load(const double *p)
+{
+    return (struct dvec3){p[0], p[1], p[2]};
+}
+
+/* a + b s */
+static inline struct dvec3 dvec3_along(struct dvec3 a, struct dvec3 b, double s)
+{
+    return (struct dvec3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
+
 static inline struct dvec3 dvec3_sub(struct dvec3 a, struct dvec3 b)
 {
     return (struct dvec3){a.x - b.x, a.y - b.y, a.z - b.z};
@@ -117,6 +128,13 @@ static inline double dvec3_dot(struct dvec3 a, struct dvec3 b)
 static inline struct dvec3 dvec3_cross(struct dvec3 a, struct dvec3 b)
 {
     return (struct dvec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/* The zero vector stays zero. */
+static inline struct dvec3 dvec3_unit(struct dvec3 a)
+{
+    double length = sqrt(dvec3_dot(a, a));
+    return length > 0.0 ? (struct dvec3){a.x / length, a.y / length, a.z / length} : a;
 }
 
 /* Three doubles in a row. */

@@ -7,9 +7,9 @@
 static struct dvec3 in_panorama(const struct gpu_frame *frame, double x, double y)
 {
     double longitude = PI * x, latitude = -0.5 * PI * y;
-    struct dvec3 level = d3_along(d3_scale(d3_load(frame->forward), same_cos(longitude)),
-                                  d3_load(frame->right), same_sin(longitude));
-    return d3_along(d3_scale(level, same_cos(latitude)), d3_load(frame->up), same_sin(latitude));
+    struct dvec3 level = dvec3_along(d3_scale(d3_load(frame->forward), same_cos(longitude)),
+                                     d3_load(frame->right), same_sin(longitude));
+    return dvec3_along(d3_scale(level, same_cos(latitude)), d3_load(frame->up), same_sin(latitude));
 }
 
 /* x and y: -1..1 from left to right and from top to bottom. */
@@ -18,7 +18,7 @@ static void take_line(const struct reference *reference, double x, double y, con
 {
     const struct gpu_frame *frame = &reference->frame;
     struct dvec3 right = d3_load(frame->right), up = d3_load(frame->up);
-    struct dvec3 aside = d3_along(d3_scale(right, x), up, -y);
+    struct dvec3 aside = dvec3_along(d3_scale(right, x), up, -y);
     ray->origin = d3_load(frame->eye);
     ray->dir = d3_add(d3_load(frame->forward), aside);
     if (reference->camera == CAMERA_PANORAMA)
@@ -29,8 +29,8 @@ static void take_line(const struct reference *reference, double x, double y, con
     }
     if (reference->camera == CAMERA_LENS) { /* all meet in the focus plane */
         struct dvec3 on_lens =
-            d3_along(d3_scale(right, (double)lens_xy[0]), up, (double)lens_xy[1]);
-        ray->origin = d3_along(ray->origin, on_lens, (double)frame->focus_distance);
+            dvec3_along(d3_scale(right, (double)lens_xy[0]), up, (double)lens_xy[1]);
+        ray->origin = dvec3_along(ray->origin, on_lens, (double)frame->focus_distance);
         ray->dir = dvec3_sub(ray->dir, on_lens);
     }
     ray->dir = d3_unit_or(ray->dir, d3(0, 0, -1));

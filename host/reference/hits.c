@@ -105,7 +105,7 @@ static struct dvec3 kept_by(const struct reference *reference, const struct surf
     double cover = 1.0;
     if (m->alpha == SCENE_ALPHA_BLEND)
         cover = clamp_unit(texture_opacity(reference, place) * place->alpha);
-    return d3_along(d3_all(1.0 - cover), passes, cover);
+    return dvec3_along(d3_all(1.0 - cover), passes, cover);
 }
 
 /* Kernels take the stops of plain filters from the record, ten bits a channel. */

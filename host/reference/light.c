@@ -23,8 +23,8 @@ static struct dvec3 emitter_point(const struct tracer *tracer, const struct scen
         u = root * (1.0 - v);
         v = root * v;
     }
-    return d3_along(d3_along(three(light->position), three(light->edge_u), u), three(light->edge_v),
-                    v);
+    return dvec3_along(dvec3_along(three(light->position), three(light->edge_u), u),
+                       three(light->edge_v), v);
 }
 
 double light_area_share(const struct reference *reference, const struct scene_light *light)
@@ -107,7 +107,7 @@ static int clip_to_horizon(struct dvec3 n, const struct dvec3 *corners, int coun
         if (up_a > 0.0)
             out[kept++] = a;
         if ((up_a > 0.0) != (up_b > 0.0))
-            out[kept++] = d3_along(a, dvec3_sub(b, a), up_a / (up_a - up_b));
+            out[kept++] = dvec3_along(a, dvec3_sub(b, a), up_a / (up_a - up_b));
     }
     return kept;
 }

@@ -38,7 +38,7 @@ static struct dvec3 lift_to_plane(struct dvec3 from, struct dvec3 n, struct dvec
    Shadow Terminator"). The kernels' slack is part of it: a surface flatter than that is flat. */
 static struct dvec3 smooth_lift(const struct reference *reference, const struct surface *s)
 {
-    struct dvec3 from = d3_along(d3_scale(s->e1, s->u), s->e2, s->v);
+    struct dvec3 from = dvec3_along(d3_scale(s->e1, s->u), s->e2, s->v);
     const struct dvec3 away[3] = {from, dvec3_sub(from, s->e1), dvec3_sub(from, s->e2)};
     const double weights[3] = {1.0 - s->u - s->v, s->u, s->v};
     double slack = fmax(d3_size(s->e1), d3_size(s->e2)) / 65536.0;
@@ -46,7 +46,7 @@ static struct dvec3 smooth_lift(const struct reference *reference, const struct 
     bool smooth = !s->sphere;
     for (uint32_t i = 0; i < 3; ++i) {
         struct dvec3 n = surface_vertex_normal(reference, s, i);
-        lift = d3_along(lift, lift_to_plane(away[i], n, s->ng, slack, &smooth), weights[i]);
+        lift = dvec3_along(lift, lift_to_plane(away[i], n, s->ng, slack, &smooth), weights[i]);
     }
     return smooth ? lift : d3_all(0.0);
 }
@@ -113,13 +113,13 @@ static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at
         return d3_all(1.0);
     const struct surface *s = at->s;
     bool above = dvec3_dot(from->to_light, s->ng) > 0.0;
-    struct shadow_ray ray = {.origin = d3_along(d3_add(s->p, at->lift), s->ng, s->room),
+    struct shadow_ray ray = {.origin = dvec3_along(d3_add(s->p, at->lift), s->ng, s->room),
                              .dir = from->to_light,
                              .distance = from->distance,
                              .skip_instance = at->instance,
                              .skip_primitive = above ? at->primitive : HIT_NONE};
     if (at->lifted && isfinite(ray.distance)) {
-        struct dvec3 way = dvec3_sub(d3_along(s->p, from->to_light, from->distance), ray.origin);
+        struct dvec3 way = dvec3_sub(dvec3_along(s->p, from->to_light, from->distance), ray.origin);
         ray.distance = d3_length(way);
         ray.dir = d3_unit_or(way, ray.dir);
     }
@@ -154,7 +154,7 @@ static void add_point(struct tracer *tracer, const struct receiver *at, const st
     bool wanted = at->lifted || dvec3_dot(from.to_light, s->ng) > 0.0;
     struct dvec3 highlight =
         optics_highlight(o, s->ns, from.to_light, d3_scale(at->ray->dir, -1.0));
-    struct dvec3 reflected = d3_along(highlight, o->diffuse, cos_light);
+    struct dvec3 reflected = dvec3_along(highlight, o->diffuse, cos_light);
     wanted = wanted && !(reflected.x + reflected.y + reflected.z <=
                          tracer->reference->bailout * BAILOUT_SHADOW_SHARE);
     struct dvec3 share = d3_all(0.0);
@@ -163,8 +163,8 @@ static void add_point(struct tracer *tracer, const struct receiver *at, const st
     if (scene_light_is_flat(light)) {
         double weight = cos_light * from.strength;
         lit->weight += weight;
-        lit->visible = d3_along(lit->visible, share, weight);
-        lit->highlight = d3_along(lit->highlight, d3_times(highlight, share), from.strength);
+        lit->visible = dvec3_along(lit->visible, share, weight);
+        lit->highlight = dvec3_along(lit->highlight, d3_times(highlight, share), from.strength);
     } else if (wanted) {
         struct dvec3 arriving = d3_times(reflected, from.arriving);
         lit->open = d3_add(lit->open, arriving);

@@ -78,7 +78,7 @@ struct candidate meet_sphere(const struct line *line, const struct gpu_triangle 
     struct dvec3 c =
         dvec3_sub(d3_load(sphere->v0), d3(line->origin[0], line->origin[1], line->origin[2]));
     double radius = (double)sphere->v1[0], dd = dvec3_dot(d, d), middle = dvec3_dot(c, d) / dd;
-    struct dvec3 off = d3_along(c, d, -middle);
+    struct dvec3 off = dvec3_along(c, d, -middle);
     double room = radius * radius - dvec3_dot(off, off);
     if (!(room >= 0.0))
         return m;

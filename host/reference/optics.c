@@ -53,14 +53,14 @@ bool optics_refract(struct dvec3 dir, struct dvec3 n, double eta, struct dvec3 *
     if (!(cos2 > 0.0))
         return false;
     /* What lies in the surface grows by eta; the rest is what makes the length 1. */
-    struct dvec3 across = d3_along(dir, n, -dvec3_dot(dir, n));
-    *out = d3_unit_or(d3_along(d3_scale(across, eta), n, -sqrt(cos2)), dir);
+    struct dvec3 across = dvec3_along(dir, n, -dvec3_dot(dir, n));
+    *out = d3_unit_or(dvec3_along(d3_scale(across, eta), n, -sqrt(cos2)), dir);
     return true;
 }
 
 struct dvec3 optics_reflect(struct dvec3 dir, struct dvec3 n)
 {
-    return d3_along(dir, n, -2.0 * dvec3_dot(dir, n));
+    return dvec3_along(dir, n, -2.0 * dvec3_dot(dir, n));
 }
 
 /* GGX (Walter et al. 2007) times the height-correlated visibility in its usual approximation (Heitz
@@ -133,7 +133,7 @@ static double take_metal_rough(const struct scene_material *m, struct finish *f,
     }
     o->diffuse = d3(kept[0], kept[1], kept[2]);
     o->highlight = d3(f0[0], f0[1], f0[2]);
-    o->ambient = d3_along(o->diffuse, o->highlight, 1.0 - gloss);
+    o->ambient = dvec3_along(o->diffuse, o->highlight, 1.0 - gloss);
     o->alpha = fmax(f->roughness * f->roughness, 0.02);
     o->reflected = d3(mirror[0], mirror[1], mirror[2]);
     f->transmission = d3(through[0], through[1], through[2]);

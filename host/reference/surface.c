@@ -49,7 +49,7 @@ struct dvec3 surface_vertex_normal(const struct reference *reference, const stru
 
 static struct dvec3 blend(struct dvec3 a, struct dvec3 b, struct dvec3 c, double u, double v)
 {
-    return d3_along(d3_along(d3_scale(a, 1.0 - u - v), b, u), c, v);
+    return dvec3_along(dvec3_along(d3_scale(a, 1.0 - u - v), b, u), c, v);
 }
 
 /* Colours of vertices, kept within 0..1 as records keep them. */
@@ -123,7 +123,7 @@ static void take_sphere(const struct gpu_triangle *record, const struct hit *hit
     struct dvec3 n = hit->normal;
     double radius = (double)record->v1[0], ring = sqrt(n.x * n.x + n.z * n.z);
     struct dvec3 around = ring > 0.0 ? d3(n.z / ring, 0.0, -n.x / ring) : d3_all(0.0);
-    s->p = d3_along(d3_load(record->v0), n, radius);
+    s->p = dvec3_along(d3_load(record->v0), n, radius);
     s->ng = n;
     s->ns = n;
     s->e1 = d3_scale(around, 2.0 * PI * radius * ring);

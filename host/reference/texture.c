@@ -183,10 +183,10 @@ static void tangents(const struct surface *s, const struct scene_texture_use *us
             d[k][i] = (double)m[3 * i] * du + (double)m[3 * i + 1] * dv;
     }
     double det = d[0][0] * d[1][1] - d[0][1] * d[1][0], inv = det != 0.0 ? 1.0 / det : 0.0;
-    struct dvec3 t = d3_scale(d3_along(d3_scale(s->e1, d[1][1]), s->e2, -d[0][1]), inv);
-    struct dvec3 b = d3_scale(d3_along(d3_scale(s->e2, d[0][0]), s->e1, -d[1][0]), inv);
-    t = d3_along(t, s->ns, -dvec3_dot(s->ns, t));
-    b = d3_along(b, s->ns, -dvec3_dot(s->ns, b));
+    struct dvec3 t = d3_scale(dvec3_along(d3_scale(s->e1, d[1][1]), s->e2, -d[0][1]), inv);
+    struct dvec3 b = d3_scale(dvec3_along(d3_scale(s->e2, d[0][0]), s->e1, -d[1][0]), inv);
+    t = dvec3_along(t, s->ns, -dvec3_dot(s->ns, t));
+    b = dvec3_along(b, s->ns, -dvec3_dot(s->ns, b));
     *right = d3_unit_or(t, d3_all(0.0));
     *down = d3_unit_or(b, d3_all(0.0));
 }
@@ -223,11 +223,11 @@ void texture_bend_normal(const struct reference *reference, struct surface *s)
         struct dvec3 rgb = sample_at(reference, s, SCENE_SLOT_NORMAL, uv).rgb;
         double scale = (double)s->material->normal_scale;
         bent = d3_scale(s->ns, 2.0 * rgb.z - 1.0);
-        bent = d3_along(bent, right, scale * (2.0 * rgb.x - 1.0));
-        bent = d3_along(bent, down, -scale * (2.0 * rgb.y - 1.0));
+        bent = dvec3_along(bent, right, scale * (2.0 * rgb.x - 1.0));
+        bent = dvec3_along(bent, down, -scale * (2.0 * rgb.y - 1.0));
     } else {
         bump_slope(reference, s, uv, slope);
-        bent = d3_along(d3_along(s->ns, right, -slope[0]), down, -slope[1]);
+        bent = dvec3_along(dvec3_along(s->ns, right, -slope[0]), down, -slope[1]);
     }
     s->ns = d3_unit_or(bent, s->ns);
 }

@@ -103,7 +103,7 @@ static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
 static struct ray beyond(const struct ray *ray, const struct crossing *c, struct dvec3 dir,
                          struct dvec3 weight, uint32_t kind)
 {
-    return (struct ray){.origin = d3_along(c->p, c->ng, -c->room),
+    return (struct ray){.origin = dvec3_along(c->p, c->ng, -c->room),
                         .dir = dir,
                         .weight = weight,
                         .media = ray->media,
@@ -138,7 +138,7 @@ static bool push_reflected(struct tracer *tracer, const struct ray *ray, const s
     struct dvec3 dir = optics_reflect(ray->dir, s->ns);
     if (dvec3_dot(dir, s->ng) <= 0.0)
         dir = optics_reflect(ray->dir, s->ng);
-    const struct ray child = {.origin = d3_along(s->p, s->ng, s->room),
+    const struct ray child = {.origin = dvec3_along(s->p, s->ng, s->room),
                               .dir = d3_unit_or(dir, s->ng),
                               .weight =
                                   d3_scale(d3_times(ray->weight, o->reflected), 1.0 - o->straight),

@@ -32,12 +32,6 @@ static inline struct dvec3 d3_scale(struct dvec3 a, double s)
     return d3(a.x * s, a.y * s, a.z * s);
 }
 
-/* a + b s */
-static inline struct dvec3 d3_along(struct dvec3 a, struct dvec3 b, double s)
-{
-    return d3(a.x + b.x * s, a.y + b.y * s, a.z + b.z * s);
-}
-
 /* By components, as colours are. */
 static inline struct dvec3 d3_times(struct dvec3 a, struct dvec3 b)
 {
@@ -46,7 +40,7 @@ static inline struct dvec3 d3_times(struct dvec3 a, struct dvec3 b)
 
 static inline struct dvec3 d3_mix(struct dvec3 a, struct dvec3 b, double part)
 {
-    return d3_along(d3_scale(a, 1.0 - part), b, part);
+    return dvec3_along(d3_scale(a, 1.0 - part), b, part);
 }
 
 static inline double d3_largest(struct dvec3 a)

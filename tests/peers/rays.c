@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/vec.h"
 #include "peers.h"
 
 static void print_log(void *user, whit_log_level level, const char *message)
@@ -67,12 +68,6 @@ struct view {
     bool parallel;
 };
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; ++k)
-        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static void scale_to(double v[3], double length)
 {
     double size = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -89,8 +84,8 @@ static struct view view_of(const struct scene_camera *camera)
     }
     scale_to(view.forward, 1.0);
     double half = view.parallel ? 0.5 * (double)camera->height : tan(0.5 * (double)camera->fov_y);
-    cross(view.forward, camera->up, view.right);
-    cross(view.right, view.forward, view.up);
+    double3_cross(view.forward, camera->up, view.right);
+    double3_cross(view.right, view.forward, view.up);
     scale_to(view.right, half * 16.0 / 9.0);
     scale_to(view.up, half);
     return view;

@@ -12,18 +12,6 @@ static struct world sphere_world(const struct affine *matrices, uint32_t count)
     return world_of(scene, (struct accel_params){0});
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* A corner, and the normal on the side of the instance's, of a triangle placed in double. */
 static void world_plane(const struct scene *scene, const struct affine *matrix, uint32_t primitive,
                         double at[3], double normal[3])
@@ -39,7 +27,7 @@ static void world_plane(const struct scene *scene, const struct affine *matrix, 
         e1[i] = v[1][i] - v[0][i];
         e2[i] = v[2][i] - v[0][i];
     }
-    cross(e1, e2, normal);
+    double3_cross(e1, e2, normal);
     for (int i = 0; i < 3 && affine_determinant(matrix) < 0.0; ++i)
         normal[i] = -normal[i];
 }
@@ -91,11 +79,12 @@ static struct errors measure(const struct affine *matrix, uint32_t numerics)
             d[k] = (double)ray.dir[k];
             to[k] = at[k] - (double)ray.origin[k];
         }
-        double t = dot(to, normal) / dot(d, normal), off = fabs((double)hit.t - t) / t;
+        double t = double3_dot(to, normal) / double3_dot(d, normal),
+               off = fabs((double)hit.t - t) / t;
         errors.t_mean += off;
         errors.t_max = fmax(errors.t_max, off);
-        cross(ng, normal, across);
-        double angle = atan2(sqrt(dot(across, across)), dot(ng, normal));
+        double3_cross(ng, normal, across);
+        double angle = atan2(sqrt(double3_dot(across, across)), double3_dot(ng, normal));
         errors.normal_max = fmax(errors.normal_max, angle);
         ++errors.met;
     }

@@ -27,13 +27,6 @@ struct views {
     double rays[SIDES]; /* a pixel, of all kinds */
 };
 
-static void make_unit(double v[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; ++k)
-        v[k] /= length;
-}
-
 /* The scene's first camera as a pinhole. */
 static whit_camera camera_of(const whit_camera_info *from)
 {
@@ -69,9 +62,9 @@ static whit_camera camera_of_tile(const struct views *views, uint32_t index)
     double forward[3], right[3], up[3];
     for (int k = 0; k < 3; ++k)
         forward[k] = camera.target[k] - camera.eye[k];
-    make_unit(forward);
+    double3_unit(forward);
     double3_cross(forward, camera.up, right);
-    make_unit(right);
+    double3_unit(right);
     double3_cross(right, forward, up);
     for (int k = 0; k < 3; ++k)
         camera.target[k] = camera.eye[k] + forward[k] + right[k] * x + up[k] * y;

@@ -7,37 +7,7 @@
 #include "base/random.h"
 #include "base/vec.h"
 
-struct vector {
-    double x, y, z;
-};
-
-static struct vector make(const double v[3])
-{
-    return (struct vector){v[0], v[1], v[2]};
-}
-
-static struct vector add(struct vector a, struct vector b, double times)
-{
-    return (struct vector){a.x + b.x * times, a.y + b.y * times, a.z + b.z * times};
-}
-
-static double dot(struct vector a, struct vector b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct vector cross(struct vector a, struct vector b)
-{
-    return (struct vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-static struct vector unit(struct vector a)
-{
-    double length = sqrt(dot(a, a));
-    return length > 0.0 ? (struct vector){a.x / length, a.y / length, a.z / length} : a;
-}
-
-static whit_ray make_ray(struct vector origin, struct vector dir, double t_min, double t_max)
+static whit_ray make_ray(struct dvec3 origin, struct dvec3 dir, double t_min, double t_max)
 {
     return (whit_ray){
         .origin = {(float)origin.x, (float)origin.y, (float)origin.z},
@@ -60,32 +30,32 @@ static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
 /* ---- Primary ---- */
 
 struct view {
-    struct vector eye, right, up, ahead; /* right and up: half the picture, at `ahead` */
+    struct dvec3 eye, right, up, ahead; /* right and up: half the picture, at `ahead` */
     bool parallel, panorama;
 };
 
 static struct view camera_view(const whit_camera_info *camera, double aspect)
 {
-    struct view view = {.eye = make(camera->eye)};
-    view.ahead = unit(add(make(camera->target), view.eye, -1.0));
-    view.right = unit(cross(view.ahead, make(camera->up)));
-    view.up = cross(view.right, view.ahead);
+    struct view view = {.eye = dvec3_load(camera->eye)};
+    view.ahead = dvec3_unit(dvec3_along(dvec3_load(camera->target), view.eye, -1.0));
+    view.right = dvec3_unit(dvec3_cross(view.ahead, dvec3_load(camera->up)));
+    view.up = dvec3_cross(view.right, view.ahead);
     view.parallel = strcmp(camera->kind, "orthographic") == 0;
     view.panorama = strcmp(camera->kind, "panorama") == 0;
     if (view.panorama)
         return view;
     double half = view.parallel ? 0.5 * camera->height : tan(camera->fov_y_degrees * PI / 360.0);
-    view.right = add((struct vector){0, 0, 0}, view.right, half * aspect);
-    view.up = add((struct vector){0, 0, 0}, view.up, half);
+    view.right = dvec3_along((struct dvec3){0, 0, 0}, view.right, half * aspect);
+    view.up = dvec3_along((struct dvec3){0, 0, 0}, view.up, half);
     return view;
 }
 
 static whit_ray panorama_ray(const struct view *view, double x, double y)
 {
     double longitude = x * PI, latitude = y * 0.5 * PI;
-    struct vector dir = add((struct vector){0, 0, 0}, view->up, sin(latitude));
-    dir = add(dir, view->ahead, cos(latitude) * cos(longitude));
-    dir = add(dir, view->right, cos(latitude) * sin(longitude));
+    struct dvec3 dir = dvec3_along((struct dvec3){0, 0, 0}, view->up, sin(latitude));
+    dir = dvec3_along(dir, view->ahead, cos(latitude) * cos(longitude));
+    dir = dvec3_along(dir, view->right, cos(latitude) * sin(longitude));
     return make_ray(view->eye, dir, 0.0, INFINITY);
 }
 
@@ -94,10 +64,11 @@ static whit_ray camera_ray(const struct view *view, double x, double y)
 {
     if (view->panorama)
         return panorama_ray(view, x, y);
-    struct vector aside = add(add((struct vector){0, 0, 0}, view->right, x), view->up, y);
+    struct dvec3 aside =
+        dvec3_along(dvec3_along((struct dvec3){0, 0, 0}, view->right, x), view->up, y);
     if (view->parallel)
-        return make_ray(add(view->eye, aside, 1.0), view->ahead, 0.0, INFINITY);
-    return make_ray(view->eye, add(view->ahead, aside, 1.0), 0.0, INFINITY);
+        return make_ray(dvec3_along(view->eye, aside, 1.0), view->ahead, 0.0, INFINITY);
+    return make_ray(view->eye, dvec3_along(view->ahead, aside, 1.0), 0.0, INFINITY);
 }
 
 /* Ray `i` goes through this pixel: line by line, or by tiles of 8x8, and in these by 4x2 pixels,
@@ -142,7 +113,7 @@ whit_result study_primary_rays(struct study *study)
 static const double LEAVE = 1e-4;
 
 struct surface {
-    struct vector point, normal; /* on the side the ray came from */
+    struct dvec3 point, normal; /* on the side the ray came from */
 };
 
 static struct surface surface_at(const whit_ray *ray, const whit_hit *hit)
@@ -151,9 +122,10 @@ static struct surface surface_at(const whit_ray *ray, const whit_hit *hit)
                               (double)ray->origin[2]};
     const double along[3] = {(double)ray->dir[0], (double)ray->dir[1], (double)ray->dir[2]};
     const double across[3] = {(double)hit->ng[0], (double)hit->ng[1], (double)hit->ng[2]};
-    struct vector dir = make(along), normal = unit(make(across));
-    struct surface surface = {.point = add(make(origin), dir, (double)hit->t)};
-    surface.normal = add((struct vector){0, 0, 0}, normal, dot(dir, normal) > 0.0 ? -1.0 : 1.0);
+    struct dvec3 dir = dvec3_load(along), normal = dvec3_unit(dvec3_load(across));
+    struct surface surface = {.point = dvec3_along(dvec3_load(origin), dir, (double)hit->t)};
+    surface.normal =
+        dvec3_along((struct dvec3){0, 0, 0}, normal, dvec3_dot(dir, normal) > 0.0 ? -1.0 : 1.0);
     return surface;
 }
 
@@ -163,10 +135,11 @@ static whit_ray shadow_ray(const whit_scene *scene, const struct surface *surfac
     whit_light_info info;
     whit_scene_get_light(scene, light, &info);
     if (info.kind[0] == 'd') {
-        struct vector dir = unit(make(info.direction));
-        return make_ray(surface->point, add((struct vector){0, 0, 0}, dir, -size), LEAVE, INFINITY);
+        struct dvec3 dir = dvec3_unit(dvec3_load(info.direction));
+        return make_ray(surface->point, dvec3_along((struct dvec3){0, 0, 0}, dir, -size), LEAVE,
+                        INFINITY);
     }
-    struct vector dir = add(make(info.position), surface->point, -1.0);
+    struct dvec3 dir = dvec3_along(dvec3_load(info.position), surface->point, -1.0);
     return make_ray(surface->point, dir, LEAVE, 1.0 - LEAVE);
 }
 
@@ -178,13 +151,13 @@ double study_random(uint64_t index)
 
 static whit_ray diffuse_ray(const struct surface *surface, uint64_t index, double size)
 {
-    struct vector n = surface->normal;
-    struct vector other = fabs(n.x) < 0.5 ? (struct vector){1, 0, 0} : (struct vector){0, 1, 0};
-    struct vector a = unit(cross(n, other)), b = cross(n, a);
+    struct dvec3 n = surface->normal;
+    struct dvec3 other = fabs(n.x) < 0.5 ? (struct dvec3){1, 0, 0} : (struct dvec3){0, 1, 0};
+    struct dvec3 a = dvec3_unit(dvec3_cross(n, other)), b = dvec3_cross(n, a);
     double square = study_random(2 * index), angle = 2.0 * PI * study_random(2 * index + 1);
-    struct vector dir = add((struct vector){0, 0, 0}, n, sqrt(1.0 - square) * size);
-    dir = add(dir, a, sqrt(square) * cos(angle) * size);
-    dir = add(dir, b, sqrt(square) * sin(angle) * size);
+    struct dvec3 dir = dvec3_along((struct dvec3){0, 0, 0}, n, sqrt(1.0 - square) * size);
+    dir = dvec3_along(dir, a, sqrt(square) * cos(angle) * size);
+    dir = dvec3_along(dir, b, sqrt(square) * sin(angle) * size);
     return make_ray(surface->point, dir, LEAVE, INFINITY);
 }
 
@@ -192,8 +165,8 @@ double study_scene_size(const whit_scene *scene)
 {
     whit_scene_info info;
     whit_scene_get_info(scene, &info);
-    struct vector across = add(make(info.hi), make(info.lo), -1.0);
-    double size = sqrt(dot(across, across));
+    struct dvec3 across = dvec3_along(dvec3_load(info.hi), dvec3_load(info.lo), -1.0);
+    double size = sqrt(dvec3_dot(across, across));
     return info.hi[0] >= info.lo[0] && size > 0.0 ? size : 1.0;
 }
 
@@ -206,8 +179,8 @@ whit_ray study_bounce_ray(const whit_ray *ray, const whit_hit *hit, uint64_t ind
 whit_ray study_light_ray(const double light[3], const whit_ray *ray, const whit_hit *hit)
 {
     struct surface surface = surface_at(ray, hit);
-    struct vector from = make(light);
-    return make_ray(from, add(surface.point, from, -1.0), 0.0, 1.0 - LEAVE);
+    struct dvec3 from = dvec3_load(light);
+    return make_ray(from, dvec3_along(surface.point, from, -1.0), 0.0, 1.0 - LEAVE);
 }
 
 whit_result study_secondary_rays(struct study *study, const whit_hit *hits)
