@@ -19,7 +19,6 @@
    is under the validation layers, if they are asked for; the others are not, unless --validated
    says so. */
 #define _GNU_SOURCE
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <glob.h>
@@ -32,23 +31,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <jansson.h>
+#include "judge.h"
 
-#include "fault.h"
-
-enum { OUTPUTS_MAX = 4, FAULTS_MAX = 8, TEXT_MAX = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
-/* An interrupted program ends within that time, by its timer if not by itself. */
-enum { GRACE_MS = 200 };
-static const char old_text[] = "old\n";
-
-struct fault {
-    const char *name;
-    uint32_t calls, event; /* as of struct fault_shared */
-    int code, then;
-    int expect;      /* the exit code; not where it goes well nevertheless */
-    const char *say; /* part of its message, if not what --say gives */
-    bool at_once;    /* The program ends without giving back what it holds. */
-};
+enum { TEXT_MAX = 1 << 16, RUN_LIMIT_S = 120, SHOWN = 8 };
 
 static const struct fault faults[] = {
     {"memory", FAULT_CALLS_MEMORY, FAULT_FAILS, 0, 0, 2, NULL, false},
@@ -77,53 +62,13 @@ static const struct fault faults[] = {
     {"limit-late", FAULT_CALLS_ALL, FAULT_CLOCK, 0, SIGALRM, 5, "time limit", true},
 };
 
-struct content {
-    char *data;
-    size_t bytes;
-};
-
-struct sweep {
-    struct fault_shared *shared;
-    int shared_fd;
-    const char *inject, *say;
-    const char *outputs[OUTPUTS_MAX];
-    struct content whole[OUTPUTS_MAX]; /* of the run without a fault */
-    uint32_t output_count;
-    bool same_stdout;      /* what is printed is an output too */
-    bool pictures;         /* it prints states of the viewer: see judge_states */
-    bool figures, reports; /* what it measures is other in each run: see is_whole */
-    bool may_leak, validated;
-    bool cold; /* Each run has a cache folder of its own, which is empty at first. */
-    struct content printed;
-    const struct fault *faults[FAULTS_MAX], *fault; /* fault: of this run */
-    uint32_t fault_count;
-    uint32_t max_runs, every, shown, max_submits, step_ms;
-    char **command;
-    uint32_t runs, fired, failed, fine, said, defects; /* said: fine, but a picture is missing */
-    uint32_t kept;    /* reports of what was measured before the end */
-    uint32_t left;    /* killed runs that left an unfinished file */
-    uint32_t submits; /* the most that a run had after its event */
-};
-
-/* The signal that ends the program without a word; 0: it exits. */
-static int deadly(const struct fault *fault)
-{
-    bool is_deadly = fault->code == SIGKILL || fault->code == SIGPIPE;
-    return is_deadly && fault->event == FAULT_SIGNAL ? fault->code : 0;
-}
-
-static bool is_interrupt(const struct fault *fault)
-{
-    return fault->event == FAULT_SIGNAL && fault->code != SIGSEGV && !deadly(fault);
-}
-
-static void stop(const char *what)
+void sweep_stop(const char *what)
 {
     fprintf(stderr, "fault_sweep: %s: %s\n", what, strerror(errno));
     exit(2);
 }
 
-static struct content read_whole(const char *path)
+struct content sweep_read(const char *path)
 {
     struct content content = {NULL, 0};
     FILE *stream = fopen(path, "rb");
@@ -132,7 +77,7 @@ static struct content read_whole(const char *path)
         if (content.bytes + TEXT_MAX > capacity)
             content.data = realloc(content.data, capacity += 4 * TEXT_MAX);
         if (!content.data)
-            stop(path);
+            sweep_stop(path);
         got = fread(content.data + content.bytes, 1, TEXT_MAX - 1, stream);
         content.bytes += got;
         content.data[content.bytes] = '\0';
@@ -142,24 +87,19 @@ static struct content read_whole(const char *path)
     return content;
 }
 
-static bool same(const struct content *a, const struct content *b)
-{
-    return a->data && b->data && a->bytes == b->bytes && memcmp(a->data, b->data, a->bytes) == 0;
-}
-
 static void lay_out(const struct sweep *sweep)
 {
     for (uint32_t i = 0; i < sweep->output_count; ++i) {
         FILE *stream = fopen(sweep->outputs[i], "wb");
-        if (!stream || fputs(old_text, stream) == EOF || fclose(stream) != 0)
-            stop(sweep->outputs[i]);
+        if (!stream || fputs(OLD_TEXT, stream) == EOF || fclose(stream) != 0)
+            sweep_stop(sweep->outputs[i]);
     }
 }
 
 static void empty_cache(const struct sweep *sweep)
 {
     if (sweep->cold && system("rm -rf ../cache && mkdir ../cache") != 0)
-        stop("../cache");
+        sweep_stop("../cache");
 }
 
 static void run_child(const struct sweep *sweep, bool validated)
@@ -208,259 +148,12 @@ static int run_once(struct sweep *sweep, const struct fault *fault, uint32_t at,
     memset(shared->callers, 0, sizeof shared->callers);
     pid_t pid = fork();
     if (pid < 0)
-        stop("fork");
+        sweep_stop("fork");
     if (pid == 0)
         run_child(sweep, validated);
     if (waitpid(pid, &status, 0) != pid)
-        stop("waitpid");
+        sweep_stop("waitpid");
     return status;
-}
-
-static bool is_output(const struct sweep *sweep, const char *name)
-{
-    for (uint32_t i = 0; i < sweep->output_count; ++i)
-        if (strcmp(sweep->outputs[i], name) == 0)
-            return true;
-    return false;
-}
-
-/* The name of a file that should not be there; removes it. */
-static bool find_stray(const struct sweep *sweep, char *name, size_t name_bytes)
-{
-    bool found = false;
-    DIR *folder = opendir(".");
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0 ||
-            is_output(sweep, entry->d_name))
-            continue;
-        snprintf(name, name_bytes, "%s", entry->d_name);
-        unlink(entry->d_name);
-        found = true;
-    }
-    if (folder)
-        closedir(folder);
-    return found;
-}
-
-static uint32_t count_of(const char *text, const char *part)
-{
-    uint32_t count = 0;
-    for (const char *at = text; (at = strstr(at, part)); ++at)
-        ++count;
-    return count;
-}
-
-/* The message has what the fault or the sweep wants it to say. */
-static bool says_why(const struct sweep *sweep, const char *errors)
-{
-    const char *say = sweep->fault->say;
-    return (!say && !sweep->say) || (say && strcasestr(errors, say)) ||
-           (sweep->say && strcasestr(errors, sweep->say));
-}
-
-/* What is wrong with how it ended; NULL: nothing. */
-static const char *judge_end(const struct sweep *sweep, int status, const char *errors)
-{
-    static char text[128];
-    const struct fault *fault = sweep->fault;
-    bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    text[0] = '\0';
-    if (WIFSIGNALED(status) && WTERMSIG(status) == deadly(fault) && !errors[0])
-        return NULL;
-    if (WIFSIGNALED(status))
-        snprintf(text, sizeof text, "it died of signal %d", WTERMSIG(status));
-    else if (!fine && WEXITSTATUS(status) != fault->expect)
-        snprintf(text, sizeof text, "exit code %d", WEXITSTATUS(status));
-    if (text[0])
-        return text;
-    uint32_t interrupts = count_of(errors, "whit: interrupted, ");
-    uint32_t reasons = count_of(errors, "whit: error: ") + interrupts;
-    bool second = fault->then == SIGINT; /* says nothing, or what the first one had said */
-    bool right = fine ? reasons == 0 : reasons == 1 || (second && reasons == 0);
-    if (!right || (!fine && is_interrupt(fault) && interrupts != reasons) ||
-        (!fine && !says_why(sweep, errors)))
-        snprintf(text, sizeof text, "%u errors, exit code %d", reasons, WEXITSTATUS(status));
-    return text[0] ? text : NULL;
-}
-
-/* What is wrong with a run; NULL: nothing. */
-static const char *judge(const struct sweep *sweep, int status, const char *errors)
-{
-    static char text[512];
-    char stray[256];
-    struct fault_shared *shared = sweep->shared;
-    uint32_t submits = atomic_load(&shared->submits_later);
-    bool is_signal = is_interrupt(sweep->fault) && atomic_load(&shared->fired) > 0;
-    const char *end = judge_end(sweep, status, errors);
-    if (find_stray(sweep, stray, sizeof stray))
-        snprintf(text, sizeof text, "the file %s is left", stray);
-    else if (end)
-        return end;
-    else if (shared->live != 0 && !sweep->may_leak && !(shared->live < 0 && sweep->fault->at_once))
-        snprintf(text, sizeof text, "%lld blocks were not given back", (long long)shared->live);
-    else if (is_signal && (shared->timer_ms == 0 || shared->timer_ms > GRACE_MS) && !sweep->reports)
-        snprintf(text, sizeof text, "it has %u ms to end by itself", shared->timer_ms);
-    else if (submits > sweep->max_submits)
-        snprintf(text, sizeof text, "it went on for %u submissions", submits);
-    else
-        return NULL;
-    return text;
-}
-
-/* The states of a viewer, which are JSON one behind the other, up to where they no longer are. */
-static json_t *read_states(const struct content *printed)
-{
-    json_t *states = json_array(), *state;
-    json_error_t end = {.position = 0};
-    for (size_t at = 0; at < printed->bytes; at += (size_t)end.position) {
-        state = json_loadb(printed->data + at, printed->bytes - at, JSON_DISABLE_EOF_CHECK, &end);
-        if (!state)
-            break;
-        json_array_append_new(states, state);
-    }
-    return states;
-}
-
-static bool same_field(const json_t *a, const json_t *b, const char *name)
-{
-    return json_equal(json_object_get(a, name), json_object_get(b, name));
-}
-
-static bool same_picture(const json_t *a, const json_t *b)
-{
-    a = json_object_get(a, "frame");
-    b = json_object_get(b, "frame");
-    return same_field(a, b, "ids") && same_field(a, b, "pixels");
-}
-
-/* Something is said in the window that is not said without a fault. */
-static bool is_said(const json_t *whole, const json_t *now, const char *name)
-{
-    return json_string_length(json_object_get(now, name)) > 0 && !same_field(whole, now, name);
-}
-
-/* Each state has the picture that it has without a fault, or the window says why not. */
-static const char *judge_states(const struct sweep *sweep, const struct content *printed,
-                                bool *said)
-{
-    json_t *whole = read_states(&sweep->printed), *now = read_states(printed);
-    size_t count = json_array_size(whole);
-    const char *defect = NULL;
-    if (count == 0 || json_array_size(now) != count)
-        defect = "a state is missing";
-    for (size_t i = 0; i < count && !defect; ++i) {
-        const json_t *a = json_array_get(whole, i), *b = json_array_get(now, i);
-        bool shown = same_picture(a, b);
-        if (!shown && !is_said(a, b, "error") && !is_said(a, b, "toast"))
-            defect = "it shows something else and does not say why";
-        *said |= !shown;
-    }
-    json_decref(whole);
-    json_decref(now);
-    return defect;
-}
-
-/* Whether it is a report, which says of itself whether it is complete. */
-static bool read_report(const struct content *output, bool *complete)
-{
-    json_t *report = output->data ? json_loadb(output->data, output->bytes, 0, NULL) : NULL;
-    const json_t *says = json_object_get(report, "complete");
-    bool is_report = json_is_boolean(says);
-    *complete = json_is_true(says);
-    json_decref(report);
-    return is_report;
-}
-
-static bool is_of_number(char letter)
-{
-    return letter && strchr("0123456789.-+e", letter);
-}
-
-/* Whether two texts are the same but for their numbers, which may be times. */
-static bool same_words(const struct content *a, const struct content *b)
-{
-    const char *left = a->data, *right = b->data;
-    while (left && right && (left[0] || right[0])) {
-        while (is_of_number(left[0]))
-            ++left;
-        while (is_of_number(right[0]))
-            ++right;
-        if (left[0] != right[0])
-            return false;
-        left += left[0] != '\0';
-        right += right[0] != '\0';
-    }
-    return left && right;
-}
-
-/* What an output was without a fault; of reports one that is complete, or `part` of one. */
-static bool is_whole(const struct sweep *sweep, uint32_t output, const struct content *now,
-                     bool *part)
-{
-    bool complete = false;
-    *part = false;
-    if (sweep->figures)
-        return same_words(now, &sweep->whole[output]);
-    if (!sweep->reports)
-        return same(now, &sweep->whole[output]);
-    *part = read_report(now, &complete) && !complete;
-    return complete;
-}
-
-/* What it says of how much was written is so; NULL if it is. A program that ends at once may have
-   put a frame in its place that it has not counted. */
-static const char *judge_words(const struct sweep *sweep, const char *errors, uint32_t new_count)
-{
-    unsigned done, count;
-    const char *at = strstr(errors, " of ");
-    if (strstr(errors, "nothing was written") && new_count > 0)
-        return "it says that nothing was written";
-    while (at && at > errors && at[-1] >= '0' && at[-1] <= '9')
-        --at;
-    if (!at || sscanf(at, "%u of %u", &done, &count) != 2)
-        return NULL;
-    if (strstr(errors, "settings were measured") && (done == 0 || new_count == 0))
-        return "it says that settings were measured";
-    if (strstr(errors, "frames were written") && done != new_count &&
-        !(sweep->fault->at_once && done + 1 == new_count))
-        return "it does not say how many frames were written";
-    return NULL;
-}
-
-static const char *judge_outputs(struct sweep *sweep, bool fine, const char *errors)
-{
-    static char text[512];
-    struct content old = {(char *)(uintptr_t)old_text, sizeof old_text - 1};
-    uint32_t new_count = 0;
-    bool kept = false;
-    text[0] = '\0';
-    for (uint32_t i = 0; i < sweep->output_count; ++i) {
-        struct content now = read_whole(sweep->outputs[i]);
-        bool part, whole = is_whole(sweep, i, &now, &part);
-        if (!whole && (fine || (!part && !same(&now, &old))))
-            snprintf(text, sizeof text, "%s is neither the old one nor whole", sweep->outputs[i]);
-        new_count += whole || part;
-        kept = kept || part;
-        free(now.data);
-    }
-    const char *words = judge_words(sweep, errors, new_count);
-    if (words)
-        snprintf(text, sizeof text, "%s, and %u outputs are new", words, new_count);
-    struct content printed = read_whole("../stdout");
-    sweep->kept += kept;
-    if (kept && !(printed.data && strstr(printed.data, "not complete")))
-        snprintf(text, sizeof text, "it prints the report of a part as if it were whole");
-    if (kept && sweep->shared->timer_ms <= GRACE_MS)
-        snprintf(text, sizeof text, "it has %u ms to save a report", sweep->shared->timer_ms);
-    if (fine && sweep->same_stdout && !same(&printed, &sweep->printed))
-        snprintf(text, sizeof text, "it printed something else");
-    bool said = false;
-    const char *states = fine && sweep->pictures ? judge_states(sweep, &printed, &said) : NULL;
-    if (states)
-        snprintf(text, sizeof text, "%s: %.400s", states, printed.data);
-    sweep->said += said;
-    free(printed.data);
-    return text[0] ? text : NULL;
 }
 
 static void show(const struct sweep *sweep, uint32_t at, const char *defect, const char *errors)
@@ -497,11 +190,11 @@ static void check_run(struct sweep *sweep, const struct fault *fault, uint32_t a
     empty_cache(sweep);
     int status = run_once(sweep, fault, at, sweep->validated);
     const char *first = deadly(fault) == SIGKILL ? run_again(sweep, fault, &status) : NULL;
-    struct content errors = read_whole("../stderr");
+    struct content errors = sweep_read("../stderr");
     bool fired = atomic_load(&sweep->shared->fired) > 0;
     bool fine = WIFEXITED(status) && WEXITSTATUS(status) == 0;
     const char *text = errors.data ? errors.data : "";
-    const char *defect = first ? first : judge(sweep, status, text);
+    const char *defect = first ? first : judge_run(sweep, status, text);
     if (!defect)
         defect = judge_outputs(sweep, fine, text);
     /* In a child of the program the fault is not seen, but for what it makes the program say. */
@@ -532,12 +225,12 @@ static void run_without_fault(struct sweep *sweep)
 {
     empty_cache(sweep);
     int status = run_once(sweep, sweep->faults[0], 0, true);
-    struct content errors = read_whole("../stderr");
+    struct content errors = sweep_read("../stderr");
     const char *text = errors.data ? errors.data : "";
     for (uint32_t i = 0; i < sweep->output_count; ++i)
-        sweep->whole[i] = read_whole(sweep->outputs[i]);
-    sweep->printed = read_whole("../stdout");
-    const char *defect = judge(sweep, status, text);
+        sweep->whole[i] = sweep_read(sweep->outputs[i]);
+    sweep->printed = sweep_read("../stdout");
+    const char *defect = judge_run(sweep, status, text);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         defect = "it does not even work without a fault";
     if (!defect)
@@ -585,10 +278,10 @@ static void make_folder(char *folder)
 {
     char inner[64];
     if (!mkdtemp(folder))
-        stop(folder);
+        sweep_stop(folder);
     snprintf(inner, sizeof inner, "%s/work", folder);
     if (mkdir(inner, 0700) != 0 || chdir(inner) != 0)
-        stop(inner);
+        sweep_stop(inner);
 }
 
 static void remove_folder(const char *folder)
@@ -596,18 +289,18 @@ static void remove_folder(const char *folder)
     char command[64];
     snprintf(command, sizeof command, "rm -rf %s", folder);
     if (chdir("/") != 0 || system(command) != 0)
-        stop(folder);
+        sweep_stop(folder);
 }
 
 static void share(struct sweep *sweep)
 {
     sweep->shared_fd = memfd_create("fault", 0);
     if (sweep->shared_fd < 0 || ftruncate(sweep->shared_fd, sizeof *sweep->shared) != 0)
-        stop("memfd_create");
+        sweep_stop("memfd_create");
     void *memory =
         mmap(NULL, sizeof *sweep->shared, PROT_READ | PROT_WRITE, MAP_SHARED, sweep->shared_fd, 0);
     if (memory == MAP_FAILED)
-        stop("mmap");
+        sweep_stop("mmap");
     sweep->shared = memory;
 }
 
