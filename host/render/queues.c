@@ -50,10 +50,10 @@ static uint64_t ray_bytes(uint64_t rays)
     return rays / 2 * RAY_ROWS * 16;
 }
 
-static uint32_t own_rows(const whit_shader *shader)
+static uint32_t hook_rows(const whit_shader *shader)
 {
-    return (shader_has(shader, SHADER_HOOK_SURFACE) ? OWN_SURFACE_ROWS : 0) +
-           (shader_has(shader, SHADER_HOOK_SHADE) ? OWN_LIGHT_ROWS : 0);
+    return (shader_has(shader, SHADER_HOOK_SURFACE) ? HOOK_SURFACE_ROWS : 0) +
+           (shader_has(shader, SHADER_HOOK_SHADE) ? HOOK_LIGHT_ROWS : 0);
 }
 
 whit_result queues_create(struct target *target)
@@ -103,7 +103,8 @@ whit_result queues_create(struct target *target)
         {&queues->deferred,
          variant_has_deferred(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
-        {&queues->own, rays * own_rows(renderer->params.shader) * 16, loaded, "functions at hits"},
+        {&queues->hook_rows, rays * hook_rows(renderer->params.shader) * 16, loaded,
+         "functions at hits"},
         {&queues->shape_shadows,
          shader_has(renderer->params.shader, SHADER_HOOK_INTERSECT)
              ? (uint64_t)queues->lit_capacity * 2 * sizeof(uint32_t)
@@ -147,11 +148,11 @@ whit_result queues_grow(struct target *target)
 
 void queues_finish(struct queue_buffers *queues)
 {
-    struct buffer *all[] = {queues->own,      queues->shape_shadows, queues->generations,
-                            queues->empty,    queues->rays,          queues->hits,
-                            queues->lit,      queues->sums,          queues->hit_list,
-                            queues->cuts,     queues->cut_sums,      queues->kinds,
-                            queues->lit_list, queues->deferred};
+    struct buffer *all[] = {queues->hook_rows, queues->shape_shadows, queues->generations,
+                            queues->empty,     queues->rays,          queues->hits,
+                            queues->lit,       queues->sums,          queues->hit_list,
+                            queues->cuts,      queues->cut_sums,      queues->kinds,
+                            queues->lit_list,  queues->deferred};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);
     *queues = (struct queue_buffers){0};

@@ -35,8 +35,8 @@ struct queue_buffers {
     struct buffer *rays, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
     struct buffer
-        *deferred;      /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
-    struct buffer *own; /* of hits: what a user's surface() and shade() have said */
+        *deferred; /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
+    struct buffer *hook_rows;     /* of hits: what a user's surface() and shade() have said */
     struct buffer *shape_shadows; /* of lit hits, with a user's shape: two words each */
     struct buffer *kinds; /* RAY_*, with params.count; how far rays have come, for textures */
     uint32_t generation_count, ray_capacity, lit_capacity;

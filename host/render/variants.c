@@ -288,8 +288,8 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_AOVS, BINDING_STORAGE, pixels->aovs);
     bind(&bindings, BIND_VIEWS, BINDING_STORAGE, renderer->views.buffer);
     bind(&bindings, BIND_DISTANCES, BINDING_STORAGE, pixels->distances);
-    bind(&bindings, BIND_OWN_ROWS, BINDING_STORAGE, queues->own);
-    bind(&bindings, BIND_OWN_TEXELS, BINDING_TEXELS, queues->own);
+    bind(&bindings, BIND_HOOK_ROWS, BINDING_STORAGE, queues->hook_rows);
+    bind(&bindings, BIND_HOOK_TEXELS, BINDING_TEXELS, queues->hook_rows);
     bind(&bindings, BIND_SHAPE_SHADOWS, BINDING_STORAGE, queues->shape_shadows);
     bind(&bindings, BIND_CUT_SUMS, BINDING_STORAGE, queues->cut_sums);
     return bindings;

@@ -54,8 +54,8 @@
 #define BIND_VIEWS               39
 #define BIND_DISTANCES           40
 #define BIND_SHAPE_SHADOWS       41
-#define BIND_OWN_ROWS            42
-#define BIND_OWN_TEXELS          43
+#define BIND_HOOK_ROWS           42
+#define BIND_HOOK_TEXELS         43
 #define BIND_STAGES_COUNT        44
 
 #endif

@@ -11,8 +11,8 @@
 /* Rows of 16 bytes. */
 #define RAY_ROWS 4u /* origin, state; dir, record to skip; weight, its instance; media */
 #define LIT_ROWS 8u /* at most, see bind/lit.glsl */
-#define OWN_SURFACE_ROWS 3u /* of a hit that a user's surface() has changed */
-#define OWN_LIGHT_ROWS   1u /* of a hit whose light a user's shade() has said, behind these */
+#define HOOK_SURFACE_ROWS 3u /* of a hit that a user's surface() has changed */
+#define HOOK_LIGHT_ROWS   1u /* of a hit whose light a user's shade() has said, behind these */
 
 
 /* The sizes in rows of gpu_tally, gpu_generation and gpu_items. */

@@ -256,9 +256,9 @@ uint next_packet_ref(const uint mode, uint ref, uint base)
 // Traverses a mesh tree from `ref` on until REF_DONE, or until the record at `ref` is `deferred` for some
 // ray. Only packets of one ray a lane defer records.
 void walk_packet(const uint mode, float t_min, uint instance, uint base, inout uint ref,
-                 out bool own_deferred, out bool deferred)
+                 out bool lane_deferred, out bool deferred)
 {
-    own_deferred = false;
+    lane_deferred = false;
     deferred = false;
     do {
         do {
@@ -272,11 +272,11 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
                 EACH_RAY {
                     bool done = test_rows(mode, packet_ray(r), t_min, record, rows, instance,
                                           packet_skip[r].x, packet_skip[r].y, packet_hits[r],
-                                          own_deferred);
+                                          lane_deferred);
                     end_ray(done, r);
                 }
                 if (settles(mode))
-                    deferred = any_lane(own_deferred);
+                    deferred = any_lane(lane_deferred);
                 if (!deferred)
                     ref = next_packet_ref(mode, ref, base);
             }
@@ -287,7 +287,7 @@ void walk_packet(const uint mode, float t_min, uint instance, uint base, inout u
 }
 
 // Tests the record at `ref` in full for the rays that have deferred it, and goes on to the next.
-void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base, bool own_deferred,
+void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base, bool lane_deferred,
                          inout uint ref)
 {
     uint record = ref & BVH_FIRST_MASK;
@@ -295,9 +295,9 @@ void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base,
     Hit looked = packet_hits[0]; // all lanes look: what is fetched for all is fetched by some
     bool over = look_at_rows(mode, packet_rays[0], packet_origin[0], packet_dir[0], t_min, record,
                              rows, instance, packet_skip[0].x, packet_skip[0].y, looked);
-    if (own_deferred)
+    if (lane_deferred)
         packet_hits[0] = looked;
-    end_ray(own_deferred && over, 0u);
+    end_ray(lane_deferred && over, 0u);
     ref = next_packet_ref(mode, ref, base);
 }
 
@@ -305,10 +305,10 @@ void packet_mesh(const uint mode, float t_min, uint root)
 {
     uint ref = root;
     do {
-        bool own_deferred, deferred;
-        walk_packet(mode, t_min, 0u, 0u, ref, own_deferred, deferred);
+        bool lane_deferred, deferred;
+        walk_packet(mode, t_min, 0u, 0u, ref, lane_deferred, deferred);
         if (settles(mode) && deferred)
-            look_at_packet_leaf(mode, t_min, 0u, 0u, own_deferred, ref);
+            look_at_packet_leaf(mode, t_min, 0u, 0u, lane_deferred, ref);
     } while (settles(mode) && another_iteration(ref != REF_DONE));
     if (ref != REF_DONE)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
@@ -324,7 +324,7 @@ void packet_instances(const uint mode, float t_min, uint root)
 {
     PacketBounds bounds = packet_bounds;
     uint ref = root, mesh_ref = REF_DONE, base = 0u;
-    bool inside = false, own_deferred = false, deferred = false;
+    bool inside = false, lane_deferred = false, deferred = false;
     float world_size = packet_size, world_unit[SPEC_PACKET_RAYS];
     EACH_RAY {
         world_unit[r] = packet_unit[r];
@@ -345,7 +345,7 @@ void packet_instances(const uint mode, float t_min, uint root)
                     push_packet(REF_DONE, true);
                     base = packet_height;
                 }
-                walk_packet(mode, t_min, instance, base, mesh_ref, own_deferred, deferred);
+                walk_packet(mode, t_min, instance, base, mesh_ref, lane_deferred, deferred);
                 bool going = false;
                 EACH_RAY going = going || packet_hits[r].t >= 0.0;
                 bool ends = SPEC_NUMERICS == NUMERICS_EXACT || !finds_closest(mode);
@@ -369,7 +369,7 @@ void packet_instances(const uint mode, float t_min, uint root)
             packet_status |= STATUS_UNFINISHED_TRAVERSAL;
         inside = settles(mode);
         if (settles(mode) && deferred)
-            look_at_packet_leaf(mode, t_min, ref & BVH_FIRST_MASK, base, own_deferred, mesh_ref);
+            look_at_packet_leaf(mode, t_min, ref & BVH_FIRST_MASK, base, lane_deferred, mesh_ref);
         deferred = false;
     } while (settles(mode) && another_iteration(ref != REF_DONE));
     if (ref != REF_DONE)

@@ -7,7 +7,7 @@
 #define EACH_RAY [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++)
 
 // Where the lane's ray `r` is among those of its workgroup: those of a subgroup follow each other.
-uint own_place(uint r)
+uint lane_place(uint r)
 {
     uint lane = gl_LocalInvocationID.x;
     return SPEC_PACKET_RAYS == 1u ? lane : (lane / 8u * SPEC_PACKET_RAYS + r) * 8u + lane % 8u;

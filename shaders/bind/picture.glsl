@@ -26,7 +26,7 @@ gpu_view view; // of the slot in hand
 const uint BLOCK_PIXELS = 64u; // 8 x 8
 
 // Which item of the work this invocation takes; the last ones may be past its end.
-uint own_slot()
+uint invocation_slot()
 {
     uint group = gl_WorkGroupID.x;
     if (SPEC_INTERLEAVE != 0u) {

@@ -378,9 +378,9 @@ uint listed_item(uint place, uint each, uint capacity)
 }
 
 // The invocation's item `r` of that list.
-uint own_item(uint r, uint capacity)
+uint invocation_item(uint r, uint capacity)
 {
-    return listed_item(own_place(r), SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, capacity);
+    return listed_item(lane_place(r), SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, capacity);
 }
 
 // The invocation's item of the list of deferred rays, of kernels whose items are rays or that append nothing.
@@ -396,7 +396,7 @@ uint deferred_item(uint r)
 uint camera_item(uint r)
 {
     uint each = SPEC_GROUP_SIZE * SPEC_PACKET_RAYS;
-    uint at = own_slot() / SPEC_GROUP_SIZE * each + own_place(r);
+    uint at = invocation_slot() / SPEC_GROUP_SIZE * each + lane_place(r);
     is_back = SPEC_SEGMENTS == 2u && gl_WorkGroupID.x >= (gl_NumWorkGroups.x + 1u) / 2u;
     return !is_queue_full() && at < camera_ray_count() ? at : ITEM_NONE;
 }
@@ -406,7 +406,7 @@ uint traced_item(uint r)
 {
     if (is_primary())
         return camera_item(r);
-    uint item = own_item(r, chunk.ray_capacity);
+    uint item = invocation_item(r, chunk.ray_capacity);
     return item == ITEM_NONE ? ITEM_NONE : place_in_tile(item);
 }
 
@@ -507,10 +507,10 @@ uint reserve_rays(uint wanted, inout uint status)
     if (wanted == 0u)
         return HIT_NONE;
     uvec2 firsts = fetch_firsts(next);
-    uint own_end = at + wanted, own_room = generation_capacity() / SPEC_SEGMENTS;
+    uint segment_end = at + wanted, segment_room = generation_capacity() / SPEC_SEGMENTS;
     at += is_back ? firsts.y : firsts.x;
     uint room = is_back ? chunk.ray_capacity - middle_id() : middle_id();
-    if (at + wanted > room || own_end > own_room) {
+    if (at + wanted > room || segment_end > segment_room) {
         status |= STATUS_QUEUE_FULL;
         return HIT_NONE;
     }

@@ -421,7 +421,7 @@ bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
     bool at_exit = starts_at_exit(mode, p, chord, t_min);
     bool accepted = false, again = true;
     do {
-        bool own_turn = again;
+        bool lane_turn = again;
         again = false;
         Candidate m = meet_primitive(ray, t_min, p, chord, at_exit);
         bool open = SPEC_NUMERICS == NUMERICS_EXACT &&
@@ -438,7 +438,7 @@ bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
             p.is_sphere)
             uv = sphere_uv(dir_from_square(uv));
         bool refused;
-        if (own_turn) {
+        if (lane_turn) {
             accepted = accept_candidate(mode, m, uv, p.flags, p.r2.w, p.instance, p.index,
                                       skip_instance, skip_primitive, hit, refused);
             if (accepted)

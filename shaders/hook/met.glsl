@@ -8,9 +8,9 @@
 #include "../bind/optics.glsl"
 #include "../bind/queues.glsl"
 
-layout(set = 0, binding = BIND_OWN_ROWS, std430) buffer OwnRowBuffer { uvec4 own_rows[]; };
-layout(set = 0, binding = BIND_OWN_ROWS, std430) buffer WideOwnBuffer { u64vec2 wide_own[]; };
-layout(set = 0, binding = BIND_OWN_TEXELS) uniform usamplerBuffer own_texels;
+layout(set = 0, binding = BIND_HOOK_ROWS, std430) buffer HookRowBuffer { uvec4 hook_rows[]; };
+layout(set = 0, binding = BIND_HOOK_ROWS, std430) buffer WideHookBuffer { u64vec2 wide_hook_rows[]; };
+layout(set = 0, binding = BIND_HOOK_TEXELS) uniform usamplerBuffer hook_texels;
 
 struct Met {
     uint slot;
@@ -52,36 +52,36 @@ Met fetch_met(uint id, bool alive, bool counts, inout uint status)
 }
 
 // Rows that a hit has of what the user's functions make of it.
-const uint OWN_SURFACE = (SPEC_HOOKS & HOOK_SURFACE) != 0u ? OWN_SURFACE_ROWS : 0u;
-const uint OWN_ROWS = OWN_SURFACE + ((SPEC_HOOKS & HOOK_SHADE) != 0u ? OWN_LIGHT_ROWS : 0u);
+const uint SURFACE_ROWS = (SPEC_HOOKS & HOOK_SURFACE) != 0u ? HOOK_SURFACE_ROWS : 0u;
+const uint HOOK_ROWS = SURFACE_ROWS + ((SPEC_HOOKS & HOOK_SHADE) != 0u ? HOOK_LIGHT_ROWS : 0u);
 
-void store_own_row(uint row, vec4 value)
+void store_hook_row(uint row, vec4 value)
 {
     if (SPEC_WIDE_ROWS != 0u)
-        wide_own[row] = wide_row(floatBitsToUint(value));
+        wide_hook_rows[row] = wide_row(floatBitsToUint(value));
     else
-        own_rows[row] = floatBitsToUint(value);
+        hook_rows[row] = floatBitsToUint(value);
 }
 
-vec4 fetch_own_row(uint row)
+vec4 fetch_hook_row(uint row)
 {
     if (SPEC_LOAD_PATH == LOAD_TEXEL)
-        return uintBitsToFloat(texelFetch(own_texels, int(row)));
-    return uintBitsToFloat(own_rows[row]);
+        return uintBitsToFloat(texelFetch(hook_texels, int(row)));
+    return uintBitsToFloat(hook_rows[row]);
 }
 
 // What surface() has changed of the hit of ray `id`. `lost`: it gave no number.
 void store_changed(uint id, Surface s, bool lost)
 {
-    store_own_row(id * OWN_ROWS, vec4(s.ns, s.u));
-    store_own_row(id * OWN_ROWS + 1u, vec4(s.color, s.v));
-    store_own_row(id * OWN_ROWS + 2u, vec4(s.color_alpha, float(lost), 0.0, 0.0));
+    store_hook_row(id * HOOK_ROWS, vec4(s.ns, s.u));
+    store_hook_row(id * HOOK_ROWS + 1u, vec4(s.color, s.v));
+    store_hook_row(id * HOOK_ROWS + 2u, vec4(s.color_alpha, float(lost), 0.0, 0.0));
 }
 
 void fetch_changed(uint id, inout Surface s, out bool lost)
 {
-    vec4 r0 = fetch_own_row(id * OWN_ROWS), r1 = fetch_own_row(id * OWN_ROWS + 1u);
-    vec4 r2 = fetch_own_row(id * OWN_ROWS + 2u);
+    vec4 r0 = fetch_hook_row(id * HOOK_ROWS), r1 = fetch_hook_row(id * HOOK_ROWS + 1u);
+    vec4 r2 = fetch_hook_row(id * HOOK_ROWS + 2u);
     s.ns = r0.xyz;
     s.u = r0.w;
     s.color = r1.xyz;
@@ -91,14 +91,14 @@ void fetch_changed(uint id, inout Surface s, out bool lost)
 }
 
 // What shade() has said.
-void store_own_light(uint id, vec3 light)
+void store_hook_light(uint id, vec3 light)
 {
-    store_own_row(id * OWN_ROWS + OWN_SURFACE, vec4(light, 0.0));
+    store_hook_row(id * HOOK_ROWS + SURFACE_ROWS, vec4(light, 0.0));
 }
 
-vec3 fetch_own_light(uint id)
+vec3 fetch_hook_light(uint id)
 {
-    return fetch_own_row(id * OWN_ROWS + OWN_SURFACE).xyz;
+    return fetch_hook_row(id * HOOK_ROWS + SURFACE_ROWS).xyz;
 }
 
 bool is_catcher(Met met)

@@ -18,7 +18,7 @@ void main()
 {
     load_frame();
     begin_user();
-    uint item = own_item(0u, hit_capacity());
+    uint item = invocation_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
     uint id = fetch_listed_hit(alive ? item : 0u);
     id = alive ? id : 0u;

@@ -118,7 +118,7 @@ void main()
 #ifdef HOOKS
     begin_user();
 #endif
-    if (SPEC_SECONDARY != 0u && own_slot() == 0u)
+    if (SPEC_SECONDARY != 0u && invocation_slot() == 0u)
         generations[chunk.generation + 1u].firsts = firsts_behind();
     bool alive[SPEC_PACKET_RAYS];
     EACH_RAY {

@@ -36,7 +36,7 @@ void main()
 {
     load_frame();
     begin_user();
-    uint item = own_item(0u, hit_capacity());
+    uint item = invocation_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
     uint id = fetch_listed_hit(alive ? item : 0u);
     id = alive ? id : 0u;
@@ -52,7 +52,7 @@ void main()
         vec3 light = shade(met.s, o, -met.ray.dir);
         end_hook(true);
         if (alive)
-            store_own_light(id, light);
+            store_hook_light(id, light);
     }
     if (alive) {
         report_status(hook_status);

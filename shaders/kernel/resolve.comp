@@ -122,7 +122,7 @@ void main()
 {
     load_frame();
     bool done = is_tile_done();
-    uint item = is_primary() ? camera_item(0u) : own_item(0u, chunk.ray_capacity);
+    uint item = is_primary() ? camera_item(0u) : invocation_item(0u, chunk.ray_capacity);
     if (is_primary())
         resolve_pixel(done ? item : ITEM_NONE);
     else if (done && item != ITEM_NONE)

@@ -215,10 +215,10 @@ void ask_lights(bool alive, uint id, Met met, Optics o, bool catcher, inout uint
 }
 
 // What the surface sends to the eye before lights are asked, or by a function of a user all of it.
-vec3 own_light(uint id, Optics o)
+vec3 emitted_light(uint id, Optics o)
 {
     if ((SPEC_HOOKS & HOOK_SHADE) != 0u)
-        return fetch_own_light(id);
+        return fetch_hook_light(id);
     return o.unlit ? o.diffuse + o.emission : o.emission + o.ambient * frame.ambient;
 }
 
@@ -229,7 +229,7 @@ void main()
     begin_user();
 #endif
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
-    uint item = waited ? deferred_item(0u) : own_item(0u, hit_capacity());
+    uint item = waited ? deferred_item(0u) : invocation_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
     item = alive ? item : 0u;
     uint id = waited ? item : fetch_listed_hit(item);
@@ -252,7 +252,7 @@ void main()
         calls = call_through(met.ray, status);
         o.thin = false;
     }
-    vec3 own = own_light(id, o);
+    vec3 emitted = emitted_light(id, o);
     calls.lost = calls.lost || lost;
 #ifdef HOOKS
     status |= hook_status;
@@ -271,12 +271,12 @@ void main()
         has = send_calls(alive, met, o, calls, status);
     if (SPEC_PROBE != 0u && alive)
         probe_calls(id, met.ray, calls, has, !seen);
-    own *= met.ray.weight * (1.0 - o.straight);
+    emitted *= met.ray.weight * (1.0 - o.straight);
     bool some = has != 0u;
     has |= catcher && some ? SUM_IS_CATCHER : 0u;
-    own = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : own;
+    emitted = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : emitted;
     if (alive)
-        store_sum(id, calls.lost || (seen && !catcher) ? own : vec3(0.0), has);
+        store_sum(id, calls.lost || (seen && !catcher) ? emitted : vec3(0.0), has);
     if (CALLS_RAYS && alive && calls.cut > 0.0)
         count_cut(met.slot, calls);
     if (alive && catcher)

@@ -114,7 +114,7 @@ void main()
     bool alive[SPEC_PACKET_RAYS];
     uint item[SPEC_PACKET_RAYS];
     EACH_RAY {
-        item[r] = waited ? deferred_item(r) : own_item(r, chunk.lit_capacity);
+        item[r] = waited ? deferred_item(r) : invocation_item(r, chunk.lit_capacity);
         alive[r] = item[r] != ITEM_NONE;
         item[r] = alive[r] ? item[r] : 0u;
         uint lit = fetch_listed_lit(item[r]);

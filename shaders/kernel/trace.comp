@@ -143,7 +143,7 @@ void trace_beam()
     vec3 eye, first;
     float t_min = 0.0;
     EACH_RAY {
-        index[r] = gl_WorkGroupID.x * SPEC_GROUP_SIZE * SPEC_PACKET_RAYS + own_place(r);
+        index[r] = gl_WorkGroupID.x * SPEC_GROUP_SIZE * SPEC_PACKET_RAYS + lane_place(r);
         alive[r] = index[r] < batch.ray_count;
         gpu_ray ray = fetch_ray(alive[r] ? index[r] : 0u);
         if (r == 0u) {

@@ -86,7 +86,7 @@ mutation(ray_lost render_energy RED white_furnace)
 change(shaders/kernel/shade.comp [[    next++;]] [[]])
 
 mutation(overflow_unnoticed render_picture RED full_queues_end_in_smaller_tiles)
-change(shaders/bind/queues.glsl [[if (at + wanted > room || own_end > own_room) {]] [[if (false) {]])
+change(shaders/bind/queues.glsl [[if (at + wanted > room || segment_end > segment_room) {]] [[if (false) {]])
 
 mutation(sums_in_another_order render_probe RED rays_are_those_of_the_picture)
 change(shaders/kernel/resolve.comp [[own.rgb + child_sum(from.x) + straight + child_sum(from.z)]]
