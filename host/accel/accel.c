@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "base/threads.h"
+#include "scene/pose.h"
 
 enum {
     MESH_LARGE = 8192,   /* triangles from which a mesh is built by all threads */

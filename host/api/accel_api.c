@@ -6,6 +6,7 @@
 #include "accel/validate.h"
 #include "api/handles.h"
 #include "base/array.h"
+#include "scene/pose.h"
 #include "twin/report.h"
 
 #ifdef NDEBUG

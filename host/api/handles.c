@@ -2,6 +2,8 @@
 #include "api/handles.h"
 
 #include "accel/flat_choice.h"
+#include "scene/effects.h"
+#include "scene/pose.h"
 
 whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out)
 {

@@ -6,6 +6,8 @@
 #include "api/handles.h"
 #include "base/threads.h"
 #include "image/edges.h"
+#include "scene/effects.h"
+#include "scene/pose.h"
 #include "twin/traverse.h"
 #include "whit/whit_program.h"
 

@@ -5,6 +5,8 @@
 #include "api/handles.h"
 #include "base/array.h"
 #include "base/vec.h"
+#include "scene/effects.h"
+#include "scene/pose.h"
 #include "scene/small.h"
 #include "scene/viewpoint.h"
 

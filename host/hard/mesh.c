@@ -6,6 +6,7 @@
 #include "accel/pose.h"
 #include "base/array.h"
 #include "hard/mesh.h"
+#include "scene/pose.h"
 
 static const struct hard_case cases[] = {
     {"sphere from inside", HARD_SPHERE, HARD_AIMED, 0, 1, false, false},

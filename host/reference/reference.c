@@ -8,6 +8,7 @@
 #include "base/color.h"
 #include "base/threads.h"
 #include "reference/tree.h"
+#include "scene/pose.h"
 
 enum { LIGHT_SAMPLES_DEFAULT = 16, BAND_ROWS = 16, BAND_ROWS_OF_THREAD = 4 };
 

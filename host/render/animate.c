@@ -5,6 +5,7 @@
 #include "render/frame_uniform.h"
 #include "render/upload.h"
 #include "render/variants.h"
+#include "scene/pose.h"
 
 /* Rebuilt trees are not equally deep at all times: a stack that has to grow grows by more than it
    has to, for a pipeline takes longer to compile than many a picture takes to render. */

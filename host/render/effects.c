@@ -2,6 +2,7 @@
 #include <stddef.h>
 
 #include "render/effects.h"
+#include "scene/effects.h"
 
 /* LIGHT_* of emitters that have an area: every kind but points, suns and spots. */
 #define AREA_LIGHT_BITS (255u & ~(1u << LIGHT_POINT | 1u << LIGHT_DIRECTIONAL | 1u << LIGHT_SPOT))

@@ -9,6 +9,7 @@
 #include "render/hooks.h"
 #include "render/pixels.h"
 #include "render/stages.h"
+#include "scene/effects.h"
 #include "shader/sliders.h"
 
 _Static_assert(DBG_CALLS == SHADER_DBG_MAX, "room for all of them");

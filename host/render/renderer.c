@@ -1,5 +1,11 @@
 /* A renderer from its making to its end. */
 #include "render/async.h"
+
+#include <stdlib.h>
+
+#include "accel/pose.h"
+#include "base/clock.h"
+#include "device/commands.h"
 #include "render/costs.h"
 #include "render/effects.h"
 #include "render/frame_uniform.h"
@@ -10,12 +16,8 @@
 #include "render/upload.h"
 #include "render/variants.h"
 #include "render/views.h"
-
-#include <stdlib.h>
-
-#include "accel/pose.h"
-#include "base/clock.h"
-#include "device/commands.h"
+#include "scene/effects.h"
+#include "scene/pose.h"
 
 whit_result render_no_memory(const struct renderer *renderer, const char *what)
 {

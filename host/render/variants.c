@@ -12,6 +12,7 @@
 #include "render/textures.h"
 #include "render/upload.h"
 #include "render/variants.h"
+#include "scene/effects.h"
 
 #include "kernels.h"
 

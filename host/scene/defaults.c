@@ -5,7 +5,10 @@
 
 #include "base/array.h"
 #include "base/vec.h"
+#include "scene/exposure.h"
 #include "scene/freeze.h"
+#include "scene/lit.h"
+#include "scene/pose.h"
 #include "scene/viewpoint.h"
 
 /* Where less than this share of what is seen gets light, whit adds some. */

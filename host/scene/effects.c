@@ -5,7 +5,7 @@
 
 #include "base/array.h"
 #include "base/text.h"
-#include "scene/scene.h"
+#include "scene/effects.h"
 
 static const char *const names[SCENE_EFFECT_COUNT] = {
     [SCENE_EFFECT_SHADOWS] = "shadows",

@@ -8,7 +8,9 @@
 #include "base/file.h"
 #include "base/same.h"
 #include "base/vec.h"
-#include "scene/freeze.h"
+#include "scene/exposure.h"
+#include "scene/lit.h"
+#include "scene/pose.h"
 
 #define PROBES      1024
 /* This share of the lit surface is to be at most that bright, for a white surface. */

@@ -7,6 +7,9 @@
 #include "base/array.h"
 #include "base/text.h"
 #include "base/vec.h"
+#include "scene/exposure.h"
+#include "scene/hash.h"
+#include "scene/pose.h"
 
 /* The same limit as in shaders/bind/light.glsl, which cuts off arriving light beyond it. */
 #define LIGHT_MAX 1e24f

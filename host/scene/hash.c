@@ -1,7 +1,7 @@
 /* The scene's hash: everything that a picture depends on, names and notes left out; and that of one
    of its records. */
 #include "base/hash.h"
-#include "scene/freeze.h"
+#include "scene/hash.h"
 
 struct hash {
     uint64_t value;

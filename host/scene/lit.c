@@ -9,7 +9,9 @@
 #include "base/color.h"
 #include "base/same.h"
 #include "base/vec.h"
-#include "scene/freeze.h"
+#include "scene/exposure.h"
+#include "scene/lit.h"
+#include "scene/pose.h"
 
 /* Rays of the picture; fewer where these tests of triangles are used up, but some. */
 enum { RAYS_MAX = FREEZE_SEEN_MAX, RAYS_MIN = 32 };

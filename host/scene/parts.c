@@ -6,7 +6,7 @@
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/path.h"
-#include "scene/freeze.h"
+#include "scene/hash.h"
 
 /* ---- Names ---- */
 

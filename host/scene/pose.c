@@ -5,7 +5,7 @@
 #include "base/array.h"
 #include "base/same.h"
 #include "base/text.h"
-#include "scene/scene.h"
+#include "scene/pose.h"
 
 /* An animated scale of zero (things that pop up or vanish) counts as this, so that the matrix keeps
    an inverse; nothing of that size is seen. */

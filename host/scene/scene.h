@@ -346,18 +346,6 @@ struct scene_pose {
     double lo[3], hi[3];          /* bounds of all instances; lo > hi when empty */
 };
 
-/* Whether floats have room for a transform of instances and its inverse. */
-bool scene_can_place(const struct affine *matrix);
-/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance cannot be placed at
-   that time (named in the log), WHIT_ERROR_MEMORY. */
-WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
-                                       struct scene_pose *pose);
-/* World bounds of what stands on floors, without these: all there is where there is nothing else.
- */
-void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose, double lo[3],
-                        double hi[3]);
-void scene_pose_finish(struct scene_pose *pose);
-
 /* Effects, and why the scene calls for them: the receipt of `whit scene` and the source of the
    kernel's specialization. */
 enum scene_effect {
@@ -410,21 +398,10 @@ struct scene_effects {
     bool on_triangles, on_spheres;         /* primitives that wear them */
 };
 
-const char *scene_effect_name(enum scene_effect effect);
-void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
-
 enum scene_materials {
     SCENE_MATERIALS_ALL,
     SCENE_MATERIALS_OPAQUE, /* nothing passes through them */
     SCENE_MATERIALS_GLASS,  /* the others */
 };
-/* The first material of that name, "": of any, that some primitive wears; SCENE_NONE: there is
- * none.
- */
-uint32_t scene_find_worn(const struct scene *scene, const char *name);
-
-/* Adds what these materials call for; gives how many of them some primitive wears. */
-uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
-                                      struct scene_effects *out);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "scene/pose.h"
 
 #define TRIANGLES_MAX 400000u
 #define MOMENTS       9     /* of an animation that the picture is fitted to */

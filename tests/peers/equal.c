@@ -13,6 +13,7 @@
 #include "load/load.h"
 #include "peers.h"
 #include "render/render.h"
+#include "scene/pose.h"
 
 struct options {
     uint64_t rays;

@@ -18,6 +18,7 @@
 #include "oracle/oracle.h"
 #include "peers.h"
 #include "render/render.h"
+#include "scene/pose.h"
 #include "twin/traverse.h"
 
 enum { CHUNK = 4096, HITS_THREADS = 2 };

@@ -20,6 +20,7 @@
 #include "accel/accel.h"
 #include "accel/extent.h"
 #include "random_fixture.h"
+#include "scene/pose.h"
 #include "scene/shapes.h"
 #include "twin/ray.h"
 #include "twin/traverse.h"

@@ -5,6 +5,7 @@
 #include "accel/pose.h"
 #include "accel/validate.h"
 #include "oracle/oracle.h"
+#include "scene/pose.h"
 #include "unit.h"
 
 static struct scene *new_scene(void)

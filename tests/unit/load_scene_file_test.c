@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "load/load.h"
+#include "scene/pose.h"
 #include "unit.h"
 
 #ifndef WHIT_SCENES_DIR

@@ -4,6 +4,7 @@
 
 #include "render/renderer.h"
 #include "render_fixture.h"
+#include "scene/pose.h"
 #include "twin/traverse.h"
 
 /* A vertex or a point of an edge of a random triangle in world space, where tests break. */

@@ -2,6 +2,7 @@
  * float. */
 #include "media_fixture.h"
 #include "reference_fixture.h"
+#include "scene/pose.h"
 #include "unit.h"
 
 static const double pi = 3.14159265358979323846;

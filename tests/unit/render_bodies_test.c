@@ -5,6 +5,7 @@
 #include "../random.h"
 #include "../scenes.h"
 #include "picture/bodies.h"
+#include "scene/pose.h"
 #include "unit.h"
 
 static struct scene_material glass(const char *name)

@@ -5,6 +5,7 @@
 #include "picture_fixture.h"
 #include "render/renderer.h"
 #include "render_scenes.h"
+#include "scene/effects.h"
 #include "unit.h"
 
 static const whit_renderer_params small = {.width = 24, .height = 18, .depth = 5};

@@ -1,6 +1,7 @@
 /* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
 #include "../cases.h"
 #include "ray_fixture.h"
+#include "scene/pose.h"
 #include "unit.h"
 
 #define RAYS cases_of(32000)

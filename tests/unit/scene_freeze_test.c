@@ -3,6 +3,8 @@
 
 #include "../scenes.h"
 #include "base/array.h"
+#include "scene/effects.h"
+#include "scene/pose.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
 #include "unit.h"

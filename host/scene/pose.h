@@ -1,0 +1,19 @@
+/* Scenes at a time. */
+#ifndef SCENE_POSE_H
+#define SCENE_POSE_H
+
+#include "scene/scene.h"
+
+/* Whether floats have room for a transform of instances and its inverse. */
+bool scene_can_place(const struct affine *matrix);
+/* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance cannot be placed at
+   that time (named in the log), WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
+                                       struct scene_pose *pose);
+/* World bounds of what stands on floors, without these: all there is where there is nothing else.
+ */
+void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose, double lo[3],
+                        double hi[3]);
+void scene_pose_finish(struct scene_pose *pose);
+
+#endif
