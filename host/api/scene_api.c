@@ -5,6 +5,7 @@
 #include "api/handles.h"
 #include "base/array.h"
 #include "base/vec.h"
+#include "load/scene_cameras.h"
 #include "scene/effects.h"
 #include "scene/pose.h"
 #include "scene/small.h"

@@ -7,6 +7,10 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "load/gltf_buffer.h"
+#include "load/gltf_geometry.h"
+#include "load/gltf_json.h"
+#include "load/gltf_nodes.h"
 #include "scene/afford.h"
 
 #define GLTF_LIMIT (UINT64_C(4) << 30)

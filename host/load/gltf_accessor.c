@@ -2,7 +2,9 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "load/gltf.h"
+#include "load/gltf_accessor.h"
+#include "load/gltf_buffer.h"
+#include "load/gltf_json.h"
 #include "scene/afford.h"
 
 #define OFFSET_LIMIT (UINT64_C(1) << 40)

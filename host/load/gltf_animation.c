@@ -4,7 +4,8 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "load/gltf.h"
+#include "load/gltf_accessor.h"
+#include "load/gltf_json.h"
 
 struct target {
     uint32_t node; /* of the file, or SCENE_NONE */

@@ -4,7 +4,8 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "load/gltf.h"
+#include "load/gltf_buffer.h"
+#include "load/gltf_json.h"
 #include "scene/afford.h"
 
 #define BUFFER_LIMIT (UINT64_C(4) << 30)

@@ -3,7 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "load/gltf.h"
+#include "load/gltf_accessor.h"
+#include "load/gltf_buffer.h"
+#include "load/gltf_draco.h"
+#include "load/gltf_json.h"
 
 /* assimp 5.2 loses unpacked indices of 32 bits, so that it is asked for 16. */
 enum { ASSIMP_VERTICES_MAX = 65536 };

@@ -4,7 +4,9 @@
 
 #include "base/array.h"
 #include "base/file.h"
-#include "load/gltf.h"
+#include "load/gltf_draco.h"
+#include "load/gltf_geometry.h"
+#include "load/model_mesh.h"
 #include "scene/afford.h"
 
 enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "load/gltf.h"
+#include "load/gltf_json.h"
 
 struct gltf_place gltf_place(const char *format, ...)
 {

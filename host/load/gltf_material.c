@@ -7,6 +7,7 @@
 #include "base/same.h"
 #include "base/text.h"
 #include "load/gltf.h"
+#include "load/gltf_json.h"
 
 /* One material while it is read. */
 struct reading {

@@ -6,7 +6,9 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/same.h"
-#include "load/gltf.h"
+#include "load/gltf_accessor.h"
+#include "load/gltf_json.h"
+#include "load/gltf_nodes.h"
 #include "scene/afford.h"
 
 /* --- which nodes are drawn ------------------------------------------------------------------ */

@@ -6,7 +6,8 @@
 #include "base/file.h"
 #include "base/same.h"
 #include "base/text.h"
-#include "load/gltf.h"
+#include "load/gltf_buffer.h"
+#include "load/gltf_json.h"
 
 /* --- images --------------------------------------------------------------------------------- */
 

@@ -10,6 +10,7 @@
 #include "base/input.h"
 #include "base/path.h"
 #include "load/format.h"
+#include "load/model.h"
 #include "load/up.h"
 #include "scene/afford.h"
 

@@ -25,9 +25,6 @@ static inline struct foreign_params load_foreign(const whit_load_params *params)
 
 #define LOAD_MODELS ".obj .gltf .glb .ply .stl .fbx .dae .3mf .off"
 
-/* Whether the path's extension is one of LOAD_MODELS. */
-bool load_is_model(const char *path);
-
 /* Reads any supported file into a frozen scene: .json scene files, and models by LOAD_MODELS; for
    `-` standard input, whose first bytes tell what it is, and which names no files. On
    failure *out is NULL and one error naming the file and the reason (and the line, where the format
@@ -35,18 +32,8 @@ bool load_is_model(const char *path);
 WHIT_CHECK whit_result load_scene(const whit_log *log, const char *path,
                                   const whit_load_params *params, struct scene **out);
 
-/* The parts of load_scene, for scene files that place models: adds what the model holds to an
-   unfrozen scene, its nodes below `parent` (SCENE_NONE: roots). Cameras, lights and environment of
-   the model are added only when `with_lights` / `with_cameras`. */
-WHIT_CHECK whit_result load_model(struct scene *scene, const char *path, uint32_t parent,
-                                  bool with_lights, bool with_cameras,
-                                  const whit_load_params *params);
 WHIT_CHECK whit_result load_scene_file(struct scene *scene, const char *path,
                                        const whit_load_params *params);
-
-/* The cameras of a file of nothing else into a scene: an array of what scene files have, or one of
-   them a line. WHIT_ERROR_INPUT, logged, for none, and for one that moves. */
-WHIT_CHECK whit_result load_cameras(struct scene *scene, const char *path);
 
 /* 8-bit texture from a file or from memory (`data` non-NULL; `path` then only names it). The name
    of an already loaded file gives the index it has. On failure a warning is noted in the scene and

@@ -1,4 +1,4 @@
-#include "load/model.h"
+#include "load/gltf.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +8,8 @@
 #include "base/file.h"
 #include "base/table.h"
 #include "base/text.h"
+#include "load/model.h"
+#include "load/model_mesh.h"
 #include "load/obj.h"
 #include "load/ply.h"
 

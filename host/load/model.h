@@ -5,22 +5,6 @@
 #include "load/importer.h"
 #include "load/load.h"
 
-struct model_part {
-    const struct import_part *part;
-    const char *name;
-    uint32_t material; /* of the scene */
-};
-
-/* One mesh out of all parts, each a group of it, v turned downwards. An array that only some parts
-   have is filled with what its absence means; tangents are kept only where all parts have them.
-   `colors_are_srgb`: they are made linear. *index is the new mesh. */
-WHIT_CHECK whit_result model_add_mesh(struct scene *scene, const char *name,
-                                      const struct model_part *parts, uint32_t part_count,
-                                      bool colors_are_srgb, uint32_t *index);
-
-/* Notes what the importer left out. */
-void model_note_counts(struct scene *scene, const char *path, const struct import_counts *counts);
-
 /* How a model is added: see load_model. */
 struct model_request {
     const char *path;
@@ -30,10 +14,15 @@ struct model_request {
 };
 
 WHIT_CHECK whit_result model_load_obj(struct scene *scene, const struct model_request *request);
-/* .gltf and .glb */
-WHIT_CHECK whit_result gltf_load(struct scene *scene, const struct model_request *request);
-/* The same of a file in memory; what it names lies beside the request's path. */
-WHIT_CHECK whit_result gltf_load_bytes(struct scene *scene, const struct model_request *request,
-                                       const uint8_t *data, size_t size_bytes);
+
+/* Whether the path's extension is one of LOAD_MODELS. */
+bool load_is_model(const char *path);
+
+/* The parts of load_scene, for scene files that place models: adds what the model holds to an
+   unfrozen scene, its nodes below `parent` (SCENE_NONE: roots). Cameras, lights and environment of
+   the model are added only when `with_lights` / `with_cameras`. */
+WHIT_CHECK whit_result load_model(struct scene *scene, const char *path, uint32_t parent,
+                                  bool with_lights, bool with_cameras,
+                                  const whit_load_params *params);
 
 #endif

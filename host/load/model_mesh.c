@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "image/image.h"
-#include "load/model.h"
+#include "load/model_mesh.h"
 #include "scene/afford.h"
 
 struct totals {

@@ -5,7 +5,7 @@
 #include "base/array.h"
 #include "base/same.h"
 #include "base/vec.h"
-#include "load/scene_reader.h"
+#include "load/scene_animation.h"
 
 void reader_quaternion(const double degrees[3], double out[4])
 {

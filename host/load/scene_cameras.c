@@ -4,7 +4,8 @@
 
 #include "base/file.h"
 #include "base/vec.h"
-#include "load/scene_reader.h"
+#include "load/scene_animation.h"
+#include "load/scene_cameras.h"
 
 #define FILE_BYTES_MAX ((uint64_t)256 << 20)
 #define RADIANS        (PI / 180.0)

@@ -8,6 +8,9 @@
 #include "base/same.h"
 #include "base/text.h"
 #include "base/vec.h"
+#include "load/scene_animation.h"
+#include "load/scene_cameras.h"
+#include "load/scene_materials.h"
 #include "load/scene_reader.h"
 
 #define FILE_BYTES_MAX ((uint64_t)64 << 20)

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "base/vec.h"
 #include "image/image.h"
-#include "load/scene_reader.h"
+#include "load/scene_materials.h"
 
 static const char *const common_keys[] = {"emission",
                                           "texture",

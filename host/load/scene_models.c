@@ -5,7 +5,10 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "load/model.h"
+#include "load/scene_materials.h"
 #include "load/scene_objects.h"
+#include "load/scene_range.h"
 #include "scene/afford.h"
 
 static void set_material(struct scene_mesh *mesh, uint32_t material)

@@ -4,7 +4,9 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "load/scene_animation.h"
 #include "load/scene_objects.h"
+#include "load/scene_range.h"
 
 #define DEPTH_MAX 64u
 

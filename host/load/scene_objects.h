@@ -39,14 +39,4 @@ bool reader_model(struct reader *reader, const struct place *place, const json_t
 bool reader_transform(struct reader *reader, const struct place *place, const json_t *object,
                       struct scene_node *node);
 
-/* scene_range.c: what is added below `parent` between begin and end. */
-struct scene_range range_begin(const struct scene *scene, uint32_t parent);
-void range_end(const struct scene *scene, struct scene_range *range);
-/* Whether the range may be copied `times` times, below a node of its own each. */
-bool range_afford(struct reader *reader, const struct place *place, const struct scene_range *range,
-                  uint64_t times);
-/* All of the range once more, below `parent`. */
-bool range_copy(struct reader *reader, const struct place *place, const struct scene_range *range,
-                uint32_t parent);
-
 #endif

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "load/scene_objects.h"
+#include "load/scene_range.h"
 #include "scene/afford.h"
 
 static uint32_t moved_node(const struct scene_range *range, uint32_t node, uint32_t parent,

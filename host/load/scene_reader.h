@@ -93,30 +93,8 @@ bool reader_color_value(struct reader *reader, const struct place *place, const 
 /* Name of the known word nearest to `word`, or NULL when none is near. */
 const char *reader_nearest(const char *word, const char *const *known);
 
-/* scene_materials.c */
-bool reader_materials(struct reader *reader, const struct place *place, const json_t *value);
-/* A material's name or a material written in place. */
-bool reader_material_use(struct reader *reader, const struct place *place, const json_t *value,
-                         uint32_t *index);
-/* Reads the index of the object's "material"; *index is SCENE_NONE when it names none. */
-bool reader_object_material(struct reader *reader, const struct place *place, const json_t *object,
-                            uint32_t *index);
-
 /* scene_objects.c */
 bool reader_objects(struct reader *reader, const struct place *place, const json_t *value,
                     uint32_t parent, uint32_t depth);
-
-/* scene_animation.c. Degrees about x, then y, then z, to a quaternion x, y, z, w. */
-void reader_quaternion(const double degrees[3], double out[4]);
-/* Channels of `object`'s "animation" for `node`. */
-bool reader_animation(struct reader *reader, const struct place *place, const json_t *object,
-                      uint32_t node);
-/* What moves hangs on a node of its own; what stands still needs none: SCENE_NONE. */
-bool reader_moving_node(struct reader *reader, const struct place *place, const json_t *object,
-                        const char *name, uint32_t *index);
-
-/* scene_cameras.c: into the scene. */
-bool reader_camera(struct reader *reader, const struct place *place, const json_t *object);
-bool reader_cameras(struct reader *reader, const struct place *place, const json_t *value);
 
 #endif

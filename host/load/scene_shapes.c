@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "load/scene_materials.h"
 #include "load/scene_objects.h"
 #include "scene/afford.h"
 #include "scene/shapes.h"

@@ -1,4 +1,5 @@
 /* Where an object of a scene file is: a matrix, or translation, rotation and scale. */
+#include "load/scene_animation.h"
 #include "load/scene_objects.h"
 
 static bool read_matrix(struct reader *reader, const struct place *place, const json_t *object,

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
-#include "load/load.h"
+#include "load/model.h"
 
 enum { FIXTURE_FILES = 16 };
 

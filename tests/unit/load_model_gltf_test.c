@@ -1,6 +1,7 @@
 /* glTF: what comes from the JSON, and how it meets the triangles. */
 #include <math.h>
 
+#include "load/model.h"
 #include "load_model_fixture.h"
 #include "unit.h"
 

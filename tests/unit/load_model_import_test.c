@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "load/importer.h"
+#include "load/model.h"
 #include "load/ply.h"
 #include "load_model_fixture.h"
 #include "unit.h"

@@ -2,7 +2,7 @@
    file to the pixel. */
 #include <unistd.h>
 
-#include "load/load.h"
+#include "load/model.h"
 #include "picture_fixture.h"
 #include "unit.h"
 

@@ -1,0 +1,51 @@
+/* Typed access to the JSON. All functions log `path: place: what is wrong` and return false. */
+#ifndef LOAD_GLTF_JSON_H
+#define LOAD_GLTF_JSON_H
+
+#include "load/gltf.h"
+
+enum { GLTF_PLACE = 96 };
+
+/* Where something is in the JSON, for errors: "nodes[3]". */
+struct gltf_place {
+    char text[GLTF_PLACE];
+};
+
+struct gltf_place gltf_place(const char *format, ...) WHIT_PRINTF(1, 2);
+bool gltf_fail(const struct gltf *gltf, const struct gltf_place *at, const char *format, ...)
+    WHIT_PRINTF(3, 4);
+
+/* Members that are absent leave *out as it is (pointers become NULL, indices SCENE_NONE). */
+bool gltf_object(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                 const char *key, json_t **out);
+bool gltf_array(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                const char *key, json_t **out);
+bool gltf_string(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                 const char *key, const char **out);
+bool gltf_bool(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+               const char *key, bool *out);
+bool gltf_number(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                 const char *key, double *out);
+/* Exactly `count` numbers. */
+bool gltf_numbers(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                  const char *key, uint32_t count, double *out);
+bool gltf_floats(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                 const char *key, uint32_t count, float *out);
+/* A whole number of at least 0 and at most `most`. */
+bool gltf_whole(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                const char *key, uint64_t max, uint64_t *out);
+/* An index below `count`. */
+bool gltf_index(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                const char *key, uint32_t count, uint32_t *out);
+bool gltf_index_value(const struct gltf *gltf, const json_t *value, const struct gltf_place *at,
+                      uint32_t count, uint32_t *out);
+/* extensions[name], or NULL. */
+bool gltf_extension(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
+                    const char *name, json_t **out);
+/* Entry `index` of the root's array `key`, which must be an object. */
+bool gltf_item(const struct gltf *gltf, const char *key, uint32_t index, struct gltf_place *at,
+               json_t **out);
+/* 0 when there is no such array. */
+uint32_t gltf_count(const struct gltf *gltf, const char *key);
+
+#endif
