@@ -8,8 +8,122 @@
 #include <unistd.h>
 
 static const double SHARE_MAX = 0.1, RELIEF_MIN = 2.0;
-/* Of the longest side of its box: what is thinner is a board, which shows no relief. */
+/* Of the longest side of its box: what is that close to a plane is a board, which shows no relief.
+ */
 static const double FLAT = 0.1;
+/* By how much a sum of samples of 1 may be more. */
+static const double ROUNDING = 1e-4;
+
+enum { PATH_BYTES = 4096 };
+
+/* A new file in the folder for temporary ones; the caller closes and removes it. NULL, and `path`
+   empty, where it could not be made. */
+static FILE *open_temporary(const char *ending, char path[PATH_BYTES])
+{
+    const char *folder = getenv("TMPDIR");
+    int length = snprintf(path, PATH_BYTES, "%s/whit_XXXXXX%s", folder ? folder : "/tmp", ending);
+    int file = length < PATH_BYTES ? mkstemps(path, (int)strlen(ending)) : -1;
+    FILE *stream = file < 0 ? NULL : fdopen(file, "w");
+    if (!stream)
+        path[0] = '\0';
+    return stream;
+}
+
+/* ---- What the file wants ---- */
+
+static const char wish[] =
+    "//@ whit 1\n"
+    "//@ toggle furnace off \"light of 1 from everywhere; else none but the surface's own\"\n"
+    "vec3 shade(Surface s, Optics o, vec3 to_eye)\n"
+    "{\n"
+    "    vec3 own = o.unlit ? o.emission + o.diffuse : o.emission;\n"
+    "    return furnace ? own + o.diffuse + o.highlight : own;\n"
+    "}\n"
+    "vec3 miss(vec3 dir)\n"
+    "{\n"
+    "    return vec3(furnace ? 1.0 : 0.0);\n"
+    "}\n";
+
+whit_result appearance_shader_init(const whit_log *log, struct appearance_shader *out)
+{
+    char path[PATH_BYTES];
+    FILE *stream = open_temporary(".glsl", path);
+    bool written = stream && fputs(wish, stream) >= 0;
+    written = stream && fclose(stream) == 0 && written;
+    *out = (struct appearance_shader){0};
+    whit_result result = written ? WHIT_OK : WHIT_ERROR_OUTPUT;
+    if (result == WHIT_OK)
+        result = whit_shader_compiler_create(NULL, log, &out->compiler);
+    if (result == WHIT_OK)
+        result = whit_shader_load(out->compiler, path, false, &out->shader);
+    if (path[0])
+        unlink(path);
+    if (result != WHIT_OK)
+        appearance_shader_finish(out);
+    return result;
+}
+
+void appearance_shader_finish(struct appearance_shader *shader)
+{
+    whit_shader_destroy(shader->shader);
+    whit_shader_compiler_destroy(shader->compiler);
+    *shader = (struct appearance_shader){0};
+}
+
+/* What is displayed of a picture of the shader's. */
+struct wished {
+    whit_image *color;
+    uint8_t *rgba;
+};
+
+static void wished_finish(struct wished *wished)
+{
+    whit_image_destroy(wished->color);
+    free(wished->rgba);
+}
+
+static whit_result display(const whit_image *color, uint8_t **rgba)
+{
+    whit_image_info info;
+    whit_image_get_info(color, &info);
+    *rgba = malloc(4 * (size_t)info.width * info.height);
+    if (!*rgba)
+        return WHIT_ERROR_MEMORY;
+    whit_image_display_bytes(color, *rgba);
+    return WHIT_OK;
+}
+
+static whit_result draw_wished(whit_renderer *renderer, struct wished *out)
+{
+    whit_result result = whit_renderer_render(renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &out->color);
+    return result == WHIT_OK ? display(out->color, &out->rgba) : result;
+}
+
+/* `glow` as bright as the picture is displayed, `furnace` as bright as it is. */
+static whit_result draw_wishes(const struct appearance_shader *shader,
+                               const struct appearance_of *of, struct wished *glow,
+                               struct wished *furnace)
+{
+    whit_renderer_params params = *of->params;
+    whit_renderer *renderer = NULL;
+    params.shader = shader->shader;
+    whit_result result = whit_renderer_create(of->device, of->accel, &params, &renderer);
+    if (result == WHIT_OK)
+        result = draw_wished(renderer, glow);
+    params.sliders = "furnace=on";
+    params.exposure_ev = 0.0;
+    params.soft_highlights = false;
+    if (result == WHIT_OK)
+        result = whit_renderer_set_view(renderer, &params);
+    if (result == WHIT_OK)
+        result = draw_wished(renderer, furnace);
+    whit_renderer_destroy(renderer);
+    return result;
+}
+
+/* ---- Burnt and black ---- */
 
 static whit_result read_ids(whit_renderer *renderer, const whit_image *color, whit_image **ids)
 {
@@ -23,29 +137,60 @@ static whit_result read_ids(whit_renderer *renderer, const whit_image *color, wh
                                                                          : WHIT_ERROR_USAGE;
 }
 
-static whit_result count_lost(const whit_image *color, const whit_image *ids,
-                              struct appearance *out)
+static bool is_burnt(const uint8_t *shown, const uint8_t *glowing, const float *glow,
+                     double exposed)
+{
+    bool burnt = false;
+    for (int c = 0; c < 3; ++c)
+        burnt |=
+            shown[c] == 255 && !(glowing[c] == 255 && (double)glow[c] * exposed <= 1.0 + ROUNDING);
+    return burnt;
+}
+
+static bool is_black(const uint8_t *shown)
+{
+    return !shown[0] && !shown[1] && !shown[2];
+}
+
+static void count_lost(const struct appearance_of *of, const whit_image *ids, const uint8_t *shown,
+                       const struct wished *glow, const struct wished *furnace,
+                       struct appearance *out)
 {
     whit_image_info info;
-    whit_image_get_info(color, &info);
+    whit_image_get_info(of->color, &info);
     size_t count = (size_t)info.width * info.height, seen = 0, burnt = 0, black = 0;
-    uint8_t *rgba = malloc(4 * count);
-    if (!rgba)
-        return WHIT_ERROR_MEMORY;
-    whit_image_display_bytes(color, rgba);
+    double exposed = exp2(of->params->exposure_ev);
     for (size_t i = 0; i < count; ++i) {
-        const uint8_t *p = rgba + 4 * i;
         if (whit_image_words(ids)[2 * i + 1] == WHIT_NONE)
             continue;
         ++seen;
-        burnt += p[0] == 255 || p[1] == 255 || p[2] == 255;
-        black += !p[0] && !p[1] && !p[2];
+        burnt += is_burnt(shown + 4 * i, glow->rgba + 4 * i,
+                          whit_image_floats(glow->color) + info.channels * i, exposed);
+        black += is_black(shown + 4 * i) && !is_black(furnace->rgba + 4 * i);
     }
-    free(rgba);
     out->is_flat = seen == 0;
     out->burnt = seen ? (double)burnt / (double)seen : 0.0;
     out->black = seen ? (double)black / (double)seen : 0.0;
-    return WHIT_OK;
+}
+
+static whit_result measure_lost(const struct appearance_shader *shader,
+                                const struct appearance_of *of, struct appearance *out)
+{
+    struct wished glow = {0}, furnace = {0};
+    whit_image *ids = NULL;
+    uint8_t *shown = NULL;
+    whit_result result = read_ids(of->renderer, of->color, &ids);
+    if (result == WHIT_OK)
+        result = display(of->color, &shown);
+    if (result == WHIT_OK)
+        result = draw_wishes(shader, of, &glow, &furnace);
+    if (result == WHIT_OK)
+        count_lost(of, ids, shown, &glow, &furnace, out);
+    wished_finish(&glow);
+    wished_finish(&furnace);
+    free(shown);
+    whit_image_destroy(ids);
+    return result;
 }
 
 /* ---- Clay ---- */
@@ -58,20 +203,12 @@ static bool write_triangle(void *user, const whit_triangle *triangle)
     return fputs("f -3 -2 -1\n", user) >= 0;
 }
 
-enum { PATH_BYTES = 4096 };
-
-/* An OBJ without materials, in the folder for temporary files; the caller removes it. `path` is
-   empty where it could not be made. */
+/* An OBJ without materials, for temporary use; the caller removes it. */
 static whit_result write_clay(const whit_scene *scene, char path[PATH_BYTES])
 {
-    const char *folder = getenv("TMPDIR");
-    int length = snprintf(path, PATH_BYTES, "%s/whit_clay_XXXXXX.obj", folder ? folder : "/tmp");
-    int file = length < PATH_BYTES ? mkstemps(path, 4) : -1;
-    FILE *stream = file < 0 ? NULL : fdopen(file, "w");
-    if (!stream) {
-        path[0] = '\0';
+    FILE *stream = open_temporary(".obj", path);
+    if (!stream)
         return WHIT_ERROR_OUTPUT;
-    }
     whit_result result = whit_scene_triangles(scene, 0.0, write_triangle, stream);
     return fclose(stream) == 0 ? result : WHIT_ERROR_OUTPUT;
 }
@@ -159,42 +296,86 @@ static whit_result draw_clay(whit_device *device, const char *path, whit_rendere
     return result;
 }
 
-/* ---- All of it ---- */
+/* ---- Boards ---- */
 
-static bool is_thin(const whit_scene *scene)
+struct plane {
+    double normal[3]; /* as long as twice the area of the largest triangle */
+    double area, lo, hi;
+};
+
+static bool find_largest(void *user, const whit_triangle *triangle)
 {
-    whit_scene_info info;
-    double longest = 0.0, shortest = INFINITY;
-    whit_scene_get_info(scene, &info);
+    struct plane *plane = user;
+    const float *v = triangle->vertices;
+    double normal[3], area = 0.0;
     for (int i = 0; i < 3; ++i) {
-        longest = fmax(longest, info.hi[i] - info.lo[i]);
-        shortest = fmin(shortest, info.hi[i] - info.lo[i]);
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        normal[i] = (double)(v[3 + j] - v[j]) * (double)(v[6 + k] - v[k]) -
+                    (double)(v[3 + k] - v[k]) * (double)(v[6 + j] - v[j]);
+        area += normal[i] * normal[i];
     }
-    return info.triangle_count == 0 || !(shortest > FLAT * longest);
+    area = sqrt(area);
+    if (area > plane->area) {
+        plane->area = area;
+        memcpy(plane->normal, normal, sizeof normal);
+    }
+    return true;
 }
 
-whit_result appearance_measure(whit_device *device, const whit_scene *scene,
-                               whit_renderer *renderer, const whit_renderer_params *params,
-                               const whit_image *color, struct appearance *out)
+static bool find_sides(void *user, const whit_triangle *triangle)
 {
-    whit_image *ids = NULL;
-    char path[PATH_BYTES] = "";
-    *out = (struct appearance){0};
-    whit_result result = read_ids(renderer, color, &ids);
+    struct plane *plane = user;
+    for (int at = 0; at < 9; at += 3) {
+        double along = 0.0;
+        for (int k = 0; k < 3; ++k)
+            along += plane->normal[k] / plane->area * (double)triangle->vertices[at + k];
+        plane->lo = fmin(plane->lo, along);
+        plane->hi = fmax(plane->hi, along);
+    }
+    return true;
+}
+
+/* All of it is close to the plane of its largest triangle, whichever way that lies. */
+static whit_result find_board(const whit_scene *scene, bool *board)
+{
+    struct plane plane = {.lo = INFINITY, .hi = -INFINITY};
+    whit_scene_info info;
+    double longest = 0.0;
+    whit_scene_get_info(scene, &info);
+    for (int i = 0; i < 3; ++i)
+        longest = fmax(longest, info.hi[i] - info.lo[i]);
+    whit_result result = whit_scene_triangles(scene, 0.0, find_largest, &plane);
     if (result == WHIT_OK)
-        result = count_lost(color, ids, out);
-    whit_image_destroy(ids);
-    out->is_flat = out->is_flat || is_thin(scene);
-    if (result != WHIT_OK || out->is_flat)
-        return result;
-    whit_renderer_params view = *params;
-    keep_camera(scene, &view);
-    result = write_clay(scene, path);
+        result = whit_scene_triangles(scene, 0.0, find_sides, &plane);
+    *board = !(plane.hi - plane.lo > FLAT * longest);
+    return result;
+}
+
+/* ---- All of it ---- */
+
+static whit_result measure_clay(const struct appearance_of *of, struct appearance *out)
+{
+    char path[PATH_BYTES];
+    whit_renderer_params view = *of->params;
+    keep_camera(of->scene, &view);
+    whit_result result = write_clay(of->scene, path);
     if (result == WHIT_OK)
-        result = draw_clay(device, path, &view, out);
+        result = draw_clay(of->device, path, &view, out);
     if (path[0])
         unlink(path);
     return result;
+}
+
+whit_result appearance_measure(const struct appearance_shader *shader,
+                               const struct appearance_of *of, struct appearance *out)
+{
+    bool board = false;
+    *out = (struct appearance){0};
+    whit_result result = measure_lost(shader, of, out);
+    if (result == WHIT_OK)
+        result = find_board(of->scene, &board);
+    out->is_flat = out->is_flat || board;
+    return result == WHIT_OK && !out->is_flat ? measure_clay(of, out) : result;
 }
 
 bool appearance_is_right(const struct appearance *a)

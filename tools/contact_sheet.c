@@ -29,6 +29,7 @@ struct sheet {
     uint32_t sheet_width, sheet_height;
     float *pixels; /* sheet_width * sheet_height * 3 */
     bool check;
+    struct appearance_shader shader; /* with `check` */
 };
 
 static char *files[FILES_MAX];
@@ -181,7 +182,9 @@ static whit_result draw(const struct sheet *sheet, whit_device *device, whit_sce
     if (result == WHIT_OK)
         result = read_displayed(color, image);
     if (result == WHIT_OK && sheet->check)
-        result = appearance_measure(device, scene, renderer, &params, color, appearance);
+        result = appearance_measure(
+            &sheet->shader, &(struct appearance_of){device, scene, accel, renderer, &params, color},
+            appearance);
     whit_image_destroy(color);
     whit_renderer_destroy(renderer);
     return result;
@@ -316,6 +319,8 @@ static int make_sheet(struct sheet *sheet)
     whit_result result = sheet->pixels ? WHIT_OK : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)
         result = whit_device_create(&params, &log_errors, &device);
+    if (result == WHIT_OK && sheet->check)
+        result = appearance_shader_init(&log_errors, &sheet->shader);
     if (result == WHIT_OK) {
         failed = fill_sheet(sheet, device);
         result =
@@ -328,6 +333,7 @@ static int make_sheet(struct sheet *sheet)
     bool fine = result == WHIT_OK && failed == 0 &&
                 (!device || whit_device_validation_messages(device) == 0);
     whit_image_destroy(image);
+    appearance_shader_finish(&sheet->shader);
     whit_device_destroy(device);
     free(sheet->pixels);
     if (result == WHIT_ERROR_NO_DEVICE)

@@ -24,7 +24,8 @@ sheet 0 "2 scenes, 0 failed" "$CUBE" "$OUT/first.png"
 echo '{ "objects": 3 }' >"$OUT/broken.json"
 sheet 1 "2 scenes, 1 failed" "$OUT/broken.json" "$CUBE"
 check "which names it" grep -q 'broken.json:1' "$OUT/stderr"
-# With --check models have to look right: a box does, and a glow that is exposed less; a black box does not.
+# With --check models have to look right: a box does, a glow that is exposed less, and what its file wants to be white
+# or black; a grey box that is lit by too much, or by nothing, does not.
 box() {
     printf 'newmtl m\n%s\n' "$2" >"$OUT/$1.mtl"
     {
@@ -33,12 +34,26 @@ box() {
         printf 'f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n'
     } >"$OUT/$1.obj"
 }
+lit() {
+    printf '{ "objects": [{ "shape": "box", "material": {"diffuse": 0.5} }], "ambient": %s,
+        "lights": [{ "kind": "directional", "direction": [-1, -2, -1.5], "color": %s }] }' "$2" "$2" >"$OUT/$1.json"
+}
 box grey 'Kd 0.7 0.7 0.7'
 box glow 'Ke 40 40 40'
+box lamp 'Ke 1 1 1'
 box coal 'Kd 0 0 0'
+# A board shows no relief, whichever way it lies.
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\n' >"$OUT/board.obj"
+lit bright 60
+lit dark 0
 sheet 0 "2 scenes, 0 failed" "$OUT/grey.obj" "$OUT/glow.obj" --check yes
 check "both are right" test "$(grep -c ' right ' "$OUT/stdout")" -eq 2
-sheet 1 "2 scenes, 1 failed" "$OUT/grey.obj" "$OUT/coal.obj" --check yes
-check "coal is not" grep -q '100.0 % black .* WRONG .*coal.obj$' "$OUT/stdout"
+sheet 0 "2 scenes, 0 failed" "$OUT/lamp.obj" "$OUT/coal.obj" --check yes
+check "a lamp is not burnt, coal is not black" test "$(grep -c ' 0.0 % burnt *0.0 % black ' "$OUT/stdout")" -eq 2
+sheet 1 "2 scenes, 2 failed" "$OUT/bright.json" "$OUT/dark.json" --check yes
+check "a grey box burns" grep -Eq '(100|[5-9][0-9])\.. % burnt .* WRONG .*bright.json$' "$OUT/stdout"
+check "a grey box in the dark is black" grep -q '100.0 % black .* WRONG .*dark.json$' "$OUT/stdout"
+sheet 0 "2 scenes, 0 failed" "$OUT/board.obj" "$OUT/grey.obj" --check yes
+check "the board is flat" grep -q ' flat relief .*board.obj$' "$OUT/stdout"
 expect 2 "no output" "$OUT/scenes"
 finish
