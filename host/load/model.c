@@ -71,7 +71,6 @@ static whit_result add_instance(struct scene *scene, const char *name, uint32_t 
 /* The materials of one model: each is added to the scene when the first triangle asks for it. */
 struct palette {
     const struct mtl_library *library;
-    bool ambient_known;
     struct table indices; /* in the scene, by name */
 };
 
@@ -88,7 +87,7 @@ static whit_result make_material(struct scene *scene, const struct model_request
 {
     const struct mtl_entry *entry = mtl_find(palette->library, part->material);
     if (entry)
-        return mtl_material(scene, entry, palette->ambient_known, request->params, out);
+        return mtl_material(scene, entry, request->params, out);
     bool named = part->material[0] && strcmp(part->material, "DefaultMaterial") != 0;
     make_default(named ? part->material : "default", part->colors, out);
     if (named && palette->library->count)
@@ -123,7 +122,7 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
                              const struct import_block *block, const struct mtl_library *library,
                              bool colors_are_srgb)
 {
-    struct palette palette = {.library = library, .ambient_known = mtl_has_ambient(library)};
+    struct palette palette = {.library = library};
     struct model_part *parts = array_alloc_zeroed(block->part_count, sizeof *parts);
     whit_result result = parts ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < block->part_count; i++) {

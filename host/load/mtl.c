@@ -418,13 +418,3 @@ const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *
     bool found = table_find(&library->names, name, strlen(name), &index);
     return found ? &library->entries[index] : NULL;
 }
-
-bool mtl_has_ambient(const struct mtl_library *library)
-{
-    for (uint32_t i = 0; i < library->count; i++) {
-        const float *ka = library->entries[i].colors[MTL_KA];
-        if (library->entries[i].has_color[MTL_KA] && (ka[0] > 0 || ka[1] > 0 || ka[2] > 0))
-            return true;
-    }
-    return false;
-}

@@ -53,11 +53,8 @@ void mtl_finish(struct mtl_library *library);
 /* The first entry of that name, or NULL. */
 const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name);
 
-/* What the entry means to whit, textures loaded; *out is released with scene_material_finish.
-   `ambient_known`: some entry of the library has an ambient colour. */
+/* What the entry means to whit, textures loaded; *out is released with scene_material_finish. */
 WHIT_CHECK whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
-                                    bool ambient_known, const whit_load_params *params,
-                                    struct scene_material *out);
-bool mtl_has_ambient(const struct mtl_library *library);
+                                    const whit_load_params *params, struct scene_material *out);
 
 #endif

@@ -272,16 +272,22 @@ static void set_color(const struct mtl_entry *entry, enum mtl_color color, float
         out[i] = entry->has_color[color] ? entry->colors[color][i] : otherwise;
 }
 
-static void set_colors(const struct mtl_entry *entry, bool ambient_known,
+static void set_colors(struct scene *scene, const struct mtl_entry *entry,
                        struct scene_material *out)
 {
     const struct mtl_texture *maps = entry->maps;
     set_color(entry, MTL_KD, maps[MTL_MAP_KD].file ? 1.0f : 0.7f, out->diffuse);
     set_color(entry, MTL_KS, maps[MTL_MAP_KS].file ? 1.0f : 0.0f, out->specular);
     set_color(entry, MTL_KE, maps[MTL_MAP_KE].file ? 1.0f : 0.0f, out->emission);
-    /* A library in which every Ka is 0 was written by something that knows no ambient light. */
-    if (ambient_known && entry->has_color[MTL_KA])
-        set_color(entry, MTL_KA, 0.0f, out->ambient);
+    if (maps[MTL_MAP_KD].file && !(largest(out->diffuse) > 0)) {
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "%s:%u: material `%s`: map_Kd is drawn as with a Kd of 1, which is 0",
+                   path_name(entry->file), entry->line, text_token(entry->name).text);
+        out->diffuse[0] = out->diffuse[1] = out->diffuse[2] = 1;
+    }
+    /* The format has no ambient light, so a Ka of 0 says that its writer knows none either. */
+    if (largest(entry->colors[MTL_KA]) > 0)
+        memcpy(out->ambient, entry->colors[MTL_KA], sizeof out->ambient);
     else
         memcpy(out->ambient, out->diffuse, sizeof out->ambient);
     if (entry->has_number[MTL_NS])
@@ -308,6 +314,17 @@ static void set_opacity(const struct mtl_entry *entry, struct scene_material *ou
     out->opacity = fminf(fmaxf(d, 0.0f), 1.0f);
     if (out->opacity < 1)
         out->alpha = SCENE_ALPHA_BLEND;
+}
+
+/* By an exponent of 0 what is meant for a highlight would be everywhere. */
+static void drop_flat_highlight(struct scene *scene, const struct mtl_entry *entry,
+                                struct scene_material *out)
+{
+    if (out->model != SCENE_MODEL_PHONG || out->shininess > 0 || !(largest(out->specular) > 0))
+        return;
+    scene_note(scene, SCENE_NOTE_INFO, "%s:%u: material `%s`: Ns 0 makes no highlight of Ks",
+               path_name(entry->file), entry->line, text_token(entry->name).text);
+    memset(out->specular, 0, sizeof out->specular);
 }
 
 static void set_class(struct scene *scene, const struct mtl_entry *entry,
@@ -358,7 +375,7 @@ static void note_ambient_map(struct scene *scene, const struct mtl_entry *entry)
                    path_name(entry->file), ambient->line, text_token(ambient->file).text);
 }
 
-whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, bool ambient_known,
+whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
                          const whit_load_params *params, struct scene_material *out)
 {
     static const struct {
@@ -376,9 +393,10 @@ whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry, boo
     if (!out->name || !out->origin.file)
         return WHIT_ERROR_MEMORY;
     out->illum = class_of(scene, entry);
-    set_colors(entry, ambient_known, out);
+    set_colors(scene, entry, out);
     set_class(scene, entry, out);
     set_metal_rough(entry, out);
+    drop_flat_highlight(scene, entry, out);
     for (size_t i = 0; i < sizeof slots / sizeof *slots; i++) {
         if (slots[i].map == MTL_MAP_NS && out->model != SCENE_MODEL_PHONG)
             continue; /* no exponent */

@@ -10,13 +10,12 @@
 static void make_materials(struct scene *scene, const struct mtl_library *library)
 {
     enum { MATERIALS_MAX = 64 };
-    bool ambient_known = mtl_has_ambient(library);
     for (uint32_t i = 0; i < library->count && i < MATERIALS_MAX; i++) {
         struct scene_material material = {0};
         const struct mtl_entry *entry = &library->entries[i];
         fuzz_check(mtl_find(library, entry->name), "`%s` is not found", entry->name);
-        fuzz_check(mtl_material(scene, entry, ambient_known, NULL, &material) == WHIT_OK,
-                   "`%s` is no material", entry->name);
+        fuzz_check(mtl_material(scene, entry, NULL, &material) == WHIT_OK, "`%s` is no material",
+                   entry->name);
         fuzz_check(scene_add_material(scene, material) != SCENE_NONE, "out of memory");
     }
 }

@@ -343,6 +343,32 @@ TEST_IN(channels_and_ranges_of_maps, fixture_begin, fixture_end)
     assert_false(fixture_noted(fixture, "-boost"));
 }
 
+TEST_IN(zeros_that_nobody_means, fixture_begin, fixture_end)
+{
+    struct fixture *fixture = *state;
+    const struct scene_material *m =
+        load_material(fixture, "newmtl m\nKa 0 0 0\nKd 0 0 0\nKs 0.9 0.9 0.9\nNs 0\nillum 3\n"
+                               "map_Kd gone.png\nnewmtl other\nKa 1 1 1\nKd 0 0 0\n");
+    for (int k = 0; k < 3; k++) {
+        assert_float_equal(m->diffuse[k], 1, 0);
+        assert_float_equal(m->ambient[k], 1, 0);
+        assert_float_equal(m->specular[k], 0, 0);
+        assert_float_equal(m->reflection[k], 0.9f, 0);
+    }
+    assert_true(fixture_noted(fixture, "map_Kd is drawn as with a Kd of 1"));
+    assert_true(fixture_noted(fixture, "Ns 0 makes no highlight"));
+}
+
+TEST_IN(zeros_that_are_meant, fixture_begin, fixture_end)
+{
+    const struct scene_material *m =
+        load_material(*state, "newmtl m\nKa 0.2 0 0\nKd 0 0 0\nKs 1 1 1\nNs 1\n");
+    assert_float_equal(m->ambient[0], 0.2f, 0);
+    assert_float_equal(m->ambient[1], 0, 0);
+    assert_float_equal(m->diffuse[0], 0, 0);
+    assert_float_equal(m->specular[0], 1, 0);
+}
+
 TEST_IN(unused_maps_are_named, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
