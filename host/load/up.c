@@ -11,6 +11,8 @@
 static const double SLAB = 0.02, STANDS = 0.15, HARDLY = 0.02;
 /* And this share is a floor, whose sides nothing else reaches. */
 static const double FLOOR = 0.5;
+/* So is one that is this low, with what reaches below it such as a foundation. */
+static const double LOW = 0.1;
 /* What is thinner than this share of its other sides is a board, which may stand on an edge. */
 static const double BOARD = 0.15;
 
@@ -63,6 +65,7 @@ static struct shape measure(const struct scene *scene)
 /* What is at the lower end of an axis. */
 struct ending {
     double flat; /* the share of the ground below it that flat surface covers */
+    double low;  /* the same, of all that is low; what has two sides counts twice */
     double rest; /* the share that the box around everything else takes; 0: nothing else */
 };
 
@@ -71,14 +74,20 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     double ground = (shape->hi[u] - shape->lo[u]) * (shape->hi[v] - shape->lo[v]), area = 0.0;
     struct shape rest = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    double top = shape->lo[axis] + SLAB * (shape->hi[axis] - shape->lo[axis]);
+    double extent = shape->hi[axis] - shape->lo[axis], low = 0.0;
+    double top = shape->lo[axis] + SLAB * extent, low_top = shape->lo[axis] + LOW * extent;
     for (uint32_t m = 0; m < scene->mesh_count; ++m)
         for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t) {
             double p[3][3];
             corners_of(&scene->meshes[m], t, p);
-            if (p[0][axis] <= top && p[1][axis] <= top && p[2][axis] <= top)
-                area += 0.5 * fabs((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) -
-                                   (p[2][u] - p[0][u]) * (p[1][v] - p[0][v]));
+            double highest = fmax(fmax(p[0][axis], p[1][axis]), p[2][axis]);
+            double lowest = fmin(fmin(p[0][axis], p[1][axis]), p[2][axis]);
+            double covered = 0.5 * fabs((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) -
+                                        (p[2][u] - p[0][u]) * (p[1][v] - p[0][v]));
+            if (highest <= low_top && highest - lowest <= SLAB * extent)
+                low += covered;
+            if (highest <= top)
+                area += covered;
             else
                 for (int i = 0; i < 9; ++i) {
                     rest.lo[i % 3] = fmin(rest.lo[i % 3], p[i / 3][i % 3]);
@@ -86,7 +95,8 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
                 }
         }
     double taken = fmax(rest.hi[u] - rest.lo[u], 0.0) * fmax(rest.hi[v] - rest.lo[v], 0.0);
-    return ground > 0.0 ? (struct ending){area / ground, taken / ground} : (struct ending){0};
+    return ground > 0.0 ? (struct ending){area / ground, low / ground, taken / ground}
+                        : (struct ending){0};
 }
 
 whit_up up_guess(const struct scene *scene, bool z_usual)
@@ -106,7 +116,8 @@ whit_up up_guess(const struct scene *scene, bool z_usual)
     bool board = extent[2] < BOARD * fmin(extent[0], extent[1]);
     /* Programs that mean z put the ground at z = 0. */
     bool grounded = fabs(shape.lo[2]) <= SLAB * extent[2] && fabs(shape.lo[1]) > SLAB * extent[1];
-    return !board && grounded && z.flat >= STANDS && y.flat < HARDLY ? WHIT_UP_Z : WHIT_UP_Y;
+    bool stands = (z.flat >= STANDS && y.flat < HARDLY) || (z.low >= FLOOR && y.low < HARDLY);
+    return !board && grounded && stands ? WHIT_UP_Z : WHIT_UP_Y;
 }
 
 whit_result up_turn_by_shape(struct scene *scene, const char *path)

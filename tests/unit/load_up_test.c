@@ -5,16 +5,21 @@
 #include "load/up.h"
 #include "unit.h"
 
-/* A scene of one model; `turn`: +y of what is made points there. */
-static struct scene *lying(struct scene_mesh mesh, bool along_z)
+static struct scene_mesh laid(struct scene_mesh mesh)
 {
-    struct scene *scene = scene_begin(NULL, "test");
-    for (uint32_t i = 0; along_z && i < mesh.vertex_count; ++i) {
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
         float *p = mesh.positions + 3 * (size_t)i, y = p[1];
         p[1] = -p[2];
         p[2] = y;
     }
-    scene_put(scene, mesh, NULL);
+    return mesh;
+}
+
+/* A scene of one model; `turn`: +y of what is made points there. */
+static struct scene *lying(struct scene_mesh mesh, bool along_z)
+{
+    struct scene *scene = scene_begin(NULL, "test");
+    scene_put(scene, along_z ? laid(mesh) : mesh, NULL);
     return scene;
 }
 
@@ -57,15 +62,26 @@ TEST(boards_keep_standing_and_floors_lie)
     assert_int_equal(guess(mesh_plane(4), true, false), WHIT_UP_Y);
     assert_int_equal(guess(raised(mesh_box(4, 0.1, 4), 0.05f), true, false), WHIT_UP_Y);
     struct scene *scene = lying(mesh_plane(20), true);
-    struct scene_mesh mesh = raised(mesh_box(1, 1, 1), 0.6f);
-    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
-        float *p = mesh.positions + 3 * (size_t)i, y = p[1];
-        p[1] = -p[2];
-        p[2] = y;
-    }
-    scene_put(scene, mesh, NULL);
+    scene_put(scene, laid(raised(mesh_box(1, 1, 1), 0.6f)), NULL);
     assert_int_equal(up_guess(scene, false), WHIT_UP_Z);
     scene_destroy(scene);
+}
+
+/* A ball in the middle of a plane, which it reaches below by a share of its height. */
+static whit_up guess_site(double share)
+{
+    struct scene *scene = scene_begin(NULL, "test");
+    scene_put(scene, laid(raised(mesh_plane(4), (float)(2 * share))), NULL);
+    scene_put(scene, laid(raised(mesh_icosphere(1, 3), 1)), NULL);
+    whit_up up = up_guess(scene, false);
+    scene_destroy(scene);
+    return up;
+}
+
+TEST(a_floor_may_have_something_below)
+{
+    assert_int_equal(guess_site(0.05), WHIT_UP_Z);
+    assert_int_equal(guess_site(0.2), WHIT_UP_Y);
 }
 
 TEST(stl_is_of_machines_that_print)
