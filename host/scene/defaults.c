@@ -12,7 +12,7 @@
 #include "scene/viewpoint.h"
 
 /* Where less than this share of what is seen gets light, whit adds some. */
-static const double LIT_ENOUGH = 0.25;
+static const double LIT_ENOUGH = 0.5;
 
 /* What lights a scene whose file has no light, or none that helps. */
 struct light_kinds {
@@ -58,20 +58,17 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
     return WHIT_OK;
 }
 
-/* Walls keep light from outside off a room: one lamp at the eye and one ahead of it, where the eye
-   sees that there is space. `why`: as notes begin. */
+/* Walls keep light from outside off a room: one lamp at the eye and a stronger one ahead of it, to
+   the left and above, whose shadows are seen. `why`: as notes begin. */
 static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint,
                                    const char *why)
 {
     const struct {
         const char *name;
-        double ahead;
+        const double *position;
         float level;
-    } lamps[] = {{"default lamp ahead", 0.45, 0.6f}, {"default lamp", 0.0, 0.3f}};
-    double forward[3];
-    for (int i = 0; i < 3; ++i)
-        forward[i] = viewpoint->target[i] - viewpoint->eye[i];
-    double3_unit(forward);
+    } lamps[] = {{"default lamp ahead", viewpoint->lamp, 0.6f},
+                 {"default lamp", viewpoint->eye, 0.3f}};
     for (size_t k = 0; k < sizeof lamps / sizeof *lamps; ++k) {
         struct scene_light light = {
             .name = scene_text(scene, lamps[k].name),
@@ -81,14 +78,12 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
             .made_by_whit = true,
         };
         set_color(light.color, lamps[k].level, 0.98f * lamps[k].level, 0.94f * lamps[k].level);
-        for (int i = 0; i < 3; ++i)
-            light.position[i] =
-                viewpoint->eye[i] + lamps[k].ahead * viewpoint->free_ahead * forward[i];
+        memcpy(light.position, lamps[k].position, sizeof light.position);
         if (scene_add_light(scene, light) == SCENE_NONE)
             return WHIT_ERROR_MEMORY;
     }
-    scene_note(scene, SCENE_NOTE_INFO, "%s: two lamps were added, at the camera and ahead of it",
-               why);
+    scene_note(scene, SCENE_NOTE_INFO,
+               "%s: two lamps were added, at the camera and ahead of it to the left", why);
     return WHIT_OK;
 }
 

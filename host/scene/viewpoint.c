@@ -21,6 +21,7 @@
 #define WALLS_DEPTH  0.6
 #define SHARE_INSIDE 0.7
 #define SKY_INSIDE   0.1
+#define LAMP_AHEAD   0.45 /* of the way that is free */
 #define BOARD_DEPTH  0.15 /* of width and height */
 
 /* --- outside -------------------------------------------------------------------------------- */
@@ -139,28 +140,64 @@ static bool choose_inside(const struct soup *soup, struct view *best, double *ah
     return best_score > 0.0;
 }
 
+/* How far it is from there to what is met that way, or to the side of the box around everything. */
+static double free_way(const struct soup *soup, const double from[3], const double dir[3],
+                       const double up[3])
+{
+    struct view view = {.tan_x = 0.1, .tan_y = 0.1};
+    struct sketch sketch;
+    double side = 0.0;
+    memcpy(view.eye, from, sizeof view.eye);
+    memcpy(view.forward, dir, sizeof view.forward);
+    memcpy(view.up, up, sizeof view.up);
+    double3_cross(dir, up, view.right);
+    sketch_draw(soup, &view, &sketch);
+    for (int k = 0; k < 3; ++k)
+        side += soup->half[k] * fabs(dir[k]) - from[k] * dir[k];
+    double nearness = (double)sketch.nearness[SKETCH_DOWN / 2][SKETCH_ACROSS / 2];
+    return nearness > 0.0 ? fmin(1.0 / nearness, side) : side;
+}
+
+static void place_lamp(const struct soup *soup, const struct view *view, double ahead,
+                       double lamp[3])
+{
+    double left[3], step;
+    for (int k = 0; k < 3; ++k) {
+        left[k] = -view->right[k];
+        lamp[k] = view->eye[k] + LAMP_AHEAD * ahead * view->forward[k];
+    }
+    step = 0.5 * free_way(soup, lamp, left, view->up);
+    for (int k = 0; k < 3; ++k)
+        lamp[k] += step * left[k];
+    step = 0.5 * free_way(soup, lamp, view->up, left);
+    for (int k = 0; k < 3; ++k)
+        lamp[k] += step * view->up[k];
+}
+
 whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose *pose,
                              struct viewpoint *out)
 {
     struct soup soup;
     struct view view;
     uint32_t way;
-    double ahead = 0.0;
+    double ahead = 0.0, lamp[3] = {0.0, 0.0, 0.0};
     whit_result result = soup_init(scene, pose, &soup);
     if (result != WHIT_OK)
         return result;
     choose_outside(&soup, &way, &view);
     bool inside = has_walls(&soup) && choose_inside(&soup, &view, &ahead);
+    if (inside)
+        place_lamp(&soup, &view, ahead, lamp);
     double distance = inside ? ahead : -double3_dot(view.eye, view.forward);
     out->kind = inside                  ? VIEWPOINT_INSIDE
                 : way >= STRAIGHT_FIRST ? VIEWPOINT_STRAIGHT
                 : way                   ? VIEWPOINT_TURNED
                                         : VIEWPOINT_CORNER;
     out->fov_y = inside ? FOV_Y_INSIDE : VIEW_FOV_Y;
-    out->free_ahead = ahead * soup.radius;
     for (int i = 0; i < 3; ++i) {
         out->eye[i] = soup.centre[i] + soup.radius * view.eye[i];
         out->target[i] = out->eye[i] + soup.radius * distance * view.forward[i];
+        out->lamp[i] = soup.centre[i] + soup.radius * lamp[i];
     }
     soup_finish(&soup);
     return WHIT_OK;

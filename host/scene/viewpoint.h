@@ -15,7 +15,8 @@ struct viewpoint {
     enum viewpoint_kind kind;
     double eye[3], target[3]; /* world; up is +y */
     double fov_y;
-    double free_ahead; /* INSIDE: how far the eye sees straight ahead, world units */
+    double lamp[3]; /* INSIDE: a place ahead of the eye, in the middle of what is free there to the
+                       left and above; world */
 };
 
 /* From the triangles as `pose` places them. The picture is taken to be 4:3; a wider one shows all

@@ -161,6 +161,11 @@ TEST(rooms_are_seen_from_inside)
             assert_int_equal(scene->lights[i].kind, SCENE_LIGHT_POINT);
             assert_true(fabs(scene->lights[i].position[0]) < 6.0);
         }
+        /* Ahead, half way to the wall on the left and to the ceiling. */
+        const double *lamp = scene->lights[0].position;
+        assert_true((lamp[0] - camera->eye[0]) * forward[0] > 1.0);
+        assert_true(fabs(lamp[1] - 0.5 * (camera->eye[1] + 2.0)) < 0.02);
+        assert_true(fabs(lamp[2] * forward[0] + 1.5) < 0.02);
         scene_destroy(scene);
     }
     /* The same walls as a solid. */
@@ -431,6 +436,34 @@ TEST(lamps_that_nobody_sees_get_help)
     scene_destroy(scene);
 }
 
+/* A wall, of which a spot lights a circle of `radius` in a picture of 5.1 by 6.8. */
+static struct scene *wall_with_spot(double radius)
+{
+    struct scene *scene = empty_scene();
+    float edge = (float)cos(atan(radius / 5.0));
+    scene_put(scene, mesh_box(100, 100, 0.1), NULL);
+    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_SPOT,
+                                                .node = SCENE_NONE,
+                                                .position = {0, 0, 5.05},
+                                                .direction = {0, 0, -1},
+                                                .color = {1, 1, 1},
+                                                .cos_inner = edge,
+                                                .cos_outer = edge});
+    scene_put_camera(scene, (const double[]){0, 0, 10.05}, (const double[]){0, 0, 0}, 0.5);
+    scene->is_model = true;
+    return scene_ready(scene);
+}
+
+TEST(lamps_that_light_less_than_half_get_help)
+{
+    struct scene *scene = wall_with_spot(2.1);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 1);
+    scene_destroy(scene);
+    scene = wall_with_spot(2.55);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 0);
+    scene_destroy(scene);
+}
+
 /* The camera stands in a box under the sun. `open`: as for walls(). `glass`: of the top. */
 static struct scene *box_under_sun(unsigned open, bool glass)
 {
@@ -442,7 +475,7 @@ static struct scene *box_under_sun(unsigned open, bool glass)
     if (glass)
         scene_put(scene, mesh_plane(4), &(struct put){.material = &pane, .at = {0, 2, 0}});
     scene_put_sun(scene, 0.1, -1, 0.2, 1.0f);
-    scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.8, 0}, 1.2);
+    scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -1.4, 0}, 0.9);
     scene->is_model = true;
     return scene_ready(scene);
 }
