@@ -24,16 +24,22 @@ static void set_color(float out[3], float r, float g, float b)
     out[0] = r, out[1] = g, out[2] = b;
 }
 
-static void note_viewpoint(struct scene *scene, enum viewpoint_kind kind)
+static void note_viewpoint(struct scene *scene, const struct viewpoint *viewpoint)
 {
     static const char *const places[] = {
-        [VIEWPOINT_CORNER] = "shows all of it",
-        [VIEWPOINT_TURNED] = "shows all of it, from the side that shows most fronts of surfaces",
-        [VIEWPOINT_STRAIGHT] = "shows all of it, straight on",
-        [VIEWPOINT_INSIDE] = "looks along it from inside, for it is a room",
+        [VIEWPOINT_CORNER] = "",
+        [VIEWPOINT_TURNED] = ", from the side that shows most fronts of surfaces",
+        [VIEWPOINT_STRAIGHT] = ", straight on",
     };
-    scene_note(scene, SCENE_NOTE_INFO, "no camera in the file: one was added that %s",
-               places[kind]);
+    if (viewpoint->kind == VIEWPOINT_INSIDE)
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "no camera in the file: one was added that looks along it from inside, for it "
+                   "is a room");
+    else
+        scene_note(scene, SCENE_NOTE_INFO, "no camera in the file: one was added that shows %s%s",
+                   viewpoint->part ? "the small part of it that nearly all triangles are in"
+                                   : "all of it",
+                   places[viewpoint->kind]);
 }
 
 static whit_result add_camera(struct scene *scene, const struct scene_pose *pose,
@@ -54,7 +60,7 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
     memcpy(camera.target, viewpoint->target, sizeof camera.target);
     if (scene_add_camera(scene, camera) == SCENE_NONE)
         return WHIT_ERROR_MEMORY;
-    note_viewpoint(scene, viewpoint->kind);
+    note_viewpoint(scene, viewpoint);
     return WHIT_OK;
 }
 

@@ -8,7 +8,10 @@
 #include "scene/pose.h"
 
 #define TRIANGLES_MAX 400000u
-#define MOMENTS       9     /* of an animation that the picture is fitted to */
+#define MOMENTS       9 /* of an animation that the picture is fitted to */
+#define BINS          1024
+#define TAIL          0.025 /* of the triangles, at either end of an axis */
+#define PART          0.25  /* of the scene's diagonal */
 #define MOVING_MAX    10000 /* instances */
 
 static void put_corner(const struct soup *soup, const struct affine *matrix, const double p[3],
@@ -154,6 +157,109 @@ void soup_finish(struct soup *soup)
     free(soup->corners);
     free(soup->pictured);
 }
+
+/* --- narrow --------------------------------------------------------------------------------- */
+
+struct part {
+    double lo[3], hi[3];
+};
+
+static double size_of(const struct part *part)
+{
+    double size[3];
+    for (int k = 0; k < 3; ++k)
+        size[k] = fmax(part->hi[k] - part->lo[k], 0.0);
+    return sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
+}
+
+/* Where the middles of triangles are, along an axis, but for TAIL of them at either end. */
+static void find_core(const struct soup *soup, int axis, struct part *core)
+{
+    uint32_t bins[BINS] = {0}, below = 0, tail = (uint32_t)(TAIL * soup->count), bin = 0;
+    for (size_t t = 0; t < soup->count; ++t) {
+        const float *p = soup->corners + 9 * t + axis;
+        float place = 0.5f * BINS * (1.0f + (p[0] + p[3] + p[6]) / 3.0f);
+        ++bins[(uint32_t)fminf(fmaxf(place, 0.0f), BINS - 1)];
+    }
+    while (below + bins[bin] <= tail)
+        below += bins[bin++];
+    core->lo[axis] = 2.0 * bin / BINS - 1.0;
+    for (bin = BINS, below = 0; below + bins[bin - 1] <= tail; --bin)
+        below += bins[bin - 1];
+    core->hi[axis] = 2.0 * bin / BINS - 1.0;
+}
+
+static bool is_in(const float *corners, const struct part *part)
+{
+    bool in = true;
+    for (int i = 0; i < 9; ++i)
+        in = in && (double)corners[i] >= part->lo[i % 3] && (double)corners[i] <= part->hi[i % 3];
+    return in;
+}
+
+/* The box of all triangles that are in the core, or no farther from it than half its size. */
+static struct part find_part(const struct soup *soup)
+{
+    struct part core, part = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int k = 0; k < 3; ++k)
+        find_core(soup, k, &core);
+    double around = 0.5 * size_of(&core);
+    for (int k = 0; k < 3; ++k) {
+        core.lo[k] -= around;
+        core.hi[k] += around;
+    }
+    for (size_t t = 0; t < soup->count; ++t) {
+        const float *p = soup->corners + 9 * t;
+        for (int i = 0; is_in(p, &core) && i < 9; ++i) {
+            part.lo[i % 3] = fmin(part.lo[i % 3], (double)p[i]);
+            part.hi[i % 3] = fmax(part.hi[i % 3], (double)p[i]);
+        }
+    }
+    return part;
+}
+
+/* One of the two runs of triangles: those that are in the part, or the others. */
+static void take_run(const struct soup *soup, const struct part *part, bool in, struct soup *narrow)
+{
+    for (size_t t = 0; t < soup->count; ++t) {
+        const float *p = soup->corners + 9 * t;
+        if (is_in(p, part) != in)
+            continue;
+        narrow->pictured[narrow->count] = soup->pictured[t];
+        float *out = narrow->corners + 9 * (size_t)narrow->count++;
+        for (int i = 0; i < 9; ++i)
+            out[i] = (float)(((double)p[i] - narrow->centre[i % 3]) / narrow->radius);
+    }
+}
+
+whit_result soup_narrow(const struct soup *soup, struct soup *narrow)
+{
+    *narrow = (struct soup){0};
+    if (!soup->whole || !soup->count || soup->fit_count != soup->count)
+        return WHIT_OK;
+    struct part part = find_part(soup);
+    if (!(size_of(&part) > 0.0) || size_of(&part) > PART * 2.0)
+        return WHIT_OK;
+    narrow->corners = array_alloc(soup->count, 9 * sizeof *narrow->corners);
+    narrow->pictured = array_alloc(soup->count, sizeof *narrow->pictured);
+    if (!narrow->corners || !narrow->pictured) {
+        soup_finish(narrow);
+        *narrow = (struct soup){0};
+        return WHIT_ERROR_MEMORY;
+    }
+    measure(part.lo, part.hi, narrow);
+    take_run(soup, &part, true, narrow);
+    narrow->fit_count = narrow->count;
+    take_run(soup, &part, false, narrow);
+    narrow->whole = true;
+    for (int k = 0; k < 3; ++k)
+        narrow->centre[k] = soup->centre[k] + soup->radius * narrow->centre[k];
+    narrow->radius *= soup->radius;
+    find_outline(narrow);
+    return WHIT_OK;
+}
+
+/* --- whole ---------------------------------------------------------------------------------- */
 
 whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, struct soup *soup)
 {

@@ -23,6 +23,11 @@ struct soup {
    triangles, or spheres, only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_init(const struct scene *scene, const struct scene_pose *pose,
                                  struct soup *soup);
+/* The same triangles around the small part of the scene that nearly all of them are in, such as
+   what stands on a wide floor: those come first, and the fit looks at them alone. `narrow` is
+   zeroed where there is no such part, or where it cannot be told: only boxes, or things that move.
+   WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result soup_narrow(const struct soup *soup, struct soup *narrow);
 void soup_finish(struct soup *soup);
 
 #endif

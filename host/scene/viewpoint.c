@@ -140,6 +140,15 @@ static bool choose_inside(const struct soup *soup, struct view *best, double *ah
     return best_score > 0.0;
 }
 
+static void place_view(const struct soup *soup, const struct view *view, double distance,
+                       struct viewpoint *out)
+{
+    for (int i = 0; i < 3; ++i) {
+        out->eye[i] = soup->centre[i] + soup->radius * view->eye[i];
+        out->target[i] = out->eye[i] + soup->radius * distance * view->forward[i];
+    }
+}
+
 /* How far it is from there to what is met that way, or to the side of the box around everything. */
 static double free_way(const struct soup *soup, const double from[3], const double dir[3],
                        const double up[3])
@@ -174,31 +183,53 @@ static void place_lamp(const struct soup *soup, const struct view *view, double 
         lamp[k] += step * view->up[k];
 }
 
+/* From outside; around a small part of the scene if that is where nearly all of it is. */
+static whit_result look_from_outside(const struct soup *soup, struct viewpoint *out)
+{
+    struct soup narrow;
+    struct view view;
+    uint32_t way;
+    whit_result result = soup_narrow(soup, &narrow);
+    if (result != WHIT_OK)
+        return result;
+    out->part = narrow.count > 0;
+    const struct soup *seen = out->part ? &narrow : soup;
+    choose_outside(seen, &way, &view);
+    out->kind = way >= STRAIGHT_FIRST ? VIEWPOINT_STRAIGHT
+                : way                 ? VIEWPOINT_TURNED
+                                      : VIEWPOINT_CORNER;
+    out->fov_y = VIEW_FOV_Y;
+    place_view(seen, &view, -double3_dot(view.eye, view.forward), out);
+    soup_finish(&narrow);
+    return WHIT_OK;
+}
+
+static void look_from_inside(const struct soup *soup, const struct view *view, double ahead,
+                             struct viewpoint *out)
+{
+    double lamp[3];
+    out->kind = VIEWPOINT_INSIDE;
+    out->fov_y = FOV_Y_INSIDE;
+    place_view(soup, view, ahead, out);
+    place_lamp(soup, view, ahead, lamp);
+    for (int i = 0; i < 3; ++i)
+        out->lamp[i] = soup->centre[i] + soup->radius * lamp[i];
+}
+
 whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose *pose,
                              struct viewpoint *out)
 {
     struct soup soup;
     struct view view;
-    uint32_t way;
-    double ahead = 0.0, lamp[3] = {0.0, 0.0, 0.0};
+    double ahead = 0.0;
+    *out = (struct viewpoint){0};
     whit_result result = soup_init(scene, pose, &soup);
     if (result != WHIT_OK)
         return result;
-    choose_outside(&soup, &way, &view);
-    bool inside = has_walls(&soup) && choose_inside(&soup, &view, &ahead);
-    if (inside)
-        place_lamp(&soup, &view, ahead, lamp);
-    double distance = inside ? ahead : -double3_dot(view.eye, view.forward);
-    out->kind = inside                  ? VIEWPOINT_INSIDE
-                : way >= STRAIGHT_FIRST ? VIEWPOINT_STRAIGHT
-                : way                   ? VIEWPOINT_TURNED
-                                        : VIEWPOINT_CORNER;
-    out->fov_y = inside ? FOV_Y_INSIDE : VIEW_FOV_Y;
-    for (int i = 0; i < 3; ++i) {
-        out->eye[i] = soup.centre[i] + soup.radius * view.eye[i];
-        out->target[i] = out->eye[i] + soup.radius * distance * view.forward[i];
-        out->lamp[i] = soup.centre[i] + soup.radius * lamp[i];
-    }
+    if (has_walls(&soup) && choose_inside(&soup, &view, &ahead))
+        look_from_inside(&soup, &view, ahead, out);
+    else
+        result = look_from_outside(&soup, out);
     soup_finish(&soup);
-    return WHIT_OK;
+    return result;
 }

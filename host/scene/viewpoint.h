@@ -15,6 +15,7 @@ struct viewpoint {
     enum viewpoint_kind kind;
     double eye[3], target[3]; /* world; up is +y */
     double fov_y;
+    bool part;      /* of the scene, which nearly all triangles are in; else all of it */
     double lamp[3]; /* INSIDE: a place ahead of the eye, in the middle of what is free there to the
                        left and above; world */
 };

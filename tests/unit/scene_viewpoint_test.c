@@ -3,6 +3,7 @@
 
 #include "../scenes.h"
 #include "base/array.h"
+#include "base/vec.h"
 #include "scene/scene.h"
 #include "scene/shapes.h"
 #include "unit.h"
@@ -204,6 +205,34 @@ TEST(boards_show_their_pictures)
 }
 
 /* What flies away later is in the picture from the start. */
+/* A ball beside the middle of a floor, `wide` times as wide as it. */
+static struct scene *ball_on_floor(double wide)
+{
+    struct scene *scene = empty_scene();
+    scene_put(scene, mesh_plane(2.0 * wide), NULL);
+    scene_put(scene, mesh_icosphere(1.0, 3), &(struct put){.at = {3, 1, -2}});
+    return scene;
+}
+
+TEST(small_parts_with_nearly_all_triangles_fill_the_picture)
+{
+    double forward[3], to_ball[3] = {3, 1, -2};
+    struct scene *scene = ball_on_floor(20.0);
+    const struct scene_camera *camera = camera_of(scene, forward);
+    assert_true(scene_noted(scene, "shows the small part of it that nearly all triangles are in"));
+    double distance = double3_distance(camera->eye, to_ball);
+    assert_true(distance > 2.5 && distance < 3.5);
+    for (int i = 0; i < 3; ++i)
+        assert_true(fabs(camera->eye[i] + distance * forward[i] - to_ball[i]) < 0.05);
+    scene_destroy(scene);
+
+    scene = ball_on_floor(4.0);
+    camera = camera_of(scene, forward);
+    assert_true(scene_noted(scene, "shows all of it"));
+    assert_true(double3_length(camera->eye) > 8.0);
+    scene_destroy(scene);
+}
+
 TEST(animations_stay_in_the_picture)
 {
     struct scene *scene = empty_scene();
