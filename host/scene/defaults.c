@@ -13,6 +13,8 @@
 
 /* Where less than this share of what is seen gets light, whit adds some. */
 static const double LIT_ENOUGH = 0.5;
+/* Where less gets that one, with a sky beside it, a lamp too: shadows alone are no closed box. */
+static const double BOXED = 0.25;
 
 /* What lights a scene whose file has no light, or none that helps. */
 struct light_kinds {
@@ -225,7 +227,7 @@ static whit_result help_lights(struct scene *scene, const struct scene_pose *pos
     bool boxed = found->key && !scene->cameras[0].made_by_whit;
     if (result == WHIT_OK && boxed)
         result = freeze_lit_share(scene, &share);
-    if (result == WHIT_OK && boxed && share < LIT_ENOUGH)
+    if (result == WHIT_OK && boxed && share < BOXED)
         result = add_lamp_at_eye(scene, pose, share);
     return result;
 }
