@@ -521,4 +521,15 @@ TEST(boxes_that_shut_the_sun_out_get_a_lamp)
         assert_int_equal(scene->light_count, 1);
         scene_destroy(scene);
     }
+    /* Whit's light over the shoulder reaches 41 % of what is seen in this open box: it is no closed
+     * one.
+     */
+    scene = empty_scene();
+    scene_put(scene, walls((const float[]){2, 3.5f, 2}, 8, false), NULL);
+    scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.5, 0}, 1.2);
+    scene->is_model = true;
+    scene = scene_ready(scene);
+    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 1);
+    assert_int_equal(scene->light_count, 1);
+    scene_destroy(scene);
 }
