@@ -64,6 +64,44 @@ for map in lattice studs; do
     expect 0 "$map is as it was" compare "$OUT/$map.png" "$OUT/tree/scenes/gallery/$map.png" \
         --metric largest --tolerance 0.01
 done
+# ---- Pictures are those of the scenes and commands of now ----
+
+# Two are made again, whose scenes have textures that are larger than the picture shows them.
+mkdir -p "$OUT/tree/docs/images/materials"
+fresh=docs/images/materials
+# shellcheck disable=SC2016
+check "tools/gallery makes pictures" sh -c '"$@" >"$0" 2>&1' "$OUT/stderr" \
+    "$OUT/tree/tools/gallery" "$WHIT" materials/checker materials/bumps
+for name in checker bumps; do
+    expect 0 "$name is as it was" compare "$fresh/$name.png" "$OUT/tree/$fresh/$name.png" --metric over --tolerance 0.002
+done
+# All say by what they were made. recipe FILE: a line of JSON of that and of what the command for it is now.
+recipe() {
+    LC_ALL=C tr -c '[:print:]' '\n' <"$1" >"$OUT/text"
+    sed -n '/whit:scene_hash$/{n;s/^\([0-9a-f]\{16\}\).*/"\1"/p;}; s/^whit \(render .* -o whit.png\).*/"\1"/p
+        s/^\({"width":[^}]*}\).*/\1/p' "$OUT/text" | jq -c -s --arg picture "$2" --arg asked "$(grep -F " -o $2 " "$OUT/asked")" \
+        '{ $picture, $asked, command: .[0], hash: .[1], options: .[2] }'
+}
+cut -d ' ' -f 2 "$OUT/asked" | sort -u | while read -r scene; do
+    "$WHIT" scene "$scene" --json --quiet | jq -c --arg scene "$scene" '{ $scene, hash }'
+done >"$OUT/hashes"
+{
+    recipe "$OUT/tree/$fresh/checker.png" $fresh/checker.png
+    sed -n 's/.* -o \([^ ]*\) .*/\1/p' "$OUT/asked" | while read -r picture; do
+        recipe "$picture" "$picture"
+    done
+} >"$OUT/recipes.json"
+stale=$(jq -r -s --slurpfile hashes "$OUT/hashes" '
+    def pairs: [scan("--[a-z-]+ [^ ]+")];
+    def rest: (.command | pairs) - (.asked | pairs);
+    .[0] as $fresh | ($fresh.options | del(.width, .height, .aa, .camera)) as $now | .[1:][] |
+    . as $at | (.asked | split(" ")[1]) as $scene |
+    select((.command | split(" ")[1]) != $scene or (.asked | pairs) - (.command | pairs) != [] or
+        rest != ($fresh | rest) or all($hashes[]; .scene != $scene or .hash != $at.hash) or
+        any($now | to_entries[]; . as $option | ($at.options | has($option.key)) and
+            $at.options[$option.key] != $option.value)) | " " + .picture' "$OUT/recipes.json" | tr -d '\n')
+check "scenes and commands are those of $(grep -c . "$OUT/asked") pictures; to be made again:$stale" test -z "$stale"
+
 # shellcheck disable=SC2016
 check "a picture that no command makes is refused" sh -c '! "$@" 2>"$0"' "$OUT/stderr" \
     "$OUT/tree/tools/gallery" "$WHIT" nowhere
