@@ -350,7 +350,8 @@ whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data
     whit_result result = check_access(buffer, offset_bytes, size_bytes);
     if (result != WHIT_OK || size_bytes == 0)
         return result;
-    /* Where the device has no cached memory at all, staging would gain nothing. */
+    /* A host buffer that is not cached is read directly too: the staging buffer would be no faster.
+     */
     if (buffer->mapped && (buffer->fast_to_read || (buffer->uses & BUFFER_HOST))) {
         memcpy(to, buffer->mapped + offset_bytes, size_bytes);
         return WHIT_OK;

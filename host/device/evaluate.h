@@ -64,7 +64,8 @@ struct instance {
     uint32_t result_type; /* 0: none */
     uint32_t returns;     /* that are reached */
     uint32_t value;       /* that is returned by the one that waits */
-    bool return_waits;    /* the block is open still: it may be the only return */
+    bool return_waits;    /* a return's branch is not written: where it is the only return, the
+                             caller goes on in its block */
     bool skips;           /* until the next block that is reached */
     uint32_t wrap, wrap_label, label_before; /* see begin_wrap; word of the body; 0: none */
     uint32_t loops[16], loop_depth;          /* source: merge blocks of the loops around */

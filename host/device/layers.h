@@ -15,7 +15,7 @@ extern "C" {
 
 /* Turns the locking on; call it before the first instance with validation is created. */
 void layers_expect(void);
-/* Whether there was something to lock, for layers_leave. Not recursive. */
+/* Take the lock, shared or alone. True where it was taken, as layers_leave asks. Not recursive. */
 bool layers_enter(void);
 bool layers_enter_alone(void);
 void layers_leave(bool entered);

@@ -4,7 +4,7 @@
 
 #include "device/swapchain_inside.h"
 
-/* Until the last picture is drawn; afterwards no image of it is in use. */
+/* Waits for the last submission; then the device works on none of the swapchain's images. */
 WHIT_CHECK whit_result swapchain_wait(struct swapchain *swapchain);
 /* Frees the picture's own image, if there is one; nothing may be in flight. */
 void swapchain_drop_canvas(struct swapchain *swapchain);

@@ -27,7 +27,7 @@ struct import_file {
     size_t size_bytes;
 };
 
-/* files[0] is the model; its name's extension chooses the importer. */
+/* files[0] is the model; Assimp chooses its importer by the extension of that name. */
 struct import_request {
     enum import_kind kind;
     const struct import_file *files;

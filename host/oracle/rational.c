@@ -415,7 +415,8 @@ static bool is_same(uint32_t instance, uint32_t primitive, const struct rational
     return instance == hit->instance && primitive == hit->primitive;
 }
 
-/* The far end of a sphere comes behind its near one, unless their keys are the same. */
+/* Whether a hit is in range and comes after query->behind; a sphere's far end does where its key
+   is larger. */
 static bool may_count(const struct search *s, float t, uint32_t instance, uint32_t primitive)
 {
     return t >= s->world->t_min && t <= s->t_max &&

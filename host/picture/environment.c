@@ -17,7 +17,8 @@ struct resample {
     float *to; /* RGBA */
 };
 
-/* Centre of texel (x, y) to a unit direction: lib/octahedron.glsl the other way. */
+/* A point of the octahedral map, 0..1 each, to a unit direction: the inverse of
+   lib/octahedron.glsl. */
 static void dir_from_octahedron(double x, double y, double dir[3])
 {
     double px = 2.0 * x - 1.0, pz = 2.0 * y - 1.0;

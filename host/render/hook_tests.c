@@ -96,7 +96,7 @@ whit_result renderer_run_tests(struct renderer *renderer, whit_check_result *res
                       BUFFER_STORAGE | BUFFER_HOST, "checks", &found);
     if (result == WHIT_OK)
         result = variant_create_tests(&renderer->picture, found, &pass);
-    if (result == WHIT_OK) /* lavapipe makes kernels when they are dispatched first */
+    if (result == WHIT_OK) /* lavapipe compiles a kernel at its first dispatch */
         result = dispatch(renderer, &pass, 1, 1);
     double made_ms = clock_ms();
     if (result == WHIT_OK)

@@ -23,8 +23,8 @@ enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 /* Until their tree is in order. */
 struct record_list {
     struct gpu_probe_ray *records; /* free() both */
-    uint32_t *places;              /* of the ray with an id, PROBE_RAYS_MAX of them, among records;
-                                      HIT_NONE: there is none */
+    uint32_t *places; /* by id of a ray, PROBE_RAYS_MAX of them: its index in `records`; HIT_NONE:
+                         no such ray */
 };
 
 /* ---- On the device ---- */
@@ -252,11 +252,12 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
 struct branch {
     uint32_t first, count; /* its child rays, whose records are next to each other */
     uint32_t place;        /* in the tree */
-    uint32_t waiting;      /* a stack of records: what the ray stack was on the device */
+    uint32_t waiting;      /* entry of a stack, of which each element holds one: a record to be put
+                              in the tree */
 };
 
 /* Pushes the child rays of a record so that its shadow rays are popped first, in their order, and
-   then the others, the last one first, as from the ray stack on the device. */
+   then the others, the last one first. */
 static uint32_t push_branches(const struct gpu_probe_ray *records, uint32_t first, uint32_t count,
                               struct branch *branches, uint32_t top)
 {

@@ -10,7 +10,7 @@
 
 enum { DECLARATION_BYTES = 256 };
 
-/* Names of the words of a choice too: `mode == mode_b`. */
+/* Declares a slider's variable; of a choice, a constant for each word too: `mode == mode_b`. */
 static size_t declare_one(const whit_slider *slider, char *text, size_t bytes)
 {
     static const char *const forms[] = {

@@ -214,7 +214,8 @@ static uint32_t bits_within(float x)
     return x > 0.0f ? float_bits(x) : 0u;
 }
 
-/* The least float from lo to hi that the key is not above. */
+/* The key of an end of the chord: its t rounded to the nearest float, ties to even, by bisection.
+ */
 static float find_key(struct ball *w, float lo, float hi, bool far)
 {
     uint32_t min = bits_within(lo), max = bits_within(hi);

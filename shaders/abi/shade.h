@@ -221,8 +221,8 @@ struct gpu_chunk {
     gpu_vec2 sample_xy; /* from the middle of the pixel, in halves of it: -1..1 */
     gpu_uint sample_index; /* of the sequence */
     gpu_float sample_weight;
-    gpu_vec2 lens_xy; /* CAMERA_LENS: a point of the lens, in units of right and up times the
-                         distance of the focus */
+    gpu_vec2 lens_xy; /* CAMERA_LENS: the ray starts at eye + focus_distance * (x * right +
+                         y * up) */
     gpu_uint listed;  /* camera rays of so many slots, which are listed; 0: of all */
     gpu_uint deferred; /* 1: of what is on the list of deferred rays */
     gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty, or

@@ -94,7 +94,7 @@
     X(3, SPEC_INSTANCED, 1)           /* 0: one mesh, not moved: no instance tree, no transform */ \
     X(4, SPEC_ANY_HIT, 0)             /* of the ray batch kernel */                                \
     X(5, SPEC_INTERLEAVE, 0)          /* even workgroups first: lavapipe splits ids in halves */   \
-    X(6, SPEC_SECONDARY, 1)           /* surfaces leave rays on the ray stacks */                  \
+    X(6, SPEC_SECONDARY, 1)           /* rays call for further rays */                             \
     X(7, SPEC_SHADOWS, 1)                                                                          \
     X(8, SPEC_REFLECTION, 1)                                                                       \
     X(9, SPEC_REFRACTION, 1)                                                                       \

@@ -1,6 +1,6 @@
-// Packets whose rays start at one point, or end there, and the boxes they come to: SPEC_BEAM, without
-// instances. Rays that end at a point, as those to a light do, come to boxes as if they started there; what is
-// in the boxes they meet from where they do start.
+// Packets whose rays all start, or all end, at one point (SPEC_BEAM), in trees without instances. Where they
+// end there, as shadow rays do, boxes are tested from that point, triangles and spheres from each ray's own
+// origin.
 #ifndef BIND_BEAM_GLSL
 #define BIND_BEAM_GLSL
 

@@ -133,9 +133,8 @@ float box_margin(vec3 lo, vec3 hi)
     return (max(largest_size(lo), largest_size(hi)) + packet_size) * BOUNDS_MARGIN;
 }
 
-// When the first ray comes to a box, as bits; NEVER where none does. Integers, as lavapipe has single
-// instructions for their minima: negative floats are negative integers, which is all that matters of them
-// here.
+// The t of a box that no ray enters: bits of infinity. Such t are compared as integers, of which lavapipe takes
+// the minimum in one instruction; of negative ones only the sign counts.
 const int NEVER = 0x7f800000;
 
 #endif

@@ -315,8 +315,7 @@ void keep_hit(Candidate m, bool at_exit, uint record, Primitive p, inout Hit hit
     hit.instance = p.instance;
 }
 
-// NUMERICS_EXACT: whether floats leave open if something that may be nearer is met, or which of two hits
-// comes first.
+// NUMERICS_EXACT: whether floats cannot tell if the candidate is met, or which of the two hits comes first.
 bool is_unsure(const uint mode, Candidate m, Hit hit)
 {
     return !m.sure || m.hi >= hit.lo || (mode == TRAVERSE_NEXT && m.lo <= hit_before);

@@ -97,7 +97,7 @@ struct building {
     struct bench_case cases[BUILDERS]; /* whit's, and then Embree's; build: by one thread a core */
     struct builder builders[BUILDERS];
     struct sample_runs alone[BUILDERS]; /* ms by one thread */
-    double bytes[BUILDERS]; /* the most that a build held at one time, with what it gives */
+    double bytes[BUILDERS];             /* peak memory of a build, with its result */
     uint32_t count, own_count, cores, threads;
     bool is_alone;
 };

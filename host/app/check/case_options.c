@@ -1,4 +1,4 @@
-/* A case's scene and options: those of `whit render` that say what is seen, by its table. */
+/* Reads a case's scene and options: the settings of `whit render` but those in refused[]. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -51,8 +51,8 @@ struct settings studio_settings(const struct studio *studio, const struct check_
 WHIT_CHECK whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer);
 /* Renders, and reads what the drawing's settings ask for. */
 WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
-/* probe.c: the first ray of a pixel's first sample, of which `device` is what it met; nothing,
-   where a shader's camera() sends none. */
+/* probe.c: the camera ray of a pixel's first sample, its hit in ray->device; a miss where a
+   shader's camera() sends none. */
 WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
                                      whit_probe_ray *ray);
 /* on_reference.c: WHIT_ERROR_USAGE, said, where the job has no device and its settings ask for what

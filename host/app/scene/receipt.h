@@ -15,8 +15,8 @@ struct receipt {
     struct cost_effect rows[RECEIPT_ROWS_MAX]; /* by the index of whit_effect_name */
 };
 
-/* Measures and prints. EXIT_DIFFERS where a picture is not what it must be: one with an effect that
-   the scene does not call for has to be the same. */
+/* Measures and prints. EXIT_DIFFERS where an effect that the scene does not call for changes the
+   picture. */
 int receipt_run(struct job *job, bool json);
 
 #endif
