@@ -210,7 +210,9 @@ static struct part find_part(const struct soup *soup)
     }
     for (size_t t = 0; t < soup->count; ++t) {
         const float *p = soup->corners + 9 * t;
-        for (int i = 0; is_in(p, &core) && i < 9; ++i) {
+        if (!is_in(p, &core))
+            continue;
+        for (int i = 0; i < 9; ++i) {
             part.lo[i % 3] = fmin(part.lo[i % 3], (double)p[i]);
             part.hi[i % 3] = fmax(part.hi[i % 3], (double)p[i]);
         }
