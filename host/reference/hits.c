@@ -163,18 +163,18 @@ static void visit_record(struct conservative_walk *walk, uint32_t index, uint32_
 {
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *record = &walk->accel->triangles[index];
-    bool own = s->mode != MODE_NEXT && record->primitive == s->skip_primitive &&
-               instance == s->skip_instance;
+    bool self = s->mode != MODE_NEXT && record->primitive == s->skip_primitive &&
+                instance == s->skip_instance;
     struct candidate m;
     if (record->flags & TRIANGLE_SPHERE) {
-        m = meet_sphere(&s->line, record, false, own);
+        m = meet_sphere(&s->line, record, false, self);
         bool ended = take_candidate(s, &m, index, instance);
-        m = meet_sphere(&s->line, record, true, own);
+        m = meet_sphere(&s->line, record, true, self);
         if (!ended)
             take_candidate(s, &m, index, instance);
         return;
     }
-    if (own)
+    if (self)
         return;
     m = meet_triangle(&s->line, record);
     if (record->flags & TRIANGLE_MIRRORED && walk->accel->flat)

@@ -71,7 +71,7 @@ struct candidate meet_triangle(const struct line *line, const struct gpu_triangl
 /* The half chord from the line's distance to the centre; of the ends the one nearer to the origin
    from the product of both, so that nothing cancels (Haines et al. 2019). */
 struct candidate meet_sphere(const struct line *line, const struct gpu_triangle *sphere,
-                             bool at_exit, bool own)
+                             bool at_exit, bool self)
 {
     struct candidate m = {.owned = true, .front = !at_exit};
     struct dvec3 d = d3(line->dir[0], line->dir[1], line->dir[2]);
@@ -86,7 +86,7 @@ struct candidate meet_sphere(const struct line *line, const struct gpu_triangle 
     double far = middle < 0.0 ? middle - half : middle + half;
     double near = far != 0.0 ? (dvec3_dot(c, c) - radius * radius) / (dd * far) : 0.0;
     m.t = at_exit ? fmax(near, far) : fmin(near, far);
-    m.met = !own || (at_exit && middle > 0.0);
+    m.met = !self || (at_exit && middle > 0.0);
     struct dvec3 to_end = d3_scale(d, at_exit ? half : -half);
     m.normal = d3_unit_or(dvec3_sub(to_end, off), d3(0, 1, 0));
     return m;

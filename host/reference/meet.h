@@ -21,8 +21,8 @@ struct candidate {
 
 struct line line_make(const double origin[3], const double dir[3]);
 struct candidate meet_triangle(const struct line *line, const struct gpu_triangle *triangle);
-/* One of the ends of the chord. `own`: the line starts on it; then only the far end is there. */
+/* One of the ends of the chord. `self`: the line starts on it; then only the far end is there. */
 struct candidate meet_sphere(const struct line *line, const struct gpu_triangle *sphere,
-                             bool at_exit, bool own);
+                             bool at_exit, bool self);
 
 #endif

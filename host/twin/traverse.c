@@ -145,24 +145,25 @@ static struct candidate meet_triangle(const struct walk *walk, const struct ray_
     return m;
 }
 
-/* One end of a chord. `own`: the ray starts on the sphere, and meets it only if it goes inwards. */
+/* One end of a chord. `self`: the ray starts on the sphere, and meets it only if it goes inwards.
+ */
 static struct candidate meet_end(const struct walk *walk, const struct ray_setup *ray,
                                  const struct chord *chord, const struct sphere_bounds *bounds,
-                                 bool at_exit, bool own)
+                                 bool at_exit, bool self)
 {
     float at = at_exit ? chord->t_far : chord->t_near;
     struct candidate m = {.t = at > chord->t_box ? at : chord->t_box, .at_exit = at_exit};
     square_from_dir(chord_end(ray, chord, at_exit), &m.u, &m.v);
-    m.met = chord->met && at >= walk->t_min && (!own || chord->inward);
+    m.met = chord->met && at >= walk->t_min && (!self || chord->inward);
     m.lo = m.hi = m.t;
     if (walk->numerics == NUMERICS_EXACT) {
         bool end_known = at_exit || bounds->near_lo >= walk->t_min;
         m.lo = at_exit ? bounds->far_lo : bounds->near_lo;
         m.hi = at_exit || !end_known ? bounds->far_hi : bounds->near_hi;
-        m.met = !bounds->outside && !(own && bounds->inward_known && !chord->inward) &&
+        m.met = !bounds->outside && !(self && bounds->inward_known && !chord->inward) &&
                 !(m.hi < walk->t_min);
         m.rounded = bounds->inside && end_known;
-        m.sure = m.rounded && m.lo >= walk->t_min && (!own || bounds->inward_known);
+        m.sure = m.rounded && m.lo >= walk->t_min && (!self || bounds->inward_known);
     }
     return m;
 }
@@ -213,7 +214,7 @@ static void settle_hit(struct walk *walk)
 /* Replaces the bounds of a candidate by what is exact; finds the key of the hit so far too, where
    it takes both to tell which comes first. */
 static void settle(struct walk *walk, const struct ray_setup *ray,
-                   const struct gpu_triangle *record, bool own, struct candidate *m)
+                   const struct gpu_triangle *record, bool self, struct candidate *m)
 {
     if (record->flags & TRIANGLE_SPHERE) {
         struct sphere_candidate exact;
@@ -221,7 +222,7 @@ static void settle(struct walk *walk, const struct ray_setup *ray,
         struct vec3 to_center = vec3_sub(vec3_load(record->v0), ray->origin);
         if (!m->rounded || exact.at_exit != m->at_exit)
             square_from_dir(vec3_sub(vec3_scale(ray->dir, exact.key), to_center), &m->u, &m->v);
-        m->met = exact.met && (!own || exact.inward);
+        m->met = exact.met && (!self || exact.inward);
         m->at_exit = exact.at_exit;
         m->t = exact.key;
     } else {
@@ -253,14 +254,14 @@ static bool is_reached(const struct walk *walk, const struct candidate *m, uint3
 }
 
 static bool accept_candidate(struct walk *walk, const struct ray_setup *ray, struct candidate *m,
-                             uint32_t record, uint32_t instance, bool own)
+                             uint32_t record, uint32_t instance, bool self)
 {
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
     if (!is_reached(walk, m, instance, triangle->primitive))
         return false;
     bool sure = m->sure && m->hi < walk->lo && m->lo > walk->hit_before;
     if (walk->numerics == NUMERICS_EXACT && !sure) {
-        settle(walk, ray, triangle, own, m);
+        settle(walk, ray, triangle, self, m);
         if (!is_reached(walk, m, instance, triangle->primitive))
             return false;
     }
@@ -277,22 +278,22 @@ static bool accept_candidate(struct walk *walk, const struct ray_setup *ray, str
 }
 
 static bool test_sphere(struct walk *walk, const struct ray_setup *ray, uint32_t record,
-                        uint32_t instance, bool own)
+                        uint32_t instance, bool self)
 {
     const struct gpu_triangle *sphere = &walk->accel->triangles[record];
     struct vec3 center = vec3_load(sphere->v0);
     struct chord chord = intersect_sphere(ray, center, sphere->v1[0], walk->t_min);
     struct sphere_bounds bounds;
-    bool at_exit = own || !(chord.t_near >= walk->t_min);
+    bool at_exit = self || !(chord.t_near >= walk->t_min);
     if (walk->numerics == NUMERICS_EXACT) {
         bound_sphere(ray, center, sphere->v1[0], &bounds);
-        at_exit = own || bounds.near_hi < walk->t_min;
+        at_exit = self || bounds.near_hi < walk->t_min;
     }
-    struct candidate m = meet_end(walk, ray, &chord, &bounds, at_exit, own);
-    bool accepted = accept_candidate(walk, ray, &m, record, instance, own);
+    struct candidate m = meet_end(walk, ray, &chord, &bounds, at_exit, self);
+    bool accepted = accept_candidate(walk, ray, &m, record, instance, self);
     if (walk->next && !accepted && !m.at_exit) {
-        m = meet_end(walk, ray, &chord, &bounds, true, own);
-        accepted = accept_candidate(walk, ray, &m, record, instance, own);
+        m = meet_end(walk, ray, &chord, &bounds, true, self);
+        accepted = accept_candidate(walk, ray, &m, record, instance, self);
     }
     return accepted;
 }
@@ -304,11 +305,11 @@ static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t
     ++walk->cost.triangles;
     if (walk->accel->flat)
         instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
-    bool own = !walk->next && triangle->primitive == walk->skip_primitive &&
-               instance == walk->skip_instance;
+    bool self = !walk->next && triangle->primitive == walk->skip_primitive &&
+                instance == walk->skip_instance;
     if (triangle->flags & TRIANGLE_SPHERE)
-        return test_sphere(walk, ray, record, instance, own) && walk->any;
-    if (own)
+        return test_sphere(walk, ray, record, instance, self) && walk->any;
+    if (self)
         return false;
     struct candidate m = meet_triangle(walk, ray, triangle);
     return accept_candidate(walk, ray, &m, record, instance, false) && walk->any;

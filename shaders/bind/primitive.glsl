@@ -63,7 +63,7 @@ Hit make_hit(float t_max)
 struct Primitive {
     uvec4 r0, r1, r2;
     uint index, flags, instance;
-    bool own; // the ray starts on it
+    bool self; // the ray starts on it
     bool known; // NUMERICS_EXACT: a sphere, and one of its ends is the hit that is known
     bool is_sphere;
 };
@@ -100,10 +100,10 @@ Primitive make_primitive(const uint mode, RecordRows rows, uint instance, uint s
     p.flags = p.r1.w;
     p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
     p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
-    p.own = p.index == skip_primitive && p.instance == skip_instance;
-    p.known = SPEC_NUMERICS == NUMERICS_EXACT && mode == TRAVERSE_NEXT && p.own && p.is_sphere;
+    p.self = p.index == skip_primitive && p.instance == skip_instance;
+    p.known = SPEC_NUMERICS == NUMERICS_EXACT && mode == TRAVERSE_NEXT && p.self && p.is_sphere;
     if (mode == TRAVERSE_NEXT) // a triangle is not met behind itself
-        p.own = p.own && !p.is_sphere;
+        p.self = p.self && !p.is_sphere;
     return p;
 }
 
@@ -178,25 +178,25 @@ Candidate meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
 
 // Sets what float arithmetic tells of a candidate hit at one end of a chord. Where it does not decide
 // whether the near end is at t_min or behind it, the hit may be at the far end.
-void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool own,
+void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool self,
                inout Candidate m)
 {
     bool known = at_exit || bounds.near_lo >= t_min;
     m.lo = at_exit ? bounds.far_lo : bounds.near_lo;
     m.hi = at_exit || !known ? bounds.far_hi : bounds.near_hi;
-    m.met = !bounds.outside && !(m.hi < t_min) && (!own || inward || !bounds.inward_known);
+    m.met = !bounds.outside && !(m.hi < t_min) && (!self || inward || !bounds.inward_known);
     m.rounded = bounds.inside && known;
-    m.sure = m.rounded && m.lo >= t_min && (!own || bounds.inward_known);
+    m.sure = m.rounded && m.lo >= t_min && (!self || bounds.inward_known);
 }
 
-// The candidate hit at one end of a chord. A ray that starts on the sphere (`own`) can only meet the far
+// The candidate hit at one end of a chord. A ray that starts on the sphere (`self`) can only meet the far
 // end, and only if it goes inwards. No small distance has to be chosen for that.
-Candidate meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool own)
+Candidate meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool self)
 {
     Candidate m;
     float at = at_exit ? chord.t_far : chord.t_near;
     // False for NaN.
-    m.met = chord.met && at >= t_min && (!own || chord.inward);
+    m.met = chord.met && at >= t_min && (!self || chord.inward);
     m.t = at > chord.t_box ? at : chord.t_box;
     vec2 square = square_from_dir(chord_end(ray, chord, at_exit));
     m.u = square.x;
@@ -204,7 +204,7 @@ Candidate meet_sphere(RaySetup ray, Chord chord, float t_min, bool at_exit, bool
     m.front = !at_exit;
     m.owned = true;
     if (SPEC_NUMERICS == NUMERICS_EXACT)
-        bound_end(chord.bounds, chord.inward, t_min, at_exit, own, m);
+        bound_end(chord.bounds, chord.inward, t_min, at_exit, self, m);
     return m;
 }
 
@@ -214,10 +214,10 @@ Candidate meet_primitive(RaySetup ray, float t_min, Primitive p, Chord chord, bo
     Candidate m;
     if (SPEC_SPHERES != SPHERES_ONLY) {
         m = meet_triangle(ray, t_min, p.r0, p.r1, p.r2);
-        m.met = m.met && !p.own;
+        m.met = m.met && !p.self;
     }
     if (SPEC_SPHERES != SPHERES_NONE) {
-        Candidate on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.own);
+        Candidate on_sphere = meet_sphere(ray, chord, t_min, at_exit, p.self);
         on_sphere.met = on_sphere.met && !(p.known && hit_before_at_exit);
         if (SPEC_SPHERES == SPHERES_ONLY)
             m = on_sphere;
@@ -255,7 +255,7 @@ bool starts_at_exit(const uint mode, Primitive p, Chord chord, float t_min)
     if (SPEC_NUMERICS == NUMERICS_EXACT)
         before = chord.bounds.near_hi < t_min ||
                  (mode == TRAVERSE_NEXT && (p.known || chord.bounds.near_hi < hit_before));
-    return SPEC_SPHERES != SPHERES_NONE && (p.own || before);
+    return SPEC_SPHERES != SPHERES_NONE && (p.self || before);
 }
 
 #endif

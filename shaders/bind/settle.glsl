@@ -25,11 +25,11 @@ ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, 
     return m;
 }
 
-// Which ends of a chord through a sphere count: those from t_min on; `only_far`: the far one alone; `own`:
+// Which ends of a chord through a sphere count: those from t_min on; `only_far`: the far one alone; `self`:
 // the ray starts on the sphere, and meets an end only if it goes inwards.
 struct Ends {
     float t_min;
-    bool only_far, own;
+    bool only_far, self;
 };
 
 // The exact hit of a record's sphere, likewise.
@@ -53,7 +53,7 @@ ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, i
     precise vec3 from_center = dir * on_sphere.key - to_center;
     vec2 square = square_from_dir(from_center);
     ExactMeeting m;
-    m.met = on_sphere.met && (!ends.own || on_sphere.inward);
+    m.met = on_sphere.met && (!ends.self || on_sphere.inward);
     m.front = !on_sphere.at_exit;
     m.key = on_sphere.key;
     m.u = square.x;
@@ -120,7 +120,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
             inout bool at_exit, inout Candidate m, inout Hit hit)
 {
     vec3 from = ray.origin, along = ray.dir;
-    Ends ends = Ends(t_min, at_exit, p.own);
+    Ends ends = Ends(t_min, at_exit, p.self);
     bool first = true, again;
     do {
         ExactMeeting exact = meet_record(from, along, record, !first, ends, hit.status);

@@ -352,7 +352,7 @@ bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_ex
         return false;
     add_filter(m, vec2(0.0), p.flags, p.r2.w, p.instance, p.index, hit);
     if (SPEC_SPHERES != SPHERES_NONE && p.is_sphere && !at_exit) {
-        Candidate far = meet_sphere(ray, chord, t_min, true, p.own);
+        Candidate far = meet_sphere(ray, chord, t_min, true, p.self);
         bool reached = is_reached(TRAVERSE_SHADOW, far, p.flags, p.instance, p.index, HIT_NONE,
                                   HIT_NONE, hit);
         if (reached && !leaves_open(TRAVERSE_SHADOW, reached, far, hit))
