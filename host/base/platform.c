@@ -70,19 +70,19 @@ uint64_t platform_peak_memory_bytes(void)
     return (uint64_t)max * 1024; /* Linux counts in KiB */
 }
 
-void platform_memory_bytes(uint64_t *all, uint64_t *own)
+void platform_memory_bytes(uint64_t *all, uint64_t *anonymous)
 {
     char line[128];
-    unsigned long long all_kib = 0, own_kib = 0;
+    unsigned long long all_kib = 0, anonymous_kib = 0;
     FILE *from = fopen("/proc/self/status", "r");
     while (from && fgets(line, sizeof line, from)) {
         (void)sscanf(line, "VmRSS: %llu kB", &all_kib);
-        (void)sscanf(line, "RssAnon: %llu kB", &own_kib);
+        (void)sscanf(line, "RssAnon: %llu kB", &anonymous_kib);
     }
     if (from)
         (void)fclose(from);
     *all = (uint64_t)all_kib * 1024;
-    *own = (uint64_t)own_kib * 1024;
+    *anonymous = (uint64_t)anonymous_kib * 1024;
 }
 
 static volatile bool *volatile interrupt_flag;

@@ -26,7 +26,7 @@ void platform_zero(void *data, size_t size_bytes);
 uint64_t platform_peak_memory_bytes(void);
 /* Resident memory of this process at this moment: all of it, and the anonymous part. Both are 0
    where the system does not say. */
-void platform_memory_bytes(uint64_t *all, uint64_t *own);
+void platform_memory_bytes(uint64_t *all, uint64_t *anonymous);
 /* Sets *flag at SIGINT and SIGTERM; a second signal removes unfinished files and ends at once. */
 void platform_catch_interrupts(volatile bool *flag);
 

@@ -55,8 +55,9 @@ void cost_mark_best(struct cost_report *report, enum cost_metric metric)
     }
 }
 
-/* The setting's own error without the sampling error, where that is known; else the whole error. */
-static double own_error(const struct cost_row *row, enum cost_metric metric)
+/* The setting's bias, which is its error without that of samples, where that is known; else the
+ * whole error. */
+static double bias_of(const struct cost_row *row, enum cost_metric metric)
 {
     return cost_error_of(row->alone.pixel_count ? &row->alone : &row->error, metric);
 }
@@ -77,7 +78,7 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
     const struct cost_row *usual = &report->rows[0];
     bool samples = row->alone.pixel_count == 0;
     double before = samples ? usual->error.rmse : usual->alone.rmse;
-    double after = own_error(row, COST_RMSE);
+    double after = bias_of(row, COST_RMSE);
     bool more_right = after < before * (1.0 - CHOOSE_AS_RIGHT);
     bool less_right = after > before * (1.0 + CHOOSE_AS_RIGHT);
     if (row->change == SETTING_HITS && row->hits[COST_AIMED].traced) {
@@ -134,9 +135,9 @@ static struct effect effect_of(const struct search *search, const struct cost_ro
     enum cost_metric metric = search->goal->metric;
     struct effect out = {.known = is_ranked(row)};
     out.ratio = row->price.verdict ? row->price.ratio[search->report->clock].median : 1.0;
-    out.error = row->knob_index == search->aa ? to_sum(sampled_error(search, row), metric)
-                                              : to_sum(own_error(row, metric), metric) -
-                                                    to_sum(own_error(usual, metric), metric);
+    out.error = row->knob_index == search->aa
+                    ? to_sum(sampled_error(search, row), metric)
+                    : to_sum(bias_of(row, metric), metric) - to_sum(bias_of(usual, metric), metric);
     return out;
 }
 
@@ -144,7 +145,7 @@ static void collect(struct search *search)
 {
     const struct cost_report *report = search->report;
     enum cost_metric metric = search->goal->metric;
-    search->usual_own = to_sum(own_error(&report->rows[0], metric), metric);
+    search->usual_bias = to_sum(bias_of(&report->rows[0], metric), metric);
     for (uint32_t k = 0; k < search->count; ++k)
         search->effects[k][search->table[k].usual] = (struct effect){.ratio = 1.0, .known = true};
     search->effects[search->aa][search->table[search->aa].usual].error =

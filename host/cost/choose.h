@@ -20,7 +20,7 @@ struct search {
     const struct knob *table;
     uint32_t count, aa;
     struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
-    double usual_own; /* the usual settings' error without that of samples, as a sum */
+    double usual_bias; /* the usual settings' error without that of samples, as a sum */
     uint8_t settings[COST_CHOICE_KNOBS];
     struct cost_choice best;
 };

@@ -153,7 +153,7 @@ static void be_careful(struct search *search)
     for (size_t i = 0; i < sizeof careful / sizeof *careful; ++i) {
         uint32_t setting, knob = find(search, &careful[i], &setting);
         const struct effect *effect = &search->effects[knob][setting];
-        double before = search->usual_own;
+        double before = search->usual_bias;
         if (effect->known && effect->error < -CHOOSE_AS_RIGHT * before)
             search->settings[knob] = (uint8_t)setting;
     }

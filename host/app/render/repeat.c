@@ -261,10 +261,10 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
     const struct cli_command *command = reader->command;
     struct settings settings;
     const char *named = reader->positional;
-    bool own_scene = named && strcmp(named, recipe->picture) != 0;
+    bool names_scene = named && strcmp(named, recipe->picture) != 0;
     char scene[SETTING_PATH_BYTES];
     if (!load(recipe, job, &settings) ||
-        !(own_scene || find_scene(recipe, &settings, command->name)) ||
+        !(names_scene || find_scene(recipe, &settings, command->name)) ||
         !find_others(recipe, &settings))
         return false;
     memcpy(scene, settings.scene, sizeof scene);
@@ -278,7 +278,7 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
     cli_reader_init(reader, command, argc, argv);
     if (!job_read(job, reader, own, true))
         return false;
-    if (!own_scene)
+    if (!names_scene)
         memcpy(job->settings.scene, scene, sizeof scene);
     return true;
 }
