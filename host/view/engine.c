@@ -6,7 +6,9 @@
 #include <time.h>
 
 #include "base/platform.h"
+#include "view/engine_draw.h"
 #include "view/engine_private.h"
+#include "view/engine_sessions.h"
 #include "whit/whit_program.h"
 
 /* Most that drawing waits for the first picture of a new version to be on the screen. */

@@ -7,6 +7,7 @@
 #include "base/sample.h"
 #include "view/choices.h"
 #include "view/difference.h"
+#include "view/engine_change.h"
 #include "view/engine_private.h"
 
 struct text {

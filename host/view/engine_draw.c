@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "view/engine_draw.h"
 #include "view/engine_private.h"
 #include "whit/whit_program.h"
 

@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "view/engine_draw.h"
 #include "view/engine_private.h"
+#include "view/engine_refine.h"
+#include "view/engine_sessions.h"
 
 /* More samples change nothing that is seen where at most one pixel in so many changes by more than
    this code of 255 in some channel. */

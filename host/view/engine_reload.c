@@ -5,6 +5,7 @@
 
 #include "view/difference.h"
 #include "view/engine_private.h"
+#include "view/engine_reload.h"
 
 /* ---- How different they look ---- */
 

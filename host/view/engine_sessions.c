@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "view/engine_draw.h"
 #include "view/engine_private.h"
+#include "view/engine_sessions.h"
 #include "whit/whit_program.h"
 
 enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MAX = 2 };

@@ -1,6 +1,9 @@
 /* Two pictures of one place, drawn in turns while nothing else is to be done: by how much the one
    takes longer. */
+#include "view/engine_turns.h"
+#include "view/engine_draw.h"
 #include "view/engine_private.h"
+#include "view/engine_sessions.h"
 
 /* Of 9 pairs the interval goes from the second to the eighth difference; 6 are the fewest that an
    interval of 95 % takes (base/sample.h). */

@@ -4,6 +4,12 @@
 #include <string.h>
 
 #include "view/choices.h"
+#include "view/hud.h"
+#include "view/keys.h"
+#include "view/overlay.h"
+#include "view/pick.h"
+#include "view/price_panel.h"
+#include "view/scenes.h"
 #include "view/view_private.h"
 
 static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,

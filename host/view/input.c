@@ -2,6 +2,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "view/input.h"
+#include "view/keys.h"
+#include "view/pick.h"
+#include "view/scenes.h"
 #include "view/view_private.h"
 
 static const double ORBIT_RADIANS = 3.14159265358979; /* across the window's height */

@@ -6,6 +6,10 @@
 
 #include "base/file.h"
 #include "view/choices.h"
+#include "view/keys.h"
+#include "view/pick.h"
+#include "view/price_panel.h"
+#include "view/scenes.h"
 #include "view/view_private.h"
 
 static const double ESCAPE_MS = 1500.0; /* between the two that quit */

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/sample.h"
+#include "view/measure.h"
 #include "view/view_private.h"
 
 static void note(struct view_figures *figures, double value)

@@ -1,6 +1,7 @@
 /* Lines in the scene, over the picture. */
 #include <string.h>
 
+#include "view/overlay.h"
 #include "view/view_private.h"
 
 /* Blue and orange are told apart by the colour-blind too. */

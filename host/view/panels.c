@@ -7,6 +7,8 @@
 
 #include "base/file.h"
 #include "view/choices.h"
+#include "view/price_panel.h"
+#include "view/scenes.h"
 #include "view/view_private.h"
 
 enum { NAMES_LAST = 9999, WORDS_BYTES = 8192 };

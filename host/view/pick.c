@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "view/overlay.h"
+#include "view/pick.h"
 #include "view/view_private.h"
 
 static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "view/price_panel.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 

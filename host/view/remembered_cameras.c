@@ -1,4 +1,4 @@
-#include "view/memory.h"
+#include "view/remembered_cameras.h"
 
 #include <errno.h>
 #include <stdio.h>

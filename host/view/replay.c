@@ -7,6 +7,8 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "view/prices.h"
+#include "view/replay.h"
+#include "view/state.h"
 #include "view/view_private.h"
 
 static const double LOOK_MS = 20.0; /* between looks whether what is waited for is there */

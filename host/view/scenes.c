@@ -9,7 +9,8 @@
 #include "base/file.h"
 #include "base/input.h"
 #include "base/watch.h"
-#include "view/memory.h"
+#include "view/remembered_cameras.h"
+#include "view/scenes.h"
 #include "view/view_private.h"
 
 /* ---- Cameras ---- */

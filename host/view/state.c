@@ -9,7 +9,10 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/platform.h"
+#include "view/keys.h"
 #include "view/prices.h"
+#include "view/scenes.h"
+#include "view/state.h"
 #include "view/view_private.h"
 
 static void put_text(json_t *object, const char *name, const char *text)

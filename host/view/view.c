@@ -9,7 +9,11 @@
 #include "base/platform.h"
 #include "kernels.h"
 #include "view/font.h"
+#include "view/pick.h"
+#include "view/price_panel.h"
 #include "view/prices.h"
+#include "view/replay.h"
+#include "view/scenes.h"
 #include "view/view_private.h"
 
 static const double MOVING_MS = 160.0; /* after the last move: then the picture is made whole */

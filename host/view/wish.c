@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "view/price_panel.h"
 #include "view/view_private.h"
 
 static const double SPEND_S = 20.0;

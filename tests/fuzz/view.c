@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "view/events.h"
-#include "view/memory.h"
+#include "view/remembered_cameras.h"
 
 static void prepare(void)
 {

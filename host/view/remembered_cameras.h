@@ -1,7 +1,7 @@
 /* Cameras of scenes that were looked at, in the user's state folder: $XDG_STATE_HOME/whit or
    ~/.local/state/whit, cameras.json. */
-#ifndef VIEW_MEMORY_H
-#define VIEW_MEMORY_H
+#ifndef VIEW_REMEMBERED_CAMERAS_H
+#define VIEW_REMEMBERED_CAMERAS_H
 
 #include <stdbool.h>
 #include <stddef.h>
