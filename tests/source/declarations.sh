@@ -1,12 +1,15 @@
 #!/bin/sh
-# declarations.sh ROOT: what another source calls is declared once, in the header of its own source's name. One
-# function alone of a source may stand in another header of the folder, that of the thing which it is a part
-# of. Names what is declared elsewhere, or twice.
+# declarations.sh ROOT: what another source calls is declared once, in the header of its own source's name, or
+# in NAME_private.h where NAME.h is what others outside of the folder see. One function alone of a source may
+# stand in another header of the folder, that of the thing which it is a part of. Names what is declared
+# elsewhere, or twice.
 cd "$1" || exit 1
-# Faces of modules, and tables whose entries are called by their kind; host/view/ is yet to be divided.
-faces='^host/(whit/.*|view/.*|bvh/build|cost/cost|device/swapchain|image/formats|render/render|settings/settings)[.]h$'
+# Faces of modules, and tables whose entries are called by their kind. view/engine.h: what the window asks of
+# the engine, whatever source answers. view/ui.h: Dear ImGui for C, whose two sources are C++.
+faces='^host/(whit/.*|bvh/build|cost/cost|device/swapchain|image/formats|render/render|settings/settings|view/(engine|ui))[.]h$'
 # shellcheck disable=SC2046
 awk -v faces="$faces" '
+{ sub(/ *\/[*].*/, "") }
 FNR == 1 { name = ""; header = FILENAME ~ /[.]h$/ }
 /^[A-Za-z].*[A-Za-z0-9_][(]/ && !/^(static|typedef|extern) / {
     name = $0
@@ -30,7 +33,9 @@ END {
         of = source[name]
         own = of
         sub(/[.][a-z]+$/, ".h", own)
-        if (own == declared[name] || declared[name] ~ faces)
+        inside = own
+        sub(/[.]h$/, "_private.h", inside)
+        if (own == declared[name] || inside == declared[name] || declared[name] ~ faces)
             continue
         folder = declared[name]
         sub(/[^\/]*$/, "", folder)
