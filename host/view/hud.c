@@ -52,6 +52,9 @@ static void draw_figures(const struct view *view)
     ui_text("%9s  render %.2f ms", fps, ms);
     ui_text_beside(COLOR_TEXT, " %.2f Mray/s",
                    ms > 0.0 ? (double)whit_stats_rays(s) / ms * 1e-3 : 0.0);
+    if (frame->scene->info.time_end_s > 0.0)
+        ui_text("%s at %.2f of %.2f s", view->clock.playing ? "plays" : "stands",
+                frame->settings.picture.time_s, frame->scene->info.time_end_s);
 }
 
 static void draw_names(const struct view *view)

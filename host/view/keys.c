@@ -393,7 +393,7 @@ static void save_picture(struct view *view)
                                    .device = &frame->device,
                                    .stats = &frame->stats};
     if (view->params->save && view->params->save(view->params->save_user, &shot, path) == WHIT_OK)
-        view_say(view, "%s", path);
+        view_say(view, "saved as %s", path);
     else
         view_say(view, "%s could not be saved", path);
 }
@@ -443,6 +443,8 @@ static void escape(struct view *view)
         scenes_answer(view, false);
         return;
     }
+    if (ui_close_menus(view->ui))
+        return;
     if (view->help || view->picked || view->panels.settings || view->panels.effects ||
         view->refused[0]) {
         view->help = view->picked = false;
@@ -470,25 +472,25 @@ static void say_prices(const struct view *view, char *text, size_t bytes)
 /* In the order of the sheet, by groups; keys of settings come first in theirs. */
 static const struct key_binding bindings[] = {
     {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
-    {'F', 0, "F", "look under mouse", "look at what is under the mouse", pick_focus,
+    {'F', 0, "F", "look at what is there", "look at what is under the mouse", pick_focus,
      .group = KEYS_CAMERA},
-    {'1', 0, "1 2 3", "front right above", "from the front", look_front, .group = KEYS_CAMERA},
+    {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .group = KEYS_CAMERA},
     {'2', 0, NULL, NULL, "from the right", look_right, .group = KEYS_CAMERA},
     {'3', 0, NULL, NULL, "from above", look_top, .group = KEYS_CAMERA},
-    {'4', 0, "4 5 6", "back left below", "from behind", look_back, .group = KEYS_CAMERA},
+    {'4', 0, "4 5 6", "from back left below", "from behind", look_back, .group = KEYS_CAMERA},
     {'5', 0, NULL, NULL, "from the left", look_left, .group = KEYS_CAMERA},
     {'6', 0, NULL, NULL, "from below", look_bottom, .group = KEYS_CAMERA},
     {'0', 0, "0", "file's cameras", "next camera of the file", next_file_camera,
      .state = say_camera, .group = KEYS_CAMERA},
-    {KEY_TAB, 0, "Tab", "settings", "settings by mouse", switch_settings, .state = say_settings,
-     .group = KEYS_PICTURE},
-    {'X', 0, "X", "effects, prices", "effects and prices", switch_effects, .state = say_effects,
-     .group = KEYS_PICTURE},
-    {'P', 0, "P", "what knobs cost", "prices of this view", price_switch, .state = say_prices,
-     .group = KEYS_PICTURE},
+    {KEY_TAB, 0, "Tab", "settings, light, up", "settings by mouse", switch_settings,
+     .state = say_settings, .group = KEYS_PICTURE},
+    {'X', 0, "X", "effects, each one's cost", "effects and prices", switch_effects,
+     .state = say_effects, .group = KEYS_PICTURE},
+    {'P', 0, "P", "what each setting costs", "prices of this view", price_switch,
+     .state = say_prices, .group = KEYS_PICTURE},
     {KEY_SPACE, 0, "Space", NULL, "animation", switch_playing, .state = say_playing,
      .group = KEYS_PICTURE},
-    {',', 0, ", .", "a frame back, on", "a frame back", step_back, .group = KEYS_PICTURE},
+    {',', 0, ", .", "frame before, after", "a frame back", step_back, .group = KEYS_PICTURE},
     {'.', 0, NULL, NULL, "a frame on", step_forward, .group = KEYS_PICTURE},
     {'L', 0, "L", NULL, "animation runs", switch_loop, .state = say_loop, .group = KEYS_PICTURE},
     {'9', 0, "9 Shift+9", "slower, faster", "half speed", slower, .state = say_speed,
@@ -510,9 +512,9 @@ static const struct key_binding bindings[] = {
     {KEY_F1 + 10, 0, "F11", NULL, "full screen", switch_fullscreen, .state = say_fullscreen,
      .group = KEYS_FILES},
     {KEY_ESCAPE, 0, "Escape", NULL, "twice: quit", escape, .group = KEYS_FILES},
-    {'I', 0, "I", "A beside B", "A beside B, frozen now", switch_split, .state = say_split,
+    {'I', 0, "I", "keep as B, change A", "A beside B, frozen now", switch_split, .state = say_split,
      .group = KEYS_EXPERTS},
-    {'U', 0, "U", NULL, "A minus B", switch_difference, .state = say_difference,
+    {'U', 0, "U", "difference of A and B", "A minus B", switch_difference, .state = say_difference,
      .group = KEYS_EXPERTS},
     {'B', 0, "B Shift+B", "depth, next cost", "depth view", switch_depth_view,
      .group = KEYS_EXPERTS},

@@ -65,7 +65,7 @@ void panels_save(struct view *view)
     char path[VIEW_FREE_NAME];
     view_free_name("view", path);
     if (write_state(view, path) == WHIT_OK)
-        view_say(view, "%s", path);
+        view_say(view, "saved as %s", path);
     else
         view_say(view, "%s could not be saved", path);
     view->panels.states_known = false;
@@ -146,7 +146,7 @@ static void draw_files(struct view *view)
     if (ui_button("save"))
         panels_save(view);
     ui_same_line(0);
-    if (ui_choice("files", panels->state_count ? "load" : "none saved here", names,
+    if (ui_choice("files", panels->state_count ? "load" : "none here", names,
                   (int)panels->state_count, &value))
         panels_load(view, names[value]);
 }

@@ -68,8 +68,9 @@ static bool is_settled(const struct view *view, const struct engine_status *stat
     window_pixels(view->window, &width, &height);
     swapchain_get_info(view->swapchain, &chain);
     return window_is_settled(view->window) && width == chain.width && height == chain.height &&
-           status->stage == view->status.stage && strcmp(status->error, view->status.error) == 0 &&
-           !view->dirty && !view->shot[0];
+           status->stage == view->status.stage &&
+           status->change.number == view->status.change.number &&
+           strcmp(status->error, view->status.error) == 0 && !view->dirty && !view->shot[0];
 }
 
 /* As good as it gets, and seen. While the animation plays it never is: then nothing is waited for.

@@ -106,6 +106,7 @@ struct panel {
     ImVec2 size, at; // of the last frame it was in
     int frame;       // that one
     bool cut;        // some of it is beyond its right side
+    bool holds;      // it takes the mouse
 };
 
 // All panels. Those that have ended in this frame are obstacles for the next ones.
@@ -114,6 +115,8 @@ static struct {
     int count, frame, current;
     int obstacles[PANELS_MAX], obstacle_count;
     bool changed, wraps;
+    bool has_menu, closes_menu; // a list of choices is open; and is to be closed
+    bool had_menu;              // in the frame before
     int again;
 } layout;
 
@@ -195,7 +198,7 @@ static float room_below(const ImVec2 &at, float width)
     return end - at.y > min ? end - at.y : min;
 }
 
-static void note_panel(int index)
+static void note_panel(int index, bool holds)
 {
     panel &p = layout.panels[index];
     ImVec2 size = ImGui::GetWindowSize(), at = ImGui::GetWindowPos();
@@ -204,9 +207,17 @@ static void note_panel(int index)
     p.size = size;
     p.at = at;
     p.cut = ImGui::GetScrollMaxX() > 0.0f;
+    p.holds = holds;
     p.frame = layout.frame;
     if (layout.obstacle_count < PANELS_MAX && at.x > NOWHERE.x)
         layout.obstacles[layout.obstacle_count++] = index;
+}
+
+bool note_menu()
+{
+    layout.has_menu = !layout.closes_menu;
+    layout.changed |= !layout.had_menu; // it finds its size
+    return layout.closes_menu;
 }
 
 void note_item(const char *label)
@@ -252,6 +263,7 @@ static void set_style(float scale)
     style.WindowRounding = 4.0f;
     style.FrameRounding = 3.0f;
     style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06f, 0.07f, 0.09f, 0.86f);
+    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.06f, 0.07f, 0.09f, 1.0f);
     style.ScaleAllSizes(scale);
 }
 
@@ -419,10 +431,26 @@ void ui_character(struct ui *, uint32_t code_point)
     ImGui::GetIO().AddInputCharacter(code_point);
 }
 
+// Dear ImGui tells what the mouse was over when the last frame began; it may have been moved since.
 bool ui_has_mouse(const struct ui *)
 {
-    return ImGui::GetIO().WantCaptureMouse;
+    ImVec2 mouse = ImGui::GetIO().MousePos;
+    bool over = ImGui::GetIO().WantCaptureMouse || layout.has_menu;
+    for (int i = 0; i < layout.obstacle_count; ++i) {
+        const panel &p = layout.panels[layout.obstacles[i]];
+        over |= p.holds && mouse.x >= p.at.x && mouse.y >= p.at.y && mouse.x < p.at.x + p.size.x &&
+                mouse.y < p.at.y + p.size.y;
+    }
+    return over;
 }
+
+bool ui_close_menus(struct ui *)
+{
+    bool had = layout.has_menu;
+    layout.closes_menu = had;
+    return had;
+}
+
 bool ui_has_keys(const struct ui *)
 {
     return ImGui::GetIO().WantTextInput;
@@ -443,6 +471,8 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     }
     ++layout.frame;
     layout.obstacle_count = 0;
+    layout.had_menu = layout.has_menu;
+    layout.has_menu = false;
     item_count = 0;
     ImGui_ImplVulkan_NewFrame();
     ImGui::NewFrame();
@@ -451,6 +481,7 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
 
 bool ui_end(struct ui *ui)
 {
+    layout.closes_menu = false;
     layout.again = layout.changed ? layout.again + 1 : 0;
     ImGui::Render();
     return give_back(ui);
@@ -551,10 +582,11 @@ bool ui_window_begin(const char *title, float x, float y, float width, float hei
 
 void ui_panel_end(void)
 {
+    bool holds = !layout.wraps; // takes the mouse
     if (layout.wraps)
         ImGui::PopTextWrapPos();
     layout.wraps = false;
-    note_panel(layout.current);
+    note_panel(layout.current, holds);
     ImGui::End();
 }
 

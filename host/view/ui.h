@@ -44,6 +44,8 @@ void ui_key_event(struct ui *ui, enum ui_key key, bool down);
 void ui_character(struct ui *ui, uint32_t code_point);
 /* Whether a panel has the mouse, or a text field the keys: the picture is then left alone. */
 bool ui_has_mouse(const struct ui *ui);
+/* Closes the list of choices that is open; false where none is. */
+bool ui_close_menus(struct ui *ui);
 bool ui_has_keys(const struct ui *ui);
 
 /* Everything below is drawn between these two. False: there is no memory for it, and no frame. */

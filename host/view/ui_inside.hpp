@@ -8,6 +8,9 @@ extern float line_scale; // pixels a unit of lengths on the screen
 
 float panel_width(); // at most, pixels
 
+// A list of choices is open. Whether it is to be closed.
+bool note_menu();
+
 // The last item is found under its label by ui_item.
 void note_item(const char *label);
 

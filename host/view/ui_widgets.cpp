@@ -120,6 +120,8 @@ bool ui_choice(const char *label, const char *preview, const char *const *names,
     ImGui::SetNextItemWidth(field_width());
     bool open = ImGui::BeginCombo(label, shown(preview)), chosen = false;
     note_item(label);
+    if (open && note_menu())
+        ImGui::CloseCurrentPopup();
     for (int i = 0; open && i < count; ++i) {
         if (ui_selectable(names[i], i == *value)) {
             *value = i;

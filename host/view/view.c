@@ -270,7 +270,10 @@ static whit_result draw_window(struct view *view)
         log_error(&view->log, "out of memory for the figures of the window");
         return WHIT_ERROR_MEMORY;
     }
+    const struct settings before = view->settings;
     hud_draw(view);
+    view->dirty |=
+        !settings_same(&before, &view->settings); /* by mouse: they are to be asked for */
     if (ui_end(view->ui))
         platform_trim_heaps();
     if (ui_wants_again(view->ui)) { /* panels find their sizes: kept is what comes of it */

@@ -97,7 +97,9 @@ if part 0 2; then
     play "by mouse" "$CUBE" --size 320x400 --ui-scale 0.5 <<END
 key: press F2 x2, press T
 mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose sign | words as key
-    | keys.traversal as key | words = --size 320x400 --traversal sign
+    | keys.traversal as key | words = --size 320x400 --traversal sign | picked = false
+menu: choose traversal, still, press Escape | panels.Settings has 10
+panel: press Escape | panels.Settings = (no panels.Settings)
 END
 
     # ---- The panel of a pixel stands beside it ----
