@@ -111,7 +111,7 @@ static double sky_max(const struct renderer *renderer)
     return max * largest(sky->scale);
 }
 
-static bool *worn_materials(const struct scene *scene)
+bool *bailout_bound_materials(const struct scene *scene)
 {
     bool *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
     for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
@@ -168,8 +168,6 @@ double bailout_bound(const struct renderer *renderer)
     double cut = renderer->picture.stats.weight_cut_bailout;
     if (!(renderer->params.bailout > 0.0))
         return 0.0;
-    bool *worn = worn_materials(renderer->scene);
-    struct brought max = worn ? ray_max(renderer, worn) : (struct brought){-1.0, -1.0};
-    free(worn);
+    struct brought max = ray_max(renderer, renderer->worn);
     return max.radiance < 0.0 ? -1.0 : cut * max.radiance + max.unshadowed;
 }

@@ -8,5 +8,7 @@
    cut; < 0: no bound is known (emissive surfaces as points, highlights of flat emitters, a light on
    a surface). */
 double bailout_bound(const struct renderer *renderer);
+/* Which materials of the scene some primitive has; free() it. NULL: memory ran out. */
+bool *bailout_bound_materials(const struct scene *scene);
 
 #endif

@@ -6,6 +6,7 @@
 #include "accel/pose.h"
 #include "base/clock.h"
 #include "device/commands.h"
+#include "render/bailout_bound.h"
 #include "render/costs.h"
 #include "render/effects.h"
 #include "render/frame_uniform.h"
@@ -90,6 +91,8 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
         result = hooks_read_sliders(renderer, renderer->params.sliders);
     if (result == WHIT_OK)
         result = hooks_find_material(renderer);
+    if (result == WHIT_OK && !(renderer->worn = bailout_bound_materials(renderer->scene)))
+        result = render_no_memory(renderer, "materials");
     if (renderer->scene->pictures_dropped) {
         log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
                   renderer->scene->name);
@@ -142,6 +145,7 @@ void renderer_finish(struct renderer *renderer)
     upload_finish(&renderer->scene_buffers);
     bodies_finish(&renderer->bodies);
     scene_pose_finish(&renderer->pose);
+    free(renderer->worn);
     image_finish(&renderer->color);
     image_finish(&renderer->ids);
     image_finish(&renderer->cuts);

@@ -233,6 +233,7 @@ struct renderer {
     struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
     double create_ms;
     /* What the pipelines were made for. */
+    bool *worn; /* of each material: some primitive has it */
     uint32_t node_stack_size, packet_stack_size;
     bool single_identity;
     bool has_secondary; /* the scene calls for more than camera rays */

@@ -74,10 +74,12 @@ static whit_result submit_nothing(struct commands *commands, struct pipeline *pi
 {
     const struct gpu_chunk chunk = {0};
     whit_result result = commands_begin(commands);
+    if (result != WHIT_OK)
+        return result;
     commands_bind(commands, pipeline, set);
     commands_push(commands, &chunk, sizeof chunk);
     commands_dispatch(commands, 0, 0, 0);
-    return result == WHIT_OK ? commands_submit(commands) : result;
+    return commands_submit(commands);
 }
 
 static whit_result submit_here(const struct renderer *renderer, const struct kernel *kernel)
