@@ -104,11 +104,13 @@ static void save(const struct view *view)
     const struct wish *wish = &view->wish;
     struct settings settings;
     const struct cost_place place = place_of(view, &settings);
-    struct cost_kept_figures figures = *wish->figures;
-    figures.choice.found &= params->settings.budget_ms > 0.0 && wish->stage == WISH_CHOSEN;
-    figures.choice_ms = wish->took_ms;
+    struct cost_kept_figures *figures = wish->figures;
+    bool found = figures->choice.found;
+    figures->choice.found = found && params->settings.budget_ms > 0.0 && wish->stage == WISH_CHOSEN;
+    figures->choice_ms = wish->took_ms;
     if (params->save_figures)
-        params->save_figures(params->figures_user, &place, &figures);
+        params->save_figures(params->figures_user, &place, figures);
+    figures->choice.found = found;
 }
 
 /* By figures of an earlier run, and its choice, where there are any. */
