@@ -161,8 +161,7 @@ static bool find_exact(const struct cost_report *report, struct cost_finding *fi
     if (told_apart)
         find(finding, "exact hits cost %.2g %%", more);
     else if (high > 1.0 + TIME_UNSURE)
-        find(finding, "exact hits cost up to %.0f %%, if anything: this was measured no better",
-             more);
+        find(finding, "exact hits cost at most %.0f %%, as closely as could be measured", more);
     else
         find(finding, "exact hits cost nothing that can be measured");
     if (aimed->traced && !aimed->unanswered && aimed->judged.tally.wrong) {

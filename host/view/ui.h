@@ -111,7 +111,7 @@ bool ui_table_begin(const char *id, int columns);
 /* Instead of a header: how wide columns are, text that is longer is wrapped by ui_cell. */
 void ui_table_widths(const int *characters, int count);
 void ui_cell(uint32_t color, const char *text); /* ui_table_next and a text */
-int ui_characters(int columns); /* that so many columns across the window have room for */
+int ui_characters(int columns); /* that fit into a table of so many columns, as wide as the panel */
 void ui_table_header(const char *const *names, int count);
 void ui_table_next(void); /* cell */
 void ui_table_end(void);
