@@ -1,10 +1,10 @@
-/* Where one tree over everything is better. */
+/* Decides whether a scene gets one tree in world space in place of a tree of instances. */
 #ifndef ACCEL_FLAT_CHOICE_H
 #define ACCEL_FLAT_CHOICE_H
 
 #include "accel/accel.h"
 
-/* Whether spheres under it are spheres that are not turned. */
+/* Whether `forward` leaves spheres spheres, and does not turn them. */
 bool accel_flat_keeps_spheres(const struct affine *forward);
 
 /* Whether `flatten` suits a frozen scene, which stands at `pose`: no mesh but a single ball is

@@ -4,7 +4,7 @@
 
 #include "accel/accel.h"
 
-/* What a material means to traversal. */
+/* What traversal has to know of a material: bits of the primitive records that wear it. */
 struct material_bits {
     uint32_t flags, shadow;
     bool masked;    /* SCENE_ALPHA_MASK: colours of vertices may cut it out */

@@ -1,4 +1,4 @@
-/* What several files of api/ do with handles. */
+/* Checks and steps that several functions of the library share. */
 #include "api/handles.h"
 
 #include "accel/flat_choice.h"

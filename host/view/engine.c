@@ -283,29 +283,6 @@ static bool follows_one(const struct engine_lane *lane, const struct engine_task
            lane->drawn == lane->asked && !lane->stale && lane->session == task->session;
 }
 
-/* Lets samples be added to a picture that was drawn. `same`: it has the pixels of the one before.
-   With the lock. */
-static void begin_refine(struct engine *engine, const struct engine_task *task, bool same,
-                         struct engine_frame *frame)
-{
-    size_t index = (size_t)(task->lane - engine->lanes);
-    struct engine_refine *refine = &engine->refine[index];
-    struct engine_kept *single = &engine->single[index];
-    const struct engine_kept *kept = index ? &engine->other : &engine->last;
-    if (task->quality == ENGINE_FULL && engine_doubles(&task->settings)) {
-        engine_keep(single, frame);
-        engine_refine_begin(refine, frame);
-    }
-    if (!frame->whole)
-        return;
-    if (task->refine)
-        engine_refine_finish_whole(refine, frame);
-    else if (!(same && !engine->lanes[1].wanted &&
-               engine_refine_keep(refine, kept, task->session, frame)))
-        engine_refine_begin(refine, frame);
-    engine_kept_finish(single);
-}
-
 static void draw_one(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     struct engine_frame frame = {0};
@@ -335,7 +312,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     if (result == WHIT_OK)
         note_speed(lane, &frame);
     if (result == WHIT_OK)
-        begin_refine(engine, task, same, &frame);
+        engine_refine_take(engine, task, same, &frame);
     engine->busy = false;
     engine->drawing = NULL;
     if (result == WHIT_OK) {

@@ -47,7 +47,8 @@ bool engine_doubles(const struct settings *settings)
     return engine_refines(settings) && count > 1 && (count & (count - 1)) == 0;
 }
 
-void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame)
+/* Begins with a picture; one that cannot be refined, by costs or adaptive samples, ends it. */
+static void begin(struct engine_refine *refine, const struct engine_frame *frame)
 {
     engine_refine_stop(refine);
     if (!engine_refines(&frame->settings))
@@ -184,8 +185,10 @@ static whit_result finish_round(struct session *session, struct engine_refine *r
     return WHIT_OK;
 }
 
-bool engine_refine_keep(struct engine_refine *refine, const struct engine_kept *kept,
-                        struct session *session, struct engine_frame *frame)
+/* Goes on from where it was, as a whole picture came to the same pixels as the one that it began
+   with: *frame then shows as many samples as the picture before. False: it cannot. */
+static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
+                 struct session *session, struct engine_frame *frame)
 {
     const whit_sampling *sampling = &frame->settings.picture.sampling;
     bool goes_on = refine->refine && refine->samples > refine->base.samples &&
@@ -286,7 +289,8 @@ whit_result engine_refine_whole(const struct engine_task *task, struct engine_fr
     return result;
 }
 
-void engine_refine_finish_whole(struct engine_refine *refine, const struct engine_frame *frame)
+/* It has made *frame, and goes on beyond it. */
+static void finish_whole(struct engine_refine *refine, const struct engine_frame *frame)
 {
     set_base(refine, frame);
     refine->base.estimate_count = 0;
@@ -305,6 +309,26 @@ static bool has_post(const struct session *session)
     for (uint32_t i = 0; session->shader && i < session->shader->info.hook_count; ++i)
         has = has || strcmp(session->shader->info.hooks[i], "post") == 0;
     return has;
+}
+
+void engine_refine_take(struct engine *engine, const struct engine_task *task, bool same,
+                        struct engine_frame *frame)
+{
+    size_t index = (size_t)(task->lane - engine->lanes);
+    struct engine_refine *refine = &engine->refine[index];
+    struct engine_kept *single = &engine->single[index];
+    const struct engine_kept *kept = index ? &engine->other : &engine->last;
+    if (task->quality == ENGINE_FULL && engine_doubles(&task->settings)) {
+        engine_keep(single, frame);
+        begin(refine, frame);
+    }
+    if (!frame->whole)
+        return;
+    if (task->refine)
+        finish_whole(refine, frame);
+    else if (!(same && !engine->lanes[1].wanted && keep(refine, kept, task->session, frame)))
+        begin(refine, frame);
+    engine_kept_finish(single);
 }
 
 void engine_refine_join(struct engine *engine, struct engine_task *task)

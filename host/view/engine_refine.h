@@ -29,19 +29,14 @@ bool engine_doubles(const struct settings *settings);
    refine has that. */
 void engine_refine_join(struct engine *engine, struct engine_task *task);
 /* Draws the samples of the task that its refine lacks, in place of all, and shows steps on the way.
-   Without the lock. *frame then has colours, ids, cuts and statistics. */
+   Without the lock. *frame then has colours, ids and statistics. */
 WHIT_CHECK whit_result engine_refine_whole(const struct engine_task *task,
                                            struct engine_frame *frame);
-/* With the lock: the task's refine made *frame, and goes on beyond it. */
-void engine_refine_finish_whole(struct engine_refine *refine, const struct engine_frame *frame);
-/* Begins with a whole picture of the window; one that cannot be refined, by costs
-   or adaptive samples, ends it. */
-void engine_refine_begin(struct engine_refine *refine, const struct engine_frame *frame);
+/* With the lock: lets samples be added to the picture of the task, which may then show as many as
+   the one before. `same`: it has the same pixels as that. */
+void engine_refine_take(struct engine *engine, const struct engine_task *task, bool same,
+                        struct engine_frame *frame);
 void engine_refine_stop(struct engine_refine *refine);
-/* Goes on from where it was, as a whole picture of the window came to the same pixels as the one
-   that it began with: *frame then shows as many samples as the picture before. False: it cannot. */
-WHIT_CHECK bool engine_refine_keep(struct engine_refine *refine, const struct engine_kept *kept,
-                                   struct session *session, struct engine_frame *frame);
 /* With the lock: the lane whose picture is to be refined next; NULL: none, or something else is to
    be done. Of A beside B the one of fewer samples, until both look the same as before. */
 struct engine_lane *engine_refine_lane(struct engine *engine);

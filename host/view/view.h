@@ -23,11 +23,8 @@ struct view_params {
     bool fresh;     /* for --budget-ms and --max-error what is kept is measured anew */
     /* Figures for these two and the choices made by them, from one run to the next. load: false
        where there are none; *figures is then untouched. NULL: nothing is kept. */
-    bool (*load_figures)(void *user, const struct cost_place *place,
-                         struct cost_kept_figures *figures);
-    void (*save_figures)(void *user, const struct cost_place *place,
-                         const struct cost_kept_figures *figures);
-    void *figures_user;
+    bool (*load_figures)(const struct cost_place *place, struct cost_kept_figures *figures);
+    void (*save_figures)(const struct cost_place *place, const struct cost_kept_figures *figures);
     uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */
     const char *record; /* where events go, or NULL */
     const char *replay; /* where they come from, or NULL */

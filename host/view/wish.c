@@ -109,7 +109,7 @@ static void save(const struct view *view)
     figures->choice.found = found && params->settings.budget_ms > 0.0 && wish->stage == WISH_CHOSEN;
     figures->choice_ms = wish->took_ms;
     if (params->save_figures)
-        params->save_figures(params->figures_user, &place, figures);
+        params->save_figures(&place, figures);
     figures->choice.found = found;
 }
 
@@ -120,8 +120,7 @@ static bool choose_as_before(struct view *view)
     struct wish *wish = &view->wish;
     struct settings settings;
     const struct cost_place place = place_of(view, &settings);
-    if (wish->fresh || !params->load_figures ||
-        !params->load_figures(params->figures_user, &place, wish->figures))
+    if (wish->fresh || !params->load_figures || !params->load_figures(&place, wish->figures))
         return false;
     wish->known = wish->figures->choice.found;
     if (wish->known)

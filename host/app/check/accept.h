@@ -1,4 +1,4 @@
-/* What is taken into the golden, or out of it. */
+/* `whit check --accept` and --prune: both write the golden file of a suite. */
 #ifndef APP_CHECK_ACCEPT_H
 #define APP_CHECK_ACCEPT_H
 

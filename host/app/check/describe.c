@@ -1,4 +1,5 @@
-/* What a golden keeps of a drawing. */
+/* The entry of a golden file: hashes of what was drawn, its mean, and the parts that it was made
+ * of. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

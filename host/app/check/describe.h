@@ -1,4 +1,4 @@
-/* What a golden keeps of drawings. */
+/* Makes the entry of a golden file from a picture that was drawn. */
 #ifndef APP_CHECK_DESCRIBE_H
 #define APP_CHECK_DESCRIBE_H
 
@@ -9,7 +9,7 @@
 uint64_t drawing_hash_floats(const whit_image *image);
 uint64_t drawing_hash_ids(const whit_image *image);
 
-/* What a golden keeps of a drawing; its name is the case's. *found gets the keys of parts too, as
+/* Makes the golden of one drawing; its name is the case's. *found gets the keys of parts too, as
    the parts of a golden with that one case. WHIT_ERROR_MEMORY, said. */
 WHIT_CHECK whit_result drawing_describe(const struct drawing *drawing,
                                         const struct check_case *item, struct golden *found);

@@ -144,12 +144,10 @@ bool cost_kept_load(const struct cost_place *place, const char *name, struct cos
 
 /* ---- For the viewer ---- */
 
-bool cost_kept_load_figures(void *user, const struct cost_place *place,
-                            struct cost_kept_figures *figures)
+bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures)
 {
     char name[COST_KEPT_NAME];
     struct cost_kept *kept = calloc(1, sizeof *kept);
-    (void)user;
     cost_kept_name(place, name);
     bool found = kept && cost_kept_load(place, name, kept);
     if (found) {
@@ -166,12 +164,10 @@ bool cost_kept_load_figures(void *user, const struct cost_place *place,
 }
 
 /* Choices for other times by the same figures stay. */
-void cost_kept_save_figures(void *user, const struct cost_place *place,
-                            const struct cost_kept_figures *figures)
+void cost_kept_save_figures(const struct cost_place *place, const struct cost_kept_figures *figures)
 {
     char name[COST_KEPT_NAME];
     struct cost_kept *kept = calloc(1, sizeof *kept);
-    (void)user;
     if (!kept)
         return;
     cost_kept_name(place, name);

@@ -27,9 +27,8 @@ void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
 /* view_params.load_figures and save_figures: the same record. */
-bool cost_kept_load_figures(void *user, const struct cost_place *place,
-                            struct cost_kept_figures *figures);
-void cost_kept_save_figures(void *user, const struct cost_place *place,
+bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures);
+void cost_kept_save_figures(const struct cost_place *place,
                             const struct cost_kept_figures *figures);
 
 #endif

@@ -1,4 +1,4 @@
-/* What `whit hard` found. */
+/* The report of `whit hard`, as text and as JSON. */
 #ifndef APP_HARD_HARD_OUTPUT_H
 #define APP_HARD_HARD_OUTPUT_H
 
