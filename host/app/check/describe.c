@@ -1,5 +1,4 @@
-/* The entry of a golden file: hashes of what was drawn, its mean, and the parts that it was made
- * of. */
+/* The entry of a golden file: hashes of what was drawn, its mean, and the parts it was made of. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
