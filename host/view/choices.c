@@ -15,6 +15,8 @@ const struct setting *choice_next(const struct setting *row)
 
 bool choice_is_for_experts(const struct setting *row)
 {
+    if (row->need == SETTING_NEEDS_SCENE) /* how a model is read is for everybody */
+        return false;
     return row->change == SETTING_COST || row->change == SETTING_HITS ||
            row->change == SETTING_PAINT;
 }

@@ -48,7 +48,7 @@ static void draw_divider(const struct view *view, uint32_t width, uint32_t heigh
 static void draw_difference(const struct compare_figures *figures)
 {
     const struct difference *d = &figures->difference;
-    ui_text("A %.2f ms, B %.2f ms", figures->ms[0], figures->ms[1]);
+    ui_text("A %.2f ms, B %.2f ms, one picture each", figures->ms[0], figures->ms[1]);
     if (d->other_ids == 0 && d->other_colors == 0) {
         ui_text_color(0xFFD0E090u, "identical");
         return;

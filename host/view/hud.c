@@ -33,6 +33,17 @@ static void draw_quality(const struct view *view)
         ui_text("full size, %s", samples);
 }
 
+/* Whether no pixel has any light; of any other picture the first few tell. */
+static bool is_black(const struct engine_frame *frame)
+{
+    for (size_t i = 0; i < (size_t)frame->width * frame->height; ++i) {
+        const uint8_t *pixel = &frame->rgba[4 * i];
+        if (pixel[0] || pixel[1] || pixel[2])
+            return false;
+    }
+    return true;
+}
+
 static void draw_aov(const struct engine_frame *frame)
 {
     if (frame->settings.aov[0] && frame->settings.paint == PAINT_COLOR)
@@ -245,6 +256,9 @@ static void draw_hud(const struct view *view)
         draw_figures(view);
         draw_names(view);
         draw_quality(view);
+        if (view->frame.whole && view->frame.settings.paint == PAINT_COLOR &&
+            is_black(&view->frame))
+            ui_text_color(COLOR_WARNING, "all of it is black: Tab has `light` and `exposure`");
         if (view->hud == HUD_FULL)
             draw_more(view);
         wish_draw(view);

@@ -474,12 +474,14 @@ static const struct key_binding bindings[] = {
     {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
     {'F', 0, "F", "look at what is there", "look at what is under the mouse", pick_focus,
      .group = KEYS_CAMERA},
-    {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .group = KEYS_CAMERA},
-    {'2', 0, NULL, NULL, "from the right", look_right, .group = KEYS_CAMERA},
-    {'3', 0, NULL, NULL, "from above", look_top, .group = KEYS_CAMERA},
-    {'4', 0, "4 5 6", "from back left below", "from behind", look_back, .group = KEYS_CAMERA},
-    {'5', 0, NULL, NULL, "from the left", look_left, .group = KEYS_CAMERA},
-    {'6', 0, NULL, NULL, "from below", look_bottom, .group = KEYS_CAMERA},
+    {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .says = true,
+     .group = KEYS_CAMERA},
+    {'2', 0, NULL, NULL, "from the right", look_right, .says = true, .group = KEYS_CAMERA},
+    {'3', 0, NULL, NULL, "from above", look_top, .says = true, .group = KEYS_CAMERA},
+    {'4', 0, "4 5 6", "from back left below", "from behind", look_back, .says = true,
+     .group = KEYS_CAMERA},
+    {'5', 0, NULL, NULL, "from the left", look_left, .says = true, .group = KEYS_CAMERA},
+    {'6', 0, NULL, NULL, "from below", look_bottom, .says = true, .group = KEYS_CAMERA},
     {'0', 0, "0", "file's cameras", "next camera of the file", next_file_camera,
      .state = say_camera, .group = KEYS_CAMERA},
     {KEY_TAB, 0, "Tab", "settings, light, up", "settings by mouse", switch_settings,
@@ -605,6 +607,8 @@ bool key_act(struct view *view, int key, unsigned mods)
             choice_turn(&view->settings, keys[i].setting, keys[i].by);
         else
             keys[i].act(view);
+        if (keys[i].says && view->camera_known)
+            view_say(view, "%s", keys[i].name);
         view->dirty = true;
         return true;
     }

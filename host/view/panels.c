@@ -151,12 +151,17 @@ static void draw_files(struct view *view)
         panels_load(view, names[value]);
 }
 
-static void draw_choices(struct view *view, bool for_experts)
+/* How a model is read stands first: which way is up and what lights it is what is looked for. */
+enum choices { CHOICES_SCENE, CHOICES_PICTURE, CHOICES_EXPERTS };
+
+static void draw_choices(struct view *view, enum choices which)
 {
     for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
         bool rays = strcmp(row->name, "view-rays") == 0;
-        if (choice_is_for_experts(row) == for_experts &&
-            (!rays || view->settings.paint != PAINT_COLOR))
+        enum choices own = row->need == SETTING_NEEDS_SCENE ? CHOICES_SCENE
+                           : choice_is_for_experts(row)     ? CHOICES_EXPERTS
+                                                            : CHOICES_PICTURE;
+        if (own == which && (!rays || view->settings.paint != PAINT_COLOR))
             draw_choice(view, row);
     }
 }
@@ -165,12 +170,13 @@ static void draw_settings(struct view *view)
 {
     double fps = view->settings.fps_goal;
     if (ui_panel_begin("Settings", 0.0f, 0.0f, UI_PANEL_HOLD)) {
-        draw_choices(view, false);
+        draw_choices(view, CHOICES_SCENE);
+        draw_choices(view, CHOICES_PICTURE);
         if (ui_slider("fps goal", &fps, FPS_MIN, FPS_MAX, true))
             set_fps_goal(view, fps);
         draw_hud_choice(view);
         ui_separator();
-        draw_choices(view, true);
+        draw_choices(view, CHOICES_EXPERTS);
         if (view->wish.stage != WISH_NONE && ui_button("choose again"))
             wish_again(view);
         draw_files(view);
@@ -212,6 +218,34 @@ static void draw_price(const struct effect_price *price)
         ui_same_line(0);
     ui_text("%llu of %llu pixels", (unsigned long long)price->other_colors,
             (unsigned long long)price->pixels);
+}
+
+/* Of the effects that are on, those that cost most and more than half of a tenth, as parts of the
+   time that a picture takes: "refraction 41 % (material `glass`)". */
+static void draw_dearest(struct prices *measured, const whit_scene *scene)
+{
+    enum { TOLD = 3 };
+    double last = 1.0;
+    for (int told = 0; told < TOLD; ++told) {
+        uint32_t dearest = EFFECTS_MAX;
+        double part = 0.05;
+        for (uint32_t i = 0; i < EFFECTS_MAX && whit_effect_name(i); ++i) {
+            struct effect_price price;
+            prices_get_effect(measured, i, &price);
+            double own = price.known && !price.added ? 1.0 - price.after_ms / price.before_ms : 0.0;
+            if (own > part && own < last) {
+                part = own;
+                dearest = i;
+            }
+        }
+        if (dearest == EFFECTS_MAX)
+            return;
+        whit_effect_info info;
+        whit_scene_get_effect(scene, dearest, &info);
+        ui_text_color(0xFFD0E090u, "%s: %.0f %% of the time, for %.60s", info.name, 100.0 * part,
+                      info.reason);
+        last = part;
+    }
 }
 
 /* Draws the price of an effect: measured by the switch that was made, else in the background
@@ -275,6 +309,9 @@ static void draw_effects(struct view *view)
         char effects[SETTING_VALUE_BYTES];
         effects_write(&view->settings.picture, effects);
         ui_text("--effects %s", effects);
+        if (view->panels.measured)
+            draw_dearest(view->panels.measured, view->frame.scene->scene);
+        ui_text_dim("Prices are of a small picture. A click switches, and measures the whole one.");
         int columns = say_reasons() ? 3 : 2;
         if (ui_table_begin("effects", columns)) {
             ui_table_header(titles, columns);

@@ -256,8 +256,11 @@ static void draw_panel(struct view *view)
     float side = 2 * r->x < view->settings.picture.width ? 1.0f : 0.0f;
     bool moves = side != view->pick_side;
     view->pick_side = side;
-    if (ui_window_begin("Pixel", side, 1.0f, 590.0f, 158.0f + 17.0f * rows, moves, &view->picked)) {
+    if (ui_window_begin("Pixel", side, 1.0f, 590.0f, 192.0f + 17.0f * rows, moves, &view->picked)) {
+        char why[WHIT_PROBE_WHY_BYTES];
+        whit_probe_why(r, view->probe.scene->scene, why, sizeof why);
         draw_place(view);
+        ui_paragraph(why);
         ui_separator();
         draw_calls(r);
         ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME,

@@ -264,6 +264,7 @@ static void set_style(float scale)
     style.FrameRounding = 3.0f;
     style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06f, 0.07f, 0.09f, 0.86f);
     style.Colors[ImGuiCol_PopupBg] = ImVec4(0.06f, 0.07f, 0.09f, 1.0f);
+    style.Colors[ImGuiCol_PlotHistogram] = ImVec4(0.16f, 0.42f, 0.62f, 1.0f); /* below white text */
     style.ScaleAllSizes(scale);
 }
 

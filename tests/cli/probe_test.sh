@@ -41,6 +41,18 @@ shows "at exact" "^exact      differs in 0 of [1-9]" probe "$CUBE" $S --pixel 32
 check "to the last bit" grep -q "^primary .* =  *=  *1 1 1" "$OUT/stdout"
 shows "the sky" "^instance   none" probe "$CUBE" $S --pixel 0,0 --quiet
 shows "without bounces" " 0 reflected, 0 refracted, 2 not traced" probe "$GLASS" $S --pixel 32,20 --depth 0 --quiet
+# Why: where the light comes from, which lights reach what is seen there, and what stands before others.
+# why SCENE X,Y SENTENCE [OPTIONS...]: the sentence is a regular expression.
+why() {
+    scene=$SCENES/$1.json pixel=$2 sentence=$3
+    shift 3
+    shows "why a pixel of $scene is as it is" "^why        $sentence\$" probe "$scene" $S --pixel "$pixel" --quiet "$@"
+}
+why whitted 32,20 "its light: [0-9]* % reflected, [0-9]* % transmitted; \`lamp\` adds nothing"
+why default 50,36 "its light: 9[0-9] % direct, [0-9] % reflected; \`sun\` reaches it; [67][0-9] % of \`fill\` reaches it"
+why 34k 22,40 "its light: 100 % direct; \`warm\` does not reach it, behind \`hat\`; .*; \`top\` does not .*, behind \`hat\`"
+why room 40,40 "no light comes from it; the scene has no light but its surroundings" --light none
+why cube 0,0 "nothing is there but the surroundings"
 expect 0 "little room" probe "$GLASS" $S --pixel 32,20 --rays 3
 check "is said" grep -q "^whit: warning: [1-9][0-9]* of $rows rays had no room" "$OUT/stderr"
 check "and shown" grep -q " $((rows - 3)) not recorded" "$OUT/stdout"

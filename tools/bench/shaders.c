@@ -1,9 +1,11 @@
 /* `whit bench shaders`: what follows a save of a user's file. Saves are seen by a `whit view` on
    the display that there is, which is told by a replay when to look; fuel is measured by the
    library. */
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -11,6 +13,7 @@
 #include "bench/table.h"
 
 enum { TEXT_BYTES = 1024, MOVES = 60, MOVES_QUICK = 8, MOVE_MS = 16, HELD_SAVES = 2 };
+enum { PATIENCE_S = 60 }; /* with a window that says nothing */
 
 /* `%.9g` is another number in each save, so that no cache has the kernel. */
 static const struct edited {
@@ -83,10 +86,11 @@ struct saves {
     struct sample_runs loops[2], errors, tests;
 };
 
+/* The number of the save is near 1: the shape of `intersect` has to stay in its box. */
 static whit_result save(struct saves *s, const char *form)
 {
     char text[TEXT_BYTES];
-    double number = 1.0 + 1e-3 * ++s->number + 1e-9 * (double)((uint64_t)whit_clock_ms() % 99991);
+    double number = 1.0 + 1e-6 * ++s->number + 1e-10 * (double)((uint64_t)whit_clock_ms() % 9973);
     snprintf(text, sizeof text, form, number); /* of the tables above */
     s->start_ms = whit_clock_ms();
     return whit_file_write(s->path, text, strlen(text), &cli_log);
@@ -200,8 +204,10 @@ static whit_result start_viewer(const struct saves *s, const char *scene, const 
     char size[32];
     const struct bench *bench = s->bench;
     snprintf(size, sizeof size, "%ux%u", bench->ask.width, bench->ask.height);
+    const struct timeval patience = {.tv_sec = PATIENCE_S};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         return WHIT_ERROR_OUTPUT;
+    setsockopt(ends[0], SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     bench_file(bench, "replay", viewer->replay);
     bench_file(bench, "messages", viewer->err);
     viewer->process =
@@ -217,7 +223,8 @@ static whit_result start_viewer(const struct saves *s, const char *scene, const 
     return result == WHIT_OK && !viewer->states ? WHIT_ERROR_MEMORY : result;
 }
 
-/* The next state, for the caller to give back; NULL: the viewer has ended. */
+/* The next state, for the caller to give back; NULL: the viewer has ended, or has nothing to say
+   for too long, such as after a save that it refuses. */
 static json_t *read_state(struct viewer *viewer)
 {
     return json_loadf(viewer->states, JSON_DISABLE_EOF_CHECK, NULL);
@@ -303,7 +310,9 @@ static whit_result view_saves(struct saves *s, const char *scene, uint32_t edit,
     if (result == WHIT_OK)
         result = watch_saves(s, &viewer, &edits[edit], errors, times);
     if (viewer.states)
-        fclose(viewer.states); /* it ends where it still has something to say */
+        fclose(viewer.states);
+    if (result != WHIT_OK && viewer.process.pid > 0)
+        kill(viewer.process.pid, SIGTERM); /* it may wait for what does not come */
     whit_result end = viewer.process.pid > 0 ? process_end(&viewer.process, NULL) : WHIT_OK;
     return end == WHIT_OK ? result : end;
 }

@@ -78,6 +78,14 @@ static void print_first(const struct probe *probe)
     printf("depth      %.9g\n", first->device.t);
 }
 
+static void print_why(const struct probe *probe)
+{
+    char why[WHIT_PROBE_WHY_BYTES];
+    whit_probe_why(probe->report, probe->job.scene, why, sizeof why);
+    if (why[0])
+        printf("why        %s\n", cli_shown(why));
+}
+
 static void print_head(const struct probe *probe)
 {
     const whit_probe_report *report = probe->report;
@@ -89,6 +97,7 @@ static void print_head(const struct probe *probe)
     printf("colour     %.9g %.9g %.9g linear, #%02x%02x%02x as shown\n", (double)c[0], (double)c[1],
            (double)c[2], report->shown[0], report->shown[1], report->shown[2]);
     print_first(probe);
+    print_why(probe);
     uint32_t traced = 0, exact = 0, exact_other = 0;
     printf("rays       ");
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {

@@ -1,0 +1,152 @@
+/* Why a pixel is as bright as it is, in one sentence, by the rays of its first sample. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "whit/whit_probe.h"
+#include "whit/whit_scene.h"
+
+enum { LIGHTS_NAMED = 4 };
+static const double PART_MIN = 0.005; /* of light: less is not told */
+
+struct sentence {
+    char *text;
+    size_t bytes, used;
+};
+
+static WHIT_PRINTF(2, 3) void put(struct sentence *to, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(to->text + to->used, to->bytes - to->used, format, args);
+    va_end(args);
+    to->used += length > 0 ? (size_t)length : 0;
+    if (to->used >= to->bytes)
+        to->used = to->bytes - 1; /* what has no room is cut */
+}
+
+static double sum_of(const float v[3])
+{
+    return (double)v[0] + (double)v[1] + (double)v[2];
+}
+
+/* ---- Where the light comes from ---- */
+
+enum { PART_OWN, PART_REFLECTED, PART_THROUGH, PARTS };
+
+/* The branch of the camera ray that a ray belongs to, by the kind of its first ray. */
+static int part_of(const whit_probe_report *report, uint32_t ray)
+{
+    const whit_probe_ray *rays = report->rays;
+    while (rays[ray].parent != WHIT_NONE && rays[ray].parent != 0)
+        ray = rays[ray].parent;
+    return ray == 0                               ? PART_OWN
+           : rays[ray].kind == WHIT_RAY_REFLECTED ? PART_REFLECTED
+                                                  : PART_THROUGH;
+}
+
+static void say_parts(const whit_probe_report *report, struct sentence *to)
+{
+    static const char *const names[PARTS] = {"direct", "reflected", "transmitted"};
+    double parts[PARTS] = {0.0}, all = 0.0;
+    for (uint32_t i = 0; i < report->ray_count; ++i) {
+        if (report->rays[i].kind != WHIT_RAY_SHADOW)
+            parts[part_of(report, i)] += sum_of(report->rays[i].added);
+    }
+    for (int i = 0; i < PARTS; ++i)
+        all += parts[i];
+    if (!(all > 0.0)) {
+        put(to, "no light comes from it");
+        return;
+    }
+    const char *between = "its light: ";
+    for (int i = 0; i < PARTS; ++i) {
+        if (parts[i] < PART_MIN * all)
+            continue;
+        put(to, "%s%.0f %% %s", between, 100.0 * parts[i] / all, names[i]);
+        between = ", ";
+    }
+}
+
+/* ---- Which lights reach it ---- */
+
+/* What the shadow rays from the camera ray's hit say of a light. */
+struct reach {
+    uint32_t rays, blocker;
+    double share; /* of the light that passes, the mean of all rays */
+};
+
+static struct reach reach_of(const whit_probe_report *report, uint32_t light)
+{
+    struct reach reach = {.blocker = WHIT_NONE};
+    for (uint32_t i = 1; i < report->ray_count; ++i) {
+        const whit_probe_ray *ray = &report->rays[i];
+        if (ray->kind != WHIT_RAY_SHADOW || ray->parent != 0 || ray->light != light)
+            continue;
+        ++reach.rays;
+        if (ray->end == WHIT_PROBE_BLOCKED)
+            reach.blocker = ray->device.instance;
+        else
+            reach.share += sum_of(ray->added) / 3.0;
+    }
+    reach.share = reach.rays > 0 ? reach.share / reach.rays : 0.0;
+    return reach;
+}
+
+static void say_light(const whit_scene *scene, const char *name, const struct reach *reach,
+                      struct sentence *to)
+{
+    whit_instance_info blocker = {0};
+    const char *quote = strchr(name, '`') ? "" : "`"; /* "emission of `panel`" has its own */
+    if (reach->blocker != WHIT_NONE)
+        whit_scene_get_instance(scene, reach->blocker, &blocker);
+    if (reach->rays == 0)
+        put(to, "%s%s%s adds nothing", quote, name, quote);
+    else if (reach->share >= 0.995)
+        put(to, "%s%s%s reaches it", quote, name, quote);
+    else if (reach->share >= PART_MIN)
+        put(to, "%.0f %% of %s%s%s reaches it", 100.0 * reach->share, quote, name, quote);
+    else
+        put(to, "%s%s%s does not reach it", quote, name, quote);
+    if (blocker.name && blocker.name[0])
+        put(to, ", behind `%s`", blocker.name);
+}
+
+/* Those that the surface asked for come first. */
+static void say_lights(const whit_probe_report *report, const whit_scene *scene,
+                       struct sentence *to)
+{
+    whit_scene_info info;
+    uint32_t told = 0;
+    whit_scene_get_info(scene, &info);
+    for (int asked = 1; asked >= 0; --asked) {
+        for (uint32_t i = 0; i < info.light_count; ++i) {
+            whit_light_info light;
+            const struct reach reach = reach_of(report, i);
+            if ((reach.rays > 0) != (asked == 1) || told++ >= LIGHTS_NAMED)
+                continue;
+            whit_scene_get_light(scene, i, &light);
+            put(to, "; ");
+            say_light(scene, light.name ? light.name : "", &reach, to);
+        }
+    }
+    if (told > LIGHTS_NAMED)
+        put(to, "; of %u more lights see the rays", told - LIGHTS_NAMED);
+    if (info.light_count == 0)
+        put(to, "; the scene has no light but its surroundings");
+}
+
+void whit_probe_why(const whit_probe_report *report, const whit_scene *scene, char *text,
+                    size_t bytes)
+{
+    struct sentence to = {.text = text, .bytes = bytes};
+    text[0] = '\0';
+    if (report->ray_count == 0)
+        return;
+    if (report->rays[0].device.instance == WHIT_NONE) {
+        put(&to, "nothing is there but the surroundings");
+        return;
+    }
+    say_parts(report, &to);
+    say_lights(report, scene, &to);
+}
