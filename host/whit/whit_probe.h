@@ -131,8 +131,8 @@ WHIT_CHECK whit_result whit_probe_rows(const whit_probe_report *report, whit_pro
                                        uint32_t *count);
 
 /* Why the pixel is as bright as it is, by the rays of its first sample: where its light comes from,
-   and which lights reach what is seen there. Names are as `scene` has them, which is the renderer's.
-   At most `bytes` of `text`, which end with a 0; more is cut. */
+   and which lights reach what is seen there. Names are as `scene` has them, which is the
+   renderer's. At most `bytes` of `text`, which end with a 0; more is cut. */
 #define WHIT_PROBE_WHY_BYTES 512
 void whit_probe_why(const whit_probe_report *report, const whit_scene *scene, char *text,
                     size_t bytes);
