@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/vec.h"
+#include "scene/fields.h"
 
 /* Of more than so many differences the rest is counted. */
 enum { TOLD_MAX = 4 };
@@ -41,35 +42,18 @@ static bool begin(struct words *words)
 
 /* ---- Records, field by field ---- */
 
-enum form { FLOATS, DOUBLES, WORDS, FLAG, NAMED };
-struct field {
-    const char *name;
-    size_t offset;
-    enum form form;
-    uint32_t count;
-    const char *const *names; /* NAMED: an enumeration */
-};
-#define FIELD(type, form, field, count, name)                                                      \
-    {                                                                                              \
-        name, offsetof(type, field), form, count, NULL                                             \
-    }
-#define FIELD_OF_NAMES(type, field, names, name)                                                   \
-    {                                                                                              \
-        name, offsetof(type, field), NAMED, 1, names                                               \
-    }
-
-static double number_of(const void *record, const struct field *field, uint32_t i)
+static double number_of(const void *record, const struct scene_field *field, uint32_t i)
 {
     const char *at = (const char *)record + field->offset;
     switch (field->form) {
-    case FLOATS:
+    case SCENE_FLOATS:
         return (double)((const float *)(const void *)at)[i];
-    case DOUBLES:
+    case SCENE_DOUBLES:
         return ((const double *)(const void *)at)[i];
-    case WORDS:
-    case NAMED:
+    case SCENE_WORDS:
+    case SCENE_NAMED:
         return (double)((const int32_t *)(const void *)at)[i];
-    case FLAG:
+    case SCENE_FLAG:
         break;
     }
     return *(const bool *)at;
@@ -87,18 +71,18 @@ static void put_number(struct words *words, const char *before, double number, b
     put(words, "%s%s", before, text);
 }
 
-static void put_value(struct words *words, const void *record, const struct field *field)
+static void put_value(struct words *words, const void *record, const struct scene_field *field)
 {
     double first = number_of(record, field, 0);
-    if (field->form == FLAG)
+    if (field->form == SCENE_FLAG)
         put(words, "%s", first > 0.0 ? "on" : "off");
-    else if (field->form == NAMED)
+    else if (field->form == SCENE_NAMED)
         put(words, "%s", field->names[(uint32_t)first]);
-    for (uint32_t i = 0; field->form < FLAG && i < field->count; ++i)
-        put_number(words, i ? " " : "", number_of(record, field, i), field->form == FLOATS);
+    for (uint32_t i = 0; field->form < SCENE_FLAG && i < field->count; ++i)
+        put_number(words, i ? " " : "", number_of(record, field, i), field->form == SCENE_FLOATS);
 }
 
-static bool same_field(const void *a, const void *b, const struct field *field)
+static bool same_field(const void *a, const void *b, const struct scene_field *field)
 {
     static const size_t sizes[] = {sizeof(float), sizeof(double), sizeof(int32_t), sizeof(bool),
                                    sizeof(int32_t)};
@@ -107,20 +91,17 @@ static bool same_field(const void *a, const void *b, const struct field *field)
 }
 
 static void compare_fields(struct words *words, const void *a, const void *b,
-                           const struct field *fields, size_t count)
+                           const struct scene_field *field)
 {
-    for (size_t i = 0; i < count; ++i) {
-        if (same_field(a, b, &fields[i]) || !begin(words))
+    for (; field->name; ++field) {
+        if (same_field(a, b, field) || !begin(words))
             continue;
-        put(words, "%s from ", fields[i].name);
-        put_value(words, a, &fields[i]);
+        put(words, "%s from ", field->name);
+        put_value(words, a, field);
         put(words, " to ");
-        put_value(words, b, &fields[i]);
+        put_value(words, b, field);
     }
 }
-#define COMPARE(words, a, b, fields)                                                               \
-    compare_fields((words), (a), (b), (fields), sizeof(fields) / sizeof *(fields))
-
 /* A record that is named by another. */
 static void compare_names(struct words *words, const char *what, const char *a, const char *b)
 {
@@ -154,85 +135,25 @@ static void compare_materials(struct words *words, const struct scene_side *befo
                               const struct scene_material *a, const struct scene_side *after,
                               const struct scene_material *b)
 {
-#define MATERIAL(form, field, count, name) FIELD(struct scene_material, form, field, count, name)
-    static const struct field fields[] = {
-        FIELD_OF_NAMES(struct scene_material, model, scene_model_names, "model"),
-        MATERIAL(WORDS, illum, 1, "illum"),
-        MATERIAL(FLOATS, diffuse, 3, "diffuse"),
-        MATERIAL(FLOATS, ambient, 3, "ambient"),
-        MATERIAL(FLOATS, specular, 3, "specular"),
-        MATERIAL(FLOATS, shininess, 1, "shininess"),
-        MATERIAL(FLOATS, emission, 3, "emission"),
-        MATERIAL(FLOATS, reflection, 3, "reflection"),
-        MATERIAL(FLOATS, transmission, 3, "transmission"),
-        MATERIAL(FLOATS, absorption, 3, "absorption"),
-        MATERIAL(FLOATS, ior, 1, "ior"),
-        MATERIAL(FLAG, fresnel, 1, "fresnel"),
-        MATERIAL(FLAG, thin_walled, 1, "thin walled"),
-        MATERIAL(FLAG, two_sided, 1, "two-sided"),
-        MATERIAL(FLAG, one_sided, 1, "one-sided"),
-        MATERIAL(FLAG, shadow_catcher, 1, "shadow catcher"),
-        MATERIAL(WORDS, priority, 1, "priority"),
-        MATERIAL(FLOATS, metallic, 1, "metallic"),
-        MATERIAL(FLOATS, roughness, 1, "roughness"),
-        MATERIAL(FLOATS, specular_level, 1, "specular level"),
-        FIELD_OF_NAMES(struct scene_material, alpha, scene_alpha_names, "alpha mode"),
-        MATERIAL(FLOATS, opacity, 1, "opacity"),
-        MATERIAL(FLOATS, alpha_cutoff, 1, "alpha cut-off"),
-        MATERIAL(FLOATS, normal_scale, 1, "scale of normals"),
-    };
-    static const struct field uses[] = {
-        FIELD(struct scene_texture_use, WORDS, uv_set, 1, "set of texture coordinates"),
-        FIELD(struct scene_texture_use, FLOATS, transform, 6, "transform of texture coordinates"),
-        FIELD_OF_NAMES(struct scene_texture_use, wrap_u, scene_wrap_names, "wrap of u"),
-        FIELD_OF_NAMES(struct scene_texture_use, wrap_v, scene_wrap_names, "wrap of v"),
-        FIELD(struct scene_texture_use, FLAG, nearest, 1, "nearest texel"),
-    };
-    COMPARE(words, a, b, fields);
+    compare_fields(words, a, b, scene_material_fields);
     for (int i = 0; i < SCENE_SLOT_COUNT; ++i) {
         compare_names(words, slot_names[i],
                       scene_parts_name(before->parts, WHIT_PART_TEXTURE, a->textures[i].texture),
                       scene_parts_name(after->parts, WHIT_PART_TEXTURE, b->textures[i].texture));
-        COMPARE(words, &a->textures[i], &b->textures[i], uses);
+        compare_fields(words, &a->textures[i], &b->textures[i], scene_texture_use_fields);
     }
 }
 
 static void compare_lights(struct words *words, const struct scene_light *a,
                            const struct scene_light *b)
 {
-#define LIGHT(form, field, count, name) FIELD(struct scene_light, form, field, count, name)
-    static const struct field fields[] = {
-        FIELD_OF_NAMES(struct scene_light, kind, scene_light_kind_names, "kind"),
-        LIGHT(DOUBLES, position, 3, "position"),
-        LIGHT(DOUBLES, direction, 3, "direction"),
-        LIGHT(FLOATS, stated, 3, "colour"),
-        LIGHT(FLAG, falloff, 1, "falloff"),
-        LIGHT(FLOATS, range, 1, "range"),
-        LIGHT(FLOATS, cos_inner, 1, "cosine of the inner angle"),
-        LIGHT(FLOATS, cos_outer, 1, "cosine of the outer angle"),
-        LIGHT(DOUBLES, edge_u, 3, "first edge"),
-        LIGHT(DOUBLES, edge_v, 3, "second edge"),
-        LIGHT(FLAG, two_sided, 1, "two-sided"),
-    };
-    COMPARE(words, a, b, fields);
+    compare_fields(words, a, b, scene_light_fields);
 }
 
 static void compare_cameras(struct words *words, const struct scene_camera *a,
                             const struct scene_camera *b)
 {
-#define CAMERA(form, field, count, name) FIELD(struct scene_camera, form, field, count, name)
-    static const struct field fields[] = {
-        FIELD_OF_NAMES(struct scene_camera, kind, scene_camera_kind_names, "kind"),
-        CAMERA(DOUBLES, eye, 3, "eye"),
-        CAMERA(DOUBLES, target, 3, "target"),
-        CAMERA(DOUBLES, up, 3, "up"),
-        CAMERA(FLOATS, fov_y, 1, "vertical angle"),
-        CAMERA(FLOATS, height, 1, "height"),
-        CAMERA(FLOATS, lens_radius, 1, "radius of the lens"),
-        CAMERA(FLOATS, focus_distance, 1, "focus distance"),
-        CAMERA(FLOATS, aspect, 1, "aspect"),
-    };
-    COMPARE(words, a, b, fields);
+    compare_fields(words, a, b, scene_camera_fields);
 }
 
 /* ---- Arrays ---- */
@@ -380,11 +301,7 @@ static void compare_textures(struct words *words, const struct scene_texture *a,
 static void compare_channels(struct words *words, const struct scene_channel *a,
                              const struct scene_channel *b)
 {
-    static const struct field fields[] = {
-        FIELD_OF_NAMES(struct scene_channel, interpolation, scene_interpolation_names,
-                       "interpolation"),
-    };
-    COMPARE(words, a, b, fields);
+    compare_fields(words, a, b, scene_channel_fields);
     compare_counts(words, a->key_count, b->key_count, "keys");
     if (a->key_count != b->key_count || a->interpolation != b->interpolation)
         return;
@@ -397,25 +314,9 @@ static void compare_channels(struct words *words, const struct scene_channel *a,
 
 static void compare_environments(struct words *words, const struct scene *a, const struct scene *b)
 {
-#define SKY(form, field, count, name) FIELD(struct scene_environment, form, field, count, name)
-    static const struct field fields[] = {
-        FIELD_OF_NAMES(struct scene_environment, kind, scene_environment_kind_names, "kind"),
-        SKY(FLOATS, zenith, 3, "zenith"),
-        SKY(FLOATS, horizon, 3, "horizon"),
-        SKY(FLOATS, ground, 3, "ground"),
-        SKY(FLOATS, scale, 3, "scale"),
-        SKY(WORDS, width, 1, "width of the map"),
-        SKY(WORDS, height, 1, "height of the map"),
-    };
-    static const struct field more[] = {
-        FIELD(struct scene, FLAG, has_environment, 1, "environment of the file"),
-        FIELD(struct scene, FLAG, has_ambient, 1, "ambient light of the file"),
-        FIELD(struct scene, FLOATS, ambient, 3, "ambient light"),
-        FIELD(struct scene, FLOATS, contact, 1, "contact"),
-    };
     const struct scene_environment *x = &a->environment, *y = &b->environment;
-    COMPARE(words, a, b, more);
-    COMPARE(words, x, y, fields);
+    compare_fields(words, a, b, scene_own_fields);
+    compare_fields(words, x, y, scene_environment_fields);
     if (x->width != y->width || x->height != y->height)
         return;
     struct others others = find_others(x->rgb, y->rgb, x->width * x->height, 3, 3);

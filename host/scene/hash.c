@@ -32,9 +32,10 @@ static void hash_mesh(struct hash *hash, const struct scene_mesh *m)
 /* Field by field: padding and names must not count. */
 static void hash_material(struct hash *hash, const struct scene_material *m)
 {
-    const uint32_t flags[] = {(uint32_t)m->model, (uint32_t)m->illum, m->fresnel,
-                              m->thin_walled,     m->two_sided,       m->shadow_catcher,
-                              (uint32_t)m->alpha};
+    const uint32_t sides = (uint32_t)m->two_sided | (uint32_t)m->one_sided << 1;
+    const uint32_t flags[] = {
+        (uint32_t)m->model, (uint32_t)m->illum, m->fresnel, m->thin_walled, sides,
+        m->shadow_catcher,  (uint32_t)m->alpha};
     const float values[] = {m->shininess,      m->ior,     m->metallic,     m->roughness,
                             m->specular_level, m->opacity, m->alpha_cutoff, m->normal_scale};
     HASH_FIELD(hash, flags);

@@ -154,8 +154,7 @@ static uint64_t hash_mesh(const struct scene_parts *parts, const struct scene_me
 static uint64_t hash_material(const struct scene_parts *parts, const struct scene_material *own)
 {
     struct scene_material material = *own;
-    const uint32_t flags[] = {own->one_sided};
-    uint64_t names = hash_bytes(HASH_START, flags, sizeof flags);
+    uint64_t names = HASH_START;
     for (int i = 0; i < SCENE_SLOT_COUNT; ++i) {
         uint32_t *texture = &material.textures[i].texture;
         names = hash_name(names, scene_parts_name(parts, WHIT_PART_TEXTURE, *texture));

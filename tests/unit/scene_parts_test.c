@@ -7,6 +7,8 @@
 #include "load/load.h"
 #include "scene/change.h"
 #include "scene/fault.h"
+#include "scene/fields.h"
+#include "scene/hash.h"
 #include "unit.h"
 
 struct loaded {
@@ -113,6 +115,43 @@ static void check_change(struct wish wish, const char *parts, whit_part_kind kin
     assert_string_equal(change(&before, &after, kind, name), words);
     drop(&before);
     drop(&after);
+}
+
+/* Each plain value of a record is in its hash, or a picture of another scene would be taken for one
+   of this. `record` ends as it was. */
+static void check_fields(whit_part_kind kind, const void *whole, void *record,
+                         const struct scene_field *field)
+{
+    static const size_t sizes[] = {sizeof(float), sizeof(double), sizeof(int32_t), sizeof(bool),
+                                   sizeof(int32_t)};
+    for (; field->name; ++field) {
+        bool stated =
+            kind == WHIT_PART_LIGHT && field->offset == offsetof(struct scene_light, stated);
+        if (stated) /* `color` is, which is made of it */
+            continue;
+        for (uint32_t i = 0; i < field->count; ++i) {
+            char *at = (char *)record + field->offset + i * sizes[field->form];
+            uint64_t before = freeze_hash_record(kind, whole);
+            *at ^= 1;
+            if (freeze_hash_record(kind, whole) == before)
+                fail_msg("%s %u is not in the hash", field->name, i);
+            *at ^= 1;
+        }
+    }
+}
+
+TEST(plain_values_are_in_the_hash)
+{
+    struct scene_material material = material_grey("glass");
+    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE};
+    struct scene_camera camera = {.node = SCENE_NONE};
+    check_fields(WHIT_PART_MATERIAL, &material, &material, scene_material_fields);
+    check_fields(WHIT_PART_MATERIAL, &material, &material.textures[SCENE_SLOT_BUMP],
+                 scene_texture_use_fields);
+    check_fields(WHIT_PART_LIGHT, &light, &light, scene_light_fields);
+    struct scene_environment sky = {.kind = SCENE_ENVIRONMENT_GRADIENT};
+    check_fields(WHIT_PART_CAMERA, &camera, &camera, scene_camera_fields);
+    check_fields(WHIT_PART_ENVIRONMENT, &sky, &sky, scene_environment_fields);
 }
 
 TEST(a_change_is_one_of_its_part_and_is_said)
