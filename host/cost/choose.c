@@ -92,7 +92,7 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
 
 /* ---- Choices ---- */
 
-static double to_sum(double error, enum cost_metric metric)
+double choose_to_sum(double error, enum cost_metric metric)
 {
     return metric == COST_RMSE ? error * error : error;
 }
@@ -135,9 +135,9 @@ static struct effect effect_of(const struct search *search, const struct cost_ro
     enum cost_metric metric = search->goal->metric;
     struct effect out = {.known = is_ranked(row)};
     out.ratio = row->price.verdict ? row->price.ratio[search->report->clock].median : 1.0;
-    out.error = row->knob_index == search->aa
-                    ? to_sum(sampled_error(search, row), metric)
-                    : to_sum(bias_of(row, metric), metric) - to_sum(bias_of(usual, metric), metric);
+    out.error = row->knob_index == search->aa ? choose_to_sum(sampled_error(search, row), metric)
+                                              : choose_to_sum(bias_of(row, metric), metric) -
+                                                    choose_to_sum(bias_of(usual, metric), metric);
     return out;
 }
 
@@ -145,11 +145,11 @@ static void collect(struct search *search)
 {
     const struct cost_report *report = search->report;
     enum cost_metric metric = search->goal->metric;
-    search->usual_bias = to_sum(bias_of(&report->rows[0], metric), metric);
+    search->usual_bias = choose_to_sum(bias_of(&report->rows[0], metric), metric);
     for (uint32_t k = 0; k < search->count; ++k)
         search->effects[k][search->table[k].usual] = (struct effect){.ratio = 1.0, .known = true};
     search->effects[search->aa][search->table[search->aa].usual].error =
-        to_sum(cost_error_of(&report->rows[0].error, metric), metric);
+        choose_to_sum(cost_error_of(&report->rows[0].error, metric), metric);
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         if (row->knob_index != WHIT_NONE && row->measured)
@@ -235,6 +235,8 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
     }
     if (choice->samples > 0)
         settings->picture.sampling = (whit_sampling){.count = choice->samples};
+    if (choice->bailout > 0.0)
+        settings->picture.bailout = choice->bailout;
 }
 
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes)

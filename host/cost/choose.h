@@ -25,6 +25,7 @@ struct search {
     struct cost_choice best;
 };
 
+double choose_to_sum(double error, enum cost_metric metric);
 double choose_from_sum(double sum, enum cost_metric metric);
 /* Whether settings of the knob are chosen: those that change light alone. */
 bool choose_is_searched(const struct search *search, uint32_t knob);

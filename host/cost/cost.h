@@ -165,6 +165,7 @@ double cost_error_of(const whit_difference *difference, enum cost_metric metric)
 struct cost_choice {
     uint8_t settings[COST_CHOICE_KNOBS]; /* of each knob of the table */
     uint32_t samples;                    /* of a pixel; 0: as the knob's setting says */
+    double bailout;                      /* likewise */
     double ms, error;                    /* predicted: wall clock of the full picture; the metric */
     bool found;
 };

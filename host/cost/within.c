@@ -148,6 +148,36 @@ static void take(struct search *search)
     }
 }
 
+/* Between two bail-outs that were measured, time and error go straight over the logarithm. The
+   choice takes the least power of two that keeps the limit. */
+static void tighten_bailout(struct search *search)
+{
+    struct cost_choice *best = &search->best;
+    uint32_t knob = knob_find("bailout"), setting = best->settings[knob];
+    const struct knob *bailout = &search->table[knob];
+    const struct effect *effects = search->effects[knob], *b = &effects[setting], *a = NULL;
+    double from = 0.0, to = strtod(knob_setting_name(bailout, setting), NULL);
+    for (uint32_t s = 0; s < bailout->count; ++s) {
+        double value = strtod(knob_setting_name(bailout, s), NULL);
+        if (effects[s].known && value > from && value < to) {
+            from = value;
+            a = &effects[s];
+        }
+    }
+    if (!a || !(a->ratio > b->ratio))
+        return;
+    double ms = best->ms, sum = choose_to_sum(best->error, search->goal->metric);
+    for (double x = 0.5 * to; x > from; x *= 0.5) {
+        double share = log(to / x) / log(to / from);
+        double longer_ms = ms * (1.0 + share * (a->ratio / b->ratio - 1.0));
+        if (longer_ms > search->goal->limit)
+            return;
+        best->bailout = x;
+        best->ms = longer_ms;
+        best->error = choose_from_sum(sum + share * (a->error - b->error), search->goal->metric);
+    }
+}
+
 static void be_careful(struct search *search)
 {
     for (size_t i = 0; i < sizeof careful / sizeof *careful; ++i) {
@@ -174,4 +204,6 @@ void choose_within(struct search *search)
         search->settings[knob] = (uint8_t)setting;
         take(search);
     }
+    if (search->best.found)
+        tighten_bailout(search);
 }

@@ -155,7 +155,8 @@ static whit_result try_now(const struct choosing *choosing, const struct cost_ch
 
 static bool is_same(const struct cost_choice *a, const struct cost_choice *b)
 {
-    return a->samples == b->samples && memcmp(a->settings, b->settings, sizeof a->settings) == 0;
+    return a->samples == b->samples && a->bailout == b->bailout &&
+           memcmp(a->settings, b->settings, sizeof a->settings) == 0;
 }
 
 /* Tries choices, each for a device that is as fast as the last ones showed, until one takes most of

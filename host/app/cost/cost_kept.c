@@ -62,6 +62,7 @@ static json_t *choice_document(const struct cost_kept_choice *kept)
     document_number(out, "predicted_ms", kept->choice.ms);
     document_number(out, "predicted_error", kept->choice.error);
     document_count(out, "samples", kept->choice.samples);
+    document_number(out, "bailout", kept->choice.bailout);
     for (uint32_t k = 0; k < count; ++k)
         document_text(settings, table[k].name,
                       knob_setting_name(&table[k], kept->choice.settings[k]));
@@ -105,6 +106,7 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
         kept->choice.settings[k] = (uint8_t)s;
     }
     kept->choice.samples = (uint32_t)samples;
+    kept->choice.bailout = json_number_value(json_object_get(object, "bailout"));
     kept->choice.found = true;
     return kept->budget_ms > 0.0 && samples >= 1 && samples <= WHIT_SAMPLES_MAX;
 }
