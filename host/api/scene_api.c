@@ -125,6 +125,8 @@ void whit_scene_get_mesh(const whit_scene *handle, uint32_t index, whit_mesh_inf
         .has_uvs = mesh->uvs[0] || mesh->uvs[1],
         .has_colors = mesh->colors != NULL,
     };
+    memcpy(info->lo, mesh->lo, sizeof info->lo);
+    memcpy(info->hi, mesh->hi, sizeof info->hi);
 }
 
 static uint32_t count_textures(const struct scene_material *material)

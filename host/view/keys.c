@@ -244,10 +244,31 @@ static void look_bottom(struct view *view)
     look_along(view, 1, -1);
 }
 
-static void next_file_camera(struct view *view)
+/* Where whit looks from at a file without a camera. */
+static void look_as_whit(struct view *view)
+{
+    whit_camera camera;
+    if (whit_scene_choose_camera(view->scene->scene, &camera) != WHIT_OK)
+        return;
+    memcpy(view->camera.eye, camera.eye, sizeof camera.eye);
+    memcpy(view->camera.target, camera.target, sizeof camera.target);
+    memcpy(view->camera.up, camera.up, sizeof camera.up);
+    view->camera.fov_y_degrees = camera.fov_y_degrees;
+    view_moved(view);
+    view_say(view, "whit's own camera");
+}
+
+/* Those of the file in their order, then whit's own. */
+static void next_camera(struct view *view)
 {
     uint32_t count = view->scene ? view->scene->info.camera_count : 0;
-    if (count > 0)
+    whit_camera_info last = {0};
+    if (count == 0)
+        return;
+    whit_scene_get_camera(view->scene->scene, count - 1, &last);
+    if (view->file_camera == (int)count - 1 && !last.made_by_whit)
+        look_as_whit(view);
+    else
         view_use_camera(view, (int)((uint32_t)(view->file_camera + 1) % count));
 }
 
@@ -446,8 +467,10 @@ static void escape(struct view *view)
     if (ui_close_menus(view->ui))
         return;
     if (view->help || view->picked || view->panels.settings || view->panels.effects ||
-        view->refused[0]) {
+        view->prices_open || view->refused[0]) {
         view->help = view->picked = false;
+        if (view->prices_open)
+            price_switch(view);
         scenes_forget(view);
         view->panels.settings = false;
         if (view->panels.effects)
@@ -472,7 +495,7 @@ static void say_prices(const struct view *view, char *text, size_t bytes)
 /* In the order of the sheet, by groups; keys of settings come first in theirs. */
 static const struct key_binding bindings[] = {
     {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
-    {'F', 0, "F", "look at what is there", "look at what is under the mouse", pick_focus,
+    {'F', 0, "F", "frame what is there", "frame what is under the mouse", pick_focus,
      .group = KEYS_CAMERA},
     {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .says = true,
      .group = KEYS_CAMERA},
@@ -482,8 +505,8 @@ static const struct key_binding bindings[] = {
      .group = KEYS_CAMERA},
     {'5', 0, NULL, NULL, "from the left", look_left, .says = true, .group = KEYS_CAMERA},
     {'6', 0, NULL, NULL, "from below", look_bottom, .says = true, .group = KEYS_CAMERA},
-    {'0', 0, "0", "file's cameras", "next camera of the file", next_file_camera,
-     .state = say_camera, .group = KEYS_CAMERA},
+    {'0', 0, "0", "cameras: file's, whit's", "next camera", next_camera, .state = say_camera,
+     .group = KEYS_CAMERA},
     {KEY_TAB, 0, "Tab", "settings, light, up", "settings by mouse", switch_settings,
      .state = say_settings, .group = KEYS_PICTURE},
     {'X', 0, "X", "effects, each one's cost", "effects and prices", switch_effects,

@@ -12,6 +12,7 @@ static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
+static const float PANEL_WIDTH = 590.0f; /* at a scale of 1 */
 enum { RAYS_SHOWN = 400, ROWS_AT_FIRST = 7, LINES_AT_FIRST = 9, VALUES_SHOWN = 3 };
 
 static void ask(struct view *view, double x, double y)
@@ -35,22 +36,68 @@ void pick_at(struct view *view, double x, double y)
 
 void pick_focus(struct view *view)
 {
-    if (!view->camera_known || view->settings.paint != PAINT_COLOR)
+    if (!view->camera_known)
         return;
+    if (view->settings.paint != PAINT_COLOR) {
+        view_say(view, "objects are framed in colours: press B");
+        return;
+    }
     view->focus = true;
     ask(view, view->input.x, view->input.y);
 }
 
-static void look_at(struct view *view, const whit_probe_ray *ray)
+/* The bounds of an object in world space, at time 0. */
+static void bounds_of(const whit_scene *scene, uint32_t instance, double lo[3], double hi[3])
 {
-    double point[3];
-    for (int i = 0; i < 3; ++i)
-        point[i] = (double)ray->point[i];
+    whit_instance_info object;
+    whit_mesh_info mesh;
+    whit_scene_get_instance(scene, instance, &object);
+    whit_scene_get_mesh(scene, object.mesh, &mesh);
+    for (int i = 0; i < 3; ++i) {
+        const double *row = &object.object_to_world[4 * i];
+        lo[i] = hi[i] = row[3];
+        for (int k = 0; k < 3; ++k) {
+            double a = row[k] * (double)mesh.lo[k], b = row[k] * (double)mesh.hi[k];
+            lo[i] += fmin(a, b);
+            hi[i] += fmax(a, b);
+        }
+    }
+}
+
+/* Whether an object is less than what the picture is of: a floor is not, nor is the one object of a
+   model, nor one that moves. */
+static bool is_small(const struct view *view, const double lo[3], const double hi[3])
+{
+    double all_lo[3], all_hi[3], all = 0.0, own = 0.0;
+    if (!view_bounds(view, all_lo, all_hi) || view->scene->info.time_end_s > 0.0)
+        return false;
+    for (int i = 0; i < 3; ++i) {
+        all += (all_hi[i] - all_lo[i]) * (all_hi[i] - all_lo[i]);
+        own += (hi[i] - lo[i]) * (hi[i] - lo[i]);
+    }
+    return own > 0.0 && own < 0.8 * all;
+}
+
+/* Frames the object that a ray met; of what is too large for that the point, from half as far. */
+static void frame_hit(struct view *view, const whit_probe_ray *ray)
+{
+    struct view_camera *camera = &view->camera;
+    double point[3], lo[3], hi[3];
     if (ray->device.instance == WHIT_NONE) {
-        view_say(view, "nothing is there to look at");
+        view_say(view, "nothing is there to frame");
         return;
     }
-    camera_focus(&view->camera, point);
+    bounds_of(view->probe.scene->scene, ray->device.instance, lo, hi);
+    if (is_small(view, lo, hi)) {
+        camera_show(camera, lo, hi, view_aspect(view));
+        view_moved(view);
+        return;
+    }
+    for (int i = 0; i < 3; ++i)
+        point[i] = (double)ray->point[i];
+    camera_focus(camera, point);
+    for (int i = 0; i < 3; ++i)
+        camera->eye[i] = 0.5 * (camera->eye[i] + camera->target[i]);
     view_moved(view);
 }
 
@@ -88,7 +135,7 @@ void pick_take(struct view *view)
     }
     view->dirty = true;
     if (view->focus && view->probe.report && view->probe.report->ray_count > 0)
-        look_at(view, &view->probe.report->rays[0]);
+        frame_hit(view, &view->probe.report->rays[0]);
     view->focus = false;
 }
 
@@ -187,15 +234,30 @@ static void draw_other(const whit_probe_hit *hit, bool known, bool equal)
         ui_text_color(COLOR_DIFFERS, "%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
 }
 
-/* "6 shadow": so many ended alike. */
-static void draw_kind(const whit_probe_ray *ray, uint32_t count)
+/* "6 shadow, lamp": so many to one light ended alike. */
+static void draw_kind(const whit_scene *scene, const whit_probe_ray *ray, uint32_t count)
 {
     const char *kind = value_word(values_rays, (int)ray->kind);
     uint32_t color = kind_colors[ray->kind % WHIT_RAY_KINDS];
+    whit_light_info light = {0};
+    char number[16] = "";
+    if (ray->light != WHIT_NONE)
+        whit_scene_get_light(scene, ray->light, &light);
     if (count > 1)
-        ui_text_color(color, "%*s%u %s", (int)ray->generation, "", count, kind);
-    else
-        ui_text_color(color, "%*s%s", (int)ray->generation, "", kind);
+        snprintf(number, sizeof number, "%u ", count);
+    ui_text_color(color, "%*s%s%s%s%.16s", (int)ray->generation, "", number, kind,
+                  light.name ? ", " : "", light.name ? light.name : "");
+}
+
+/* "blocked by vase": why it ended, and of a shadow ray where. */
+static void draw_end(const whit_scene *scene, const whit_probe_ray *ray)
+{
+    whit_instance_info blocker = {0};
+    if (ray->end == WHIT_PROBE_BLOCKED && ray->device.instance != WHIT_NONE)
+        whit_scene_get_instance(scene, ray->device.instance, &blocker);
+    bool named = blocker.name && blocker.name[0];
+    ui_text("%s%s%.16s", whit_probe_end_name(ray->end), named ? " by " : "",
+            named ? blocker.name : "");
 }
 
 static void draw_row(const struct view *view, const whit_probe_row *row)
@@ -205,11 +267,11 @@ static void draw_row(const struct view *view, const whit_probe_row *row)
     if (ray->material != WHIT_NONE)
         whit_scene_get_material(view->probe.scene->scene, ray->material, &material);
     ui_table_next();
-    draw_kind(ray, row->count);
+    draw_kind(view->probe.scene->scene, ray, row->count);
     ui_table_next();
     draw_hit(&ray->device);
     ui_table_next();
-    ui_text("%s", whit_probe_end_name(ray->end));
+    draw_end(view->probe.scene->scene, ray);
     ui_table_next();
     if (ray->weight[0] == ray->weight[1] && ray->weight[1] == ray->weight[2])
         ui_text("%.3f", (double)ray->weight[0]);
@@ -245,6 +307,26 @@ static bool has_moved_on(const struct view *view)
     return !settings_same_place(&view->probe.settings, &view->settings);
 }
 
+/* Where the panel stands, in the way of ui_window_begin: never over the pixel. */
+struct place {
+    float x, y, height;
+};
+
+/* Beside the pixel where that has room, else above or below it, as high as there is room. */
+static struct place place_panel(const struct view *view, const whit_probe_report *r, float height)
+{
+    const whit_renderer_params *p = &view->settings.picture;
+    float scale = ui_scale(view->ui), margin = 24.0f;
+    float left = (float)r->x / scale, right = ((float)p->width - (float)r->x) / scale;
+    float above = (float)r->y / scale, below = ((float)p->height - (float)r->y) / scale;
+    struct place place = {.x = left < right ? 1.0f : 0.0f, .y = 1.0f, .height = height};
+    if (fmaxf(left, right) >= PANEL_WIDTH + margin)
+        return place;
+    place.y = above < below ? 1.0f : 0.0f;
+    place.height = fminf(height, fmaxf(above, below) - margin);
+    return place;
+}
+
 static void draw_panel(struct view *view)
 {
     const whit_probe_report *r = view->probe.report;
@@ -252,11 +334,13 @@ static void draw_panel(struct view *view)
     uint32_t lines = count_lines(r);
     float rows = (float)(count < ROWS_AT_FIRST ? count : ROWS_AT_FIRST) +
                  (float)(lines < LINES_AT_FIRST ? lines : LINES_AT_FIRST);
-    /* Never over the pixel, where there is room beside it. */
-    float side = 2 * r->x < view->settings.picture.width ? 1.0f : 0.0f;
-    bool moves = side != view->pick_side;
-    view->pick_side = side;
-    if (ui_window_begin("Pixel", side, 1.0f, 590.0f, 192.0f + 17.0f * rows, moves, &view->picked)) {
+    struct place place = place_panel(view, r, 192.0f + 17.0f * rows);
+    bool moves = place.x != view->pick_place[0] || place.y != view->pick_place[1] ||
+                 place.height < view->pick_place[2];
+    const float now[3] = {place.x, place.y, place.height};
+    memcpy(view->pick_place, now, sizeof now);
+    if (ui_window_begin("Pixel", place.x, place.y, PANEL_WIDTH, place.height, moves,
+                        &view->picked)) {
         char why[WHIT_PROBE_WHY_BYTES];
         whit_probe_why(r, view->probe.scene->scene, why, sizeof why);
         draw_place(view);
@@ -315,6 +399,7 @@ static void mark_pixel(const struct view *view)
     float x = (float)r->x + 0.5f, y = (float)r->y + 0.5f;
     if (has_moved_on(view))
         return;
+    ui_keep_free(x, y, 8.0f);
     ui_rectangle(x - 5.0f, y - 5.0f, x + 5.0f, y + 5.0f, 0xFF000000u, false);
     ui_rectangle(x - 4.0f, y - 4.0f, x + 4.0f, y + 4.0f, 0xFFFFFFFFu, false);
 }

@@ -114,6 +114,7 @@ static struct {
     panel panels[PANELS_MAX];
     int count, frame, current;
     int obstacles[PANELS_MAX], obstacle_count;
+    panel kept_free; // a place that later panels keep free; without a size: none
     bool changed, wraps;
     bool has_menu, closes_menu; // a list of choices is open; and is to be closed
     bool had_menu;              // in the frame before
@@ -148,8 +149,8 @@ static float gap()
 
 static const panel *obstacle_of(const ImVec2 &at, const ImVec2 &size)
 {
-    for (int i = 0; i < layout.obstacle_count; ++i) {
-        const panel &p = layout.panels[layout.obstacles[i]];
+    for (int i = layout.kept_free.size.x > 0.0f ? -1 : 0; i < layout.obstacle_count; ++i) {
+        const panel &p = i < 0 ? layout.kept_free : layout.panels[layout.obstacles[i]];
         if (at.x < p.at.x + p.size.x + gap() && p.at.x < at.x + size.x + gap() &&
             at.y < p.at.y + p.size.y + gap() && p.at.y < at.y + size.y + gap())
             return &p;
@@ -472,6 +473,7 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     }
     ++layout.frame;
     layout.obstacle_count = 0;
+    layout.kept_free.size = ImVec2(0.0f, 0.0f);
     layout.had_menu = layout.has_menu;
     layout.has_menu = false;
     item_count = 0;
@@ -575,10 +577,16 @@ bool ui_window_begin(const char *title, float x, float y, float width, float hei
     ImVec2 window = ImGui::GetIO().DisplaySize;
     float w = width * line_scale, h = height * line_scale, high = window.y - 2.0f * inside();
     ImGui::SetNextWindowSize(ImVec2(w < panel_width() ? w : panel_width(), h < high ? h : high),
-                             ImGuiCond_Appearing);
+                             moves ? ImGuiCond_Always : ImGuiCond_Appearing);
     ImGui::SetNextWindowContentSize(ImVec2(
         w - 2.0f * ImGui::GetStyle().WindowPadding.x - ImGui::GetStyle().ScrollbarSize, 0.0f));
     return ImGui::Begin(title, open, flags);
+}
+
+void ui_keep_free(float x, float y, float radius)
+{
+    layout.kept_free.at = ImVec2(x - radius, y - radius);
+    layout.kept_free.size = ImVec2(2.0f * radius, 2.0f * radius);
 }
 
 void ui_panel_end(void)

@@ -82,6 +82,9 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
 bool ui_window_begin(const char *title, float x, float y, float width, float height, bool moves,
                      bool *open);
 void ui_panel_end(void);
+/* No panel that ui_panel_begin begins later in this frame covers what is so near, where there is
+   room beside it. */
+void ui_keep_free(float x, float y, float radius);
 
 /* What these say is shown by whit_text_show, and so is one line; labels and titles are whit's own.
  */

@@ -60,7 +60,7 @@ struct view {
     struct engine_frame frame;
     struct engine_status status;
     struct engine_probe probe; /* the picked pixel; number 0: none */
-    float pick_side;           /* of the window, where the panel of the pixel is: 0 left, 1 right */
+    float pick_place[3];       /* where the panel of the pixel was last: x, y, height */
     bool picked;               /* its panel is open */
     double pick_x, pick_y;     /* the pixel that was asked for last */
     uint64_t pick_frame;       /* number of the picture that it was asked of by itself */

@@ -96,6 +96,7 @@ typedef struct whit_mesh_info {
     const char *name;
     uint32_t vertex_count, triangle_count, group_count, sphere_count;
     bool has_normals, has_uvs, has_colors;
+    float lo[3], hi[3]; /* bounds, object space; lo > hi: it is empty */
 } whit_mesh_info;
 typedef struct whit_material_info {
     const char *name, *file; /* file: NULL when made by whit */

@@ -59,6 +59,9 @@ fi
 
 if part 1 2; then
     play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
+equal: still, press I, press T, press U | compare.other_colors = 0
+press I
+press Shift+T
 one: still, press I, press Equal
 difference: press U | compare.mode = difference | compare.scale > 0
 scaled: press ] | compare.heat not as difference | words as one
@@ -68,6 +71,7 @@ dragged: press U, move 48 32, button left down, move 24 32, button left up | com
 turned: move 80 20, button left down, move 90 25, button left up | words not as dragged | frame.pixels not as dragged
     | compare.other_ids = 0
 END
+    check "what no display shows is not stretched" about "$(value equal compare.scale)" "(1 / 255)"
     check "] doubles it" about "$(value scaled compare.scale)" "(2 * $(value difference compare.scale))"
     check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
 

@@ -107,7 +107,7 @@ for turn in 1 2; do
     value end frame.ids >"$OUT/ids.$turn"
     is end "keys.traversal" sign
     is end "keys.tree builder" sweep
-    is end "keys.next camera of the file" "by hand"
+    is end "keys.next camera" "by hand"
 done
 check "two replays end in the same words" cmp "$OUT/words.1" "$OUT/words.2"
 check "and hits" cmp "$OUT/ids.1" "$OUT/ids.2"

@@ -69,6 +69,16 @@ END
 fi
 
 if part 0 2; then
+    # F frames one of the two, and what is too far away for that from half as far; 0 goes over the cameras.
+    play "framed" "$OUT/boxes.json" $SMALL <<END
+start:
+frame: move 28 32, press F, until probe.number = 1, still | words has ,-0.8,0.2,-0.4,
+file: press 0 | words = --size 96x64
+own: press 0 | keys.next camera = by hand | toast = whit's own camera | words has --camera
+again: press 0 | words = --size 96x64
+side: press 2 | toast = from the right
+nothing: move 1 1, press F, until toast = nothing is there to frame | toast = nothing is there to frame
+END
     # Without trees: the same again, and back.
     play "no trees" "$CUBE" $SMALL <<END
 start:

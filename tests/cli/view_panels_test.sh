@@ -87,5 +87,16 @@ if [ "${3:-}" = large ]; then
 else
     panels 2 1280 640x480
     panels 0.5 320 160x120 320x240 640x360
+
+    # Nothing stands over the pixel that is asked for, wherever it is.
+    for at in "200 300" "300 200" "320 240" "620 30" "30 460"; do
+        echo "pixel-${at% *}-${at#* }: click $at | probe.x = ${at% *} | probe.y = ${at#* }"
+        echo "closed: press Escape | picked = false"
+    done >"$OUT/pixels"
+    play "a pixel of a window of 640 x 480" "$CUBE" --ui-scale 1 <"$OUT/pixels"
+    over=$(awk -F '\t' 'sub(/^panels\./, "", $2) { split($1, at, "-"); split($3, r, " ")
+        if (r[1] <= at[2] && at[2] < r[3] && r[2] <= at[3] && at[3] < r[4]) print $2 " over " $1 }' "$OUT/values")
+    check "no panel covers the pixel ($over)" test -z "$over"
+    check "its panel is seen each time" test "$(grep -c 'panels.Pixel' "$OUT/values")" = 5
 fi
 finish

@@ -15,14 +15,14 @@ HIGH=${WHIT_TEST_SCREEN#*x}
 if part 0 2; then
     play "cameras" "$SCENES/spin.json" $SMALL <<END
 start:
-around: move 40 30, button left down, move 60 40, button left up | keys.next camera of the file = by hand
+around: move 40 30, button left down, move 60 40, button left up | keys.next camera = by hand
 aside: move 40 30, button middle down, move 60 40, button middle up
 near: wheel 0 1
 far: wheel 0 -1 | words as aside | frame.ids as aside
 look: button right down, move 50 45, button right up
 fly: key W down, wait 60, key W up
 fit: press S, still, press Home
-file: press 0 | frame.ids as start | words = --size 96x64 | keys.next camera of the file = camera
+file: press 0 | frame.ids as start | words = --size 96x64 | keys.next camera = camera
 front: press 1
 right: press 2
 above: press 3
