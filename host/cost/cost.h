@@ -126,8 +126,9 @@ struct cost_request {
     uint64_t knobs;       /* bits of knob_table; 0: all */
     double seconds;       /* that it may take, roughly */
     uint32_t samples_max; /* of the reference: 4, 16, 64; 0: 64, or 16 to be larger */
-    uint32_t judged_min;  /* the judged picture is no narrower, where the whole one is not */
-    uint32_t rays;        /* of each set; 0: none */
+    /* The judged picture is no narrower and no lower, where the whole one is not. */
+    uint32_t judged_width_min, judged_height_min;
+    uint32_t rays; /* of each set; 0: none */
     uint32_t goal_count;
     struct cost_goal goals[COST_GOALS_MAX]; /* each gets a row that measures the choice */
     bool keep_pictures;

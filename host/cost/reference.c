@@ -143,9 +143,9 @@ static bool fits(const struct measure *measure, double pixel_ms, uint32_t shrink
     double width = report->width / shrink, height = report->height / shrink;
     double all_ms = pixel_ms * (report->reference_samples + 1) +
                     measure->usual_pixel_ms * pictures_to_judge(report);
-    double least = fmax(SIDE_MIN, measure->request->judged_min);
-    return all_ms * width * height <= seconds * 1e3 || width / 2.0 < least ||
-           height / 2.0 < fmax(SIDE_MIN, 0.75 * measure->request->judged_min);
+    return all_ms * width * height <= seconds * 1e3 ||
+           width / 2.0 < fmax(SIDE_MIN, measure->request->judged_width_min) ||
+           height / 2.0 < fmax(SIDE_MIN, measure->request->judged_height_min);
 }
 
 /* By how much the picture is smaller than the request's, so that references and what is judged by

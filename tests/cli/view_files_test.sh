@@ -12,6 +12,10 @@ SMALL="--size 96x64"
 # ---- Scenes ----
 
 if part 0 2; then
+    # Without a command there is a window, too.
+    printf 'still\nstate alone\n' >alone.replay
+    run "$CUBE" $SMALL --replay alone.replay --quiet
+    check "whit FILE is whit view FILE (exit code $status)" test "$status $(jq -r .scene "$OUT/stdout")" = "0 $CUBE"
     mkdir list
     cp "$CUBE" list/a.json
     cp "$SCENES/8k.json" list/b.json

@@ -201,6 +201,45 @@ TEST(the_order_ends_with_what_is_missed_most)
     assert_int_equal(cost_step_of("shadows", "tinted"), WHIT_NONE);
 }
 
+/* A report of which a sample in four leaves this share of the visible error, and where exact hits
+   take so much longer; with what it opens with. */
+static const char *sentence_of(double usual_flip, double left, double exact_ratio)
+{
+    static char text[COST_SENTENCE_BYTES];
+    make_report();
+    add_row(knob_find("numerics"), 2, 0);
+    report.rows[0].error.flip_mean = usual_flip;
+    for (uint32_t i = 1; i < report.row_count; ++i) {
+        struct cost_row *row = &report.rows[i];
+        bool four = strcmp(row->knob, "aa") == 0 && strcmp(row->setting, "4") == 0;
+        row->error.flip_mean = four ? left * usual_flip : usual_flip;
+        row->price.verdict = four;
+        row->measured = true;
+        if (four)
+            row->price.ratio[COST_WALL].median = 4.0;
+    }
+    struct cost_row *exact = &report.rows[report.row_count - 1];
+    exact->price.verdict = exact_ratio > 1.2;
+    exact->price.ratio[COST_WALL] =
+        (struct sample_median){.median = exact_ratio, .high = exact_ratio + 0.04};
+    cost_sentence(&report, text);
+    return text;
+}
+
+TEST(other_scenes_are_told_otherwise)
+{
+    const char *text = sentence_of(0.08, 0.5, 1.3);
+    assert_non_null(strstr(text, "4.0 times the time halves the visible error (aa 4: FLIP 0.0400, "
+                                 "was 0.0800)"));
+    assert_non_null(strstr(text, "exact hits cost 30 %"));
+    text = sentence_of(0.02, 0.3, 1.01);
+    assert_non_null(strstr(text, "leaves 30 % of the visible error"));
+    assert_non_null(strstr(text, "exact hits cost nothing that can be measured"));
+    text = sentence_of(0.001, 0.3, 1.19);
+    assert_non_null(strstr(text, "o eye tells the usual picture from the reference (FLIP 0.0010)"));
+    assert_non_null(strstr(text, "exact hits cost at most 23 %, as closely as could be measured"));
+}
+
 int main(void)
 {
     return unit_run(NULL, NULL);

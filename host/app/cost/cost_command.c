@@ -11,7 +11,8 @@
 #include "settings/quote.h"
 
 enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MAX = 1 << 22, SAMPLES_QUICK = 16 };
-enum { JUDGED_MIN = 320, JUDGED_MIN_QUICK = 160 };
+/* Quick ones of 16:9 are 160 x 90. */
+enum { WIDTH_MIN = 320, HEIGHT_MIN = 240, WIDTH_MIN_QUICK = 160, HEIGHT_MIN_QUICK = 90 };
 /* Drivers cannot be stopped while they compile a kernel, and some take that long. */
 enum { GRACE_MS = 20000 };
 
@@ -105,7 +106,8 @@ static void complete(struct cost *cost)
         request->seconds = cost->quick ? COST_SECONDS_QUICK : COST_SECONDS;
     if (request->samples_max == 0 && cost->quick)
         request->samples_max = SAMPLES_QUICK;
-    request->judged_min = cost->quick ? JUDGED_MIN_QUICK : JUDGED_MIN;
+    request->judged_width_min = cost->quick ? WIDTH_MIN_QUICK : WIDTH_MIN;
+    request->judged_height_min = cost->quick ? HEIGHT_MIN_QUICK : HEIGHT_MIN;
     request->rays = cost->rays != COST_RAYS_UNSAID ? cost->rays
                     : cost->quick                  ? RAYS_QUICK
                                                    : RAYS_USUAL;

@@ -36,11 +36,15 @@ static struct widths measure(const whit_hard_report *report)
 static void print_verdict(const whit_hard_report *report)
 {
     printf("promises   %u of %u rows broke one\n", report->broken, report->row_count);
+    if (report->unanswered)
+        printf("answers    none in %u rows\n", report->unanswered);
+}
+
+static void print_bits(const whit_hard_report *report)
+{
     if (!report->equal_bits)
         puts("bits       not promised to be the twin's, as this device divides or compares "
              "otherwise: see --portable");
-    if (report->unanswered)
-        printf("answers    none in %u rows\n", report->unanswered);
     if (report->hash)
         printf("hash       %016llx of the exact identities of 512 rays a case%s\n",
                whole(report->hash),
@@ -54,10 +58,11 @@ static void print_heading(const struct hard *hard, struct widths widths)
 {
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
+    print_verdict(hard->report);
     printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
     printf("scene      %s\n", hard->job.settings.scene[0] ? cli_shown(hard->job.settings.scene)
                                                           : "the built-in cases");
-    print_verdict(hard->report);
+    print_bits(hard->report);
     printf("%-*s%-*s%-12s%9s%8s%7s%8s%8s%7s%8s%6s%10s%11s%10s%8s  %s\n", widths.name, "case",
            widths.place, "at", "numerics", "rays", "misses", "leaks", "false", "other", "wrong",
            "double", "self", "ulp", "device ms", "twin ms", "differ", "kept");
