@@ -10,6 +10,9 @@ check "lists the light" grep -q "0  lamp .*point at 2 4 3" "$OUT/stdout"
 check "lists the material" grep -q "0  cube .*phong" "$OUT/stdout"
 check "has the receipt" grep -Eq "^  shadows +yes +light .lamp." "$OUT/stdout"
 check "has what is not called for" grep -Eq "^  refraction +- " "$OUT/stdout"
+echo '{"lights": [{"kind": "rectangle", "name": "window", "position": [0, 3, 0], "u": [1, 0, 0], "v": [0, 0, 2]}],
+    "objects": [{"shape": "box"}]}' >"$OUT/window.json"
+shows "a rectangle by its centre, as files have it" "window  *rectangle at 0 3 0 towards 0 -1 0" scene "$OUT/window.json"
 expect 0 "scene --json" scene "$CUBE" --json
 cp "$OUT/stdout" "$OUT/first"
 expect 0 "scene --json again" scene "$CUBE" --json
