@@ -39,11 +39,6 @@ static const struct setting_value steps_background[] = {{"env", 0, "sky"},
                                                         {"#808080", 0, "grey"},
                                                         {"#000000", 0, "black"},
                                                         {0}};
-static const struct setting_value steps_light[] = {{"auto", 0, "as needed"},
-                                                   {"file", 0, "the file's"},
-                                                   {"none", 0, "none"},
-                                                   {"key", 0, "whit's"},
-                                                   {0}};
 static const struct setting_value steps_bailout[] = {{"0", 0, "0: every ray"},
                                                      {"0.000244140625", 0, "1/4096"},
                                                      {"0.0009765625", 0, "1/1024"},
@@ -403,7 +398,8 @@ const struct setting settings_table[] = {
      "where that lights nothing; nothing but the file's; no\n"
      "light; whit's in place of the file's",
      AT(CHOICE, load.lights), .values = values_lights, .commands = IN_PICTURES | IN_COST | IN_SCENE,
-     .change = SETTING_LIGHT, .need = SETTING_NEEDS_SCENE, .title = "light", .steps = steps_light},
+     .change = SETTING_LIGHT, .need = SETTING_NEEDS_SCENE, .title = "light",
+     .steps = values_lights},
     {"environment", 0, "FILE", "a picture all around, in place of the file's sky", "",
      AT(TEXT, environment), .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_SCENE, .trusted = true},

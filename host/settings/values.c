@@ -40,10 +40,10 @@ const struct setting_value values_up[] = {
     {"y", WHIT_UP_Y, NULL},        {"z", WHIT_UP_Z, NULL},
     {"-x", WHIT_UP_MINUS_X, NULL}, {"-y", WHIT_UP_MINUS_Y, NULL},
     {"-z", WHIT_UP_MINUS_Z, NULL}, {0}};
-const struct setting_value values_lights[] = {{"auto", WHIT_LIGHTS_AUTO, NULL},
-                                              {"file", WHIT_LIGHTS_FILE, NULL},
+const struct setting_value values_lights[] = {{"auto", WHIT_LIGHTS_AUTO, "as needed"},
+                                              {"file", WHIT_LIGHTS_FILE, "the file's"},
                                               {"none", WHIT_LIGHTS_NONE, NULL},
-                                              {"key", WHIT_LIGHTS_KEY, NULL},
+                                              {"key", WHIT_LIGHTS_KEY, "whit's"},
                                               {0}};
 const struct setting_value values_shadows[] = {{"tinted", WHIT_SHADOWS_TINTED, NULL},
                                                {"opaque", WHIT_SHADOWS_OPAQUE, NULL},
