@@ -22,7 +22,7 @@ static inline uint32_t cases_of(uint32_t all)
     return times ? all * times : all / 4;
 }
 
-/* Of cases that cost much each: an eighth in the short run. */
+/* Gives how many of `all` cases are tried where each takes long: an eighth in the short run. */
 static inline uint32_t cases_few(uint32_t all)
 {
     return cases_times() ? cases_of(all) : all / 8;

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 static const double SHARE_MAX = 0.1, RELIEF_MIN = 2.0;
-/* Of the longest side of its box: what is that close to a plane is a board, which shows no relief.
- */
+/* A model that stays this close to a plane, as a share of the longest side of its box, is a board,
+   which shows no relief. */
 static const double FLAT = 0.1;
 /* By how much a sum of samples of 1 may be more. */
 static const double ROUNDING = 1e-4;
@@ -234,7 +234,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of those from place `from` on, before place `to`. */
+/* Gives the mean of the levels from place `from` on, before place `to`. */
 static double mean_of(const double *levels, double from, double to)
 {
     double sum = 0.0;

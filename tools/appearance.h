@@ -14,7 +14,7 @@ struct appearance_shader {
 WHIT_CHECK whit_result appearance_shader_init(const whit_log *log, struct appearance_shader *out);
 void appearance_shader_finish(struct appearance_shader *shader);
 
-/* Of the pixels that show a surface. */
+/* This tells how the pixels look that show a surface. */
 struct appearance {
     double burnt; /* share with a channel displayed as 255, that does not glow white by itself: with
                      1, and no more */

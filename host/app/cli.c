@@ -111,7 +111,7 @@ static void vsay(const char *kind, const char *format, va_list args)
     say(kind, text);
 }
 
-/* Of several threads one at a time. */
+/* Prints an error. The caller holds the lock (lock_reason), so that threads do so one at a time. */
 static void say_error(const char *format, va_list args)
 {
     char text[8192], kind[512] = "error";

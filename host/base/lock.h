@@ -7,8 +7,8 @@
 
 #include "base/log.h"
 
-/* Of the file PATH.lock, which is there while somebody holds it, or was killed while he did. A
-   zeroed one holds nothing. */
+/* This is a lock on the file PATH.lock, which is there while a process holds the lock, and stays
+   where a process was killed while it held it. A zeroed struct holds nothing. */
 struct lock {
     char *path; /* of the lock file */
     int file;

@@ -143,7 +143,8 @@ struct turn {
     struct pair sine, cosine;
 };
 
-/* Of angles up to pi / 4: Taylor's series, whose first term left out is below 2^-62 of the sum. */
+/* Gives the sine and cosine of an angle up to pi / 4, by Taylor's series, whose first term left out
+   is below 2^-62 of the sum. */
 static struct turn turn_of(struct pair r)
 {
     struct pair square = product(r.hi, r.hi);
@@ -237,7 +238,8 @@ static struct pair difference(struct pair a, struct pair b)
     return sum(s.hi, s.lo + (a.lo - b.lo));
 }
 
-/* Of (x, y) from the x axis, 0..pi, for finite numbers, y not negative, and not both 0. */
+/* Gives the angle in 0..pi from the x axis to (x, y), for finite numbers, y not negative, and not
+   both 0. */
 static struct pair angle_of(double y, double x)
 {
     double size = fabs(x);
@@ -275,8 +277,8 @@ double same_acos(double x)
 
 /* ---- Logarithms and powers ---- */
 
-/* Of a finite x > 0: x = 2^e m, and log(m) = log(c) + 2 artanh(t), t = (m - c) / (m + c), for the c
-   = i / 32 nearest to m. */
+/* Gives the natural logarithm of a finite x > 0: x = 2^e m, and log(m) = log(c) + 2 artanh(t) with
+   t = (m - c) / (m + c), where c = i / 32 is the nearest to m. */
 static struct pair log_pair(double x)
 {
     int e;
@@ -321,7 +323,8 @@ double same_log10(double x)
     return has_log(x) ? times(log_pair(x), log10_e).hi : log_end(x);
 }
 
-/* Of x in -746..710: 2^(k / 32) from the table, and Taylor's series of what is left. */
+/* Gives e to the power x, for x in -746..710: 2^(k / 32) from the table, and Taylor's series of
+   what is left. */
 static double exp_of(struct pair x)
 {
     double k = floor(x.hi * 32.0 / (ln2.hi + ln2.lo) + 0.5);

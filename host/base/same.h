@@ -9,7 +9,8 @@
 #ifndef BASE_SAME_H
 #define BASE_SAME_H
 
-/* Of angles of more than 10^6, what is left by the double nearest to 2 pi. */
+/* Angles of more than 10^6 are first reduced by multiples of the double nearest to 2 pi, not of 2
+   pi. */
 double same_sin(double angle);
 double same_cos(double angle);
 double same_tan(double angle);

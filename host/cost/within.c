@@ -112,7 +112,7 @@ static struct effect samples_effect(const struct search *search, uint32_t sample
 
 /* ---- The choice ---- */
 
-/* Of all knobs but samples. */
+/* Gives the effect of all knobs together, except the number of samples. */
 static struct effect others_effect(const struct search *search)
 {
     struct effect all = {.ratio = 1.0, .known = true};

@@ -7,7 +7,8 @@
 #include "base/hash.h"
 #include "device/kept.h"
 
-/* Of more than so many those go that nobody uses, the oldest first. */
+/* The device keeps at most so many pipelines; beyond that it drops those that nobody uses, the
+   oldest first. */
 enum { KEPT_MAX = 128 };
 
 static struct pipeline *take(struct device *device, size_t key_of_pipeline, const uint64_t key[2])
@@ -24,7 +25,8 @@ static struct pipeline *take(struct device *device, size_t key_of_pipeline, cons
     return found;
 }
 
-/* Of all that decides what is made. Two hashes of 64 bits: a wrong kernel is a wrong picture. */
+/* Hashes all that decides which pipeline is made. Two hashes of 64 bits, for if two different
+   kernels had one key, a picture would be drawn by the wrong one. */
 static void key_of(const struct pipeline_params *params, bool specializes, uint64_t key[2])
 {
     const uint64_t sizes[] = {

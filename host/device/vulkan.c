@@ -58,8 +58,8 @@ whit_result device_check(struct device *device, VkResult vk, const char *express
         return WHIT_ERROR_TIME_LIMIT;
     if (vk >= 0)
         return WHIT_OK;
-    /* Of threads that make kernels at the same time each sees the loss, and the first tells of it.
-     */
+    /* Several threads that make kernels each see that the device is lost; only the first one says
+       so. */
     bool told = vk == VK_ERROR_DEVICE_LOST ? atomic_exchange(&device->lost, true) : device->lost;
     if (told)
         return WHIT_ERROR_DEVICE;

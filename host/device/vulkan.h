@@ -101,7 +101,7 @@ struct pipeline {
     uint32_t push_bytes;
     bool asks_statistics;
     char name[OBJECT_NAME_BYTES];
-    /* Of one that the device keeps: */
+    /* These are set in a pipeline that the device keeps: */
     bool kept;
     uint32_t users;
     uint64_t key[2], code_key[2]; /* of params; of what they make of the kernel, 0 where unknown */

@@ -98,7 +98,8 @@ static bool add_element(struct header *header, size_t begin, char words[WORDS_MA
     return ARRAY_PUSH(header->elements, header->element_count, header->element_capacity, element);
 }
 
-/* Of a file that ply_check has accepted, so that there is an end. False: memory ran out. */
+/* Reads the header of a file that ply_check has accepted, so that the header has an end. False:
+   memory ran out. */
 static bool read_header(const uint8_t *data, size_t size_bytes, struct header *header)
 {
     char words[WORDS_MAX][WORD_BYTES];

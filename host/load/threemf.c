@@ -6,7 +6,8 @@
 
 #include "load/picture.h"
 
-/* Of a ZIP's directory and of the headers in front of its files. */
+/* These are signatures, sizes and compression methods in a ZIP file: in its central directory, and
+   in the local header in front of each entry. */
 enum {
     ENTRY_MAGIC = 0x02014b50,
     ENTRY_BYTES = 46,

@@ -44,8 +44,8 @@ static double meet(const struct ground *ground, const struct gpu_ray *ray, doubl
     return t;
 }
 
-/* Of a pixel at `at`, with its neighbours. Lines are about a pixel wide, and gone
-   where two fall on a pixel. */
+/* Tells how much of the pixel at `at` the grid's lines cover. `right` and `below` are the places of
+   its neighbours. Lines are about a pixel wide, and gone where two fall on a pixel. */
 static double cover_of(const struct ground *ground, const double at[2], const double right[2],
                        const double below[2])
 {

@@ -4,8 +4,8 @@
 
 #include "render/renderer.h"
 
-/* Of the tile in hand, whose queues are as its generations and its camera rays
-   have left them. WHIT_ERROR_MEMORY, logged. */
+/* Counts the hits of each material in the tile that was just drawn, while its queues are as its
+   generations and its camera rays have left them. WHIT_ERROR_MEMORY, logged. */
 WHIT_CHECK whit_result material_shares_add(struct target *target,
                                            const struct gpu_generation *generations,
                                            uint32_t generation_count, uint32_t camera_rays);

@@ -42,9 +42,9 @@ struct probe_report {
     uint32_t ray_count;
     uint32_t dropped;   /* rays that had no room; what is recorded of their tree is its front */
     uint32_t differing; /* rays with equal == false */
-    /* Of the first sample, and of post() that of all of them together: how often each dbg(x) was
-       reached, and the first DBG_VALUES values of each but for rays that were dropped, in the order
-       of calls, then of rays. */
+    /* dbg(x) recorded this in the first sample, and in post(), which gets the mean of all samples:
+       how often each dbg(x) was reached, and the first DBG_VALUES values of each but for rays that
+       were dropped, in the order of calls, then of rays. */
     uint32_t call_counts[DBG_CALLS];
     struct probe_value *values;
     uint32_t value_count;

@@ -54,7 +54,8 @@ static whit_result read_aovs(const struct renderer *renderer, size_t at, size_t 
                    : WHIT_OK;
 }
 
-/* Of the pixels that the pass drew, into the picture from row `band_y` on. */
+/* Copies the values of the user's functions, of the pixels that the pass drew, into the picture
+   from row `band_y` on. */
 static whit_result read_listed_aovs(struct renderer *renderer, const struct progress *progress,
                                     uint32_t band_y, uint32_t rows)
 {

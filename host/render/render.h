@@ -46,7 +46,7 @@ WHIT_CHECK whit_result renderer_render(struct renderer *renderer);
 /* whit_renderer_render_views */
 WHIT_CHECK whit_result renderer_render_views(struct renderer *renderer, const whit_camera *cameras,
                                              uint32_t count);
-/* Of the last picture; 0: it has one camera. */
+/* Gives the number of views in the last picture; 0: it was not drawn by renderer_render_views. */
 uint32_t renderer_view_count(const struct renderer *renderer);
 /* Linear RGBA floats, or instance and primitive of the first sample (HIT_NONE: miss). */
 WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);

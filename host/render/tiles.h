@@ -16,7 +16,7 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
    traces take more iterations of loops together than the driver grants it; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
-/* Of a pass over all pixels that begins now. */
+/* Gives the progress of a pass over all pixels that begins now. */
 struct progress render_progress(const struct renderer *renderer);
 /* The picture, of one camera or of many. */
 WHIT_CHECK whit_result render_all(struct renderer *renderer);

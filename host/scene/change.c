@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "scene/fields.h"
 
-/* Of more than so many differences the rest is counted. */
+/* A description names at most so many differences, and says how many more there are. */
 enum { TOLD_MAX = 4 };
 
 struct words {

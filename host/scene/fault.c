@@ -38,7 +38,8 @@ static bool move_vertex(struct scene *scene, uint64_t *random, double amount)
     return freeze_clean_mesh(scene, index) == WHIT_OK;
 }
 
-/* Of a material that lets light through, or shares it by Fresnel. */
+/* Changes the index of refraction of a material that lets light through or has Fresnel reflection.
+   False: the scene has none. */
 static bool change_ior(struct scene *scene, uint64_t *random, double amount)
 {
     uint32_t start = scene->material_count ? draw(random, scene->material_count) : 0;

@@ -8,7 +8,7 @@ uint64_t freeze_hash(const struct scene *scene);
 /* The same of one record: a struct scene_mesh, scene_material and so on, by its kind;
    WHIT_PART_OBJECTS has none. */
 uint64_t freeze_hash_record(enum whit_part_kind kind, const void *record);
-/* Of nodes and instances. */
+/* Hashes the scene's nodes and instances. */
 uint64_t freeze_hash_objects(const struct scene *scene);
 
 #endif

@@ -56,7 +56,8 @@ static const char *own_name(const struct scene *scene, unsigned kind, uint32_t i
     }
 }
 
-/* That of the node, and what of it moves. */
+/* Gives the name of an animation channel: the node's name, and which part of its transform is
+   animated. */
 static char *channel_name(const struct scene *scene, const struct scene_names *nodes,
                           uint32_t index)
 {
@@ -164,7 +165,8 @@ static uint64_t hash_material(const struct scene_parts *parts, const struct scen
     return hash_bytes(value, &names, sizeof names);
 }
 
-/* Of what stands below a node. */
+/* Adds to the hash `value` of a light, camera or channel the name of the node that it belongs
+   to. */
 static uint64_t hash_below(const struct scene_parts *parts, uint32_t node, uint64_t value)
 {
     return hash_name(value, scene_parts_name(parts, SCENE_NAMES_NODE, node));

@@ -11,7 +11,7 @@
 #include "shader/stages.h"
 #include "shader/text.h"
 
-/* Of one request. A zeroed one means the defaults. */
+/* One request may use this much. A zeroed struct means the defaults. */
 struct shader_limits {
     double cpu_s;                /* of the processor; 0: as the request says */
     double clock_s;              /* 0: 20 */

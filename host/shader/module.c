@@ -71,7 +71,8 @@ static uint64_t times(uint64_t size, uint64_t count)
     return size && count > UINT64_MAX / size ? UINT64_MAX : size * count;
 }
 
-/* Of a specialization constant, what it is where nobody says. */
+/* Gives the value of a constant; for a specialization constant its default. UINT64_MAX: it is not
+   known. */
 static uint64_t usual_length(const struct spv_module *m, uint32_t id)
 {
     const uint32_t *def = spv_def(m, id);

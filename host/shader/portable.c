@@ -58,8 +58,9 @@ static const struct stand_in operations[] = {
     {190, RIGHT_COMPARISON, "at_least", NULL},
 };
 
-/* Of GLSL.std.450. What is not here is exact: RoundEven, Trunc, SAbs, SSign, Floor, Ceil,
-   UMin, SMin, UMax, SMax, UClamp, SClamp, and the finding of bits. */
+/* These are numbers of instructions of GLSL.std.450. Those that are not listed are exact:
+   RoundEven, Trunc, SAbs, SSign, Floor, Ceil, UMin, SMin, UMax, SMax, UClamp, SClamp, and the
+   finding of bits. */
 static const struct stand_in instructions[] = {
     {1, NOWHERE, "round", NULL},
     {4, RIGHT_COMPARISON, "abs", NULL},

@@ -118,10 +118,9 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
    that is not known. */
 bool shader_find_open(const whit_shader *shader, uint32_t number, const char **file,
                       uint32_t *line);
-/* Of a text that was read already, and of stages, which both are the program's from then on, also
-   where this fails. WHIT_ERROR_INPUT and others as of whit_shader_load. A text without files needs
-   stages: all kernels are made of them then.
- */
+/* Makes a program of a text that was read already, and of stages. Both are the program's from then
+   on, also where this fails. WHIT_ERROR_INPUT and others as of whit_shader_load. A text without
+   files needs stages: all kernels are made of them then. */
 WHIT_CHECK whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
                                              struct shader_text *text, struct shader_stages *stages,
                                              bool trust, whit_shader **out,

@@ -43,7 +43,8 @@ static inline uint32_t exact_decode(float value, int32_t *exponent)
     return (bits & 0x807fffffu) | (biased != 0 ? 0x800000u : 0u);
 }
 
-/* Of an integer in digits: what is carried out of the last, and the bits of the digits. */
+/* Gives the sign of an integer in digits. `carry` is what is carried out of the last digit, `some`
+   has the bits of all digits. */
 static inline int32_t exact_sign(int32_t carry, int32_t some)
 {
     return carry < 0 ? -1 : (carry | some) != 0 ? 1 : 0;

@@ -107,8 +107,8 @@ static void subtract(const whit_image *a, const whit_image *b, float *out)
     }
 }
 
-/* Of colours: what a display can show. Less than that is no difference to be looked at, and is not
-   stretched until it looks like one. */
+/* A display can show no smaller difference of colours than this. The heat map's scale does not go
+   below it, so that differences nobody could see are not made to look large. */
 static const double STEP_SHOWN = 1.0 / 255.0;
 
 static void run_heat(void *context)

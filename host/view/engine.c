@@ -13,7 +13,7 @@
 
 /* Most that drawing waits for the first picture of a new version to be on the screen. */
 static const double YIELD_MS = 40.0;
-/* Of a picture at rest before a session is made that only the next version of its shader needs. */
+/* A picture is at rest this long before a session is made for the next version of its shader. */
 static const double SPARE_MS = 1e3;
 
 /* For pthread_cond_timedwait of the engine's conditions. */
@@ -155,7 +155,7 @@ static bool note_change(struct engine *engine, const struct engine_frame *frame)
     return same;
 }
 
-/* Of pictures, to plan the next ones. */
+/* Notes how long a sample of a pixel takes, to plan the next pictures by it. */
 static void note_speed(struct engine_lane *lane, const struct engine_frame *frame)
 {
     double pixels = (double)frame->width * frame->height;

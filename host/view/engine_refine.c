@@ -261,7 +261,9 @@ static whit_result draw_missing(const struct engine_task *task)
     return result;
 }
 
-/* Of all samples; what a picture has of them alone is right already. */
+/* Adds the statistics of the samples that refining drew to those of the first samples, which the
+   picture kept. Figures that are no sums are taken from refining, which has them for all
+   samples. */
 static void sum_stats(const struct engine_task *task, whit_stats *stats)
 {
     whit_stats sum;
@@ -352,7 +354,9 @@ static bool is_ready(const struct engine *engine, int index)
            engine_is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0;
 }
 
-/* Of the same samples by their settings, and as far as the slower of the two. */
+/* Two pictures beside each other are refined in turns, the one with fewer samples first, so that
+   both stay comparable. NULL: their settings ask for different numbers of samples, or nothing is
+   left to do. */
 static struct engine_lane *lane_of_two(struct engine *engine)
 {
     const struct engine_refine *a = &engine->refine[0], *b = &engine->refine[1];

@@ -42,8 +42,9 @@ void engine_flip_destroy(struct engine_flip *flip)
     free(flip);
 }
 
-/* Of copies: whoever asks for something else meanwhile does not wait for it. With the lock, which
-   it gives back meanwhile. */
+/* Starts a thread that compares the pictures before and after a reload by FLIP. The thread works on
+   copies, so that drawing does not wait for it. Call it with the lock, which is released while the
+   picture is copied. */
 static void start_flip(struct engine *engine)
 {
     struct engine_flip *flip = calloc(1, sizeof *flip);

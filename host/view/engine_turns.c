@@ -5,8 +5,8 @@
 #include "view/engine_private.h"
 #include "view/engine_sessions.h"
 
-/* Of 9 pairs the interval goes from the second to the eighth difference; 6 are the fewest that an
-   interval of 95 % takes (base/sample.h). */
+/* 9 pairs are drawn at most: their confidence interval goes from the second to the eighth
+   difference. 6 pairs are the fewest that give an interval of 95 % (base/sample.h). */
 enum { PAIRS = 9, PAIRS_MIN = ENGINE_PAIRS_MIN };
 static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3; /* for 6 pairs; for as many as there are */
 const char ENGINE_TURNS_STOPPED[] = "something else came first";
@@ -74,7 +74,7 @@ static void show_again(struct engine *engine)
     }
 }
 
-/* Of too few pairs. */
+/* Tells why fewer than PAIRS_MIN pairs were drawn. */
 static const char *why_not(const struct engine *engine, const struct engine_turns *turns,
                            whit_result result)
 {

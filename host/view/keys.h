@@ -9,7 +9,7 @@
 struct setting;
 struct view;
 
-/* Of the cheat sheet, in its order. */
+/* The cheat sheet shows keys in these groups, in this order. */
 enum key_group { KEYS_CAMERA, KEYS_PICTURE, KEYS_FILES, KEYS_EXPERTS, KEY_GROUPS };
 
 struct key_binding {

@@ -220,8 +220,8 @@ static void draw_price(const struct effect_price *price)
             (unsigned long long)price->pixels);
 }
 
-/* Of the effects that are on, those that cost most and more than half of a tenth, as parts of the
-   time that a picture takes: "refraction 41 % (material `glass`)". */
+/* Shows the effects that take the largest shares of the picture's time, three at most, each of more
+   than 5 %, and what calls for it: "refraction: 41 % of the time, for material `glass`". */
 static void draw_dearest(struct prices *measured, const whit_scene *scene)
 {
     enum { TOLD = 3 };

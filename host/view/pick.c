@@ -171,7 +171,8 @@ static void draw_place(const struct view *view)
             (double)first->normal[1], (double)first->normal[2], first->device.t);
 }
 
-/* Of a dbg(x); `whit probe` tells more of them. */
+/* Gives the number of values of a dbg(x) that the window shows; `whit probe` prints more of
+   them. */
 static uint32_t values_shown(const whit_probe_call *call)
 {
     return call->value_count < VALUES_SHOWN ? call->value_count : VALUES_SHOWN;

@@ -108,7 +108,7 @@ static whit_renderer_params small_picture(const struct prices *prices)
     return params;
 }
 
-/* Of those that are in the kernel: the others change nothing. */
+/* Measures the effects that are in the kernel: without one of the others nothing would change. */
 static whit_result measure_effects(struct prices *prices, const whit_log *log, whit_device *device,
                                    whit_accel *accel)
 {

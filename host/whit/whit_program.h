@@ -47,7 +47,8 @@ WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const wh
    written, and there is none. */
 WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
 void whit_image_strips_abandon(whit_image_strips *strips);
-/* Of integers, as hit identities are: width * height * channels, copied. WHIT_ERROR_MEMORY. */
+/* Makes an image of integers, as hit identities are: it copies width * height * channels of them
+   from `words`. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_image_create_words(uint32_t width, uint32_t height, uint32_t channels,
                                                const uint32_t *words, whit_image **out);
 /* The floats of a picture, to be changed; NULL where it has integers. */

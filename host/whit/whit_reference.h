@@ -25,8 +25,8 @@ void whit_reference_destroy(whit_reference *reference);
    picture. WHIT_ERROR_STATUS: a ray was in too many media. */
 WHIT_CHECK whit_result whit_reference_render(whit_reference *reference, whit_image **color,
                                              whit_image **ids);
-/* Of the picture rendered last: rays by kind, rays cut, render_ms and mrays_per_s; what is told of
-   devices is 0, and weights and bounds are not known: below 0. */
+/* Gives the statistics of the picture rendered last: rays by kind, rays cut, render_ms and
+   mrays_per_s. Figures that only a device has are 0; weights and bounds are not known: below 0. */
 void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats);
 
 /* The rays of one sample (0: the first) of a pixel from the upper left, each after its parent, as

@@ -70,9 +70,10 @@ typedef struct whit_step {
 /* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
-    /* Of the picture's rows those that are drawn, and that its images have: `row_count` of them
-       from `first_row` on, a multiple of 8, up to another one or to the last; 0: all. The picture
-       has a fixed number of samples, and its costs are not counted. */
+    /* The rows of the picture that are drawn, and that its images have: `row_count` of them from
+       `first_row` on; 0: all. They begin at a multiple of 8, and end at another one or at the
+       picture's last row. The picture has a fixed number of samples, and its costs are not
+       counted. */
     uint32_t first_row, row_count;
     whit_camera camera; /* its name is borrowed by renderers */
     double time_s;      /* of the animation */

@@ -23,7 +23,7 @@
 #define PORTABLE_UINT        18u
 #define PORTABLE_RELATIONS   22u /* bits: less, at most, equal, unequal, more, at least, step */
 #define PORTABLE_ABS         23u
-/* Of a device: whether it is one that portable kernels run on (host/render/portable.c). */
+/* These tell whether portable kernels run on a device (host/render/portable.c). */
 #define PORTABLE_SUM      19u /* the device's own */
 #define PORTABLE_PRODUCT  20u /* the same */
 #define PORTABLE_COMPARED 21u /* see compare() of kernel/portable.comp */

@@ -231,7 +231,7 @@ vec4 sample_use(Surface s, uint use)
     return sample_footprint(s, t, interpolate_uv(s.shade_index, t.uv_set, s.u, s.v));
 }
 
-// Of materials that blend.
+// Gives the opacity of a surface whose material blends.
 float sample_cover(Surface s, gpu_material material)
 {
     vec4 texel = sample_use(s, material.tex_opacity);

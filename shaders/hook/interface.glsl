@@ -39,7 +39,7 @@ uint sample_number() ELSEWHERE(uint)
 vec3 eye() ELSEWHERE(vec3)
 // A number from 0 to just below 1: another one for each k, pixel, sample and ray, the same in every run.
 float random(uint k) ELSEWHERE(float)
-// Of all bits of x.
+// Gives a hash of all bits of x.
 uint hash(uint x) ELSEWHERE(uint)
 // Value of slider `index` of the file.
 float slider(uint index) ELSEWHERE(float)

@@ -23,7 +23,7 @@ struct ShapeRay {
     float t_max;
 };
 
-// Of the generation. What the camera sees in the first sample is checked.
+// Gives this invocation's ray of the generation. What the camera sees in the first sample is checked.
 ShapeRay generation_ray()
 {
     uint id = traced_item(0u), slot;

@@ -312,7 +312,7 @@ float portable_tan(const float x)
     return portable_divide(turn.x, turn.y);
 }
 
-// Of x in 0..infinity, whose tangent's angle is in 0..pi / 2: x, or what two other tangents leave of it.
+// Gives the angle whose tangent is x, for x in 0..infinity. Where x is large, pi / 4 or pi / 2 is split off first.
 float arc_tangent(const float x)
 {
     bool large = x > 2.41421366, middle = x > 0.414213568;

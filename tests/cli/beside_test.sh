@@ -15,7 +15,7 @@ draw() { # OUTPUT SCENE OPTION...
     expect 0 "$scene $*" render "$SCENES/$scene.json" --size 32x24 -o "$output" --shader own.glsl --quiet "$@"
 }
 
-# Of each row two pictures with the functions, which differ by at most LIMIT of METRIC.
+# Draws two pictures with the functions for each row: they differ by at most LIMIT of METRIC.
 while IFS='|' read -r what scene a b metric limit; do
     draw a.pfm $scene $a
     draw b.pfm $scene $b

@@ -18,7 +18,7 @@ refuse 3 "no such device" "." scene "$CUBE" --effects --device "no such device"
 
 small="--size 48x36 --quiet"
 expect 0 "auto" render "$CUBE" -o "$OUT/auto.pfm" $small
-# That `all` alone gives the same picture is in scene_* for every scene.
+# The tests scene_* draw every scene with `all` alone, which gives the same picture.
 expect 0 "one more" render "$CUBE" -o "$OUT/more.pfm" $small --effects +textures,+environment-map
 check "more is the same" cmp "$OUT/auto.pfm" "$OUT/more.pfm"
 expect 0 "one less" render "$CUBE" -o "$OUT/less.pfm" $small --effects -point-lights --stats json

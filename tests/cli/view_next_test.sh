@@ -81,7 +81,7 @@ fi
 # ---- Visits of a ray ----
 
 if part 0 2; then
-    # Of all pixels the twin on the CPU counts what the kernel counts, however nodes are visited.
+    # Over all pixels the mirror on the CPU (twin) counts as many visits as the kernel, in any order of nodes.
     scenes=34k
     [ "$3" != large ] || scenes="34k swarm"
     for scene in $scenes; do
@@ -107,7 +107,7 @@ if part 1 2; then
     play "visits without trees" "$CUBE" $SMALL <<END
 no_trees: still, press G, press T | keys.trees = off | frame.visits_rays = 1536 | frame.visits = 1
 END
-    # Of a larger picture a part of them.
+    # In a larger picture the mirror counts only a part of the pixels.
     play "visits of some" "$SCENES/34k.json" --size 120x80 <<END
 twin:
 counted: press V | frame.visits_rays = 9600

@@ -29,7 +29,8 @@ double __wrap_whit_clock_ms(void);
 double __real_whit_clock_cpu_ms(void);
 double __wrap_whit_clock_cpu_ms(void);
 
-/* Of one sample, and of 10 % of it: sums of such times are exact. */
+/* A sample takes SAMPLE_MS, of which TENTH_MS is 10 %: sums of such times are exact in floating
+   point. */
 #define SAMPLE_MS (10.0 / 128.0)
 #define TENTH_MS  (1.0 / 128.0)
 

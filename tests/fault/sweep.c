@@ -240,7 +240,8 @@ static void run_without_fault(struct sweep *sweep)
     free(errors.data);
 }
 
-/* Of a run as those with a fault are. All faults of a sweep are at the same kinds of calls. */
+/* Counts the calls that can fail, in a run that is set up as those with a fault are. All faults of
+   a sweep are at the same kinds of calls. */
 static uint32_t count_calls(struct sweep *sweep)
 {
     empty_cache(sweep);

@@ -7,8 +7,8 @@
 
 enum { STEPS_MAX = 48, LEVEL_MAX = 2, COPIES_MAX = 512 };
 
-/* Of how many copies `value` and all in it would be, at most; above COPIES_MAX also for a shape of
-   many triangles. */
+/* Bounds how many objects `value` and all in it would place in `copies` copies; above COPIES_MAX
+   also for a shape of many triangles. */
 static double copies_in(const json_t *value, const char *key, double copies)
 {
     const char *name;

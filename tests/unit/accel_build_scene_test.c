@@ -240,8 +240,9 @@ TEST(matrices_without_inverse_are_refused)
                             "test: instance 1 ``: its matrix has no inverse in range at 0 s");
         assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
     }
-    /* Of rank 2, 1 and 0: no entry tells. The first by rounding alone is not: 0.1 + 0.4 is 0.5, but
-       0.3 + 0.6 is not 0.9. */
+    /* These matrices are of rank 2, 1 and 0: no single entry shows that they have no inverse. The
+       second one is of rank 3 by rounding alone: in double 0.1 + 0.4 is 0.5, but 0.3 + 0.6 is not
+       0.9. */
     const double flat[4][9] = {{1, 2, 3, 4, 5, 6, 5, 7, 9},
                                {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.5, 0.7, 0.9},
                                {1, 2, 3, 2, 4, 6, -1, -2, -3},
@@ -388,7 +389,8 @@ TEST(every_instance_is_hit)
 
 /* ---- What triangles say to shadow rays ---- */
 
-/* Of a material that is grey but for what is named. */
+/* The materials are grey but for what is named here. `flags` and `shadow` are what the records of
+   their triangles have to hold. */
 static const struct {
     const char *name;
     float transmission[3], opacity; /* 0: 1 */

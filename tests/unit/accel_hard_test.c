@@ -11,8 +11,8 @@
 
 enum { RAYS = 512, THREADS = 2 };
 
-/* Of the exact identities of the first RAYS rays of every case: what `whit hard` prints, and every
-   device has to meet. */
+/* This is the hash of the exact identities of the first RAYS rays of every case: `whit hard` prints
+   it, and every device has to meet it. */
 #define HASH UINT64_C(0x24a2309bfa7331e3)
 
 struct shots {

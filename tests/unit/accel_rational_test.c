@@ -60,7 +60,9 @@ static void list_record(struct listing *list, struct rational *rational,
         list_point(list, point);
 }
 
-/* Of records that trees have split there are several, alike. */
+/* Finds the first hit in the order of the query by testing every record of every instance. `count`
+   is the number of hits; a primitive that trees have split has several records, and counts for
+   each. */
 static struct rational_hit list_all(struct rational *rational, const struct accel *accel,
                                     const struct gpu_ray *ray, const struct rational_query *query,
                                     uint32_t *count)
@@ -129,8 +131,8 @@ static struct scene_mesh whole_spheres(uint32_t count)
     return mesh_balls(spheres, count);
 }
 
-/* Of radius 1, along x: one sphere, and two at one place. All else in a scene is at least 20 away
-   from them. */
+/* Spheres of radius 1 stand at these places on the x axis: one alone, and two at one place. All
+   else in a scene is at least 20 away from them. */
 enum { ALONE = 40, TWINS = 50 };
 static const double set_apart[12] = {ALONE, 0, 0, 1, TWINS, 0, 0, 1, TWINS, 0, 0, 1};
 
@@ -396,8 +398,8 @@ static struct world world_of_ball(void)
     return world_of(scene, plain);
 }
 
-/* Of rays that pass a sphere within its box nearly all are left out by doubles, and none of those
-   that touch it. */
+/* The filter in double leaves out nearly all rays that miss a sphere but enter its box, and none of
+   those that touch the sphere. */
 TEST(doubles_leave_out_what_misses)
 {
     struct world world = world_of_ball();

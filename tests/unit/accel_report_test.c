@@ -63,7 +63,7 @@ TEST(pieces_add_up)
 
 /* ---- End-point overlap ---- */
 
-/* Of a node: which primitives its subtree holds. */
+/* Marks the primitives in the subtree of a node. */
 static void mark(const struct accel *accel, uint32_t node, uint8_t *inside)
 {
     const struct gpu_bvh_node *at = &accel->nodes[node];

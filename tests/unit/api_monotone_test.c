@@ -64,8 +64,8 @@ static whit_image *reference_of(const struct opened *o, uint32_t samples)
 
 /* ---- Errors ---- */
 
-/* Of linear RGB, and of what a display shows of it: clamped to white. `bright`: pixels in which
-   one of the two pictures has a channel over white. */
+/* These are errors of linear RGB, and of what a display shows of it: clamped to white. `bright`:
+   pixels in which one of the two pictures has a channel over white. */
 struct error {
     double linear, shown;
     int bright;

@@ -242,7 +242,9 @@ TEST_IN(files_of_killed_runs_are_swept, folder_begin, folder_end)
     assert_int_equal(entry_count(), 1);
 }
 
-/* Of processes that live, of other names, of others, in use elsewhere, or no files at all. */
+/* Files are left alone where the process that made them still runs, where their names are of
+   another form or of another file, where they are another user's or locked, and where they are no
+   regular files. */
 TEST_IN(nothing_else_is_swept, folder_begin, folder_end)
 {
     pid_t gone = ended_process();

@@ -339,7 +339,8 @@ static void *run_there(void *user)
     return NULL;
 }
 
-/* Of a thread's arena glibc asks the system how it counts memory before it shrinks that. */
+/* Before glibc shrinks a thread's arena, it asks the system how memory is counted: the sandbox must
+   not end the child for that. */
 TEST_IN(memory_is_given_back_in_threads, begin, end)
 {
     enum child_end end = CHILD_NOT_STARTED;

@@ -97,7 +97,8 @@ TEST(order_and_repetition_mean_nothing)
     golden_finish(&golden);
 }
 
-/* Of another whit, or with another version's number: the numbers count. */
+/* A golden file that another whit wrote, or another version, is read all the same: its numbers
+   count. */
 TEST(another_whit_is_no_reason_to_refuse)
 {
     struct golden golden;

@@ -25,7 +25,7 @@ static void fill(struct golden *golden, const struct golden_case *item)
     put_part(golden, "mesh ball of room.json", 1);
 }
 
-/* Of a golden that has `usual`. */
+/* Asserts the verdict on the case `found`, against a golden file that has `usual`. */
 static void expect_verdict(const struct golden_case *found, uint64_t ball, const char *other,
                            enum check_verdict verdict, const char *text)
 {

@@ -30,8 +30,8 @@ static uint32_t rank_of(uint32_t knob, uint32_t setting)
     return cost_step_of(k->name, knob_setting_name(k, setting)) + 1;
 }
 
-/* Of samples and of what is more careful than usual a picture takes longer, of what is given up
-   later in the order the shorter. */
+/* Gives the time of a setting as a multiple of the usual one: longer for more samples and for what
+   is more careful than usual, shorter the later in the order a setting is given up. */
 static double ratio_of(uint32_t knob, uint32_t setting)
 {
     uint32_t count;

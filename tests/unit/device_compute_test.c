@@ -289,7 +289,7 @@ TEST(spans_are_timed)
     buffer_destroy(buffer);
 }
 
-/* Of a device that does not get done (-Wl,--wrap). */
+/* Stands for a device that does not finish its work (-Wl,--wrap): waiting for it times out. */
 static bool is_busy;
 static uint64_t limit_ns; /* that it was given */
 

@@ -126,8 +126,8 @@ static uint32_t as_bits(float value)
     return bits;
 }
 
-/* Of the float `found` beside the exact value, 0.5 or less for the nearest one; infinite where
-   another kind of number is right. */
+/* Gives the error of the float `found` in ulp of the exact value, 0.5 or less for the nearest one;
+   infinite where another kind of number is right. */
 static double error_ulp(float found, double exact)
 {
     float nearest = (float)exact;
@@ -213,7 +213,7 @@ static uint32_t make_special(uint32_t bits[SPECIAL_MAX])
     return count;
 }
 
-/* Of the answer beside the exact one; of whole numbers 0, or infinite. */
+/* Gives the error of an answer in ulp; where the function gives integers it is 0 or infinite. */
 static double answer_error(const struct row *row, uint32_t answer, double exact)
 {
     if (row->function == PORTABLE_INT || row->function == PORTABLE_UINT ||

@@ -115,7 +115,8 @@ struct frame {
     float length; /* of x and y, which are at right angles, all in integers */
 };
 
-/* Of an integer quaternion (Euler, Rodrigues). */
+/* Makes two vectors of integers at right angles from a random integer quaternion (Euler,
+   Rodrigues). */
 static inline struct frame integer_frame(int max)
 {
     int a = 1 + (int)random_below(&random_state, (uint32_t)max),

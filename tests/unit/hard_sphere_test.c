@@ -113,7 +113,8 @@ static bool is_key(const struct truth *truth, float key, bool far)
            (key == 0.0f || is_above(truth, nextafterf(key, 0.0f), far));
 }
 
-/* Of an end, and of keys from t_min on. */
+/* Tells whether an end of the chord counts as a hit: it is there, and its key is not below
+   t_min. */
 static bool counts(const struct truth *truth, float t_min, bool far)
 {
     return truth->met && is_ahead(truth, far) && !is_above(truth, FLT_MAX, far) &&

@@ -230,7 +230,7 @@ TEST(triangles_are_met_as_fractions_say)
     rational_destroy(rational);
 }
 
-/* Of a wall. */
+/* Finds the key of the hit with a large triangle across the ray; false: the ray misses it. */
 static bool key_of(struct rational *rational, float z, float origin, float dir, float *key)
 {
     struct subject s = wall(z, origin, dir);

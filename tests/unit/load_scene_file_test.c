@@ -516,7 +516,8 @@ TEST_IN(textures_are_found, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-/* Of a scene file's own textures; models do with a stand-in, even if the scene names it later. */
+/* Textures that a scene file names itself have to be there; models do with a stand-in, even if the
+   scene names it later. */
 TEST_IN(missing_textures_are_refused, open_folder, close_folder)
 {
     struct heard *heard = *state;

@@ -84,8 +84,9 @@ static inline void aim_at_bounds(const struct fixture *f, struct gpu_ray *rays, 
 
 /* ---- Device and twin ---- */
 
-/* Of the device's hits, how many are unlike the twin's, bit for bit, and of its costs, where these
-   are counted, which are added to *sum. Of any hits it counts that there is one. */
+/* Counts the device's hits, and its costs where they are counted, that differ in some bit from
+   those of the float mirror (twin). Two answers of an any-hit query differ where only one of them
+   is a hit. The twin's costs are added to *sum. */
 struct unlike {
     uint32_t hits, costs;
 };

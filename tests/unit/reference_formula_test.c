@@ -193,7 +193,7 @@ TEST(nothing_is_lost_in_a_furnace)
 
 /* ---- Light ---- */
 
-/* Of the one pixel of a picture of the scene, which is freed. */
+/* Gives the light in the one pixel of a picture of the scene, which is freed. */
 static double pixel_light(struct scene *scene, const struct reference_params *params)
 {
     struct drawn d = open_with(scene, NULL, params);

@@ -278,7 +278,8 @@ TEST(masks_have_no_levels)
     fixture_close(&f);
 }
 
-/* Of 128 MiB, which buffers have at least, level 0 takes nine tenths. */
+/* Buffers of devices hold at least 128 MiB, of which level 0 takes nine tenths here: the other
+   levels may not fit. */
 TEST(levels_that_do_not_fit_are_left_out)
 {
     const uint32_t side = 5500;

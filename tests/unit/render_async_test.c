@@ -48,7 +48,8 @@ static void await_thread(void)
     assert_int_equal(sem_wait(&compiling.ended), 0);
 }
 
-/* Who waits for a thread must not have to tell it to begin. */
+/* Lets the compiling thread begin before it is waited for, so that callers that wait need not do
+   that. */
 void __wrap_thread_join(struct thread *thread)
 {
     let_thread_begin();

@@ -110,9 +110,9 @@ static void assert_ray(const struct probe_ray *rays, uint32_t i)
                     (ray->traced.end == PROBE_REACHED || ray->traced.added[k] == 0.0f));
 }
 
-/* Of one sample: what its rays add is its colour, where each adds what it is brought by the rays
-   that are refracted, go straight on and are reflected; bit for bit but behind shadow catchers,
-   which take their share of all of it at once. */
+/* Asserts that what the rays of one sample add up to is its colour. Each ray adds its own light and
+   what it is brought by the rays that are refracted, go straight on and are reflected. The sum is
+   the same bit for bit but behind shadow catchers, which take their share of all of it at once. */
 static void assert_sum_is_color(const struct probe_report *report)
 {
     uint32_t count = report->ray_count;

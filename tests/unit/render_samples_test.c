@@ -103,7 +103,8 @@ TEST(sets_merge_to_the_whole)
     assert_memory_not_equal(parts[0], parts[1], sizeof *parts);
 }
 
-/* Of every number of samples the picture is their mean, on the device and in double. */
+/* For every number of samples the picture is the mean of the samples, on the device and in
+   double. */
 TEST_BY_TURNS(any_number_of_samples_is_their_mean, 0, 2)
 {
     draw_parts(1);

@@ -22,7 +22,8 @@ static struct scene *still_life(bool lamp)
     return scene;
 }
 
-/* Of lamps, what arrives stays the same. */
+/* Scales all lengths of a scene. The power of its lamps is scaled too, so that as much light
+   arrives. */
 static void scale_scene(struct scene *scene, double by)
 {
     for (int k = 0; k < 3; ++k) {

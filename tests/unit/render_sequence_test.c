@@ -101,8 +101,8 @@ TEST(samples_keep_blocks)
     }
 }
 
-/* Of the first 16^k samples each has a square of the one, a 4^k-th of it, with a square of the
- * other for itself. */
+/* Split both domains of a pair, say pixel and lens, into 4^k squares: each of the first 16^k
+   samples has another combination of a square of the one with a square of the other. */
 TEST(squares_meet_once)
 {
     void (*const places[])(uint32_t, uint32_t[2]) = {pixel_of, lens_of, light_of};

@@ -129,7 +129,7 @@ TEST(attributes_are_mended)
     scene_destroy(scene);
 }
 
-/* Of one triangle whose last normal leans by `lean` radians. */
+/* Tells whether a triangle keeps its normals where the last of them leans by `lean` radians. */
 static bool keeps_normals(float side, float lean)
 {
     const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -258,8 +258,8 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
     return scene;
 }
 
-/* Of many triangles: the samples' intensities add up to radiance * world area / pi, and lie on the
-   panel. */
+/* A lamp of many triangles becomes samples whose intensities add up to radiance * world area / pi,
+   and which lie on the panel. */
 TEST(tessellated_lamps_become_points)
 {
     struct scene *scene = panel_scene(10.0f, 6);

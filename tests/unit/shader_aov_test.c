@@ -173,7 +173,7 @@ TEST(nothing_else_changes)
     }
 }
 
-/* Of samples 0 to 3: the mean of those of 0, 1 and of 2, 3. */
+/* A picture of samples 0 to 3 has the mean of the values of samples 0, 1 and of samples 2, 3. */
 TEST_BY_TURNS(samples_are_averaged, 0, 2)
 {
     whit_renderer_params params = usual(4);
@@ -309,7 +309,7 @@ static double render_ms(const whit_renderer *renderer)
     return stats.render_ms;
 }
 
-/* Of the first value alone. */
+/* Draws a picture, and takes from the user's functions the first value alone. */
 static void draw_again(whit_renderer *renderer, struct drawn *drawn)
 {
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);

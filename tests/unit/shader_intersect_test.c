@@ -60,7 +60,7 @@ struct picture {
     uint32_t ids[PIXELS * 2];
 };
 
-/* Of the room with `part` in it. WHIT_OK, or what the renderer says. */
+/* Draws the room with `part` in it. WHIT_OK, or what the renderer says. */
 static whit_result draw(const char *part, const whit_shader *shader, whit_numerics numerics,
                         struct picture *out)
 {

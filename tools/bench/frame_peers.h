@@ -1,4 +1,4 @@
-/* Who is here to compare with. */
+/* Finds the programs on this machine that whit can be compared with. */
 #ifndef BENCH_FRAME_PEERS_H
 #define BENCH_FRAME_PEERS_H
 

@@ -1,4 +1,4 @@
-/* Who draws a picture, in turns. */
+/* Draws one picture in turns with each program and mode that is compared. */
 #ifndef BENCH_FRAME_SIDES_H
 #define BENCH_FRAME_SIDES_H
 

@@ -54,7 +54,8 @@ void table_leave_out(struct table *table, const char *name, const char *why);
    wrong. */
 WHIT_CHECK whit_result table_end(struct table *table, const char *title, whit_result result);
 
-/* Of `a` as a multiple of `b`, run by run; NAN without a goal where there are no such runs. */
+/* Gives the figure for `a` as a multiple of `b`, run by run; NAN without a goal where there are no
+   such runs. */
 struct figure table_ratio(const struct sample_runs *a, const struct sample_runs *b,
                           struct goal goal);
 json_t *table_times(const struct sample_runs *times); /* `median spread runs` */

@@ -34,7 +34,8 @@ uint64_t drawing_hash_ids(const whit_image *image)
     return hash_bytes(HASH_START, whit_image_words(image), count * sizeof(uint32_t));
 }
 
-/* Of pixels that are finite; of one channel three times that. */
+/* Finds the mean colour of the pixels that are finite. An image of one channel is grey: its three
+   means are equal. */
 static void find_mean(const whit_image *image, double mean[3])
 {
     whit_image_info info;

@@ -26,7 +26,7 @@ struct check_pictures {
     double flip_mean;
 };
 
-/* Of a picture as it was drawn. WHIT_ERROR_MEMORY, said. */
+/* Encodes a picture that was drawn: `after` and `thumbnail`. WHIT_ERROR_MEMORY, said. */
 WHIT_CHECK whit_result check_pictures_make(struct check_pictures *pictures,
                                            const struct drawing *drawing);
 /* Adds what it was: a picture as it is displayed, in its size or in a whole part of it. One in

@@ -98,7 +98,8 @@ static int compare_parts(const void *a, const void *b)
                               : (int)(x->set > y->set) - (int)(x->set < y->set);
 }
 
-/* Of sorted parts: each has to be the next one. */
+/* Checks that no part of the picture is missing: `parts` are sorted, so each has to be the next
+   one. */
 static whit_result check_whole(struct merge *merge, uint32_t sets)
 {
     enum { SHOWN = 8 };
