@@ -68,7 +68,8 @@ static bool box_is_sane(const struct gpu_bvh_node *node)
     return sane;
 }
 
-/* What leaf `node` holds of a primitive in box `box` is added to what is known of it. */
+/* Checks that the box of leaf `node` overlaps `box`, the box of one of its primitives, and adds the
+   overlap to the bounds of all parts of that primitive found so far. */
 static bool check_part(const struct view *view, struct walk *walk, uint32_t primitive,
                        const struct bvh_box *box, const struct gpu_bvh_node *node)
 {

@@ -9,7 +9,8 @@
 #include "whit/whit_program.h"
 
 enum { SHRINK_MAX = 16, BUILDS = 3, WARM_SIDE = 16, FULL_MIN = 6 };
-/* Below it what a dispatch costs by itself would count. */
+/* Pictures are not timed so small that they take less than this: the fixed cost of a dispatch would
+   distort the ratio. */
 static const double FRAME_MS_MIN = 10.0;
 
 whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,

@@ -20,7 +20,7 @@ struct picture {
 };
 
 /* picture_decode() in a child process, whose reply becomes `rgba`. Not WHIT_OK: `reason` is filled
-   and nothing is logged; as of foreign_ask(). Where the header tells of more than `pixels_most`
+   and nothing is logged; as of foreign_ask(). Where the header tells of more than `pixels_max`
    nothing is decoded, the result is WHIT_ERROR_INPUT and `out` has the sides. */
 WHIT_CHECK whit_result picture_read(const whit_log *log, const struct foreign_params *params,
                                     uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
@@ -33,7 +33,7 @@ WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, st
                                       const char **reason);
 /* Why a file of so many bytes, whose header tells of these sides, is refused; NULL: it is not. */
 const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes);
-/* Halves with a box filter until neither side is over `side_most`. False: memory ran out. */
+/* Halves with a box filter until neither side is over `side_max`. False: memory ran out. */
 bool picture_shrink(struct picture *picture, uint32_t side_max);
 void picture_finish(struct picture *picture);
 /* The first bytes of what deflate has packed, as many as fit: zeros where it is damaged. Only for a

@@ -40,8 +40,9 @@ struct rational_query {
     bool any;                          /* the first one that is found */
     bool brute;                        /* no tree and no filter: integers for every primitive */
     const struct rational_hit *behind; /* the first hit that comes after this one */
-    /* Its primitive is not hit; a sphere is at its far end where the ray goes into it (S > 0), and
-       with `behind` like others. */
+    /* The hit that the ray starts at; NULL: none. Its primitive is not hit again. A sphere is, at
+       its far end, where the ray goes into it (S > 0); with `behind` it is tested as any other
+       sphere. */
     const struct rational_hit *own;
 };
 

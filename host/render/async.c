@@ -79,21 +79,21 @@ static whit_result take_over(struct renderer *renderer)
 
 whit_result async_prepare(struct renderer *renderer)
 {
-    struct async_state *beside = &renderer->async;
+    struct async_state *async = &renderer->async;
     struct gpu_spec own = variant_spec(&renderer->picture),
                     general = variant_async_spec(&renderer->picture);
-    if (stages_are_made(&renderer->picture) && !beside->general)
+    if (stages_are_made(&renderer->picture) && !async->general)
         return stages_bind(&renderer->picture);
     /* Another time may ask for other constants than those that are being compiled. */
-    if (beside->job && memcmp(&beside->job->stages.spec, &own, sizeof own) != 0) {
-        job_destroy(beside->job);
-        beside->job = NULL;
+    if (async->job && memcmp(&async->job->stages.spec, &own, sizeof own) != 0) {
+        job_destroy(async->job);
+        async->job = NULL;
     }
-    if (!beside->job && memcmp(&own, &general, sizeof own) != 0)
-        beside->job = job_start(renderer, &own);
-    if (beside->job && atomic_load(&beside->job->done)) {
+    if (!async->job && memcmp(&own, &general, sizeof own) != 0)
+        async->job = job_start(renderer, &own);
+    if (async->job && atomic_load(&async->job->done)) {
         whit_result result = take_over(renderer);
-        if (result != WHIT_OK || !beside->general)
+        if (result != WHIT_OK || !async->general)
             return result;
     }
     return stages_are_made(&renderer->picture) ? stages_bind(&renderer->picture)

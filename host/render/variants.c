@@ -176,7 +176,8 @@ struct gpu_spec variant_general_spec(const struct target *target)
 struct gpu_spec variant_async_spec(const struct target *target)
 {
     const struct renderer *renderer = target->renderer;
-    /* All but what the buffers hold nothing for. */
+    /* The general kernel has code for all effects, except for these where the scene does not call
+       for them: buffers then lack the data that their code would read. */
     static const enum scene_effect held[] = {SCENE_EFFECT_SMOOTH_NORMALS,
                                              SCENE_EFFECT_VERTEX_COLORS, SCENE_EFFECT_MEDIA};
     struct scene_effects effects = renderer->effects;

@@ -28,7 +28,7 @@ struct variant_job {
     enum binding_kind kinds[BIND_STAGES_COUNT];
     struct pipeline_params params;
 };
-/* pass->pipeline and, where rays wait, pass->looks. */
+/* Makes pass->pipeline, and pass->deferred where rays may be deferred. */
 WHIT_CHECK whit_result variant_job_run(struct device *device, const struct variant_job *job,
                                        struct pass *pass);
 /* Whether a kernel leaves rays to a second one that has exact integers, and the constants of that.

@@ -64,8 +64,8 @@ static void stop_unwanted(struct engine *engine)
         job->session->cancel = true;
 }
 
-/* The other side shows what the window's last picture shows, also while that moves: two cameras
-   would make any difference meaningless. False where it has that already. */
+/* Gives the compared side the camera of the window's last picture, also while that moves: with two
+   cameras any difference would be meaningless. False where its picture already has that camera. */
 static bool follow_place(const struct engine *engine, const struct engine_lane *lane,
                          struct engine_task *task)
 {
@@ -76,7 +76,8 @@ static bool follow_place(const struct engine *engine, const struct engine_lane *
     return lane->place != engine->places;
 }
 
-/* And while it moves as large as that. */
+/* While the window's picture moves, it is drawn at a part of its size. Gives the compared side the
+   same size and quality. */
 static void follow_size(const struct engine *engine, const struct engine_lane *lane,
                         struct engine_task *task)
 {
@@ -87,7 +88,8 @@ static void follow_size(const struct engine *engine, const struct engine_lane *l
         task->quality = ENGINE_QUICK;
 }
 
-/* Back to what was drawn last, as a switch could not be made. */
+/* Whether the window's settings are once more those of the picture drawn last, so that nothing is
+   to be drawn: a switch failed, and was taken back. */
 static bool shows_it(const struct engine *engine, const struct engine_lane *lane)
 {
     return lane == engine->lanes && lane->drawn != lane->asked && lane->quality == ENGINE_WHOLE &&

@@ -5,12 +5,13 @@
 struct prices;
 struct view;
 
-/* The prices of this view, asked for or no more. */
+/* Opens the price list of this view, which starts to measure, or closes it. */
 void price_switch(struct view *view);
 void price_draw(struct view *view);
-/* Stops it; it goes once it is at its end, which nobody waits for. NULL is fine. */
+/* Tells a measurement to stop, and does not wait for it: prices_part frees it once its thread has
+   ended. NULL is fine. */
 void prices_leave(struct view *view, struct prices *prices);
-/* Lets those go that are at their end by now. */
+/* Frees the measurements that were told to stop and whose threads have ended. */
 void prices_part(struct view *view);
 
 #endif

@@ -185,7 +185,8 @@ static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y, const ImVec2 &o
     return outside ? otherwise : at; // there is no room: the window is small
 }
 
-// Down to what stands below.
+// The height that a panel `width` wide has at `at`: down to the next panel below it or to the
+// window's end, but never less than a minimum.
 static float room_below(const ImVec2 &at, float width)
 {
     float end = ImGui::GetIO().DisplaySize.y - gap();

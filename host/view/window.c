@@ -36,7 +36,8 @@ static void on_error(int code, const char *text)
 
 /* ---- Events ---- */
 
-/* Where nobody takes them, the oldest are lost; moves and sizes are one until somebody does. */
+/* Queues an event. A move, a size or a refresh takes the place of the last queued event if that is
+   of the same kind. When the queue is full, the oldest event is lost. */
 static void push(struct window *window, const struct view_event *event)
 {
     if (window->count > 0) {

@@ -278,7 +278,7 @@ typedef struct whit_cost {
 
 typedef enum whit_view {
     WHIT_VIEW_DEPTH = 0, /* deepest level of the trees that was looked at */
-    WHIT_VIEW_VISITS,    /* nodes opened: pairs + leaves + instances */
+    WHIT_VIEW_VISITS,    /* nodes opened: inner nodes, leaves, instances */
     WHIT_VIEW_BOXES,     /* box tests */
     WHIT_VIEW_TRIS,      /* triangle tests */
     WHIT_VIEW_STACK,     /* most refs on the node stack */

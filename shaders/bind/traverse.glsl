@@ -409,8 +409,8 @@ bool goes_on(bool again)
     return another_iteration(SPEC_PACKETS != 0u ? any_lane(again) : again);
 }
 
-// Tests a record that waits, with all that may let the ray through: cut-outs, filters, and the far
-// end of a sphere behind an end that does. `origin`, `dir`: of the ray in world space.
+// Tests a record whose test was deferred, with all that may let the ray through: cut-outs, filters, and the far end
+// of a sphere behind an end that does. `origin`, `dir`: of the ray in world space.
 bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record,
                   RecordRows rows, uint instance, uint skip_instance, uint skip_primitive,
                   inout Hit hit)
@@ -505,8 +505,8 @@ void look_at_leaf(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
     ref = refill_stack(ref, stack, hit.status);
 }
 
-// The only mesh tree. A ray with a record that waits stands still until all others of its subgroup
-// are done or wait too: looking costs more than many tests, and on lavapipe it costs that wherever it
+// Traverses the only mesh tree. A ray with a deferred record stands still until all others of its subgroup are done
+// or have one too: looking at a record costs more than many tests, and on lavapipe it costs that wherever it
 // stands, needed or not.
 void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint skip_instance,
                    uint skip_primitive, inout Hit hit)
@@ -535,8 +535,8 @@ RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
     return local;
 }
 
-// Goes on through the tree over instances at `ref`, each leaf of which is one, until REF_DONE, or until
-// a record waits. `inside`: first through the rest, at `mesh_ref`, of the mesh tree of that leaf.
+// Goes on through the tree over instances at `ref`, each leaf of which is one, until REF_DONE, or until a record is
+// deferred. `inside`: first through the rest, at `mesh_ref`, of the mesh tree of that leaf.
 void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min,
                     uint skip_instance, uint skip_primitive, inout uint ref,
                     inout NodeStack stack, inout RaySetup local, inout uint mesh_ref,

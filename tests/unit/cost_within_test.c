@@ -5,7 +5,7 @@
 #include "cost/within.h"
 #include "unit.h"
 
-enum { REPORTS = 400, SAMPLES_MOST = 64 };
+enum { REPORTS = 400, SAMPLES_MAX = 64 };
 static const double USUAL_MS = 100.0;
 
 static struct cost_report report;
@@ -172,7 +172,7 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
             last = check_order(&choice);
             assert_true(choice.ms <= limit);
             /* Another sample would not have fitted. */
-            if (choice.samples < SAMPLES_MOST)
+            if (choice.samples < SAMPLES_MAX)
                 assert_true(choice.ms * (choice.samples + 1.2) / choice.samples > limit);
             between += check_bailout(&choice, limit);
             reached = last > reached ? last : reached;

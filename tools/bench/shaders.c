@@ -338,8 +338,8 @@ static void put_times(struct table *table, json_t *row, const char *name,
 }
 
 /* The longest time with saves, and without one. */
-static void put_most(struct table *table, json_t *row, const char *name,
-                     const struct sample_runs *saved, const struct sample_runs *alone)
+static void put_max(struct table *table, json_t *row, const char *name,
+                    const struct sample_runs *saved, const struct sample_runs *alone)
 {
     json_t *times = document_object();
     document_number(times, "saved", quantile(saved, 1.0));
@@ -360,9 +360,9 @@ static void put_row(struct table *table, const char *scene, const struct edited 
     table_cell(table, "%s", edit->label);
     put_times(table, row, "first_ms", &times->first);
     put_times(table, row, "whole_ms", &times->whole);
-    put_most(table, row, "gap_over_ms", &times->saved.over, &times->alone.over);
-    put_most(table, row, "gap_drags_ms", &times->saved.drags, &times->alone.drags);
-    put_most(table, row, "gap_pictures_ms", &times->saved.pictures, &times->alone.pictures);
+    put_max(table, row, "gap_over_ms", &times->saved.over, &times->alone.over);
+    put_max(table, row, "gap_drags_ms", &times->saved.drags, &times->alone.drags);
+    put_max(table, row, "gap_pictures_ms", &times->saved.pictures, &times->alone.pictures);
     table_keep(table, row);
 }
 

@@ -1,5 +1,5 @@
-/* What it is like to look: `whit view` by replay, in a process of its own, on the display that
-   there is. Its states carry the figures. */
+/* Measures how the viewer responds: replays input to `whit view`, in a process of its own, on the
+   display that there is, and reads the figures from the states that it prints. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
