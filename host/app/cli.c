@@ -329,7 +329,8 @@ void cli_catch_interrupts(void)
     signal(SIGXFSZ, SIG_IGN); /* a file over `ulimit -f` is an error of writing it */
     action.sa_handler = on_interrupt;
     sigaction(SIGTERM, &action, NULL);
-    /* Also where it was ignored, as in background jobs of scripts: who sends it there means it. */
+    /* SIGINT ends the program even where it was ignored at the start, as in background jobs of
+       scripts: a signal that is sent there is meant for it. */
     sigaction(SIGINT, &action, NULL);
     struct sigaction before;
     if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)

@@ -63,7 +63,7 @@ static inline f4 f4_xyz(f4 a)
 {
     return _mm_and_ps(a, _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)));
 }
-/* xy + yz + zx. */
+/* Half the surface area of a box with these sides: xy + yz + zx. */
 static inline float f4_half_area(f4 d)
 {
     f4 p = _mm_mul_ps(d, _mm_shuffle_ps(d, d, _MM_SHUFFLE(3, 0, 2, 1)));

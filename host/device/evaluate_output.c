@@ -183,7 +183,7 @@ static void put_body(struct evaluation *e, struct word_list *out)
     }
 }
 
-/* Ids that are live without being named in the body. */
+/* Marks the ids that stay although the function's body does not name them. */
 static void mark_roots(struct evaluation *e, const uint32_t *function)
 {
     e->results[function[1]].live = true;

@@ -1,5 +1,5 @@
-/* The way of a picture onto the window. One picture is in flight at a time: the host is never more
-   than one ahead of the screen. */
+/* Shows pictures in the window. One picture is in flight at a time: the host is never more than one
+   ahead of the screen. */
 #include "device/swapchain_show.h"
 #include "base/clock.h"
 #include "device/buffer.h"

@@ -50,7 +50,8 @@ WHIT_CHECK whit_result image_check_savable(const whit_log *log, const struct ima
 bool text_list_add(struct text_list *list, const char *key, const char *value);
 void text_list_finish(struct text_list *list);
 
-/* image_init with the limits above; logs. */
+/* Prepares the image of a file that is read: image_init, unless its size is beyond the limits
+   above; logs. */
 WHIT_CHECK whit_result image_init_loaded(const struct image_source *source, struct image *image,
                                          uint64_t width, uint64_t height, uint32_t channels,
                                          bool integers);

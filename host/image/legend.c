@@ -166,7 +166,7 @@ static void draw_number(const struct legend *legend, const struct canvas *canvas
     draw_text(canvas, bar->left + left, NUMBER_TOP, text);
 }
 
-/* 1, 2 or 5 times a power of ten, at least `least`. */
+/* The smallest of 1, 2 and 5 times powers of ten that is at least `min`. */
 static double tick_step(double min)
 {
     double power = pow(10.0, floor(log10(min)));

@@ -26,12 +26,12 @@ bool gltf_bool(const struct gltf *gltf, const json_t *in, const struct gltf_plac
                const char *key, bool *out);
 bool gltf_number(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                  const char *key, double *out);
-/* Exactly `count` numbers. */
+/* Reads an array of exactly `count` numbers. */
 bool gltf_numbers(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                   const char *key, uint32_t count, double *out);
 bool gltf_floats(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                  const char *key, uint32_t count, float *out);
-/* A whole number of at least 0 and at most `most`. */
+/* Reads a whole number of at least 0 and at most `max`. */
 bool gltf_whole(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                 const char *key, uint64_t max, uint64_t *out);
 /* An index below `count`. */

@@ -65,7 +65,7 @@ static bool parse_number(const char *word, float *out)
     return digits > 0 && *at == 0 && isfinite(*out);
 }
 
-/* Up to `most` numbers; the line stands behind the last one. */
+/* Reads up to `max` numbers; `at` is then behind the last one. */
 static uint32_t parse_numbers(char **at, float *out, uint32_t max)
 {
     uint32_t count = 0;

@@ -19,9 +19,10 @@ struct picture {
     float *rgb;          /* 3 a pixel, linear, from malloc(), or NULL */
 };
 
-/* picture_decode() in a child process, whose reply becomes `rgba`. Not WHIT_OK: `reason` is filled
-   and nothing is logged; as of foreign_ask(). Where the header tells of more than `pixels_max`
-   nothing is decoded, the result is WHIT_ERROR_INPUT and `out` has the sides. */
+/* Runs picture_decode() in a child process, whose reply becomes `rgba`. On failure `reason` is
+   filled and nothing is logged, as by foreign_ask(). Where the header tells of more than
+   `pixels_max` nothing is decoded: the result is WHIT_ERROR_INPUT, and `out` has the width and the
+   height. */
 WHIT_CHECK whit_result picture_read(const whit_log *log, const struct foreign_params *params,
                                     uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                     struct picture *out, char reason[FOREIGN_REASON_BYTES]);

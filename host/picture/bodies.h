@@ -14,7 +14,7 @@ struct body {
     double rounding;     /* as much */
 };
 
-/* Those of one pose. A zeroed one is empty. */
+/* The bodies of a scene in one pose. A zeroed struct is empty. */
 struct bodies {
     struct body *all;
     uint32_t count, capacity;
@@ -23,9 +23,10 @@ struct bodies {
         gap; /* surfaces of two bodies closer than `searched` are at least `gap` apart */
 };
 
-/* Whether light passes through a surface of it into a medium of its own. */
+/* Whether light passes through a surface of this material into a medium of its own. */
 bool bodies_bounded_by(const struct scene_material *m);
-/* All of the scene, unless they are there already for this pose. False: memory ran out. */
+/* Lists all bodies of the scene, unless those of this pose are listed already. False: memory ran
+   out. */
 bool bodies_list(const struct scene *scene, const struct scene_pose *pose, struct bodies *bodies);
 /* Whether surfaces of two bodies may come nearer than `distance_max`, in world units; also where
    it takes too long to tell, or memory runs out. */

@@ -30,7 +30,8 @@ struct dvec3 surface_place_normal(const struct reference *reference, uint32_t in
    flat. */
 struct dvec3 surface_vertex_normal(const struct reference *reference, const struct surface *s,
                                    uint32_t corner);
-/* What identifies the place for textures, without the rest: mesh, material, u, v, colours. */
+/* A surface of which only those fields are filled in that textures are looked up by: mesh,
+   material, u, v, colours. */
 struct surface surface_texture_place(const struct reference *reference, uint32_t instance,
                                      const struct candidate *m, const struct gpu_triangle *record);
 

@@ -80,7 +80,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     uint64_t pixels = (uint64_t)width * p->band_rows;
     uint64_t sums = (uint64_t)p->chunk_slots * p->levels;
     p->before_post = posts ? (uint32_t)(pixels + sums) : 0;
-    /* What nothing is bound to has no bytes, and is not created. */
+    /* Buffers of 0 bytes are not needed for this picture, and not created. */
     bool lists = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     uint64_t before = renderer->scene_buffers.bytes;
     whit_result result = WHIT_OK;

@@ -4,8 +4,8 @@
 
 #include "render/renderer.h"
 
-/* `samples` of all pixels of progress->lattice, or of those of them that progress->levels
-   gives so many. */
+/* Takes `samples` samples of all pixels of progress->lattice, or of those of them to which
+   progress->levels gives so many. */
 WHIT_CHECK whit_result render_pass(struct renderer *renderer, uint32_t samples,
                                    struct progress *progress);
 /* Sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
@@ -26,8 +26,9 @@ WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 /* Empties a list of deferred rays, if there is one. Barriers are the caller's. */
 void render_clear_deferred(struct renderer *renderer, struct buffer *deferred);
-/* Goes on, behind a barrier, with what the dispatch before has left on the list. `push`: for it,
-   with `waiting` set. */
+/* Runs the second kernel of `pass`, which has exact integers, on the rays that the dispatch before
+   has listed in `deferred`; a barrier goes between. `push`: its push constants, with `waiting`
+   set. */
 void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
                           const void *push, uint32_t push_bytes);
 /* Workgroups of the camera rays of a chunk. */

@@ -183,7 +183,7 @@ static struct others find_others(const float *a, const float *b, uint32_t count,
     return others;
 }
 
-/* "vertices 3 and 7 moved by up to 0.1". */
+/* Describes differences, for example as "vertices 3 and 7 moved by up to 0.1". */
 static void put_others(struct words *words, const struct others *others, const char *one,
                        const char *many, const char *how)
 {

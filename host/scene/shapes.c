@@ -24,7 +24,7 @@ whit_result shape_box(const double size[3], struct scene_mesh *out)
         double sign = face % 2 ? 1.0 : -1.0;
         uint32_t corner[4];
         for (int i = 0; i < 4; ++i) {
-            /* Around the face as seen from outside. */
+            /* The corners go around the face as seen from outside. */
             double a = i == 1 || i == 2 ? 1.0 : -1.0, b = i >= 2 ? 1.0 : -1.0;
             double position[3], normal[3] = {0, 0, 0};
             normal[axis] = sign;

@@ -182,8 +182,8 @@ static whit_result explain(const struct place *place, enum child_end end,
     }
 }
 
-/* A brace that opens and does not close, or the other way round: what is told of it otherwise is
-   told at the end of all text. */
+/* Finds a brace that opens and does not close, or the other way round: the compiler would report it
+   at the end of all text. */
 static bool find_open_brace(const struct shader_text *text, uint32_t *file, uint32_t *line)
 {
     enum { DEPTH = 256 };
@@ -395,7 +395,8 @@ static void make_own_tag(char own[GLSLANG_OWN_BYTES])
     snprintf(own, GLSLANG_OWN_BYTES, "whit%016llx.", (unsigned long long)number);
 }
 
-/* The question with its text; NULL: why not was told. */
+/* Makes the question that is sent to the compiler's process, with the kernel's text. NULL: an error
+   was reported. */
 static uint8_t *make_question(const struct place *place, size_t *bytes)
 {
     struct glslang_question question = {.trust = place->request->trust,

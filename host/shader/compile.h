@@ -43,7 +43,8 @@ struct shader_loop {
     uint32_t line;
 };
 
-/* An operation of the user's that has no portable form (portable.h), and where it stands first. */
+/* An operation in the user's code that has no portable form (portable.h), and where it stands
+   first. */
 struct shader_open {
     uint32_t number; /* of portable_lacks; 0: none */
     uint32_t file, line;

@@ -235,7 +235,7 @@ struct kernel_request {
     struct shader_request request;
 };
 
-/* False: no memory. */
+/* Prepares the request to compile a kernel: its defines and its text. False: out of memory. */
 static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
                                 const struct kernel_parts *parts, struct kernel_request *of)
 {

@@ -1,4 +1,4 @@
-/* What the mesh trees of a scene are like, and what rays are to expect of them. */
+/* Statistics of the mesh trees of a scene, and of the work that random lines take in them. */
 #ifndef TWIN_REPORT_H
 #define TWIN_REPORT_H
 

@@ -117,8 +117,8 @@ typedef struct whit_judge_params {
     whit_instances instances; /* whose triangles: hits that are judged are of such trees */
     uint32_t threads;         /* 0: one a core */
 } whit_judge_params;
-/* WHIT_ERROR_USAGE for too many rays or a camera that there is none of, WHIT_ERROR_INPUT as of
-   accels. */
+/* WHIT_ERROR_USAGE where too many rays are asked for or the scene has no such camera,
+   WHIT_ERROR_INPUT as of accels. */
 WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
                                          const whit_log *log, whit_judge **out);
 void whit_judge_destroy(whit_judge *judge);

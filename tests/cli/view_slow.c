@@ -1,5 +1,5 @@
-/* Linked into whit in the place of some calls (--wrap): what takes long without trees takes as long
-   as a test wants, on any machine. WHIT_TEST_SLOW says what:
+/* Replaces some calls of whit (--wrap), so that work that takes long without trees takes as long as
+   a test wants, on any machine. WHIT_TEST_SLOW names the work:
    kernel    a kernel without trees is never done: it waits until nobody wants it any more
    picture   so does a picture of more than 1024 pixels, behind its first part
    told      pictures are said to have taken 1e7 ms */

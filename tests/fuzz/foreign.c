@@ -22,7 +22,7 @@ const struct aiScene *__wrap_aiApplyPostProcessing(const struct aiScene *scene, 
 void __wrap_aiReleaseImport(const struct aiScene *scene);
 const char *__wrap_aiGetErrorString(void);
 
-/* --- the bytes that decide ------------------------------------------------------------------ */
+/* --- the bytes of the fuzzer, which decide what is imported --------------------------------- */
 
 static struct {
     uint8_t *data;
@@ -131,7 +131,7 @@ static struct aiMesh *make_mesh(uint32_t number)
     return mesh;
 }
 
-/* One property: its name, which other files of the run know. */
+/* Makes a material with a name as its only property; other files of the run use the same names. */
 static struct aiMaterial *make_material(uint32_t number)
 {
     struct aiMaterial *material = zeroed(1, sizeof *material);

@@ -36,7 +36,7 @@ const char *fuzz_file(const char *name, const void *data, size_t size_bytes);
 extern const whit_log fuzz_log;
 void fuzz_log_clear(void);
 const char *fuzz_log_last(void); /* "" when there was none since */
-/* A call that ended with `result` kept the promise about errors: none on success, else one, which
+/* Checks what a call that ended with `result` logged: nothing on success, else one error, which
    names `path`, or where that is NULL any file by its whole path. Running out of memory is a
    finding: no input is large enough for it. */
 void fuzz_check_errors(whit_result result, const char *path);
@@ -50,7 +50,8 @@ void fuzz_check_trees(const struct scene *scene);
    bytes says how it is damaged. */
 extern void (*fuzz_reply)(struct child_reply *reply);
 
-/* A copy, in which each chunk of a PNG has the checksum that fits; of other files as they are. */
+/* Copies a file. In a PNG each chunk gets the checksum that fits; other files are copied as they
+   are. */
 uint8_t *fuzz_signed(const uint8_t *data, size_t size_bytes);
 
 #endif

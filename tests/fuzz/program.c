@@ -1,5 +1,5 @@
-/* What files of app/ call of the program, for targets that read as it does: errors are counted as
-   those of the library are. */
+/* Stands for the functions of the program that sources of app/ call, for targets that read options
+   as it does. Errors are counted as those of the library are. */
 #include <stdarg.h>
 #include <stdio.h>
 

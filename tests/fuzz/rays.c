@@ -46,7 +46,8 @@ static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
     fuzz_check(status == 0, "status %#x", status);
 }
 
-/* All rays of the file or one error. */
+/* Reads all rays of the file, and checks that a file which cannot be read is reported by one
+   error. */
 static uint64_t read_rays(const uint8_t *data, size_t size_bytes, whit_ray rays[RAYS_MAX])
 {
     enum { PIECE = 5 };

@@ -22,7 +22,7 @@ static void prepare(void)
     umask(077);
 }
 
-/* The header as store.h tells of it: a name, the length, a checksum of name and content. */
+/* The checksum in the header of a kept file (store.h): of its name and its content. */
 static uint64_t checksum_of(const uint8_t *data, size_t size_bytes)
 {
     return hash_bytes(hash_bytes(HASH_START, name, strlen(name)), data, size_bytes);

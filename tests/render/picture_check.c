@@ -295,7 +295,8 @@ static void check_ways(const struct subject *subject, const struct drawn *first)
     check_median(subject, first);
 }
 
-/* By scene, and another one with each commit. */
+/* A number by which checks take turns: it depends on the scene, and changes with each commit
+   (WHIT_TEST_OFFSET). */
 static uint32_t turn_of(const struct subject *subject)
 {
     const char *offset = getenv("WHIT_TEST_OFFSET");
@@ -372,9 +373,10 @@ static void check_levels(const struct subject *subject, bool all)
         check_level(subject, WHIT_NUMERICS_EXACT, all);
 }
 
-/* ---- Ways of the stages ---- */
+/* ---- Options that choose kernels, queues and tiles ---- */
 
-/* `few`: two kernels' sets that have it all. */
+/* Checks that these options do not change the picture. `few`: only the first two, which combine the
+   options of kernels. */
 static void check_stages(const struct subject *subject, whit_numerics level, bool few)
 {
     static const struct {

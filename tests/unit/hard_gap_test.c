@@ -85,8 +85,9 @@ struct leaks {
     uint32_t differ[LEVELS]; /* what a level says, from exact arithmetic */
 };
 
-/* Rays from the small sheet towards the large one, by exact arithmetic and as each level says.
-   Those in a corner where it is `least` wide. */
+/* Counts rays from the small sheet towards the large one that meet nothing of it, by exact
+   arithmetic, and the rays for which a level says something else. Rays do not start in the corner
+   where the gap between the sheets is less than `min` wide. */
 static void count_leaks(const struct sheets *sheets, float min, struct leaks *leaks)
 {
     struct rational *rational = rational_create(sheets->hard.accel);

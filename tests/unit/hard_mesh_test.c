@@ -48,7 +48,8 @@ static void target_of(const struct soup *soup, double out[3])
         out[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
 }
 
-/* From near the middle; a fourth level with the target on one axis or two, or nearly so. */
+/* A ray from near the middle of the mesh to `target`. Every fourth one starts level with the target
+   along an axis where it can, and only every eighth exactly. */
 static struct gpu_ray leaving_ray(const float middle[3], const double target[3], float reach,
                                   uint32_t i)
 {

@@ -81,7 +81,8 @@ static int side_of(const struct truth *truth, const mpq_t t, bool far)
     return half > 0 ? -1 : 1;
 }
 
-/* Whether the key of an end is above a float that is not negative. */
+/* Whether the key of an end of the chord (its t, rounded to float) is above `x`, which is not
+   negative. */
 static bool is_above(const struct truth *truth, float x, bool far)
 {
     uint32_t bits;

@@ -51,7 +51,7 @@ TEST(bad_triangles_are_dropped_and_counted)
     mesh.materials = calloc(9, sizeof(uint32_t));
     struct scene *scene = scene_ready(scene_of(mesh));
     const struct scene_mesh *m = &scene->meshes[0];
-    /* Kept: 0 1 2, the tiny 0 7 8, the huge 0 9 10, and 2 1 0. */
+    /* These triangles are kept: vertices 0 1 2, the tiny 0 7 8, the huge 0 9 10, and 2 1 0. */
     assert_int_equal(m->triangle_count, 4);
     assert_int_equal(m->indices[4], 7);
     assert_int_equal(m->indices[7], 9);

@@ -12,7 +12,7 @@ static inline double sphere_random(void)
     return (double)random_float_signed(&random_state);
 }
 
-/* Centres within a cube of half side `spread`; radii from `most` down to a thousandth of it. Every
+/* Centres within a cube of half side `spread`; radii from `max` down to a thousandth of it. Every
    tenth sphere is its neighbour again: ties. */
 static inline struct scene_mesh scattered_spheres(uint32_t count, double spread, double max)
 {

@@ -47,7 +47,7 @@ WHIT_CHECK whit_result expectation_check(const struct check_expectation *one,
 
 enum expect_kind { EXPECT_NUMBER, EXPECT_COLOR, EXPECT_NAME };
 
-/* One of them, as a drawing has it. */
+/* The value that a field has in a drawing. */
 struct expect_value {
     double numbers[3];
     const char *word; /* NULL: none */

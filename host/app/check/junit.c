@@ -4,7 +4,7 @@
 
 #include "app/check/check.h"
 
-/* As an attribute has it; what XML cannot hold is shown as an escape. */
+/* Writes text as the value of an XML attribute. Characters that XML cannot hold become escapes. */
 static void put_text(FILE *to, const char *text)
 {
     char shown[WHIT_SHOWN_BYTES];

@@ -15,8 +15,8 @@ typedef whit_result lanes_draw(struct check *check, struct studio *studio, uint3
 
 /* NULL: no lane pays, as in a suite of few cases or on a GPU, or none can be had. */
 struct lanes *lanes_begin(struct check *check, const struct studio *first, lanes_draw *draw);
-/* Whether a lane has drawn the case; waits for one that is at it. False: it is the caller's from
-   here on. */
+/* Whether a lane has drawn case `index`; waits for a lane that is drawing it. False: the caller
+   draws it, and no lane will. */
 bool lanes_have(struct lanes *lanes, uint32_t index);
 /* Lets each lane finish the case in hand. NULL is fine. */
 void lanes_end(struct lanes *lanes);

@@ -76,7 +76,8 @@ static whit_result is_right(const struct fault_case *item, const whit_fault *fau
 
 /* ---- One fault ---- */
 
-/* Whether camera rays hit an object that has another place in the order. */
+/* Whether the new order of the scene's objects shows in the picture: some instance that camera rays
+   hit is another object now. */
 static bool order_is_seen(const struct fault_case *item, const whit_scene *made)
 {
     whit_image_info info;

@@ -1,4 +1,4 @@
-/* What came of a case: what is said of it, and which exit code that asks for. */
+/* The verdict on a case: its kind, the text that is printed, and the exit code. */
 #ifndef APP_CHECK_VERDICT_H
 #define APP_CHECK_VERDICT_H
 

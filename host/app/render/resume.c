@@ -12,7 +12,8 @@
 
 /* ---- Options ---- */
 
-/* A PFM that is no part has no recipe. */
+/* Whether the picture's file holds its recipe: PFM files do not, unless they are parts of a
+   picture. */
 static bool has_recipe(const struct render_request *request)
 {
     return part_is_given(&request->part) || !request->output || !part_is_pfm(request->output);

@@ -1,4 +1,4 @@
-/* `whit scene --triangles`. */
+/* Writes the triangles of a scene to a file: `whit scene --triangles`. */
 #include <stdlib.h>
 
 #include "app/scene/listing.h"

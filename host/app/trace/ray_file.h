@@ -16,7 +16,7 @@ struct ray_file {
 /* Both say what is wrong by cli_error. A length that is no whole number of rays is refused here
    where it is known, else at its end. Close it in any case. */
 WHIT_CHECK whit_result ray_file_open(const char *path, struct ray_file *file);
-/* The next rays, at most `most`; *count is 0 at the end. */
+/* Reads the next rays, at most `max`; *count is 0 at the end. */
 WHIT_CHECK whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t max,
                                      uint64_t *count);
 void ray_file_close(struct ray_file *file);
