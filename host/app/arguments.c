@@ -77,6 +77,61 @@ static const struct setting *find_option(const struct cli_command *command, int 
     return option;
 }
 
+/* ---- Help ---- */
+
+const char *cli_help(const struct cli_command *command, const struct setting *option, char *text,
+                     size_t text_bytes)
+{
+    struct settings settings = settings_usual();
+    char value[SETTING_VALUE_BYTES];
+    const char *usual = option->usual;
+    if (command->usual)
+        command->usual(&settings);
+    bool has_one = option->kind != SETTING_FLAG && option->kind != SETTING_GONE &&
+                   !is_own(command, option) && setting_write(option, &settings, 0, value);
+    if (!usual && has_one)
+        usual = value;
+    snprintf(text, text_bytes, usual && usual[0] ? "%s (%s)" : "%s", option->help, usual);
+    return text;
+}
+
+static void print_option(const struct cli_command *command, const struct setting *option, FILE *to)
+{
+    char left[120], argument[80], help[1024];
+    char letter[8] = "    ";
+    if (option->letter)
+        snprintf(letter, sizeof letter, "-%c, ", option->letter);
+    snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name,
+             setting_has_argument(option) ? " " : "",
+             cli_argument_name(option, argument, sizeof argument));
+    if (strlen(left) + 2 > HELP_COLUMN)
+        fprintf(to, "%s\n%*s", left, HELP_COLUMN, "");
+    else
+        fprintf(to, "%-*s", HELP_COLUMN, left);
+    for (const char *line = cli_help(command, option, help, sizeof help); *line;) {
+        size_t length = strcspn(line, "\n");
+        fprintf(to, "%.*s\n", (int)length, line);
+        line += length + (line[length] != 0);
+        if (*line)
+            fprintf(to, "%*s", HELP_COLUMN, "");
+    }
+}
+
+static void print_help(const struct cli_command *command, bool all, FILE *to)
+{
+    const struct setting *option;
+    fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
+            command->summary);
+    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
+        if (option->kind != SETTING_GONE && (all || !option->developer))
+            print_option(command, option, to);
+    }
+    if (command->details)
+        fprintf(to, "\n%s", command->details);
+}
+
+/* ---- Command line ---- */
+
 void cli_reader_init(struct cli_reader *reader, const struct cli_command *command, int argc,
                      char **argv)
 {
@@ -216,7 +271,7 @@ static const struct setting *next(struct cli_reader *reader)
         } else if (option->kind == SETTING_HELP && reader->where) {
             cli_misuse(reader, "--help is for the command line alone");
         } else if (option->kind == SETTING_HELP) {
-            cli_print_help(reader->command, option == &help_options[1], stdout);
+            print_help(reader->command, option == &help_options[1], stdout);
             reader->done = true;
             reader->status = cli_finish_stdout(EXIT_FINE);
         } else {
@@ -326,57 +381,4 @@ char *cli_next_word(char **at, bool *whole)
     *at = *from ? from + 1 : from;
     *to = '\0';
     return word;
-}
-
-/* ---- Help ---- */
-
-const char *cli_help(const struct cli_command *command, const struct setting *option, char *text,
-                     size_t text_bytes)
-{
-    struct settings settings = settings_usual();
-    char value[SETTING_VALUE_BYTES];
-    const char *usual = option->usual;
-    if (command->usual)
-        command->usual(&settings);
-    bool has_one = option->kind != SETTING_FLAG && option->kind != SETTING_GONE &&
-                   !is_own(command, option) && setting_write(option, &settings, 0, value);
-    if (!usual && has_one)
-        usual = value;
-    snprintf(text, text_bytes, usual && usual[0] ? "%s (%s)" : "%s", option->help, usual);
-    return text;
-}
-
-static void print_option(const struct cli_command *command, const struct setting *option, FILE *to)
-{
-    char left[120], argument[80], help[1024];
-    char letter[8] = "    ";
-    if (option->letter)
-        snprintf(letter, sizeof letter, "-%c, ", option->letter);
-    snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name,
-             setting_has_argument(option) ? " " : "",
-             cli_argument_name(option, argument, sizeof argument));
-    if (strlen(left) + 2 > HELP_COLUMN)
-        fprintf(to, "%s\n%*s", left, HELP_COLUMN, "");
-    else
-        fprintf(to, "%-*s", HELP_COLUMN, left);
-    for (const char *line = cli_help(command, option, help, sizeof help); *line;) {
-        size_t length = strcspn(line, "\n");
-        fprintf(to, "%.*s\n", (int)length, line);
-        line += length + (line[length] != 0);
-        if (*line)
-            fprintf(to, "%*s", HELP_COLUMN, "");
-    }
-}
-
-void cli_print_help(const struct cli_command *command, bool all, FILE *to)
-{
-    const struct setting *option;
-    fprintf(to, "usage: whit %s %s\n\n%s\n\noptions:\n", command->name, command->arguments,
-            command->summary);
-    for (uint32_t i = 0; (option = cli_option_at(command, i)); ++i) {
-        if (option->kind != SETTING_GONE && (all || !option->developer))
-            print_option(command, option, to);
-    }
-    if (command->details)
-        fprintf(to, "\n%s", command->details);
 }

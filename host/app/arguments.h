@@ -53,6 +53,5 @@ const char *cli_argument_name(const struct setting *option, char *text, size_t t
    Gives `text`. */
 const char *cli_help(const struct cli_command *command, const struct setting *option, char *text,
                      size_t text_bytes);
-void cli_print_help(const struct cli_command *command, bool all, FILE *to);
 
 #endif

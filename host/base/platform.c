@@ -1,18 +1,13 @@
 #include "base/platform.h"
 
-#include <errno.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
-
-#include "base/file.h"
 
 void platform_share_heaps(void)
 {
@@ -83,34 +78,4 @@ void platform_memory_bytes(uint64_t *all, uint64_t *anonymous)
         (void)fclose(from);
     *all = (uint64_t)all_kib * 1024;
     *anonymous = (uint64_t)anonymous_kib * 1024;
-}
-
-static volatile bool *volatile interrupt_flag;
-static volatile sig_atomic_t interrupt_count;
-
-static void on_interrupt(int number)
-{
-    int reason = errno;
-    volatile bool *flag = interrupt_flag;
-    if (flag)
-        *flag = true;
-    if (++interrupt_count > 1) {
-        file_abandon_all();
-        /* Delivered when the handler returns: the shell sees what ended the process. */
-        signal(number, SIG_DFL);
-        raise(number);
-    }
-    errno = reason;
-}
-
-void platform_catch_interrupts(volatile bool *flag)
-{
-    interrupt_flag = flag;
-    interrupt_count = 0;
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART};
-    sigemptyset(&action.sa_mask);
-    sigaddset(&action.sa_mask, SIGINT);
-    sigaddset(&action.sa_mask, SIGTERM);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
 }

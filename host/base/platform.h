@@ -3,7 +3,6 @@
 #ifndef BASE_PLATFORM_H
 #define BASE_PLATFORM_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -27,7 +26,5 @@ uint64_t platform_peak_memory_bytes(void);
 /* Resident memory of this process at this moment: all of it, and the anonymous part. Both are 0
    where the system does not say. */
 void platform_memory_bytes(uint64_t *all, uint64_t *anonymous);
-/* Sets *flag at SIGINT and SIGTERM; a second signal removes unfinished files and ends at once. */
-void platform_catch_interrupts(volatile bool *flag);
 
 #endif

@@ -13,7 +13,7 @@ void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word)
 }
 
 /* 0, which is nobody's, when it cannot be had. */
-uint32_t evaluate_new_id(struct evaluation *e)
+static uint32_t new_id(struct evaluation *e)
 {
     const struct result_id fresh = {0};
     e->failed = e->failed || e->result_count >= SPIRV_BOUND_MAX;
@@ -27,7 +27,7 @@ uint32_t evaluate_new_id(struct evaluation *e)
 uint32_t evaluate_id(struct evaluation *e, uint32_t id)
 {
     if (!e->source[id].to)
-        e->source[id].to = evaluate_new_id(e);
+        e->source[id].to = new_id(e);
     return e->source[id].to;
 }
 
@@ -69,9 +69,9 @@ void evaluate_copy(struct evaluation *e, const uint32_t *instruction)
                                                            : instruction[i]);
 }
 
-uint32_t evaluate_add_variable(struct evaluation *e, uint32_t pointer_type)
+static uint32_t add_variable(struct evaluation *e, uint32_t pointer_type)
 {
-    uint32_t id = evaluate_new_id(e);
+    uint32_t id = new_id(e);
     EMIT(e, &e->variables, OP_VARIABLE, pointer_type, id, STORAGE_FUNCTION);
     e->results[id].base = id;
     return id;
@@ -104,7 +104,7 @@ static uint32_t constant_id(struct evaluation *e, uint32_t type, uint32_t value)
         if (constant->type == type && constant->value == value)
             return e->constants.words[i];
     }
-    uint32_t id = evaluate_new_id(e);
+    uint32_t id = new_id(e);
     put_constant(e, type, id, value);
     return id;
 }
@@ -182,7 +182,7 @@ static uint32_t pointer_type(struct evaluation *e, uint32_t type)
             instruction[3] == type)
             return instruction[1];
     }
-    uint32_t id = evaluate_new_id(e);
+    uint32_t id = new_id(e);
     EMIT(e, &e->globals, OP_TYPE_POINTER, id, STORAGE_FUNCTION, type);
     return id;
 }
@@ -205,7 +205,7 @@ static void end_return(struct evaluation *e, struct instance *in)
     in->return_waits = false;
     if (in->result_type) {
         if (!in->variable)
-            in->variable = evaluate_add_variable(e, pointer_type(e, in->result_type));
+            in->variable = add_variable(e, pointer_type(e, in->result_type));
         EMIT(e, &e->body, OP_STORE, in->variable, in->value);
     }
     EMIT(e, &e->body, OP_BRANCH, in->after);
@@ -375,7 +375,7 @@ static void begin_wrap(struct evaluation *e, struct instance *in)
     e->failed = e->failed || !selector;
     in->wrap = e->body.count;
     in->label_before = e->label;
-    in->wrap_label = evaluate_new_id(e);
+    in->wrap_label = new_id(e);
     EMIT(e, &e->body, OP_SELECTION_MERGE, in->after, 0);
     EMIT(e, &e->body, OP_SWITCH, selector, in->wrap_label);
     put_label(e, in->wrap_label);
@@ -404,7 +404,7 @@ static uint32_t end_call(struct evaluation *e, struct instance *in)
     put_label(e, in->after);
     if (!in->result_type)
         return 0;
-    uint32_t value = evaluate_new_id(e);
+    uint32_t value = new_id(e);
     EMIT(e, &e->body, OP_LOAD, in->result_type, value, in->variable);
     return value;
 }
@@ -434,7 +434,7 @@ static void walk_call(struct evaluation *e, struct instance *caller, const uint3
     struct instance in = {.caller = caller,
                           .depth = caller->depth + 1,
                           .result_type = is_void ? 0 : call[1],
-                          .after = evaluate_new_id(e)};
+                          .after = new_id(e)};
     if (spirv_op(function) != OP_FUNCTION || in.depth > CALLS_DEEP) {
         e->failed = true;
         return;
@@ -504,7 +504,7 @@ static void walk_plain(struct evaluation *e, const uint32_t *at)
 
 static void walk_variable(struct evaluation *e, const uint32_t *at)
 {
-    uint32_t id = evaluate_add_variable(e, at[1]);
+    uint32_t id = add_variable(e, at[1]);
     e->source[at[2]].to = id;
     if (spirv_length(at) > 4) /* each time, not once in the kernel */
         EMIT(e, &e->body, OP_STORE, id, evaluate_id(e, at[4]));
@@ -591,7 +591,7 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
             walk_global(e, e->words + at, spec_of);
     }
     evaluate_count_writes(e);
-    e->label = evaluate_new_id(e);
+    e->label = new_id(e);
     e->first_label = e->label;
     e->block = 1;
     if (!e->failed)

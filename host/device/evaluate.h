@@ -107,13 +107,11 @@ static inline uint32_t spirv_op(const uint32_t *instruction)
 }
 
 void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word);
-uint32_t evaluate_new_id(struct evaluation *e);
 /* The id that `id` became, or will become. */
 uint32_t evaluate_id(struct evaluation *e, uint32_t id);
 /* The id for `instruction`'s result in the new body. It is exact (NoContraction) where the old one
    was. */
 uint32_t evaluate_result(struct evaluation *e, const uint32_t *instruction);
-uint32_t evaluate_add_variable(struct evaluation *e, uint32_t pointer_type);
 void evaluate_copy(struct evaluation *e, const uint32_t *instruction);
 
 #endif

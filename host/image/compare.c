@@ -9,7 +9,8 @@ struct sums {
     uint64_t terms;
 };
 
-void image_read_pixel(const struct image *image, size_t index, float rgba[4])
+/* Pixel `index` as RGBA: grey fills three channels, alpha is 1 where there is none. */
+static void read_pixel(const struct image *image, size_t index, float rgba[4])
 {
     const float *pixel = image->pixels + index * image->channels;
     for (uint32_t c = 0; c < 3; ++c)
@@ -19,7 +20,7 @@ void image_read_pixel(const struct image *image, size_t index, float rgba[4])
 
 void image_displayed_pixel(const struct image *image, size_t index, float rgba[4])
 {
-    image_read_pixel(image, index, rgba);
+    read_pixel(image, index, rgba);
     for (uint32_t c = 0; c < 3 && image->display_scale != 0.0f; ++c)
         rgba[c] *= image->display_scale;
     for (uint32_t c = 0; c < 3 && image->display_soft; ++c)
@@ -81,8 +82,8 @@ static void compare_pixel(const struct image *image_a, const struct image *image
                           struct image_difference *out, struct sums *sums)
 {
     float a[4], b[4];
-    image_read_pixel(image_a, i, a);
-    image_read_pixel(image_b, i, b);
+    read_pixel(image_a, i, a);
+    read_pixel(image_b, i, b);
     bool finite_a = is_finite(a), finite_b = is_finite(b);
     bool differ = memcmp(a, b, 4 * sizeof(float)) != 0;
     out->nonfinite_a += !finite_a;
@@ -148,8 +149,8 @@ whit_result image_subtract(const whit_log *log, const struct image *a, const str
     size_t count = (size_t)a->width * a->height;
     for (size_t i = 0; i < count; ++i) {
         float p[4], q[4];
-        image_read_pixel(a, i, p);
-        image_read_pixel(b, i, q);
+        read_pixel(a, i, p);
+        read_pixel(b, i, q);
         bool finite = is_finite(p) && is_finite(q);
         for (uint32_t c = 0; c < 3; ++c)
             out->pixels[3 * i + c] = finite ? q[c] - p[c] : NAN;

@@ -4,9 +4,8 @@
 
 #include "image/image.h"
 
-/* Pixel `index` of floats as RGBA: grey fills three channels, alpha is 1 where there is none. */
-void image_read_pixel(const struct image *image, size_t index, float rgba[4]);
-/* The same as it is displayed, still linear and not clamped. */
+/* Pixel `index` of floats as RGBA, where grey fills three channels and alpha is 1 where there is
+   none, as it is displayed, still linear and not clamped. */
 void image_displayed_pixel(const struct image *image, size_t index, float rgba[4]);
 
 /* How `b` differs from `a`, the reference. */
@@ -21,7 +20,7 @@ struct image_difference {
 };
 #define IMAGE_RELATIVE_FLOOR 0.01
 
-/* Floats may differ in their channels: they are compared as image_read_pixel gives them, alpha only
+/* Floats may differ in their channels: they are compared as RGBA, not as displayed, alpha only
    for differing_pixels and over_1_255. WHIT_ERROR_INPUT when sizes or kinds differ. Pixels that are
    not finite in one of the two count as differing and over_1_255 unless their bits are the same;
    they are left out of all means and of largest. */

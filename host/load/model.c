@@ -141,7 +141,8 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
     return result;
 }
 
-whit_result model_load_obj(struct scene *scene, const struct model_request *request)
+static whit_result load_obj(struct scene *scene, const struct model_request *request,
+                            enum import_kind kind)
 {
     uint8_t *data = NULL;
     size_t size = 0;
@@ -158,7 +159,7 @@ whit_result model_load_obj(struct scene *scene, const struct model_request *requ
     }
     result = obj_read_libraries(scene, request->path, (const char *)data, &library);
     if (result == WHIT_OK)
-        result = import(scene, request, IMPORT_OBJ, data, size, &block);
+        result = import(scene, request, kind, data, size, &block);
     free(data);
     data = NULL;
     if (result == WHIT_OK)
@@ -236,13 +237,6 @@ static whit_result load_whole(struct scene *scene, const struct model_request *r
 }
 
 /* --- all kinds ------------------------------------------------------------------------------ */
-
-static whit_result load_obj(struct scene *scene, const struct model_request *request,
-                            enum import_kind kind)
-{
-    (void)kind;
-    return model_load_obj(scene, request);
-}
 
 static whit_result load_gltf(struct scene *scene, const struct model_request *request,
                              enum import_kind kind)

@@ -13,8 +13,6 @@ struct model_request {
     const whit_load_params *params;
 };
 
-WHIT_CHECK whit_result model_load_obj(struct scene *scene, const struct model_request *request);
-
 /* Whether the path's extension is one of LOAD_MODELS. */
 bool load_is_model(const char *path);
 

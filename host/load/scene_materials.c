@@ -435,7 +435,8 @@ static bool named_material(struct reader *reader, const struct place *place, con
     return false;
 }
 
-bool reader_material_use(struct reader *reader, const struct place *place, const json_t *value,
+/* A material's name or a material written in place. */
+static bool material_use(struct reader *reader, const struct place *place, const json_t *value,
                          uint32_t *index)
 {
     if (json_is_string(value))
@@ -451,5 +452,5 @@ bool reader_object_material(struct reader *reader, const struct place *place, co
     const json_t *value = json_object_get(object, "material");
     struct place here = {place, "material", 0};
     *index = SCENE_NONE;
-    return !value || reader_material_use(reader, &here, value, index);
+    return !value || material_use(reader, &here, value, index);
 }

@@ -36,7 +36,7 @@ double optics_fresnel(double cos_in, double eta)
     return 0.5 * (sine * sine + tangent * tangent);
 }
 
-double optics_schlick(double cos_in, double eta)
+static double schlick_reflectance(double cos_in, double eta)
 {
     double cos2 = refracted_cos2(cos_in, eta), r = (eta - 1.0) / (eta + 1.0), f0 = r * r;
     if (eta == 1.0)
@@ -145,7 +145,7 @@ static void take_glass(const struct reference *reference, const struct scene_mat
 {
     bool total = !o->thin && !(refracted_cos2(cos_view, o->eta) > 0.0);
     double eta = o->thin ? 1.0 / (double)m->ior : o->eta;
-    double share = reference->params.picture.schlick ? optics_schlick(cos_view, eta)
+    double share = reference->params.picture.schlick ? schlick_reflectance(cos_view, eta)
                                                      : optics_fresnel(cos_view, eta);
     if (o->thin) /* both faces of a sheet, all that goes to and fro in it */
         share = 2.0 * share / (1.0 + share);

@@ -19,7 +19,6 @@ struct optics optics_at(const struct reference *reference, struct surface *s, st
 void optics_make_catcher(struct optics *o);
 /* Unpolarised light that a smooth face reflects; 1 under total reflection. */
 double optics_fresnel(double cos_in, double eta);
-double optics_schlick(double cos_in, double eta);
 /* False under total reflection. */
 bool optics_refract(struct dvec3 dir, struct dvec3 n, double eta, struct dvec3 *out);
 struct dvec3 optics_reflect(struct dvec3 dir, struct dvec3 n);

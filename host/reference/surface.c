@@ -22,8 +22,10 @@ static struct dvec3 to_world(const struct reference *reference, uint32_t instanc
     return d3(out[0], out[1], out[2]);
 }
 
-struct dvec3 surface_place_normal(const struct reference *reference, uint32_t instance,
-                                  struct dvec3 n)
+/* Takes a normal from an instance's object space to the world, by the inverse transpose; the result
+   is not unit. */
+static struct dvec3 place_normal(const struct reference *reference, uint32_t instance,
+                                 struct dvec3 n)
 {
     const double *m = reference->placings[instance].inverse.m;
     return d3(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z,
@@ -43,7 +45,7 @@ struct dvec3 surface_vertex_normal(const struct reference *reference, const stru
 {
     if (s->sphere)
         return d3_all(0.0);
-    struct dvec3 n = surface_place_normal(reference, s->instance, mesh_normal(s, corner));
+    struct dvec3 n = place_normal(reference, s->instance, mesh_normal(s, corner));
     return d3_unit_or(n, d3_all(0.0));
 }
 
@@ -143,9 +145,9 @@ struct surface surface_at(const struct reference *reference, const struct hit *h
     if (reference->accel->flat) /* only normals of vertices are in object space */
         ng = record->flags & TRIANGLE_MIRRORED ? d3_scale(ng, -1.0) : ng;
     else
-        ng = surface_place_normal(reference, hit->instance, ng);
+        ng = place_normal(reference, hit->instance, ng);
     if (!s.sphere || !reference->accel->flat)
-        ns = surface_place_normal(reference, hit->instance, ns);
+        ns = place_normal(reference, hit->instance, ns);
     s.p = to_world(reference, hit->instance, s.p, true);
     s.e1 = to_world(reference, hit->instance, s.e1, false);
     s.e2 = to_world(reference, hit->instance, s.e2, false);

@@ -23,9 +23,6 @@ struct surface {
 struct surface surface_at(const struct reference *reference, const struct hit *hit);
 /* Turns its normals to the ray's side. True: the ray comes from inside. */
 bool surface_face(struct surface *s, struct dvec3 dir);
-/* From an instance's object space, by the inverse transpose; not unit. */
-struct dvec3 surface_place_normal(const struct reference *reference, uint32_t instance,
-                                  struct dvec3 n);
 /* The vertex normal at corner 0..2 in world space, unit; 0 for spheres and where the mesh is
    flat. */
 struct dvec3 surface_vertex_normal(const struct reference *reference, const struct surface *s,

@@ -1,7 +1,7 @@
 /* Pictures on surfaces: bilinear or nearest, wrapped, linear light; opacity; bent normals. */
 #include "reference/texture.h"
 
-bool texture_used(const struct scene_material *m, enum scene_slot slot)
+static bool is_used(const struct scene_material *m, enum scene_slot slot)
 {
     return m->textures[slot].texture != SCENE_NONE;
 }
@@ -148,7 +148,7 @@ struct texel texture_sample(const struct reference *reference, const struct surf
 {
     const struct scene_texture_use *use = &s->material->textures[slot];
     double uv[2];
-    if (!texture_used(s->material, slot))
+    if (!is_used(s->material, slot))
         return (struct texel){d3_all(1.0), 1.0};
     place_uv(s, use, uv);
     return sample_at(reference, s, slot, uv);
@@ -210,7 +210,7 @@ static void bump_slope(const struct reference *reference, const struct surface *
 
 void texture_bend_normal(const struct reference *reference, struct surface *s)
 {
-    bool is_map = texture_used(s->material, SCENE_SLOT_NORMAL);
+    bool is_map = is_used(s->material, SCENE_SLOT_NORMAL);
     const struct scene_texture_use *use =
         &s->material->textures[is_map ? SCENE_SLOT_NORMAL : SCENE_SLOT_BUMP];
     if (use->texture == SCENE_NONE)

@@ -9,7 +9,6 @@ struct texel {
     double alpha;
 };
 
-bool texture_used(const struct scene_material *m, enum scene_slot slot);
 /* White where the slot is empty. */
 struct texel texture_sample(const struct reference *reference, const struct surface *s,
                             enum scene_slot slot);

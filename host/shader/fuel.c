@@ -1,8 +1,5 @@
 #include "shader/fuel.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/array.h"
 
 /* The number of the first loop that had none left stays. */
@@ -94,11 +91,4 @@ bool fuel_take(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
     default:
         return false;
     }
-}
-
-void fuel_finish(struct fuel *fuel)
-{
-    free(fuel->loops);
-    free(fuel->blocks);
-    *fuel = (struct fuel){0};
 }

@@ -22,6 +22,5 @@ struct fuel {
 /* Takes an instruction of a user's function, before it is copied. True: it stands in m->body
    already, as itself or as what replaces it. */
 bool fuel_take(struct fuel *fuel, struct spv_module *m, const uint32_t *words);
-void fuel_finish(struct fuel *fuel);
 
 #endif

@@ -139,12 +139,6 @@ const char *refuse_variable(struct refuse_variables *all, struct spv_module *m,
                                    : NULL;
 }
 
-void refuse_finish(struct refuse_variables *all)
-{
-    free(all->tables);
-    *all = (struct refuse_variables){0};
-}
-
 uint32_t refuse_capability(const struct spv_module *m, const char **name)
 {
     /* Matrix, Shader, Int64, SampledBuffer, ImageBuffer, GroupNonUniform and its kinds. */

@@ -23,7 +23,6 @@ struct refuse_variables {
 /* NULL, or why a variable of the user's is one too many. `words` is an OpVariable. */
 const char *refuse_variable(struct refuse_variables *all, struct spv_module *m,
                             const uint32_t *words);
-void refuse_finish(struct refuse_variables *all);
 
 /* A capability that kernels do not have without the user's text; 0: there is none. *name says what
    it is for, "" where that is not known. */

@@ -57,7 +57,8 @@ static bool is_own_name(int key)
     return (key >= 'A' && key <= 'Z') || (key >= '0' && key <= '9');
 }
 
-const char *event_key_name(int key)
+/* "T", "Left", "F12", "Comma"; "?" for what has no name. */
+static const char *key_name(int key)
 {
     static const char letters[26][2] = {"A", "B", "C", "D", "E", "F", "G", "H", "I",
                                         "J", "K", "L", "M", "N", "O", "P", "Q", "R",
@@ -250,10 +251,10 @@ void event_to_line(const struct view_event *event, FILE *to)
     const char *state = event->down ? "down" : "up";
     switch (event->kind) {
     case EVENT_KEY:
-        if (strcmp(event_key_name(event->key), "?") != 0)
+        if (strcmp(key_name(event->key), "?") != 0)
             fprintf(to, "key %s%s%s%s %s\n", event->mods & EVENT_SHIFT ? "Shift+" : "",
                     event->mods & EVENT_CTRL ? "Ctrl+" : "", event->mods & EVENT_ALT ? "Alt+" : "",
-                    event_key_name(event->key), state);
+                    key_name(event->key), state);
         break;
     case EVENT_CHAR:
         fprintf(to, "char %u\n", event->code);

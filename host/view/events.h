@@ -87,9 +87,6 @@ struct view_event {
                          condition; borrowed from where the event came from */
 };
 
-/* "T", "Left", "F12", "Comma"; "?" for what has no name. */
-const char *event_key_name(int key);
-
 /* One line, without the end; false, logged with file and line, for nonsense. Empty lines and
    comments are EVENT_NONE. `press` and `click` give several events. Paths point into `text`. */
 enum { EVENTS_A_LINE = 4 };

@@ -122,7 +122,6 @@ void ui_table_end(void);
 /* Over the picture, under the panels. Text as above. */
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width);
 void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled);
-void ui_text_at(float x, float y, uint32_t color, const char *text);
 void ui_text_size(const char *text, float *width, float *height);
 
 #ifdef __cplusplus

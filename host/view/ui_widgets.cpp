@@ -258,14 +258,6 @@ void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool f
         list->AddRect(ImVec2(x0, y0), ImVec2(x1, y1), color);
 }
 
-void ui_text_at(float x, float y, uint32_t color, const char *text)
-{
-    ImDrawList *list = ImGui::GetBackgroundDrawList();
-    text = shown(text);
-    list->AddText(ImVec2(x + line_scale, y + line_scale), 0xC0000000u, text);
-    list->AddText(ImVec2(x, y), color, text);
-}
-
 void ui_text_size(const char *text, float *width, float *height)
 {
     ImVec2 size = ImGui::CalcTextSize(shown(text));

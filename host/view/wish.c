@@ -33,7 +33,8 @@ static void set_choice(const struct cost_choice *choice, struct settings *settin
     cost_choice_apply(choice, settings);
 }
 
-bool wish_is_left(const struct view *view)
+/* Whether settings were changed since they were chosen. */
+static bool is_left(const struct view *view)
 {
     return !settings_same_light(&view->wish.settings, &view->settings);
 }
@@ -190,7 +191,7 @@ static void try_choice(struct view *view)
     wish->stage = WISH_CHOSEN;
     view->dirty = true;
     bool fits = took_ms <= budget_ms && took_ms >= COST_TOO_LITTLE * wish->predicted_ms;
-    if (wish->known || budget_ms <= 0.0 || wish_is_left(view))
+    if (wish->known || budget_ms <= 0.0 || is_left(view))
         return;
     if (!fits && wish->tries < TRIES_MAX) {
         wish->slower *= took_ms / wish->predicted_ms;
@@ -270,7 +271,7 @@ static void draw_chosen(const struct view *view)
                       "it took %.4g ms", wish->took_ms);
     if (wish->known)
         ui_text_dim("kept, by figures of %s", wish->figures->made);
-    if (wish_is_left(view))
+    if (is_left(view))
         ui_text_dim("changed since");
     else if (!settings_same_camera(&wish->settings, &view->settings))
         ui_text_dim("measured for another view");

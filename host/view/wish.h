@@ -43,8 +43,6 @@ void wish_step(struct view *view);
 void wish_again(struct view *view);
 /* Whether there is nothing to wait for. */
 bool wish_is_still(const struct view *view);
-/* Whether settings were changed since they were chosen. */
-bool wish_is_left(const struct view *view);
 void wish_draw(const struct view *view); /* lines of the figures */
 void wish_finish(struct view *view);
 

@@ -164,7 +164,6 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 /* Reasons not to trust a result. Kernels or them into the status word; the host obeys. */
 #define STATUS_UNFINISHED_TRAVERSAL 1u /* a loop ended before its stack was empty */
 #define STATUS_NODE_STACK_OVERFLOW  2u
-#define STATUS_RAY_STACK_OVERFLOW   4u
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
 #define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MAX media */

@@ -47,7 +47,6 @@
 #define SAMPLING_CLAMP    4u
 #define SAMPLING_MIRROR   8u
 #define SAMPLING_SRGB     16u
-#define SAMPLING_ALL      31u
 
 /* Classes of materials. */
 #define CLASS_PLAIN 0u

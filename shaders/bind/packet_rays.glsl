@@ -58,11 +58,6 @@ vec2 lesser2(vec2 a, vec2 b)
     return vec2(lesser(a.x, b.x), lesser(a.y, b.y));
 }
 
-vec3 lesser3(vec3 a, vec3 b)
-{
-    return vec3(lesser2(a.xy, b.xy), lesser(a.z, b.z));
-}
-
 vec2 min_of_lanes2(vec2 value)
 {
     return vec2(min_of_lanes(value.x), min_of_lanes(value.y));

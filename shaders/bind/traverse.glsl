@@ -598,13 +598,6 @@ bool is_usable(vec3 origin, vec3 dir)
     return bounded.x + bounded.y + bounded.z == 0.0 && dir != vec3(0.0);
 }
 
-gpu_cost add_up(gpu_cost a, gpu_cost b)
-{
-    return gpu_cost(a.rays + b.rays, a.inner_nodes + b.inner_nodes, a.leaves + b.leaves,
-                    a.instances + b.instances, a.triangles + b.triangles, max(a.stack, b.stack),
-                    max(a.depth, b.depth), 0u);
-}
-
 // Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`, where
 // the ray starts: a sphere is met again by rays that go inwards, at its far side.
 // Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance tree, or

@@ -1,7 +1,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -9,7 +8,6 @@
 
 #include "base/array.h"
 #include "base/file.h"
-#include "base/platform.h"
 #include "folder_fixture.h"
 
 /* All that is said, however small. */
@@ -171,37 +169,6 @@ TEST_IN(read_refuses_with_one_message, folder_begin, folder_end)
     assert_int_equal(file_read(&full_log, NULL, path, 10, &data, &size_bytes), WHIT_OK);
     assert_int_equal(data[size_bytes], 0);
     free(data);
-}
-
-TEST_IN(second_interrupt_removes_files_and_ends, folder_begin, folder_end)
-{
-    char *path = in_folder("a.txt");
-    int ready[2];
-    assert_int_equal(pipe(ready), 0);
-    pid_t pid = fork();
-    if (pid == 0) {
-        static volatile bool interrupted;
-        struct file_write file;
-        platform_catch_interrupts(&interrupted);
-        if (file_write_begin(NULL, path, &file) != WHIT_OK)
-            _exit(1);
-        raise(SIGINT);
-        if (!interrupted || write(ready[1], "r", 1) != 1)
-            _exit(2);
-        for (;;)
-            pause();
-    }
-    char byte;
-    close(ready[1]);
-    assert_int_equal(read(ready[0], &byte, 1), 1);
-    assert_int_equal(entry_count(), 1);
-    kill(pid, SIGTERM);
-    int status;
-    assert_int_equal(waitpid(pid, &status, 0), pid);
-    assert_true(WIFSIGNALED(status));
-    assert_int_equal(WTERMSIG(status), SIGTERM);
-    assert_int_equal(entry_count(), 0);
-    close(ready[0]);
 }
 
 /* The number of a process that is no more. */

@@ -77,7 +77,10 @@ static whit_result set_picture(struct shop *shop)
 static whit_result show_text(struct shop *shop, bool *shown)
 {
     assert_true(ui_begin(shop->ui, WIDTH, HEIGHT, 0.01));
-    ui_text_at(1, 1, 0xFFFFFFFFu, "text");
+    ui_rectangle(1, 1, 9, 9, 0xFFFFFFFFu, true);
+    if (ui_panel_begin("text", 0, 0, UI_PANEL_STAYS))
+        ui_text("text");
+    ui_panel_end();
     ui_end(shop->ui);
     return swapchain_show(shop->swapchain, ui_draw, shop->ui, shown);
 }

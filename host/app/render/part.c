@@ -113,6 +113,12 @@ static bool check_samples(struct cli_reader *reader, const struct settings *sett
     return true;
 }
 
+/* The most tiles that a picture of `height` rows can be cut into. */
+static uint32_t tiles_max(uint32_t height)
+{
+    return (height + WHIT_STRIP_ROWS - 1) / WHIT_STRIP_ROWS;
+}
+
 bool part_check(struct cli_reader *reader, const struct job *job,
                 const struct render_request *request)
 {
@@ -124,7 +130,7 @@ bool part_check(struct cli_reader *reader, const struct job *job,
     const char *other = part_not_of(settings, request);
     if (other)
         return cli_misuse(reader, "--%s and %s: only the whole picture can tell", option, other);
-    uint32_t max = part_tiles_max(settings->picture.height);
+    uint32_t max = tiles_max(settings->picture.height);
     if (part->tiles > max)
         return cli_misuse(reader, "--tile %u/%u: a picture of %u rows has no more than %u tiles",
                           part->tile, part->tiles, settings->picture.height, max);
@@ -154,14 +160,9 @@ bool part_check_shader(const struct job *job, const struct render_request *reque
 
 /* ---- Place ---- */
 
-uint32_t part_tiles_max(uint32_t height)
-{
-    return (height + WHIT_STRIP_ROWS - 1) / WHIT_STRIP_ROWS;
-}
-
 void part_rows(const struct part *part, uint32_t height, uint32_t *first, uint32_t *count)
 {
-    uint64_t strips = part_tiles_max(height), tiles = part->tiles ? part->tiles : 1;
+    uint64_t strips = tiles_max(height), tiles = part->tiles ? part->tiles : 1;
     uint32_t before = part->tiles ? part->tile - 1 : 0;
     uint64_t end = strips * (before + 1) / tiles * WHIT_STRIP_ROWS;
     *first = (uint32_t)(strips * before / tiles * WHIT_STRIP_ROWS);
@@ -260,8 +261,8 @@ bool part_of_line(const char *line, struct part_place *place)
     json_decref(object);
     return is_share(part->tile, part->tiles) && is_share(part->set, part->sets) &&
            place->width - 1 < UINT16_MAX && place->height - 1 < UINT16_MAX &&
-           part->tiles <= part_tiles_max(place->height) &&
-           is_power_of_2(part->sets ? part->sets : 1) && place->samples - 1 < WHIT_SAMPLES_MAX &&
+           part->tiles <= tiles_max(place->height) && is_power_of_2(part->sets ? part->sets : 1) &&
+           place->samples - 1 < WHIT_SAMPLES_MAX &&
            (!part->sets || (place->samples % part->sets == 0 && is_power_of_2(place->samples)));
 }
 

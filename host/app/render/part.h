@@ -30,8 +30,6 @@ const char *part_not_of(const struct settings *settings, const struct render_req
 /* Whether the functions of the job's shader do, of which a merged picture has to have all. */
 bool part_check_shader(const struct job *job, const struct render_request *request);
 
-/* The most tiles of a picture of `height` rows. */
-uint32_t part_tiles_max(uint32_t height);
 /* The rows of the part's tile: from `first` on `count` of them. */
 void part_rows(const struct part *part, uint32_t height, uint32_t *first, uint32_t *count);
 /* What of `params` of the whole picture the part draws. */
