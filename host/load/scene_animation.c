@@ -90,11 +90,10 @@ static bool read_channel(struct reader *reader, const struct place *place, const
                          enum scene_path path, uint32_t node)
 {
     static const char *const keys[] = {"times", "values", "interpolation", NULL};
-    static const char *const kinds[] = {"step", "linear", "cubic", NULL};
     uint32_t kind = SCENE_LINEAR;
     struct scene_channel channel = {.node = node, .path = path};
     if (!reader_object(reader, place, object, keys) ||
-        !reader_choice(reader, place, object, "interpolation", kinds, &kind))
+        !reader_choice(reader, place, object, "interpolation", scene_interpolation_names, &kind))
         return false;
     channel.interpolation = (enum scene_interpolation)kind;
     if (!read_times(reader, place, object, &channel) ||

@@ -123,35 +123,61 @@ static bool read_light_values(struct reader *reader, const struct place *place,
     return true;
 }
 
-static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
+/* The keys that a light of this kind may have in a file, beside those that all lights have; NULL:
+   files have no lights of this kind. */
+static const char *const *light_keys(enum scene_light_kind kind)
 {
-    enum { KINDS = 5 };
-    static const char *const kinds[KINDS + 1] = {"point", "directional", "spot", "rectangle",
-                                                 "triangle"};
-    static const enum scene_light_kind codes[KINDS] = {SCENE_LIGHT_POINT, SCENE_LIGHT_DIRECTIONAL,
-                                                       SCENE_LIGHT_SPOT, SCENE_LIGHT_RECTANGLE,
-                                                       SCENE_LIGHT_TRIANGLE};
-    static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
     static const char *const point[] = {"position", "falloff", "range", NULL};
     static const char *const directional[] = {"direction", "target", NULL};
     static const char *const spot[] = {"position", "direction", "target", "falloff",
                                        "range",    "inner",     "outer",  NULL};
     static const char *const rectangle[] = {"position", "u", "v", "two_sided", NULL};
     static const char *const triangle[] = {"points", "two_sided", NULL};
-    static const char *const *const own[KINDS] = {point, directional, spot, rectangle, triangle};
-    uint32_t kind = SCENE_LIGHT_POINT;
+    switch (kind) {
+    case SCENE_LIGHT_POINT:
+        return point;
+    case SCENE_LIGHT_DIRECTIONAL:
+        return directional;
+    case SCENE_LIGHT_SPOT:
+        return spot;
+    case SCENE_LIGHT_RECTANGLE:
+        return rectangle;
+    case SCENE_LIGHT_TRIANGLE:
+        return triangle;
+    case SCENE_LIGHT_AREA_SAMPLE:
+    case SCENE_LIGHT_KINDS:
+        break;
+    }
+    return NULL;
+}
+
+static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
+{
+    static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
+    enum scene_light_kind
+        kinds[SCENE_LIGHT_KINDS]; /* that files may name; the first is the default */
+    const char *names[SCENE_LIGHT_KINDS + 1];
+    const char *const *own[SCENE_LIGHT_KINDS];
+    uint32_t count = 0, kind = 0;
     const char *name = "light";
     struct scene_light light = {.direction = {0, -1, 0}, .color = {1, 1, 1}, .node = SCENE_NONE};
     if (!json_is_object(object))
         return reader_fail(reader, place, "a light in { } is expected");
-    if (!reader_choice(reader, place, object, "kind", kinds, &kind))
+    for (int i = 0; i < SCENE_LIGHT_KINDS; ++i) {
+        kinds[count] = (enum scene_light_kind)i;
+        names[count] = scene_light_kind_names[i];
+        own[count] = light_keys(kinds[count]);
+        count += own[count] != NULL;
+    }
+    names[count] = NULL;
+    if (!reader_choice(reader, place, object, "kind", names, &kind))
         return false;
     const char *const *lists[] = {common, own[kind]};
-    const char *foreign = reader_foreign_key(object, lists, 2, own, KINDS);
+    const char *foreign = reader_foreign_key(object, lists, 2, own, count);
     struct place at_foreign = {place, foreign, 0};
     if (foreign)
-        return reader_fail(reader, &at_foreign, "a %s light has no `%s`", kinds[kind], foreign);
-    light.kind = codes[kind];
+        return reader_fail(reader, &at_foreign, "a %s light has no `%s`", names[kind], foreign);
+    light.kind = kinds[kind];
     light.falloff = light.kind != SCENE_LIGHT_DIRECTIONAL;
     if (!reader_object_lists(reader, place, object, lists, 2) ||
         !reader_string(reader, place, object, "name", &name) ||

@@ -41,8 +41,6 @@ static const char *const unlit_keys[] = {"unlit", "color", NULL};
 static const char *const texture_keys[] = {"file",    "checker", "gradient", "brick",
                                            "scale",   "offset",  "rotation", "wrap",
                                            "nearest", "uv_set",  NULL};
-static const char *const alphas[] = {"opaque", "mask", "blend", NULL};
-static const char *const wraps[] = {"repeat", "clamp", "mirror", NULL};
 
 static bool has(const json_t *object, const char *key)
 {
@@ -221,7 +219,7 @@ static bool read_texture(struct reader *reader, const struct place *place, const
     if (!reader_object(reader, &here, value, texture_keys) ||
         !texture_source(reader, &here, value, use) ||
         !texture_transform(reader, &here, value, use) ||
-        !reader_choice(reader, &here, value, "wrap", wraps, &wrap) ||
+        !reader_choice(reader, &here, value, "wrap", scene_wrap_names, &wrap) ||
         !reader_bool(reader, &here, value, "nearest", &use->nearest) ||
         !reader_count(reader, &here, value, "uv_set", 0, 1, &use->uv_set))
         return false;
@@ -315,7 +313,7 @@ static bool read_alpha(struct reader *reader, const struct place *place, const j
         alpha = SCENE_ALPHA_BLEND;
     if (has(value, "alpha_cutoff"))
         alpha = SCENE_ALPHA_MASK;
-    if (!reader_choice(reader, place, value, "alpha", alphas, &alpha))
+    if (!reader_choice(reader, place, value, "alpha", scene_alpha_names, &alpha))
         return false;
     out->alpha = (enum scene_alpha)alpha;
     return true;

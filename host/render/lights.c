@@ -25,6 +25,8 @@ static uint32_t light_code(enum scene_light_kind kind)
         return LIGHT_RECTANGLE;
     case SCENE_LIGHT_TRIANGLE:
         return LIGHT_TRIANGLE;
+    case SCENE_LIGHT_KINDS:
+        break;
     }
     return LIGHT_POINT;
 }

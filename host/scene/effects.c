@@ -210,6 +210,7 @@ static enum scene_effect effect_of_light(enum scene_light_kind kind)
     case SCENE_LIGHT_AREA_SAMPLE:
     case SCENE_LIGHT_RECTANGLE:
     case SCENE_LIGHT_TRIANGLE:
+    case SCENE_LIGHT_KINDS:
         return SCENE_EFFECT_AREA_LIGHTS;
     }
     return SCENE_EFFECT_AREA_LIGHTS;

@@ -1,4 +1,4 @@
-/* What enumerations are called in receipts and messages. */
+/* What enumerations are called in receipts, messages and scene files. */
 #include "scene/scene.h"
 
 const char *const scene_model_names[] = {
@@ -11,21 +11,24 @@ const char *const scene_alpha_names[] = {
     [SCENE_ALPHA_OPAQUE] = "opaque",
     [SCENE_ALPHA_MASK] = "mask",
     [SCENE_ALPHA_BLEND] = "blend",
+    NULL,
 };
 
 const char *const scene_wrap_names[] = {
     [SCENE_WRAP_REPEAT] = "repeat",
     [SCENE_WRAP_CLAMP] = "clamp",
     [SCENE_WRAP_MIRROR] = "mirror",
+    NULL,
 };
 
 const char *const scene_interpolation_names[] = {
     [SCENE_STEP] = "step",
     [SCENE_LINEAR] = "linear",
     [SCENE_CUBIC] = "cubic",
+    NULL,
 };
 
-const char *const scene_light_kind_names[] = {
+const char *const scene_light_kind_names[SCENE_LIGHT_KINDS] = {
     [SCENE_LIGHT_POINT] = "point",         [SCENE_LIGHT_DIRECTIONAL] = "directional",
     [SCENE_LIGHT_SPOT] = "spot",           [SCENE_LIGHT_AREA_SAMPLE] = "area-sample",
     [SCENE_LIGHT_RECTANGLE] = "rectangle", [SCENE_LIGHT_TRIANGLE] = "triangle",

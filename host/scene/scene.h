@@ -175,6 +175,7 @@ enum scene_light_kind {
        out to the side of edge_u x edge_v, or to both. */
     SCENE_LIGHT_RECTANGLE,
     SCENE_LIGHT_TRIANGLE,
+    SCENE_LIGHT_KINDS, /* how many there are */
 };
 
 /* `position` and `direction` are in the space of `node`. Of flat emitters scene_freeze sets
@@ -238,7 +239,7 @@ struct scene_environment {
     bool made_by_whit;
 };
 
-/* names.c: by the enumerations above. */
+/* names.c: by the enumerations above; NULL behind those of alpha, wrap and interpolation. */
 extern const char *const scene_model_names[],
     *const scene_alpha_names[], *const scene_wrap_names[],
                                     *const scene_interpolation_names[],
