@@ -24,13 +24,6 @@ static void random_direction(uint32_t *state, double out[3])
     out[0] = reach * same_cos(turn), out[1] = height, out[2] = reach * same_sin(turn);
 }
 
-static void normalize(double v[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; ++i)
-        v[i] /= length;
-}
-
 static void add_face(struct shaper *shaper, const double *a, const double *b, const double *c)
 {
     double ab[3], ac[3], normal[3];
@@ -52,7 +45,7 @@ static void add_needle(struct shaper *shaper, const double middle[3], const doub
     double side[3], up[3], corners[4][3];
     const double axis[3] = {fabs(dir[0]) < 0.6, fabs(dir[0]) >= 0.6, 0.0};
     double3_cross(dir, axis, side);
-    normalize(side);
+    double3_unit(side);
     double3_cross(dir, side, up);
     for (int i = 0; i < 3; ++i) {
         corners[3][i] = middle[i] + 0.5 * length * dir[i];

@@ -9,12 +9,12 @@
 
 static const double STEEPEST = 0.998; /* cosine between a look and up */
 
+/* Makes `a` a unit vector; false where it has no direction. */
 static bool normalize(double a[3])
 {
-    double l = double3_length(a);
-    for (int i = 0; i < 3; ++i)
-        a[i] /= l;
-    return l > 0.0 && isfinite(l);
+    double length = double3_length(a);
+    double3_unit(a);
+    return length > 0.0 && isfinite(length);
 }
 
 /* Around a unit axis (Rodrigues' formula). */
