@@ -2,6 +2,8 @@
    what does not is named. */
 #include <math.h>
 
+#include "../random.h"
+#include "base/file.h"
 #include "load_model_fixture.h"
 #include "unit.h"
 
@@ -44,11 +46,11 @@ static const struct scene_material *material_of(const struct scene *scene)
 
 /* --- OFF ------------------------------------------------------------------------------------ */
 
+static const char off[] = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 2 0\n0 2 3\n4 0 1 2 3\n";
+
 TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
 {
-    const struct scene *scene =
-        load(*state,
-             fixture_text(*state, "a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 2 0\n0 2 3\n4 0 1 2 3\n"));
+    const struct scene *scene = load(*state, fixture_text(*state, "a.off", off));
     assert_int_equal(scene->meshes[0].triangle_count, 2);
     assert_int_equal(scene->meshes[0].vertex_count, 4);
     assert_place(scene, 0, 0, 0, 0, 0);
@@ -175,15 +177,14 @@ static const char moving[] =
              "target='d/tr'/>"
              "</animation></library_animations>";
 
+static const char moving_nodes[] =
+    "<node id='d' name='d'><translate sid='tr'>0 0 0</translate><node id='j' sid='j' name='j' "
+    "type='JOINT'/><instance_camera url='#k'/><instance_light url='#l'/></node><node id='s'>"
+    "<instance_controller url='#c'><skeleton>#j</skeleton></instance_controller></node>";
+
 TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(
-        *state,
-        write_collada(*state, "f", moving,
-                      "<node id='d' name='d'><translate sid='tr'>0 0 0</translate><node id='j' "
-                      "sid='j' name='j' type='JOINT'/><instance_camera url='#k'/><instance_light "
-                      "url='#l'/></node><node id='s'><instance_controller url='#c'><skeleton>#j"
-                      "</skeleton></instance_controller></node>"));
+    const struct scene *scene = load(*state, write_collada(*state, "f", moving, moving_nodes));
     assert_int_equal(scene->channel_count, 0);
     assert_int_equal(scene->camera_count, 0);
     uint32_t skins = 0;
@@ -385,5 +386,86 @@ TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
         struct fixture *fixture = *state;
         fixture->errors = 0;
         fixture_refused(fixture, fixture_text(fixture, names[i], "no model at all\n"), "assimp: ");
+    }
+}
+
+/* --- damaged files -------------------------------------------------------------------------- */
+
+enum { DAMAGES = 200, RUN_MAX = 64 };
+
+/* Writes a damaged copy of a file to `to`, which has room for RUN_MAX bytes more, and gives its
+   size: some bits are flipped, the end is cut off, or a run of bytes is repeated. */
+static size_t damage(uint64_t *random, const uint8_t *from, size_t size_bytes, uint8_t *to)
+{
+    size_t at = random_below(random, (uint32_t)size_bytes);
+    size_t run = 1 + random_below(random, RUN_MAX);
+    memcpy(to, from, size_bytes);
+    switch (random_below(random, 3)) {
+    case 0:
+        for (size_t i = 0; i < 1 + run / 16; i++) {
+            uint8_t bit = (uint8_t)(1u << random_below(random, 8));
+            to[random_below(random, (uint32_t)size_bytes)] ^= bit;
+        }
+        return size_bytes;
+    case 1:
+        return at;
+    default:
+        run = run < size_bytes - at ? run : size_bytes - at;
+        memcpy(to + at + run, from + at, size_bytes - at);
+        return size_bytes + run;
+    }
+}
+
+/* The importer is a child in its sandbox; this process checks its reply and reads the GLB in it.
+   Gives whether there is a scene. */
+static bool load_damaged(struct fixture *fixture, const char *name, const uint8_t *data,
+                         size_t size_bytes)
+{
+    struct scene *scene = NULL;
+    const char *path = fixture_write(fixture, name, data, size_bytes);
+    fixture->errors = 0;
+    whit_result result = load_scene(&fixture->log, path, NULL, &scene);
+    assert_true(result == WHIT_OK || result == WHIT_ERROR_INPUT || result == WHIT_ERROR_MEMORY);
+    assert_int_equal(scene != NULL, result == WHIT_OK);
+    assert_int_equal(fixture->errors, result != WHIT_OK);
+    if (fixture->errors)
+        assert_non_null(strstr(fixture->last_error, path));
+    for (uint32_t i = 0; scene && i < scene->mesh_count; i++) {
+        const struct scene_mesh *mesh = &scene->meshes[i];
+        for (size_t k = 0; k < (size_t)mesh->triangle_count * 3; k++)
+            assert_true(mesh->indices[k] < mesh->vertex_count);
+    }
+    scene_destroy(scene);
+    fixture_forget(fixture);
+    return result == WHIT_OK;
+}
+
+TEST_IN(damaged_files_end_in_a_scene_or_one_error, fixture_begin, fixture_end)
+{
+    enum { SAMPLES = 4 };
+    static const char *const names[SAMPLES] = {"a.off", "a.dae", "a.fbx", "a.3mf"};
+    struct fixture *fixture = *state;
+    uint64_t random = 1;
+    for (int i = 0; i < SAMPLES; i++) {
+        const char *path = i == 0   ? fixture_text(fixture, names[i], off)
+                           : i == 1 ? write_collada(fixture, "e", moving, moving_nodes)
+                           : i == 2 ? write_fbx(fixture, 3)
+                                    : write_3mf(fixture, "unit='inch'", false);
+        uint8_t *data = NULL;
+        size_t size_bytes = 0;
+        uint32_t loaded = 0;
+        assert_int_equal(file_read(&fixture->log, NULL, path, 0, &data, &size_bytes), WHIT_OK);
+        fixture_forget(fixture);
+        assert_true(load_damaged(fixture, names[i], data, size_bytes)); /* as it is */
+        uint8_t *damaged = malloc(size_bytes + RUN_MAX);
+        assert_non_null(damaged);
+        for (uint32_t k = 0; k < DAMAGES; k++) {
+            size_t bytes = damage(&random, data, size_bytes, damaged);
+            loaded += load_damaged(fixture, names[i], damaged, bytes);
+        }
+        print_message("%s: %u of %u loaded\n", names[i], loaded, DAMAGES);
+        assert_in_range(loaded, 1, DAMAGES - 1);
+        free(damaged);
+        free(data);
     }
 }
