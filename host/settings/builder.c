@@ -95,6 +95,8 @@ bool builder_read(const char *text, whit_accel_params *trees, char why[SETTING_W
     char *numbers = strchr(word, ':');
     if (numbers)
         *numbers++ = 0;
+    if (strcmp(word, "sweep-naive") == 0)
+        return setting_refuse(why, " `%s` is gone: `--build sweep` builds the same tree", text);
     uint32_t found = value_find(values_build, word);
     if (found == WHIT_NONE)
         return refuse(text, why);

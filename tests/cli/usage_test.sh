@@ -47,13 +47,34 @@ refuse 2 "--segments 3" "auto, 1, 2" render "$CUBE" -o "$P" --segments 3
 refuse 2 "--time nan" "a number from" render "$CUBE" -o "$P" --time nan
 refuse 2 "--build best" "binned, sweep" render "$CUBE" -o "$P" --build best
 refuse 2 "--build binned:1" "from 2 to 256" render "$CUBE" -o "$P" --build binned:1
-for build in binned: binned:257 binned:7x median:3 sweep-naive sweep:2 spatial: spatial:2 spatial:1e-5, \
+for build in binned: binned:257 binned:7x median:3 sweep:2 spatial: spatial:2 spatial:1e-5, \
     spatial:1e-5,-1 spatial:1e-5,1,1 none+opt +opt binned+opt+opt binned+opt:7 ""; do
     refuse 2 "--build '$build'" "need\|take numbers\|nothing to improve" render "$CUBE" -o "$P" --build "$build"
 done
-refuse 2 "an option that is gone" "is .--build none. now" render "$CUBE" -o "$P" --no-bvh
-refuse 2 "another one" "is .--shadows none. now" render "$CUBE" -o "$P" --no-shadows
-refuse 2 "and one more" "is .--shadows opaque. now" view "$CUBE" --opaque-shadows
+
+# What CHANGELOG.md's table has as gone: an option alone between the commas of the first column is refused with one that
+# the second column names, or as gone where that says `nothing`.
+awk -F ' *[|] *' '/^[|] / {
+    rest = $3
+    named = $3 ~ /^nothing/ ? "is gone" : ""
+    while (match(rest, /`--[^`]*`/)) {
+        option = substr(rest, RSTART + 1, RLENGTH - 2)
+        sub(/ [A-Z].*/, "", option) # its argument
+        named = named (named == "" ? "" : "\\|") ".*`" option "`"
+        rest = substr(rest, RSTART + RLENGTH)
+    }
+    count = split($2, parts, /, |; /)
+    for (i = 1; i <= count; ++i)
+        if (parts[i] ~ /^`(whit [a-z ]+)?--[^`]*`$/) print substr(parts[i], 2, length(parts[i]) - 2) "\t" named
+}' "$(dirname "$0")/../../CHANGELOG.md" >"$OUT/gone"
+check "options that are gone are found ($(wc -l <"$OUT/gone"))" test "$(wc -l <"$OUT/gone")" -ge 12
+while IFS="$(printf '\t')" read -r option named; do
+    # shellcheck disable=SC2086
+    set -- $(echo "$option" | sed 's/^--/whit render &/;s/ N$/ 4/')
+    shift
+    [ "$1" != view ] || [ "${commands%view}" != "$commands" ] || continue
+    refuse 2 "$option, which is gone" "$named" "$@"
+done <"$OUT/gone"
 refuse 2 "--build none with --leaf" "no leaves" render "$CUBE" -o "$P" --build none --leaf 2
 refuse 2 "--leaf 16" "from 1 to 15" render "$CUBE" -o "$P" --leaf 16
 refuse 2 "--leaf 0" "from 1 to 15" render "$CUBE" -o "$P" --leaf 0

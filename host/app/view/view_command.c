@@ -60,6 +60,7 @@ static const struct setting options[] = {
      "seconds that measuring costs may take, more or less: for\n"
      "--budget-ms and --max-error (20), for the list of P (12)",
      SETTING_AT_NUMBER(struct view_request, view.spend_s), .min = 0.1, .max = 1e6},
+    {"blit", 0, NULL, "is gone: pictures are always copied to the window", .kind = SETTING_GONE},
     {0},
 };
 
