@@ -3,7 +3,8 @@
 # of every document, and grows with them.
 . "$(dirname "$0")/common.sh"
 needs jq
-KEYS=$(cd "$(dirname "$0")" && pwd)/json_keys.txt
+HERE=$(cd "$(dirname "$0")" && pwd)
+KEYS=$HERE/json_keys.txt
 cd "$OUT" || exit 1
 SMALL="--size 16x12 --quiet"
 
@@ -37,6 +38,12 @@ saved() {
     made render render "$CUBE" -o p.png $SMALL --stats json --aa adaptive:0.05
     grep -a -o '{"width":[^}]*}' p.png >options && keys whit:options options
     grep -a -o '{"rays":{[^}]*}[^}]*}' p.png >counters && keys whit:counters counters
+    made render render "$CUBE" -o costs.png $SMALL --view visits --quiet
+    grep -a -o '{"view":[^}]*}' costs.png >view && keys whit:view view
+    expect 0 "a part" render "$CUBE" -o part.exr $SMALL --tile 1/1
+    made merge merge part.exr -o merged.exr --stats json
+    echo "$CUBE -o line.png $SMALL" >lines
+    made batch batch lines --stats json --quiet
     made frames render "$SCENES/spin.json" -o p.##.png --frames 0-1 $SMALL --stats json
     made scene scene "$SCENES/default.json" --json
     # With a shader, what it does not ask for is not compiled, and said so.
@@ -53,15 +60,43 @@ saved() {
     made bvh bvh "$CUBE" --json --runs 1 --rays 500 --build binned --threads 1 --quiet
     saved hard hard --case sphere --quick --quiet --numerics watertight
     saved compare compare p.png p.png
+    cat >all.glsl <<'END'
+//@ whit 1
+//@ slider bands 1 8 3 "steps of light"
+//@ aov facing
+//@ expect ids == base
+vec4 facing(Surface s) { return vec4(-dot(s.ns, ray_dir())); }
+vec3 post(ivec2 at, vec3 color) { return color * bands; }
+//@ test
+void bright(uint seed) { check(bands > 0.0); }
+END
+    made shader shader all.glsl --json
     saved cost cost "$CUBE" $SMALL --spend 0.2 --rays 100 --knobs traversal --within 1e6
     cp "$CUBE" cube.json && echo "cube cube.json --size 16x12" >looks.whit
     expect 0 "a golden" check looks.whit --accept all
     saved check check looks.whit
     made devices devices --json
+    absent=
+    if [ -x "$(dirname "$WHIT")/whit-bench" ]; then
+        saved bench bench build "$CUBE" --quick --runs 1 --scenes "$SCENES"
+    else
+        absent="bench"
+    fi
+    # The viewer's states: alone, beside another, and their difference; without names of things to click, keys and effects.
+    if "$WHIT" --help | grep -q "^  view " && command -v Xvfb >xvfb; then
+        printf '%s\n' still 'click 24 18' still 'state a' 'press I' still 'state b' 'press U' still 'state c' >replay
+        sh "$HERE/display.sh" "$WHIT" view "$CUBE" --size 48x36 --aa 4 --shader dbg.glsl --replay replay --quiet \
+            >states 2>"$OUT/stderr"
+        check "the viewer's states are written" test "$(grep -c '^{.*}$' states)" -eq 3
+        jq 'del((.items, .keys, .panels, .cut_panels, .prices, .effect_prices)[])' states >state && keys state state
+    else
+        absent="$absent state"
+    fi
 }
-# Names that are not whit's own: kernels' figures by the driver, effects of a scene.
+# Names that are not whit's own: kernels' figures by the driver, effects of a scene. Documents of what is not built have
+# no keys here.
 sort -u found | grep -v '^kernels kernels\.driver\.' >have
-awk '!/^#/ { at = $2 == ".:" ? "" : substr($2, 1, length($2) - 1) "."
+awk -v absent=" $absent " '!/^#/ && index(absent, " " $1 " ") == 0 { at = $2 == ".:" ? "" : substr($2, 1, length($2) - 1) "."
     for (i = 3; i <= NF; ++i) print $1, at $i }' "$KEYS" | sort -u >want
 comm -13 have want >gone
 comm -23 have want >new
