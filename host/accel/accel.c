@@ -61,7 +61,7 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
     uint32_t count = scene_mesh_primitives(mesh);
     whit_result result = WHIT_ERROR_MEMORY;
     struct bvh_box *boxes = array_alloc(count, sizeof *boxes);
-    bool split = params.builder == BVH_SPATIAL;
+    bool split = params.builder == WHIT_BUILD_SPATIAL;
     uint8_t *whole = split ? array_alloc(count, 1) : NULL;
     if (!boxes || (split && !whole)) {
         log_error(&accel->log, "%s: mesh %s: out of memory for its tree", accel->scene->name,
@@ -294,12 +294,12 @@ whit_result accel_create(const whit_log *log, const struct scene *scene,
     accel->log = log_or_silence(log);
     accel->params = params ? *params : (struct accel_params){0};
     accel->params.instances.leaf_limit = 1;
-    accel->no_trees = accel->params.mesh.builder == BVH_NONE;
+    accel->no_trees = accel->params.mesh.builder == WHIT_BUILD_NONE;
     struct creation creation = {.accel = accel};
     whit_result result = WHIT_OK;
     if (accel->no_trees) {
         accel->params.mesh.leaf_limit = BVH_LEAF_MAX;
-        accel->params.instances.builder = BVH_NONE;
+        accel->params.instances.builder = WHIT_BUILD_NONE;
         result = bare_check(accel);
     }
     if (result == WHIT_OK)

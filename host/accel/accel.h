@@ -22,8 +22,8 @@ struct accel_mesh {
 
 enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
 
-/* The most primitives over all instances with BVH_NONE, and the most loop iterations of one ray:
-   lavapipe grants an invocation 65,535. */
+/* The most primitives over all instances with WHIT_BUILD_NONE, and the most loop iterations of one
+   ray: lavapipe grants an invocation 65,535. */
 enum { ACCEL_BARE_MAX = 40000, ACCEL_ITERATIONS_MAX = 65000 };
 
 struct accel_params {
@@ -67,7 +67,7 @@ struct accel {
     bool flat;     /* one tree over the triangles of all instances: meshes[0], the only mesh, is the
                       world; accel_pose builds it anew. Instances say mesh and shade_base of the
                       scene's meshes, but root, centre and reach of the world */
-    bool no_trees; /* BVH_NONE: rays that meet the box of everything test every primitive */
+    bool no_trees; /* WHIT_BUILD_NONE: rays that meet the box of everything test every primitive */
     uint32_t
         iterations; /* of loops, at most, that one ray takes then: up to ACCEL_ITERATIONS_MAX */
     double build_ms, instance_build_ms;

@@ -279,7 +279,7 @@ static whit_result world_build(struct flattening *f)
     uint32_t threads = accel->params.mesh.thread_count;
     uint32_t count = flat->first_triangle[accel->instance_count];
     uint32_t vertices = flat->first_vertex[accel->instance_count];
-    bool split = accel->params.mesh.builder == BVH_SPATIAL;
+    bool split = accel->params.mesh.builder == WHIT_BUILD_SPATIAL;
     whit_result result = refuse_spheres(f);
     if (result != WHIT_OK)
         return result;

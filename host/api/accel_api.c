@@ -43,16 +43,6 @@ static whit_result check_params(const whit_log *log, const whit_accel_params *pa
     return WHIT_OK;
 }
 
-static enum bvh_builder builder_of(whit_build build)
-{
-    static const enum bvh_builder builders[] = {
-        [WHIT_BUILD_BINNED] = BVH_BINNED, [WHIT_BUILD_MEDIAN] = BVH_MEDIAN,
-        [WHIT_BUILD_SWEEP] = BVH_SWEEP,   [WHIT_BUILD_SPATIAL] = BVH_SPATIAL,
-        [WHIT_BUILD_NONE] = BVH_NONE,
-    };
-    return builders[build];
-}
-
 whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
                               whit_accel **out)
 {
@@ -72,7 +62,7 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
     const struct accel_params inner = {
         .mesh =
             {
-                .builder = builder_of(params->build),
+                .builder = params->build,
                 .bins = params->bins,
                 .leaf_limit = params->leaf_limit,
                 .thread_count = params->threads,
@@ -80,7 +70,7 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
                 .spatial_alpha = params->spatial_alpha,
                 .spatial_budget = params->spatial_budget,
             },
-        .instances = {.builder = builder_of(params->instance_build),
+        .instances = {.builder = params->instance_build,
                       .leaf_limit = 1,
                       .thread_count = params->threads},
         .update = params->instance_refit ? ACCEL_REFIT : ACCEL_REBUILD,
@@ -107,17 +97,18 @@ void whit_accel_destroy(whit_accel *accel)
 static void builder_name(const struct bvh_params *params, char *out, size_t out_bytes)
 {
     static const char *const names[] = {
-        [BVH_BINNED] = "binned",   [BVH_MEDIAN] = "median", [BVH_SWEEP] = "sweep",
-        [BVH_SPATIAL] = "spatial", [BVH_NONE] = "none",
+        [WHIT_BUILD_BINNED] = "binned", [WHIT_BUILD_MEDIAN] = "median",
+        [WHIT_BUILD_SWEEP] = "sweep",   [WHIT_BUILD_SPATIAL] = "spatial",
+        [WHIT_BUILD_NONE] = "none",
     };
     char numbers[40] = "";
-    if (params->builder == BVH_BINNED && params->bins)
+    if (params->builder == WHIT_BUILD_BINNED && params->bins)
         snprintf(numbers, sizeof numbers, ":%u", params->bins);
-    else if (params->builder == BVH_SPATIAL && params->spatial_budget != 0.0f)
+    else if (params->builder == WHIT_BUILD_SPATIAL && params->spatial_budget != 0.0f)
         snprintf(numbers, sizeof numbers, ":%g,%g",
                  params->spatial_alpha != 0.0f ? (double)params->spatial_alpha : 1e-5,
                  params->spatial_budget < 0.0f ? 0.0 : (double)params->spatial_budget);
-    else if (params->builder == BVH_SPATIAL && params->spatial_alpha != 0.0f)
+    else if (params->builder == WHIT_BUILD_SPATIAL && params->spatial_alpha != 0.0f)
         snprintf(numbers, sizeof numbers, ":%g", (double)params->spatial_alpha);
     snprintf(out, out_bytes, "%s%s%s", names[params->builder], numbers,
              params->optimize ? "+opt" : "");

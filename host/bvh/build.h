@@ -12,8 +12,8 @@
 #include "bvh/f4.h"
 
 /* Builders, called by bvh_build with at least one box and parameters in which no 0 stands for a
-   default, but for `bins` of BVH_BINNED: 0 lets the number follow the size of the node. They fill
-   *out up to build_complete; on failure the caller releases what is in it. */
+   default, but for `bins` of WHIT_BUILD_BINNED: 0 lets the number follow the size of the node. They
+   fill *out up to build_complete; on failure the caller releases what is in it. */
 whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,

@@ -8,14 +8,14 @@
 #include "bvh/complete.h"
 #include "bvh/optimize.h"
 
-static bool builder_known(enum bvh_builder builder)
+static bool builder_known(whit_build builder)
 {
     switch (builder) {
-    case BVH_BINNED:
-    case BVH_MEDIAN:
-    case BVH_SWEEP:
-    case BVH_SPATIAL:
-    case BVH_NONE:
+    case WHIT_BUILD_BINNED:
+    case WHIT_BUILD_MEDIAN:
+    case WHIT_BUILD_SWEEP:
+    case WHIT_BUILD_SPATIAL:
+    case WHIT_BUILD_NONE:
         return true;
     }
     return false;
@@ -25,7 +25,7 @@ static bool builder_known(enum bvh_builder builder)
 static void params_resolve(const struct bvh_params *in, struct bvh_params *out)
 {
     *out = in ? *in : (struct bvh_params){0};
-    if (out->bins == 0 && out->builder != BVH_BINNED)
+    if (out->bins == 0 && out->builder != WHIT_BUILD_BINNED)
         out->bins = 16;
     out->leaf_limit = out->leaf_limit ? out->leaf_limit : 4;
     out->thread_count = out->thread_count ? out->thread_count : threads_available();
@@ -56,13 +56,13 @@ static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint3
                          const struct bvh_params *params, struct bvh *out)
 {
     switch (params->builder) {
-    case BVH_NONE:
-    case BVH_BINNED:
-    case BVH_MEDIAN:
+    case WHIT_BUILD_NONE:
+    case WHIT_BUILD_BINNED:
+    case WHIT_BUILD_MEDIAN:
         return records_build(log, boxes, count, params, out);
-    case BVH_SWEEP:
+    case WHIT_BUILD_SWEEP:
         return sweep_build(log, boxes, count, params, out);
-    case BVH_SPATIAL:
+    case WHIT_BUILD_SPATIAL:
         return spatial_build(log, boxes, count, params, out);
     }
     return WHIT_ERROR_USAGE; /* params_check knows better */

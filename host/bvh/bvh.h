@@ -7,17 +7,10 @@
 
 #include "abi/bvh.h"
 #include "base/log.h"
+#include "whit/whit_accel.h"
 
 struct bvh_box {
     float lo[3], hi[3];
-};
-
-enum bvh_builder {
-    BVH_BINNED,  /* SAH over equal bins */
-    BVH_MEDIAN,  /* halves */
-    BVH_SWEEP,   /* SAH over every position, sorted once */
-    BVH_SPATIAL, /* SAH over object and spatial splits (SBVH): needs `triangles` */
-    BVH_NONE,    /* no choice: the order of the input, full leaves, every box that of everything */
 };
 
 /* The triangles that the boxes are of. */
@@ -28,13 +21,14 @@ struct bvh_triangles {
 };
 
 struct bvh_params {
-    enum bvh_builder builder;
-    uint32_t bins;         /* BVH_BINNED: 2..256; 0: up to 32, fewer for fewer primitives */
-    uint32_t leaf_limit;   /* 1..BVH_LEAF_MAX; 0: 4 */
-    uint32_t thread_count; /* 0: one a core; the tree is the same for any count */
-    float traversal_cost;  /* of one node pair relative to one primitive; 0: 1 */
-    bool optimize;         /* improve the finished tree by reinsertion */
-    const struct bvh_triangles *triangles; /* BVH_SPATIAL */
+    whit_build builder;  /* WHIT_BUILD_SPATIAL needs `triangles`, WHIT_BUILD_NONE keeps the order of
+                            the input, in full leaves */
+    uint32_t bins;       /* WHIT_BUILD_BINNED: 2..256; 0: up to 32, fewer for fewer primitives */
+    uint32_t leaf_limit; /* 1..BVH_LEAF_MAX; 0: 4 */
+    uint32_t thread_count;                 /* 0: one a core; the tree is the same for any count */
+    float traversal_cost;                  /* of one node pair relative to one primitive; 0: 1 */
+    bool optimize;                         /* improve the finished tree by reinsertion */
+    const struct bvh_triangles *triangles; /* WHIT_BUILD_SPATIAL */
     float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
                              tried (Stich et al. 2009, 4.5); 0: 1e-5 */
     float spatial_budget; /* references beyond one a triangle, relative to triangles; 0: 0.5;

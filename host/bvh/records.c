@@ -147,13 +147,13 @@ whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint
         records_make(log, boxes, count, 0, resolved->thread_count, &builder.records, &bounds);
     if (result != WHIT_OK)
         return result;
-    if (resolved->builder == BVH_BINNED) {
+    if (resolved->builder == WHIT_BUILD_BINNED) {
         builder.split = split_binned;
         builder.threaded = true;
         builder.small = grow_small;
         builder.small_count = resolved->bins ? SMALL_OF_BINS : BUILD_SMALL;
     }
-    if (resolved->builder == BVH_NONE)
+    if (resolved->builder == WHIT_BUILD_NONE)
         builder.halve = halve_nothing;
     result = topdown_grow(log, &builder, &bounds, count, 0, out);
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)

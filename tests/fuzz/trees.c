@@ -102,11 +102,14 @@ struct scene *fuzz_scene_make(enum fuzz_scene kind)
 struct bvh_params fuzz_bvh_params(uint32_t which)
 {
     static const struct bvh_params params[] = {
-        {.builder = BVH_BINNED, .leaf_limit = 2},
-        {.builder = BVH_MEDIAN, .leaf_limit = 1},
-        {.builder = BVH_SWEEP, .optimize = true},
-        {.builder = BVH_SPATIAL, .spatial_alpha = 1e-9f, .spatial_budget = 2.0f, .leaf_limit = 1},
-        {.builder = BVH_NONE},
+        {.builder = WHIT_BUILD_BINNED, .leaf_limit = 2},
+        {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1},
+        {.builder = WHIT_BUILD_SWEEP, .optimize = true},
+        {.builder = WHIT_BUILD_SPATIAL,
+         .spatial_alpha = 1e-9f,
+         .spatial_budget = 2.0f,
+         .leaf_limit = 1},
+        {.builder = WHIT_BUILD_NONE},
     };
     struct bvh_params out = params[which % (sizeof params / sizeof *params)];
     out.thread_count = 1;

@@ -25,19 +25,21 @@ struct options {
 struct builder {
     const char *name;
     struct bvh_params params;
-    enum bvh_builder instances;
+    whit_build instances;
 };
 
 static const struct builder builders[] = {
-    {"binned", {.builder = BVH_BINNED}, BVH_BINNED},
-    {"binned:7, leaves of 15", {.builder = BVH_BINNED, .bins = 7, .leaf_limit = 15}, BVH_MEDIAN},
-    {"median", {.builder = BVH_MEDIAN}, BVH_MEDIAN},
-    {"sweep", {.builder = BVH_SWEEP}, BVH_BINNED},
-    {"spatial", {.builder = BVH_SPATIAL}, BVH_BINNED},
-    {"median+opt", {.builder = BVH_MEDIAN, .optimize = true}, BVH_MEDIAN},
-    {"binned+opt", {.builder = BVH_BINNED, .optimize = true}, BVH_BINNED},
-    {"sweep+opt", {.builder = BVH_SWEEP, .optimize = true}, BVH_BINNED},
-    {"spatial+opt", {.builder = BVH_SPATIAL, .optimize = true}, BVH_MEDIAN},
+    {"binned", {.builder = WHIT_BUILD_BINNED}, WHIT_BUILD_BINNED},
+    {"binned:7, leaves of 15",
+     {.builder = WHIT_BUILD_BINNED, .bins = 7, .leaf_limit = 15},
+     WHIT_BUILD_MEDIAN},
+    {"median", {.builder = WHIT_BUILD_MEDIAN}, WHIT_BUILD_MEDIAN},
+    {"sweep", {.builder = WHIT_BUILD_SWEEP}, WHIT_BUILD_BINNED},
+    {"spatial", {.builder = WHIT_BUILD_SPATIAL}, WHIT_BUILD_BINNED},
+    {"median+opt", {.builder = WHIT_BUILD_MEDIAN, .optimize = true}, WHIT_BUILD_MEDIAN},
+    {"binned+opt", {.builder = WHIT_BUILD_BINNED, .optimize = true}, WHIT_BUILD_BINNED},
+    {"sweep+opt", {.builder = WHIT_BUILD_SWEEP, .optimize = true}, WHIT_BUILD_BINNED},
+    {"spatial+opt", {.builder = WHIT_BUILD_SPATIAL, .optimize = true}, WHIT_BUILD_MEDIAN},
 };
 enum { BUILDERS = sizeof builders / sizeof builders[0], ORDERS = 3 };
 static const char *const orders[ORDERS] = {

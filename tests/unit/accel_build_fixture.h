@@ -203,13 +203,13 @@ static inline const char *find_fault(const struct soup *soup, const struct bvh_p
         bvh->depth >= BVH_DEPTH_MAX || !isfinite(bvh->sah_cost))
         return "counts or costs out of range";
     if (bvh->reference_count < soup->count || bvh->clipped != (parts > 0) ||
-        parts > (params->builder == BVH_SPATIAL ? share * soup->count : 0.0))
+        parts > (params->builder == WHIT_BUILD_SPATIAL ? share * soup->count : 0.0))
         return "more parts than allowed";
     if (parts == 0 && soup->count > 0 &&
         !is_whole(bvh, soup->boxes,
                   params->traversal_cost > 0.0f ? (double)params->traversal_cost : 1.0))
         return "boxes, depth, leaves or costs are not those of what is below";
-    if (params->builder == BVH_SPATIAL && !is_covered(soup, bvh))
+    if (params->builder == WHIT_BUILD_SPATIAL && !is_covered(soup, bvh))
         return "a part of a triangle is lost, or one is in a leaf twice";
     return NULL;
 }
@@ -275,35 +275,41 @@ static inline const char *find_optimizing_fault(const struct soup *soup, struct 
 /* ---- Every way to build ---- */
 
 static const struct bvh_params every_builder[] = {
-    {.builder = BVH_BINNED, .thread_count = 1},
-    {.builder = BVH_BINNED, .thread_count = 2, .leaf_limit = 1, .bins = 7},
-    {.builder = BVH_BINNED, .thread_count = 1, .leaf_limit = BVH_LEAF_MAX, .bins = 256},
-    {.builder = BVH_BINNED, .thread_count = 1, .leaf_limit = 2, .bins = 2},
-    {.builder = BVH_BINNED, .thread_count = 2, .leaf_limit = 1, .optimize = true},
-    {.builder = BVH_BINNED,
+    {.builder = WHIT_BUILD_BINNED, .thread_count = 1},
+    {.builder = WHIT_BUILD_BINNED, .thread_count = 2, .leaf_limit = 1, .bins = 7},
+    {.builder = WHIT_BUILD_BINNED, .thread_count = 1, .leaf_limit = BVH_LEAF_MAX, .bins = 256},
+    {.builder = WHIT_BUILD_BINNED, .thread_count = 1, .leaf_limit = 2, .bins = 2},
+    {.builder = WHIT_BUILD_BINNED, .thread_count = 2, .leaf_limit = 1, .optimize = true},
+    {.builder = WHIT_BUILD_BINNED,
      .leaf_limit = BVH_LEAF_MAX,
      .bins = 2,
      .traversal_cost = 3.0f,
      .optimize = true},
-    {.builder = BVH_BINNED, .optimize = true},
-    {.builder = BVH_MEDIAN, .thread_count = 2},
-    {.builder = BVH_MEDIAN, .leaf_limit = 1, .optimize = true},
-    {.builder = BVH_MEDIAN, .thread_count = 2, .optimize = true},
-    {.builder = BVH_SWEEP, .thread_count = 2},
-    {.builder = BVH_SWEEP, .thread_count = 1, .leaf_limit = 1},
-    {.builder = BVH_SWEEP, .thread_count = 1, .leaf_limit = BVH_LEAF_MAX, .traversal_cost = 3.0f},
-    {.builder = BVH_SPATIAL, .thread_count = 2},
-    {.builder = BVH_SPATIAL, .thread_count = 1, .leaf_limit = 1, .spatial_alpha = 1e-9f},
-    {.builder = BVH_SPATIAL, .leaf_limit = 1, .spatial_alpha = 1e-9f, .spatial_budget = 2.0f},
-    {.builder = BVH_SPATIAL,
+    {.builder = WHIT_BUILD_BINNED, .optimize = true},
+    {.builder = WHIT_BUILD_MEDIAN, .thread_count = 2},
+    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1, .optimize = true},
+    {.builder = WHIT_BUILD_MEDIAN, .thread_count = 2, .optimize = true},
+    {.builder = WHIT_BUILD_SWEEP, .thread_count = 2},
+    {.builder = WHIT_BUILD_SWEEP, .thread_count = 1, .leaf_limit = 1},
+    {.builder = WHIT_BUILD_SWEEP,
+     .thread_count = 1,
+     .leaf_limit = BVH_LEAF_MAX,
+     .traversal_cost = 3.0f},
+    {.builder = WHIT_BUILD_SPATIAL, .thread_count = 2},
+    {.builder = WHIT_BUILD_SPATIAL, .thread_count = 1, .leaf_limit = 1, .spatial_alpha = 1e-9f},
+    {.builder = WHIT_BUILD_SPATIAL,
+     .leaf_limit = 1,
+     .spatial_alpha = 1e-9f,
+     .spatial_budget = 2.0f},
+    {.builder = WHIT_BUILD_SPATIAL,
      .leaf_limit = BVH_LEAF_MAX,
      .traversal_cost = 3.0f,
      .spatial_budget = 0.03f},
-    {.builder = BVH_SPATIAL, .leaf_limit = 2, .spatial_budget = -1.0f},
-    {.builder = BVH_SPATIAL, .leaf_limit = 1, .optimize = true},
+    {.builder = WHIT_BUILD_SPATIAL, .leaf_limit = 2, .spatial_budget = -1.0f},
+    {.builder = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .optimize = true},
 };
 enum { EVERY_BUILDER = sizeof every_builder / sizeof *every_builder };
-_Static_assert(BVH_NONE == 4, "every builder is in the list");
+_Static_assert(WHIT_BUILD_NONE == 4, "every builder is in the list");
 
 /* All of them on the same triangles, which are released. */
 static inline void check_all(struct soup soup)

@@ -30,7 +30,7 @@ TEST(same_bytes_for_any_thread_count)
     for (size_t i = 0; i < SOUPS * EVERY_BUILDER; ++i) {
         const struct soup *soup = &soups[i % SOUPS];
         struct bvh_params params = every_builder[i / SOUPS];
-        bool plain = params.builder != BVH_SPATIAL && !params.optimize;
+        bool plain = params.builder != WHIT_BUILD_SPATIAL && !params.optimize;
         if (i % SOUPS == 0 ? i > 0 : i % SOUPS > 2 && plain)
             continue;
         if (few && (i / SOUPS % 2 == 1 || /* the others are of every builder as well */
@@ -60,10 +60,10 @@ TEST(same_bytes_for_any_thread_count)
    only where all three centroids agree. */
 TEST(same_tree_for_any_order)
 {
-    static const struct bvh_params params[] = {{.builder = BVH_BINNED},
-                                               {.builder = BVH_BINNED, .bins = 7},
-                                               {.builder = BVH_SWEEP},
-                                               {.builder = BVH_SPATIAL}};
+    static const struct bvh_params params[] = {{.builder = WHIT_BUILD_BINNED},
+                                               {.builder = WHIT_BUILD_BINNED, .bins = 7},
+                                               {.builder = WHIT_BUILD_SWEEP},
+                                               {.builder = WHIT_BUILD_SPATIAL}};
     random_state = 8;
     struct soup soups[] = {soup_scattered(2500, 0.05f), soup_grid(13), soup_hair(3000, 1e-3f)};
     for (uint32_t i = 0; i < soups[0].count; ++i) /* both zeros */
@@ -71,7 +71,7 @@ TEST(same_tree_for_any_order)
     soup_box(&soups[0]);
     for (size_t i = 0; i < 3 * 4; ++i) {
         struct soup *soup = &soups[i % 3];
-        if (i % 3 != 2 && params[i / 3].builder == BVH_SPATIAL)
+        if (i % 3 != 2 && params[i / 3].builder == WHIT_BUILD_SPATIAL)
             continue; /* boxes of parts are rounded */
         struct bvh first = soup_build(soup, params[i / 3]);
         soup_shuffle(soup);
@@ -173,7 +173,7 @@ TEST(sweep_finds_the_splits_of_the_quadratic_search)
         }
         soup_box(&soup);
         struct bvh bvh =
-            soup_build(&soup, (struct bvh_params){.builder = BVH_SWEEP, .leaf_limit = 1});
+            soup_build(&soup, (struct bvh_params){.builder = WHIT_BUILD_SWEEP, .leaf_limit = 1});
         compared += check_splits(&bvh, soup.boxes, &bvh.nodes[0]);
         bvh_finish(&bvh);
         soup_finish(&soup);
@@ -203,9 +203,9 @@ static struct soup soup_uneven(uint32_t count)
 TEST(the_better_way_costs_less)
 {
     enum { UNEVEN, ROOMS, HAIR, THICK_HAIR, SPHERE, TERRAIN, SOUPS };
-    static const struct bvh_params plain = {0}, spatial = {.builder = BVH_SPATIAL},
-                                   median = {.builder = BVH_MEDIAN},
-                                   halves = {.builder = BVH_MEDIAN, .leaf_limit = 1},
+    static const struct bvh_params plain = {0}, spatial = {.builder = WHIT_BUILD_SPATIAL},
+                                   median = {.builder = WHIT_BUILD_MEDIAN},
+                                   halves = {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1},
                                    full = {.leaf_limit = BVH_LEAF_MAX,
                                            .bins = 2,
                                            .traversal_cost = 3.0f};
@@ -254,7 +254,8 @@ TEST(sweeping_is_as_good_as_bins)
             costs[k] = cost_of(&soup, (struct bvh_params){.bins = bins[k]});
             best = fmin(best, costs[k]);
         }
-        assert_true(cost_of(&soup, (struct bvh_params){.builder = BVH_SWEEP}) <= 1.005 * best);
+        assert_true(cost_of(&soup, (struct bvh_params){.builder = WHIT_BUILD_SWEEP}) <=
+                    1.005 * best);
         assert_true(costs[0] <= 1.02 * best);
         soup_finish(&soup);
     }
@@ -269,8 +270,8 @@ TEST(no_tree_is_one_box_for_all)
     for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
         uint32_t count = counts[c], leaves = (count + BVH_LEAF_MAX - 1) / BVH_LEAF_MAX;
         struct soup soup = soup_scattered(count, 0.1f);
-        struct bvh bvh =
-            soup_build(&soup, (struct bvh_params){.builder = BVH_NONE, .leaf_limit = BVH_LEAF_MAX});
+        struct bvh bvh = soup_build(
+            &soup, (struct bvh_params){.builder = WHIT_BUILD_NONE, .leaf_limit = BVH_LEAF_MAX});
         assert_int_equal(bvh_validate(&silent, &bvh, soup.boxes, BVH_LEAF_MAX), WHIT_OK);
         assert_int_equal(bvh.leaf_count, leaves);
         assert_int_equal(bvh.reference_count, count);

@@ -263,10 +263,10 @@ TEST(matrices_without_inverse_are_refused)
 enum { MOVING = 60 };
 
 static const struct accel_params ways[] = {
-    {.instances = {.builder = BVH_BINNED}, .update = ACCEL_REBUILD},
-    {.instances = {.builder = BVH_MEDIAN}, .update = ACCEL_REBUILD},
-    {.instances = {.builder = BVH_BINNED}, .update = ACCEL_REFIT},
-    {.instances = {.builder = BVH_MEDIAN}, .update = ACCEL_REFIT},
+    {.instances = {.builder = WHIT_BUILD_BINNED}, .update = ACCEL_REBUILD},
+    {.instances = {.builder = WHIT_BUILD_MEDIAN}, .update = ACCEL_REBUILD},
+    {.instances = {.builder = WHIT_BUILD_BINNED}, .update = ACCEL_REFIT},
+    {.instances = {.builder = WHIT_BUILD_MEDIAN}, .update = ACCEL_REFIT},
 };
 enum { WAYS = sizeof ways / sizeof *ways };
 

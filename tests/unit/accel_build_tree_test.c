@@ -192,7 +192,7 @@ TEST(depth_is_capped)
 /* Points in ten heaps on a line, shuffled: what is left of a median is not right of it. */
 TEST(medians_separate)
 {
-    const struct bvh_params params = {.builder = BVH_MEDIAN, .leaf_limit = 1};
+    const struct bvh_params params = {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1};
     random_state = 13;
     struct soup soup = soup_make("heaps", 200);
     for (uint32_t i = 0; i < soup.count; ++i) {
@@ -270,7 +270,7 @@ TEST(bad_input_is_refused)
                                                {.bins = 257},
                                                {.leaf_limit = 16},
                                                {.traversal_cost = -1.0f},
-                                               {.builder = BVH_SPATIAL}};
+                                               {.builder = WHIT_BUILD_SPATIAL}};
     for (int k = 0; k < 5; ++k) {
         assert_int_equal(bvh_build(&silent, boxes, 3, &params[k], &bvh), WHIT_ERROR_USAGE);
         assert_null(bvh.nodes);

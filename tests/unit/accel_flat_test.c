@@ -103,14 +103,16 @@ TEST(hits_are_those_of_the_instances)
 
 TEST(builders_agree_bit_for_bit)
 {
-    static const enum bvh_builder builders[] = {BVH_MEDIAN, BVH_SWEEP, BVH_SPATIAL, BVH_NONE};
+    static const whit_build builders[] = {WHIT_BUILD_MEDIAN, WHIT_BUILD_SWEEP, WHIT_BUILD_SPATIAL,
+                                          WHIT_BUILD_NONE};
     struct world first = mixed_world(flatten);
     for (size_t b = 0; b < sizeof builders / sizeof *builders; ++b) {
         struct accel *accel = accel_of(
             first.scene, (struct accel_params){.mesh.builder = builders[b], .flatten = true});
         random_state = 3;
         assert_int_equal(accel->triangle_count, first.accel->triangle_count);
-        assert_true(builders[b] != BVH_SPATIAL || accel->record_count > accel->triangle_count);
+        assert_true(builders[b] != WHIT_BUILD_SPATIAL ||
+                    accel->record_count > accel->triangle_count);
         for (uint32_t i = 0; i < cases_of(600); ++i) {
             struct gpu_ray ray = random_ray();
             struct gpu_hit x = trace(first.accel, &ray), y = trace(accel, &ray), z;
@@ -171,7 +173,7 @@ static void assert_placed(const struct scene *scene, const struct scene_pose *po
 TEST(records_say_whose_they_are)
 {
     struct world world =
-        mixed_world((struct accel_params){.mesh.builder = BVH_SWEEP, .flatten = true});
+        mixed_world((struct accel_params){.mesh.builder = WHIT_BUILD_SWEEP, .flatten = true});
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
     uint32_t mirrored = 0, filters = 0;

@@ -22,7 +22,8 @@ static struct scene *ring_scene(void)
 TEST(trees_find_the_nearest)
 {
     random_state = 3;
-    struct world world = world_of(ring_scene(), (struct accel_params){.mesh.builder = BVH_NONE});
+    struct world world =
+        world_of(ring_scene(), (struct accel_params){.mesh.builder = WHIT_BUILD_NONE});
     struct accel *tree = accel_of(world.scene, (struct accel_params){0}),
                  *flat = accel_of(world.scene, (struct accel_params){.flatten = true});
     for (int n = 0; n < 300; ++n) {

@@ -303,8 +303,9 @@ static uint32_t compare_scene(const char *name, struct scene *scene, struct acce
 }
 
 static const struct accel_params plain = {0}, flat = {.flatten = true},
-                                 split = {.mesh = {.builder = BVH_SPATIAL, .spatial_budget = 2.0f}},
-                                 none = {.mesh = {.builder = BVH_NONE}};
+                                 split = {.mesh = {.builder = WHIT_BUILD_SPATIAL,
+                                                   .spatial_budget = 2.0f}},
+                                 none = {.mesh = {.builder = WHIT_BUILD_NONE}};
 
 TEST(triangles_are_found_by_trees_and_without)
 {

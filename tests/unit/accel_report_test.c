@@ -120,11 +120,11 @@ static struct soup soup_crossing(uint32_t count, uint64_t seed)
 }
 
 static const struct bvh_params builds[] = {
-    {.builder = BVH_BINNED},
-    {.builder = BVH_MEDIAN},
-    {.builder = BVH_BINNED, .leaf_limit = 1, .bins = 4},
-    {.builder = BVH_MEDIAN, .leaf_limit = 15},
-    {.builder = BVH_BINNED, .traversal_cost = 1.0f, .thread_count = 1},
+    {.builder = WHIT_BUILD_BINNED},
+    {.builder = WHIT_BUILD_MEDIAN},
+    {.builder = WHIT_BUILD_BINNED, .leaf_limit = 1, .bins = 4},
+    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 15},
+    {.builder = WHIT_BUILD_BINNED, .traversal_cost = 1.0f, .thread_count = 1},
 };
 enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
 
@@ -150,8 +150,9 @@ TEST(overlap_is_that_of_brute_force)
 TEST(overlap_by_hand)
 {
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
-    struct world world = world_of_soup(soup_of_mesh("two", mesh_triangles(v, 2)),
-                                       (struct bvh_params){.builder = BVH_MEDIAN, .leaf_limit = 1});
+    struct world world =
+        world_of_soup(soup_of_mesh("two", mesh_triangles(v, 2)),
+                      (struct bvh_params){.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1});
     struct bvh_epo epo;
     assert_int_equal(world.accel->meshes[0].node_count, 4);
     assert_int_equal(accel_mesh_epo(world.accel, 0, &epo), WHIT_OK);

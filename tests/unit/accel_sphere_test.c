@@ -94,7 +94,7 @@ TEST(rays_leave_their_sphere)
 TEST(flat_keeps_spheres_that_stay_spheres)
 {
     const struct accel_params flat = {
-        .flatten = true, .validate = true, .mesh = {.builder = BVH_SPATIAL}};
+        .flatten = true, .validate = true, .mesh = {.builder = WHIT_BUILD_SPATIAL}};
     random_state = 5;
     for (int turned = 0; turned < 2; ++turned) {
         struct scene *scene = sphere_scene(&silent, scattered_spheres(50, 1.0, 0.3), false);

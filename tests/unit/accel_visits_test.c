@@ -34,12 +34,12 @@ TEST(one_giant_costs_little)
              (float[3]){0, -1.2f, 1000});
     struct scene *scene = scene_ready(soup_scene(&soup));
     struct gpu_cost sweep =
-        cost_of(scene, NULL, (struct bvh_params){.builder = BVH_SWEEP}, ORDER_DISTANCE);
+        cost_of(scene, NULL, (struct bvh_params){.builder = WHIT_BUILD_SWEEP}, ORDER_DISTANCE);
     static const struct bvh_params others[] = {
-        {.builder = BVH_BINNED},
-        {.builder = BVH_BINNED, .bins = 7},
-        {.builder = BVH_BINNED, .optimize = true},
-        {.builder = BVH_SPATIAL},
+        {.builder = WHIT_BUILD_BINNED},
+        {.builder = WHIT_BUILD_BINNED, .bins = 7},
+        {.builder = WHIT_BUILD_BINNED, .optimize = true},
+        {.builder = WHIT_BUILD_SPATIAL},
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         struct gpu_cost cost = cost_of(scene, NULL, others[i], ORDER_DISTANCE);
@@ -67,7 +67,8 @@ TEST(orders_and_splits_save_visits)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         struct soup soup = rows[i].soup;
         struct scene *scene = scene_ready(soup_scene(&soup));
-        const struct bvh_params binned = {.builder = BVH_BINNED}, split = {.builder = BVH_SPATIAL};
+        const struct bvh_params binned = {.builder = WHIT_BUILD_BINNED},
+                                split = {.builder = WHIT_BUILD_SPATIAL};
         uint32_t basic = cost_of(scene, &soup, binned, ORDER_BASIC).inner_nodes,
                  distance = cost_of(scene, &soup, binned, ORDER_DISTANCE).inner_nodes,
                  sign = cost_of(scene, &soup, binned, ORDER_SIGN).inner_nodes,

@@ -7,16 +7,19 @@
 #include "unit.h"
 
 static const struct bvh_params trees[] = {
-    {.builder = BVH_BINNED},
-    {.builder = BVH_BINNED, .leaf_limit = 1, .bins = 5},
-    {.builder = BVH_BINNED, .leaf_limit = BVH_LEAF_MAX, .bins = 2, .optimize = true},
-    {.builder = BVH_MEDIAN, .leaf_limit = 2},
-    {.builder = BVH_MEDIAN, .leaf_limit = 1, .optimize = true},
-    {.builder = BVH_SWEEP},
-    {.builder = BVH_SPATIAL},
-    {.builder = BVH_SPATIAL, .optimize = true},
-    {.builder = BVH_SPATIAL, .leaf_limit = 1, .spatial_budget = 4.0f, .spatial_alpha = 1e-9f},
-    {.builder = BVH_NONE},
+    {.builder = WHIT_BUILD_BINNED},
+    {.builder = WHIT_BUILD_BINNED, .leaf_limit = 1, .bins = 5},
+    {.builder = WHIT_BUILD_BINNED, .leaf_limit = BVH_LEAF_MAX, .bins = 2, .optimize = true},
+    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 2},
+    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1, .optimize = true},
+    {.builder = WHIT_BUILD_SWEEP},
+    {.builder = WHIT_BUILD_SPATIAL},
+    {.builder = WHIT_BUILD_SPATIAL, .optimize = true},
+    {.builder = WHIT_BUILD_SPATIAL,
+     .leaf_limit = 1,
+     .spatial_budget = 4.0f,
+     .spatial_alpha = 1e-9f},
+    {.builder = WHIT_BUILD_NONE},
 };
 enum { TREES = sizeof trees / sizeof *trees, ORDERS = 3 };
 
@@ -200,7 +203,7 @@ TEST(equal_triangles_are_shared_out)
 {
     const uint32_t count = cases_times() > 1 ? 1000000 : 10000;
     for (uint32_t t = 0; t < TREES; ++t) {
-        if (trees[t].spatial_budget > 0.0f || trees[t].builder == BVH_NONE)
+        if (trees[t].spatial_budget > 0.0f || trees[t].builder == WHIT_BUILD_NONE)
             continue; /* more than one record a triangle; no tree */
         struct world world = world_of_soup(soup_equal(count), trees[t]);
         const struct accel *accel = world.accel;

@@ -403,9 +403,9 @@ TEST(cameras_are_those_of_kernels)
 /* Trees of every kind hold the same surfaces; in one tree for all they are placed by floats. */
 TEST(trees_do_not_matter)
 {
-    const struct accel_params trees[] = {{.mesh.builder = BVH_MEDIAN},
-                                         {.mesh.builder = BVH_SPATIAL},
-                                         {.mesh.builder = BVH_NONE},
+    const struct accel_params trees[] = {{.mesh.builder = WHIT_BUILD_MEDIAN},
+                                         {.mesh.builder = WHIT_BUILD_SPATIAL},
+                                         {.mesh.builder = WHIT_BUILD_NONE},
                                          {.flatten = true}};
     const struct reference_params params = {.picture = {.width = 24, .height = 24, .depth = 6}};
     struct drawn d = open_reference(crowded_scene(), &params.picture);

@@ -133,7 +133,7 @@ TEST(pixels_are_those_of_plain_pictures)
 
 TEST_BY_TURNS(so_they_are_without_trees, 0, 2)
 {
-    const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}};
+    const struct accel_params no_trees = {.mesh = {.builder = WHIT_BUILD_NONE}};
     check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, contrasts, 1);
 }
 

@@ -140,7 +140,7 @@ TEST(pictures_are_those_of_new_renderers)
         {"a refitted tree",
          strung_out,
          {0.0, 0.5, 1.0},
-         {.update = ACCEL_REFIT, .instances = {.builder = BVH_MEDIAN}}},
+         {.update = ACCEL_REFIT, .instances = {.builder = WHIT_BUILD_MEDIAN}}},
         {"an object that leaves its place", leaves_its_place, {0.0, 0.5, 1.0}, {.flatten = false}},
         {"trees that get deeper", strung_out, {0.0, 0.5, 1.0}, {.flatten = false}},
         {"a flattened scene", everything_moves, {0.0, 0.9, 2.0}, {.flatten = true}},

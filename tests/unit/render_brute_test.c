@@ -7,7 +7,8 @@
 enum { RAYS = 500 };
 
 /* As deep a stack as with trees, for the same kernels. */
-static const struct accel_params no_trees = {.mesh = {.builder = BVH_NONE}, .update = ACCEL_REFIT};
+static const struct accel_params no_trees = {.mesh = {.builder = WHIT_BUILD_NONE},
+                                             .update = ACCEL_REFIT};
 
 /* Against the C twin, hits and costs, and against another one's trees. */
 static void check_hits(struct fixture *f, const struct accel *trees)

@@ -340,8 +340,9 @@ TEST(packets_to_a_light_shade_as_rays_do)
             light = emitter(SCENE_LIGHT_RECTANGLE, cases[i].at, (double[]){0.3, 0, 0},
                             (double[]){0, 0, 0.3}, 1);
         }
-        const struct accel_params accel = {
-            .mesh.builder = cases[i].clipped ? BVH_SPATIAL : BVH_BINNED, .flatten = true};
+        const struct accel_params accel = {.mesh.builder = cases[i].clipped ? WHIT_BUILD_SPATIAL
+                                                                            : WHIT_BUILD_BINNED,
+                                           .flatten = true};
         whit_renderer_params params = {
             .width = 128,
             .height = 96,

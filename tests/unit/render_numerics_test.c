@@ -75,8 +75,8 @@ static void split_triangles(void **state)
         skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_terrain(0x1p-20 * 10.0, 0x1p-20 * 2.0, 40, 3), NULL);
-    check_levels(scene,
-                 &(struct accel_params){.mesh = {.builder = BVH_SPATIAL, .spatial_alpha = 1e-9f}});
+    check_levels(scene, &(struct accel_params){
+                            .mesh = {.builder = WHIT_BUILD_SPATIAL, .spatial_alpha = 1e-9f}});
 }
 
 /* Keys that tie: the same triangle many times, in one mesh and in instances at one place. */
@@ -184,7 +184,7 @@ static void pictures_agree(void **state)
 static void trees_do_not_matter(void **state)
 {
     (void)state;
-    const struct accel_params none = {.mesh = {.builder = BVH_NONE}};
+    const struct accel_params none = {.mesh = {.builder = WHIT_BUILD_NONE}};
     whit_renderer_params params = glass_params;
     params.width = 24;
     params.height = 16;

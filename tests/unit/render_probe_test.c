@@ -298,7 +298,8 @@ static void surfaces_let_rays_pass(void **state)
 static void trees_do_not_matter(void **state)
 {
     (void)state;
-    static const struct accel_params trees[] = {{.mesh.builder = BVH_NONE}, {.flatten = true}};
+    static const struct accel_params trees[] = {{.mesh.builder = WHIT_BUILD_NONE},
+                                                {.flatten = true}};
     whit_renderer_params params = sieve_params;
     params.effects_removed = UINT64_C(1) << SCENE_EFFECT_REFRACTION |
                              UINT64_C(1) << SCENE_EFFECT_TEXTURES |

@@ -61,7 +61,7 @@ TEST(views_are_those_of_new_renderers)
 {
     walk("spin", NULL, STEPS);
     walk("whitted", NULL, STEPS);
-    walk("cube", &(struct accel_params){.mesh = {.builder = BVH_NONE}}, 3);
+    walk("cube", &(struct accel_params){.mesh = {.builder = WHIT_BUILD_NONE}}, 3);
 }
 
 /* Seen from afar, a ray may meet the glass and its hollow at one place, but for rounding. */

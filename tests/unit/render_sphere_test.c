@@ -45,7 +45,7 @@ TEST(spheres_equal_twin)
 TEST_BY_TURNS(mixed_scene_equals_twin, 0, 2)
 {
     random_state = 12;
-    const struct accel_params spatial = {.mesh = {.builder = BVH_SPATIAL}};
+    const struct accel_params spatial = {.mesh = {.builder = WHIT_BUILD_SPATIAL}};
     struct scene *scene = scene_begin(&fixture_log, "spheres");
     scene_put_mesh(scene, scattered_spheres(60, 1.0, 0.3));
     scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
