@@ -225,6 +225,17 @@ struct cost_choice cost_choose(const struct cost_report *report, const struct co
     return search.best;
 }
 
+struct cost_choice cost_choose_budget(const struct cost_report *report, double budget_ms)
+{
+    struct cost_goal goal = {
+        .kind = COST_WITHIN, .metric = COST_RMSE, .limit = COST_ROOM * budget_ms};
+    struct cost_choice choice = cost_choose(report, &goal);
+    if (choice.found)
+        return choice;
+    goal.limit = budget_ms * report->usual_ms_max / fmax(report->rows[0].ms[COST_WALL], 1e-6);
+    return cost_choose(report, &goal);
+}
+
 void cost_choice_apply(const struct cost_choice *choice, struct settings *settings)
 {
     uint32_t count;

@@ -92,7 +92,7 @@ static whit_result open_renderer(struct measure *measure)
     result = cost_time(measure->renderer, &params, PROBES, &times);
     if (result != WHIT_OK)
         return result;
-    report->small_ms = times.ms[report->clock].median;
+    report->small_ms = times.ms[COST_WALL].median;
     measure->usual_pixel_ms = times.ms[COST_WALL].median / ((double)width * height);
     snprintf(report->load_path, sizeof report->load_path, "%s", stats.load_path);
     return WHIT_OK;

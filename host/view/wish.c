@@ -41,13 +41,14 @@ static bool is_left(const struct view *view)
 
 /* ---- Choosing ---- */
 
-static struct cost_goal goal_of(const struct view *view)
+static struct cost_choice find_choice(const struct view *view)
 {
     const struct settings *asked = &view->params->settings;
-    bool within = asked->budget_ms > 0.0;
-    double limit = within ? asked->budget_ms / view->wish.slower : asked->max_error;
-    return (struct cost_goal){
-        .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * limit};
+    const struct cost_report *report = &view->wish.figures->report;
+    const struct cost_goal goal = {
+        .kind = COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * asked->max_error};
+    return asked->budget_ms > 0.0 ? cost_choose_budget(report, asked->budget_ms / view->wish.slower)
+                                  : cost_choose(report, &goal);
 }
 
 static void take_choice(struct view *view, double predicted_ms)
@@ -69,14 +70,13 @@ static void take_choice(struct view *view, double predicted_ms)
 static void choose(struct view *view)
 {
     struct wish *wish = &view->wish;
-    const struct cost_goal goal = goal_of(view);
-    const struct cost_choice choice = cost_choose(&wish->figures->report, &goal);
+    const struct cost_choice choice = find_choice(view);
     view->dirty = true;
     if (!choice.found) {
         wish->stage = WISH_NO_CHOICE;
         snprintf(wish->text, sizeof wish->text,
-                 goal.kind == COST_WITHIN ? "no setting takes so little here"
-                                          : "no setting is as right as that here");
+                 view->params->settings.budget_ms > 0.0 ? "no setting takes so little here"
+                                                        : "no setting is as right as that here");
         return;
     }
     wish->figures->choice = choice;

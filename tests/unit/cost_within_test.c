@@ -187,6 +187,19 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
     assert_true(between > found / 20);
 }
 
+/* Where 9 of 10 pictures of no setting keep a time, one is chosen that keeps it in the median. */
+TEST(a_short_budget_is_kept_in_the_median)
+{
+    make_report();
+    report.rows[0].ms[COST_WALL] = USUAL_MS / 1.5;
+    struct cost_goal goal = {COST_WITHIN, COST_RMSE, USUAL_MS, 0.0};
+    while (cost_choose(&report, &goal).found)
+        goal.limit *= 0.99;
+    assert_true(cost_choose_budget(&report, goal.limit).found);
+    assert_true(cost_choose_budget(&report, goal.limit / 1.49).found);
+    assert_false(cost_choose_budget(&report, goal.limit / 1.6).found);
+}
+
 /* Shadows, glass and textures go behind all that is only rough. */
 TEST(the_order_ends_with_what_is_missed_most)
 {

@@ -9,7 +9,7 @@
 
 enum { SAMPLES = 16, TRIALS = 5, TRIES = 6 };
 /* What takes less tells more of who else had the processor. */
-static const double TRIAL_MS_MIN = 20.0;
+static const double TRIAL_MS_MIN = 50.0;
 /* A try that takes this share of the time is not followed by another. */
 static const double ENOUGH = 0.8;
 
@@ -70,15 +70,12 @@ static struct cost_choice choose(const struct cost_report *report, const struct 
     return cost_choose(report, &goal);
 }
 
-/* Choices keep a time in 9 of 10 pictures. If none does, one that keeps it in the median is taken.
- */
 static struct cost_choice choose_first(const struct cost_report *report,
                                        const struct settings *settings)
 {
-    struct cost_choice choice = choose(report, settings, COST_ROOM * settings->budget_ms);
-    double slowest = report->usual_ms_max / fmax(report->rows[0].ms[COST_WALL], 1e-6);
-    if (!choice.found && settings->budget_ms > 0.0)
-        choice = choose(report, settings, settings->budget_ms * slowest);
+    struct cost_choice choice = settings->budget_ms > 0.0
+                                    ? cost_choose_budget(report, settings->budget_ms)
+                                    : choose(report, settings, 0.0);
     if (!choice.found && settings->budget_ms > 0.0)
         cli_error("no setting takes at most %.6g ms here", settings->budget_ms);
     else if (!choice.found)
@@ -122,7 +119,7 @@ static double cut_down(const struct cost_report *report, const struct cost_choic
 {
     enum { PART = 16, FEW = 4 };
     double least = choice->samples * TRIAL_MS_MIN / choice->ms;
-    double smaller = report->rows[0].ms[report->clock] / fmax(report->small_ms, 1e-6);
+    double smaller = report->rows[0].ms[COST_WALL] / fmax(report->small_ms, 1e-6);
     if (choice->samples >= FEW) {
         uint32_t count = (uint32_t)fmin(fmax(choice->samples / PART, least), choice->samples);
         picture->sampling.count = count > 0 ? count : 1;
