@@ -294,6 +294,11 @@ static void read_hits(const json_t *object, struct cost_hits *hits)
     hits->judged.tally.misses = whole(object, "misses");
     hits->judged.tally.false_hits = whole(object, "false_hits");
     hits->judged.tally.other_ids = whole(object, "other_ids");
+    hits->judged.non_finite = whole(object, "non_finite");
+    hits->judged.ulp_rays = whole(object, "ulp_rays");
+    hits->judged.ulp_median = number(object, "ulp_median", 0.0);
+    hits->judged.ulp_999 = number(object, "ulp_999", 0.0);
+    hits->judged.ulp_max = number(object, "ulp_max", 0.0);
     hits->ms = number(object, "ms", -1.0);
 }
 
