@@ -49,14 +49,14 @@ static void push_words(struct evaluation *e, struct word_list *list, uint32_t co
     do {                                                                                           \
         const uint32_t words_[] = {0, __VA_ARGS__};                                                \
         uint32_t count_ = sizeof words_ / sizeof *words_;                                          \
-        evaluate_push((e), (list), spirv_head((op), count_));                                      \
+        evaluate_push((e), (list), spv_head((op), count_));                                        \
         push_words((e), (list), count_ - 1, words_ + 1);                                           \
     } while (0)
 
 void evaluate_copy(struct evaluation *e, const uint32_t *instruction)
 {
-    uint32_t length = spirv_length(instruction);
-    struct spirv_shape shape = spirv_shape(spirv_op(instruction));
+    uint32_t length = spv_length(instruction);
+    struct spirv_shape shape = spirv_shape(spv_op(instruction));
     uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
     evaluate_push(e, &e->body, instruction[0]);
     if (shape.result) {
@@ -89,7 +89,7 @@ static void know(struct evaluation *e, uint32_t id, uint32_t type, uint32_t valu
 
 static void put_constant(struct evaluation *e, uint32_t type, uint32_t id, uint32_t value)
 {
-    bool is_bool = spirv_op(e->words + e->source[type].at) == OP_TYPE_BOOL;
+    bool is_bool = spv_op(e->words + e->source[type].at) == OP_TYPE_BOOL;
     if (is_bool)
         EMIT(e, &e->globals, value ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE, type, id);
     else
@@ -112,7 +112,7 @@ static uint32_t constant_id(struct evaluation *e, uint32_t type, uint32_t value)
 static bool is_word(const struct evaluation *e, uint32_t type)
 {
     const uint32_t *at = e->words + e->source[type].at;
-    return spirv_op(at) == OP_TYPE_BOOL || (spirv_op(at) == OP_TYPE_INT && at[2] == 32);
+    return spv_op(at) == OP_TYPE_BOOL || (spv_op(at) == OP_TYPE_INT && at[2] == 32);
 }
 
 /* False: one of the operands is not known, or the operation not worth it. */
@@ -135,7 +135,7 @@ static bool fold(const struct evaluation *e, uint32_t op, uint32_t type, const u
 static uint32_t spec_value(const struct evaluation *e, const uint32_t *instruction,
                            const uint32_t *values)
 {
-    uint32_t op = spirv_op(instruction), value = values[instruction[2]];
+    uint32_t op = spv_op(instruction), value = values[instruction[2]];
     if (e->source[instruction[2]].is_set)
         return op == OP_SPEC_CONSTANT ? value : value != 0;
     return op == OP_SPEC_CONSTANT ? instruction[3] : op == OP_SPEC_CONSTANT_TRUE;
@@ -144,7 +144,7 @@ static uint32_t spec_value(const struct evaluation *e, const uint32_t *instructi
 /* Types, constants and global variables, which keep their ids. `values`: of each id that is set. */
 static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t *values)
 {
-    uint32_t op = spirv_op(at), value;
+    uint32_t op = spv_op(at), value;
     switch (op) {
     case OP_SPEC_CONSTANT_TRUE:
     case OP_SPEC_CONSTANT_FALSE:
@@ -155,17 +155,17 @@ static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t
             e->failed = true;
         return;
     case OP_SPEC_CONSTANT_OP:
-        if (fold(e, at[3], at[1], at + 4, spirv_length(at) - 4, &value))
+        if (fold(e, at[3], at[1], at + 4, spv_length(at) - 4, &value))
             put_constant(e, at[1], at[2], value);
         else
             e->failed = true;
         return;
     case OP_SPEC_CONSTANT_COMPOSITE:
-        evaluate_push(e, &e->globals, spirv_head(OP_CONSTANT_COMPOSITE, spirv_length(at)));
-        push_words(e, &e->globals, spirv_length(at) - 1, at + 1);
+        evaluate_push(e, &e->globals, spv_head(OP_CONSTANT_COMPOSITE, spv_length(at)));
+        push_words(e, &e->globals, spv_length(at) - 1, at + 1);
         return;
     default:
-        push_words(e, &e->globals, spirv_length(at), at);
+        push_words(e, &e->globals, spv_length(at), at);
         if (op == OP_TYPE_INT && is_word(e, at[1]))
             e->uint_type = at[1]; /* or int */
         if (op >= OP_CONSTANT_TRUE && op <= OP_CONSTANT && is_word(e, at[1]))
@@ -176,9 +176,9 @@ static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t
 /* The type of pointers to variables of a function that hold `type`. */
 static uint32_t pointer_type(struct evaluation *e, uint32_t type)
 {
-    for (uint32_t at = 0; at < e->globals.count; at += spirv_length(e->globals.words + at)) {
+    for (uint32_t at = 0; at < e->globals.count; at += spv_length(e->globals.words + at)) {
         const uint32_t *instruction = e->globals.words + at;
-        if (spirv_op(instruction) == OP_TYPE_POINTER && instruction[2] == STORAGE_FUNCTION &&
+        if (spv_op(instruction) == OP_TYPE_POINTER && instruction[2] == STORAGE_FUNCTION &&
             instruction[3] == type)
             return instruction[1];
     }
@@ -261,7 +261,7 @@ static void put_merge(struct evaluation *e, struct instance *in)
     in->merge = 0;
     evaluate_copy(e, merge);
     e->source[merge[1]].is_merge = true;
-    if (spirv_op(merge) != OP_LOOP_MERGE)
+    if (spv_op(merge) != OP_LOOP_MERGE)
         return;
     e->source[merge[2]].is_continue = true;
     e->source[merge[2]].header = in->label;
@@ -273,7 +273,7 @@ static void put_merge(struct evaluation *e, struct instance *in)
 
 static void branch_to(struct evaluation *e, struct instance *in, uint32_t target)
 {
-    bool is_loop = in->merge && spirv_op(e->words + in->merge) == OP_LOOP_MERGE;
+    bool is_loop = in->merge && spv_op(e->words + in->merge) == OP_LOOP_MERGE;
     e->source[in->label].end_label = e->label;
     e->source[in->label].chosen = target;
     if (is_loop)
@@ -308,7 +308,7 @@ static void branch_among(struct evaluation *e, struct instance *in, const uint32
     put_merge(e, in);
     evaluate_copy(e, at);
     enter(e, at[2]);
-    for (uint32_t i = 4; i < spirv_length(at); i += 2) {
+    for (uint32_t i = 4; i < spv_length(at); i += 2) {
         bool again = at[i] == at[2];
         for (uint32_t j = 4; j < i; j += 2)
             again = again || at[j] == at[i];
@@ -333,7 +333,7 @@ static bool is_same_value(const struct evaluation *e, uint32_t a, uint32_t b)
 
 static void walk_phi(struct evaluation *e, struct instance *in, const uint32_t *at)
 {
-    uint32_t length = spirv_length(at), ways = 0, first = 0;
+    uint32_t length = spv_length(at), ways = 0, first = 0;
     bool same = true;
     for (uint32_t i = 3; i + 1 < length; i += 2) {
         if (!arrives(e, in, at[i + 1]))
@@ -350,7 +350,7 @@ static void walk_phi(struct evaluation *e, struct instance *in, const uint32_t *
         e->source[at[2]].to = first;
         return;
     }
-    evaluate_push(e, &e->body, spirv_head(OP_PHI, 3 + 2 * ways));
+    evaluate_push(e, &e->body, spv_head(OP_PHI, 3 + 2 * ways));
     evaluate_push(e, &e->body, at[1]);
     evaluate_push(e, &e->body, evaluate_result(e, at));
     for (uint32_t i = 3; i + 1 < length; i += 2) {
@@ -384,7 +384,7 @@ static void begin_wrap(struct evaluation *e, struct instance *in)
 static void take_back_wrap(struct evaluation *e, const struct instance *in)
 {
     for (uint32_t i = 0; i < WRAP_WORDS; ++i)
-        e->body.words[in->wrap + i] = spirv_head(OP_NOP, 1);
+        e->body.words[in->wrap + i] = spv_head(OP_NOP, 1);
     e->results[in->wrap_label].same_as = in->label_before;
 }
 
@@ -413,12 +413,12 @@ static uint32_t end_call(struct evaluation *e, struct instance *in)
 static void forget(struct evaluation *e, uint32_t function_at)
 {
     const uint32_t *at = e->words + function_at;
-    for (; spirv_op(at) != OP_FUNCTION_END; at += spirv_length(at)) {
-        struct spirv_shape shape = spirv_shape(spirv_op(at));
-        uint32_t id = spirv_op(at) == OP_LABEL                                  ? at[1]
-                      : spirv_op(at) == OP_FUNCTION_PARAMETER || (shape.result) ? at[2]
-                      : spirv_op(at) == OP_FUNCTION_CALL                        ? at[2]
-                                                                                : 0;
+    for (; spv_op(at) != OP_FUNCTION_END; at += spv_length(at)) {
+        struct spirv_shape shape = spirv_shape(spv_op(at));
+        uint32_t id = spv_op(at) == OP_LABEL                                  ? at[1]
+                      : spv_op(at) == OP_FUNCTION_PARAMETER || (shape.result) ? at[2]
+                      : spv_op(at) == OP_FUNCTION_CALL                        ? at[2]
+                                                                              : 0;
         struct source_id *source = &e->source[id];
         source->to = source->holds = source->chosen = source->end_label = 0;
         source->incoming = source->header = 0;
@@ -430,12 +430,12 @@ static void walk_call(struct evaluation *e, struct instance *caller, const uint3
 {
     uint32_t function_at = e->source[call[3]].at;
     const uint32_t *function = e->words + function_at;
-    bool is_void = spirv_op(e->words + e->source[call[1]].at) == OP_TYPE_VOID;
+    bool is_void = spv_op(e->words + e->source[call[1]].at) == OP_TYPE_VOID;
     struct instance in = {.caller = caller,
                           .depth = caller->depth + 1,
                           .result_type = is_void ? 0 : call[1],
                           .after = new_id(e)};
-    if (spirv_op(function) != OP_FUNCTION || in.depth > CALLS_DEEP) {
+    if (spv_op(function) != OP_FUNCTION || in.depth > CALLS_DEEP) {
         e->failed = true;
         return;
     }
@@ -459,7 +459,7 @@ static void walk_return(struct evaluation *e, struct instance *in, const uint32_
     }
     ++in->returns;
     in->return_waits = true;
-    in->value = spirv_op(at) == OP_RETURN_VALUE ? evaluate_id(e, at[1]) : 0;
+    in->value = spv_op(at) == OP_RETURN_VALUE ? evaluate_id(e, at[1]) : 0;
 }
 
 /* ---- Instructions ---- */
@@ -467,7 +467,7 @@ static void walk_return(struct evaluation *e, struct instance *in, const uint32_
 /* Folds a logical and, or, or select that one known operand decides. True: it was folded. */
 static bool decide(struct evaluation *e, const uint32_t *at)
 {
-    uint32_t op = spirv_op(at);
+    uint32_t op = spv_op(at);
     if (op != OP_LOGICAL_AND && op != OP_LOGICAL_OR && op != OP_SELECT)
         return false;
     uint32_t operands[2] = {evaluate_id(e, at[3]), evaluate_id(e, at[4])};
@@ -489,16 +489,16 @@ static bool decide(struct evaluation *e, const uint32_t *at)
 
 static void walk_plain(struct evaluation *e, const uint32_t *at)
 {
-    struct spirv_shape shape = spirv_shape(spirv_op(at));
+    struct spirv_shape shape = spirv_shape(spv_op(at));
     uint32_t value;
-    if (shape.result && fold(e, spirv_op(at), at[1], at + 3, spirv_length(at) - 3, &value)) {
+    if (shape.result && fold(e, spv_op(at), at[1], at + 3, spv_length(at) - 3, &value)) {
         e->source[at[2]].to = constant_id(e, at[1], value);
         return;
     }
     if (decide(e, at))
         return;
     evaluate_copy(e, at);
-    if (!e->failed && spirv_op(at) == OP_ACCESS_CHAIN)
+    if (!e->failed && spv_op(at) == OP_ACCESS_CHAIN)
         e->results[evaluate_id(e, at[2])].base = e->results[evaluate_id(e, at[3])].base;
 }
 
@@ -506,13 +506,13 @@ static void walk_variable(struct evaluation *e, const uint32_t *at)
 {
     uint32_t id = add_variable(e, at[1]);
     e->source[at[2]].to = id;
-    if (spirv_length(at) > 4) /* each time, not once in the kernel */
+    if (spv_length(at) > 4) /* each time, not once in the kernel */
         EMIT(e, &e->body, OP_STORE, id, evaluate_id(e, at[4]));
 }
 
 static void walk_instruction(struct evaluation *e, struct instance *in, const uint32_t *at)
 {
-    switch (spirv_op(at)) {
+    switch (spv_op(at)) {
     case OP_LABEL:
         begin_block(e, in, at[1]);
         return;
@@ -557,16 +557,16 @@ static void walk_instruction(struct evaluation *e, struct instance *in, const ui
 static void walk_function(struct evaluation *e, struct instance *in, uint32_t function_at)
 {
     const uint32_t *at = e->words + function_at;
-    while (spirv_op(at) != OP_LABEL && spirv_op(at) != OP_FUNCTION_END)
-        at += spirv_length(at);
-    if (spirv_op(at) != OP_LABEL) {
+    while (spv_op(at) != OP_LABEL && spv_op(at) != OP_FUNCTION_END)
+        at += spv_length(at);
+    if (spv_op(at) != OP_LABEL) {
         e->failed = true;
         return;
     }
     in->label = at[1];
     e->source[in->label].reached = e->source[in->label].visited = true;
-    for (at += 2; !e->failed && spirv_op(at) != OP_FUNCTION_END; at += spirv_length(at)) {
-        if (!in->skips || spirv_op(at) == OP_LABEL)
+    for (at += 2; !e->failed && spv_op(at) != OP_FUNCTION_END; at += spv_length(at)) {
+        if (!in->skips || spv_op(at) == OP_LABEL)
             walk_instruction(e, in, at);
     }
 }
@@ -584,9 +584,8 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
         if (e->source[id].at && e->source[id].at < e->functions_at)
             e->source[id].to = id;
     }
-    for (uint32_t at = SPIRV_HEADER_WORDS; at < e->functions_at;
-         at += spirv_length(e->words + at)) {
-        uint32_t op = spirv_op(e->words + at);
+    for (uint32_t at = SPV_HEADER_WORDS; at < e->functions_at; at += spv_length(e->words + at)) {
+        uint32_t op = spv_op(e->words + at);
         if (op == OP_UNDEF || (op >= OP_TYPE_VOID && op <= OP_VARIABLE))
             walk_global(e, e->words + at, spec_of);
     }
@@ -601,7 +600,7 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
 /* False: it is no module, or memory runs out. */
 static bool begin(struct evaluation *e)
 {
-    if (e->count <= SPIRV_HEADER_WORDS || e->words[0] != SPIRV_MAGIC || e->words[3] == 0 ||
+    if (e->count <= SPV_HEADER_WORDS || e->words[0] != SPV_MAGIC || e->words[3] == 0 ||
         e->words[3] > SPIRV_BOUND_MAX)
         return false;
     e->source_count = e->result_count = e->result_capacity = e->words[3];

@@ -18,7 +18,7 @@
 
 #include "device/spirv_ops.h"
 
-enum { SPIRV_MAGIC = 0x07230203, SPIRV_HEADER_WORDS = 5, SPIRV_BOUND_MAX = 1 << 20 };
+enum { SPIRV_BOUND_MAX = 1 << 20 };
 
 /* An id of the module that came in, while the function that it stands in is walked through. */
 struct source_id {
@@ -95,16 +95,6 @@ bool evaluate_read(struct evaluation *e, uint32_t *spec_of);
 
 /* evaluate_output.c: malloc()ed; NULL when memory runs out. */
 uint32_t *evaluate_write(struct evaluation *e, size_t *word_count);
-
-static inline uint32_t spirv_length(const uint32_t *instruction)
-{
-    return instruction[0] >> 16;
-}
-
-static inline uint32_t spirv_op(const uint32_t *instruction)
-{
-    return instruction[0] & 0xffff;
-}
 
 void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word);
 /* The id that `id` became, or will become. */

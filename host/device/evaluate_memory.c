@@ -5,7 +5,7 @@
 static uint32_t op_at(const struct evaluation *e, uint32_t id)
 {
     uint32_t at = e->source[id].at;
-    return at ? spirv_op(e->words + at) : OP_NOP;
+    return at ? spv_op(e->words + at) : OP_NOP;
 }
 
 /* The variable or parameter that a pointer points into. */
@@ -30,11 +30,11 @@ static bool count_call(struct evaluation *e, const uint32_t *call)
 {
     const uint32_t *at = e->words + e->source[call[3]].at;
     bool changed = false;
-    at += spirv_length(at);
-    for (uint32_t i = 4; i < spirv_length(call) && spirv_op(at) == OP_FUNCTION_PARAMETER; ++i) {
+    at += spv_length(at);
+    for (uint32_t i = 4; i < spv_length(call) && spv_op(at) == OP_FUNCTION_PARAMETER; ++i) {
         if (e->source[at[2]].writes > 0)
             changed = add_writes(e, call[i], 2) || changed;
-        at += spirv_length(at);
+        at += spv_length(at);
     }
     return changed;
 }
@@ -44,16 +44,16 @@ void evaluate_count_writes(struct evaluation *e)
     bool changed = true;
     for (bool first = true; changed; first = false) {
         changed = false;
-        for (uint32_t at = e->functions_at; at < e->count; at += spirv_length(e->words + at)) {
+        for (uint32_t at = e->functions_at; at < e->count; at += spv_length(e->words + at)) {
             const uint32_t *instruction = e->words + at;
-            uint32_t op = spirv_op(instruction);
+            uint32_t op = spv_op(instruction);
             if (op == OP_FUNCTION_CALL)
                 changed = count_call(e, instruction) || changed;
             else if (first && op == OP_STORE)
                 add_writes(e, instruction[1], op_at(e, instruction[1]) == OP_ACCESS_CHAIN ? 2 : 1);
             else if (first && op >= OP_ATOMIC_LOAD && op <= OP_ATOMIC_XOR)
                 add_writes(e, instruction[op == OP_ATOMIC_STORE ? 1 : 3], 2);
-            else if (first && op == OP_VARIABLE && spirv_length(instruction) > 4)
+            else if (first && op == OP_VARIABLE && spv_length(instruction) > 4)
                 add_writes(e, instruction[2], 1);
         }
     }
@@ -74,7 +74,7 @@ static uint32_t held_by(const struct evaluation *e, uint32_t pointer)
 /* A part of a value that is known, in place of a load of that part. */
 static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t *chain)
 {
-    uint32_t whole = held_by(e, chain[3]), length = spirv_length(chain);
+    uint32_t whole = held_by(e, chain[3]), length = spv_length(chain);
     if (!whole)
         return false;
     for (uint32_t i = 4; i < length; ++i) {
@@ -82,7 +82,7 @@ static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t
             return false;
     }
     uint32_t result = evaluate_result(e, load);
-    evaluate_push(e, &e->body, spirv_head(OP_COMPOSITE_EXTRACT, length));
+    evaluate_push(e, &e->body, spv_head(OP_COMPOSITE_EXTRACT, length));
     evaluate_push(e, &e->body, load[1]);
     evaluate_push(e, &e->body, result);
     evaluate_push(e, &e->body, whole);
@@ -128,7 +128,7 @@ void evaluate_store(struct evaluation *e, const uint32_t *store)
 static bool is_shared(struct evaluation *e, const uint32_t *call, uint32_t argument)
 {
     uint32_t base = e->results[evaluate_id(e, call[argument])].base;
-    for (uint32_t i = 4; i < spirv_length(call); ++i) {
+    for (uint32_t i = 4; i < spv_length(call); ++i) {
         if (i != argument && e->results[evaluate_id(e, call[i])].base == base)
             return true;
     }
@@ -138,9 +138,9 @@ static bool is_shared(struct evaluation *e, const uint32_t *call, uint32_t argum
 void evaluate_bind_parameters(struct evaluation *e, const uint32_t *call, uint32_t function_at)
 {
     const uint32_t *at = e->words + function_at;
-    at += spirv_length(at);
-    for (uint32_t i = 4; i < spirv_length(call); ++i) {
-        if (spirv_op(at) != OP_FUNCTION_PARAMETER) {
+    at += spv_length(at);
+    for (uint32_t i = 4; i < spv_length(call); ++i) {
+        if (spv_op(at) != OP_FUNCTION_PARAMETER) {
             e->failed = true;
             return;
         }
@@ -150,6 +150,6 @@ void evaluate_bind_parameters(struct evaluation *e, const uint32_t *call, uint32
             held = held_by(e, call[i]);
         parameter->to = to;
         parameter->holds = held;
-        at += spirv_length(at);
+        at += spv_length(at);
     }
 }

@@ -9,12 +9,12 @@
 /* Marks as live all ids that an instruction names. True: one of them was not live before. */
 static bool use(struct evaluation *e, const uint32_t *at)
 {
-    struct spirv_shape shape = spirv_shape(spirv_op(at));
+    struct spirv_shape shape = spirv_shape(spv_op(at));
     uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
     bool changed = false;
     if (shape.result)
         e->results[at[1]].live = true;
-    for (uint32_t i = head; i < spirv_length(at); ++i) {
+    for (uint32_t i = head; i < spv_length(at); ++i) {
         if (!spirv_operand_is_id(shape, i - head) || e->results[at[i]].live)
             continue;
         e->results[at[i]].live = true;
@@ -25,7 +25,7 @@ static bool use(struct evaluation *e, const uint32_t *at)
 
 static bool is_wanted(const struct evaluation *e, const uint32_t *at)
 {
-    uint32_t op = spirv_op(at);
+    uint32_t op = spv_op(at);
     struct spirv_shape shape = spirv_shape(op);
     if (op == OP_NOP)
         return false;
@@ -40,14 +40,13 @@ static bool mark_body(struct evaluation *e)
 {
     uint32_t *at = NULL, count = 0, capacity = 0;
     bool fine = true, changed = true;
-    for (uint32_t word = 0; fine && word < e->body.count;
-         word += spirv_length(e->body.words + word))
+    for (uint32_t word = 0; fine && word < e->body.count; word += spv_length(e->body.words + word))
         fine = ARRAY_PUSH(at, count, capacity, word);
     while (fine && changed) {
         changed = false;
         for (uint32_t i = count; i-- > 0;) {
             const uint32_t *instruction = e->body.words + at[i];
-            if (spirv_op(instruction) != OP_LABEL && is_wanted(e, instruction))
+            if (spv_op(instruction) != OP_LABEL && is_wanted(e, instruction))
                 changed = use(e, instruction) || changed;
         }
     }
@@ -59,9 +58,9 @@ static bool mark_body(struct evaluation *e)
    made of, besides its own and its type's. */
 static void find_parts(const uint32_t *at, uint32_t *first, uint32_t *last)
 {
-    uint32_t op = spirv_op(at);
+    uint32_t op = spv_op(at);
     *first = 2;
-    *last = spirv_length(at);
+    *last = spv_length(at);
     if (op < OP_TYPE_VOID || op > OP_TYPE_FUNCTION)
         *first = op == OP_VARIABLE ? 4 : op == OP_CONSTANT_COMPOSITE ? 3 : *last;
     else if (op == OP_TYPE_BOOL || op == OP_TYPE_INT || op == OP_TYPE_FLOAT)
@@ -77,11 +76,11 @@ static void find_parts(const uint32_t *at, uint32_t *first, uint32_t *last)
 static void mark_globals(struct evaluation *e)
 {
     uint32_t *at = NULL, count = 0, capacity = 0;
-    for (uint32_t word = 0; word < e->globals.count; word += spirv_length(e->globals.words + word))
+    for (uint32_t word = 0; word < e->globals.count; word += spv_length(e->globals.words + word))
         e->failed = !ARRAY_PUSH(at, count, capacity, word) || e->failed;
     for (uint32_t i = count; !e->failed && i-- > 0;) {
         const uint32_t *instruction = e->globals.words + at[i];
-        uint32_t op = spirv_op(instruction), first, last;
+        uint32_t op = spv_op(instruction), first, last;
         bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
         if (!e->results[instruction[is_type ? 1 : 2]].live)
             continue;
@@ -105,7 +104,7 @@ static void put(struct evaluation *e, struct word_list *out, const uint32_t *wor
 /* Writes the entry point with only those interface variables that are live. */
 static void put_entry_point(struct evaluation *e, struct word_list *out, const uint32_t *at)
 {
-    uint32_t begin = out->count, i = 3, length = spirv_length(at);
+    uint32_t begin = out->count, i = 3, length = spv_length(at);
     while (i < length &&
            at[i] >> 24 != 0) /* the name ends with a zero byte, in the last place too */
         ++i;
@@ -115,17 +114,16 @@ static void put_entry_point(struct evaluation *e, struct word_list *out, const u
             evaluate_push(e, out, at[i]);
     }
     if (!e->failed)
-        out->words[begin] = spirv_head(OP_ENTRY_POINT, out->count - begin);
+        out->words[begin] = spv_head(OP_ENTRY_POINT, out->count - begin);
 }
 
 /* Whether integers of 64 bits are left. */
 static bool has_wide_integers(const struct evaluation *e)
 {
     bool found = false;
-    for (uint32_t word = 0; word < e->globals.count;
-         word += spirv_length(e->globals.words + word)) {
+    for (uint32_t word = 0; word < e->globals.count; word += spv_length(e->globals.words + word)) {
         const uint32_t *at = e->globals.words + word;
-        found = found || (spirv_op(at) == OP_TYPE_INT && at[2] == 64 && e->results[at[1]].live);
+        found = found || (spv_op(at) == OP_TYPE_INT && at[2] == 64 && e->results[at[1]].live);
     }
     return found;
 }
@@ -135,24 +133,24 @@ static bool has_wide_integers(const struct evaluation *e)
 static void put_head(struct evaluation *e, struct word_list *out)
 {
     bool wide = has_wide_integers(e);
-    put(e, out, e->words, SPIRV_HEADER_WORDS);
-    for (uint32_t word = SPIRV_HEADER_WORDS; word < e->functions_at;
-         word += spirv_length(e->words + word)) {
+    put(e, out, e->words, SPV_HEADER_WORDS);
+    for (uint32_t word = SPV_HEADER_WORDS; word < e->functions_at;
+         word += spv_length(e->words + word)) {
         const uint32_t *at = e->words + word;
-        uint32_t op = spirv_op(at);
+        uint32_t op = spv_op(at);
         bool decorates = op == OP_DECORATE || op == OP_MEMBER_DECORATE;
         bool of_live = decorates && e->source[at[1]].at < e->functions_at && e->results[at[1]].live;
         if (op == OP_ENTRY_POINT)
             put_entry_point(e, out, at);
         else if ((op == OP_CAPABILITY &&
-                  (wide || spirv_length(at) != 2 || at[1] != CAPABILITY_INT64)) ||
+                  (wide || spv_length(at) != 2 || at[1] != CAPABILITY_INT64)) ||
                  op == OP_EXTENSION || op == OP_EXT_INST_IMPORT || op == OP_MEMORY_MODEL ||
                  op == OP_EXECUTION_MODE ||
                  (of_live && !(op == OP_DECORATE && at[2] == DECORATION_SPEC_ID)))
-            put(e, out, at, spirv_length(at));
+            put(e, out, at, spv_length(at));
     }
     for (uint32_t id = e->source_count; id < e->result_count; ++id) {
-        const uint32_t exact[] = {spirv_head(OP_DECORATE, 3), id, DECORATION_NO_CONTRACTION};
+        const uint32_t exact[] = {spv_head(OP_DECORATE, 3), id, DECORATION_NO_CONTRACTION};
         if (e->results[id].live && e->results[id].exact)
             put(e, out, exact, 3);
     }
@@ -160,26 +158,26 @@ static void put_head(struct evaluation *e, struct word_list *out)
 
 static void put_live(struct evaluation *e, struct word_list *out, const struct word_list *list)
 {
-    for (uint32_t word = 0; word < list->count; word += spirv_length(list->words + word)) {
+    for (uint32_t word = 0; word < list->count; word += spv_length(list->words + word)) {
         const uint32_t *at = list->words + word;
-        uint32_t op = spirv_op(at);
+        uint32_t op = spv_op(at);
         bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
         if (e->results[at[is_type ? 1 : 2]].live)
-            put(e, out, at, spirv_length(at));
+            put(e, out, at, spv_length(at));
     }
 }
 
 static void put_body(struct evaluation *e, struct word_list *out)
 {
-    for (uint32_t word = 0; word < e->body.count; word += spirv_length(e->body.words + word)) {
+    for (uint32_t word = 0; word < e->body.count; word += spv_length(e->body.words + word)) {
         uint32_t *at = e->body.words + word;
         if (!is_wanted(e, at))
             continue;
-        for (uint32_t i = 4; spirv_op(at) == OP_PHI && i < spirv_length(at); i += 2) {
+        for (uint32_t i = 4; spv_op(at) == OP_PHI && i < spv_length(at); i += 2) {
             while (e->results[at[i]].same_as)
                 at[i] = e->results[at[i]].same_as;
         }
-        put(e, out, at, spirv_length(at));
+        put(e, out, at, spv_length(at));
     }
 }
 
@@ -188,12 +186,12 @@ static void mark_roots(struct evaluation *e, const uint32_t *function)
 {
     e->results[function[1]].live = true;
     e->results[function[4]].live = true;
-    for (uint32_t word = SPIRV_HEADER_WORDS; word < e->functions_at;
-         word += spirv_length(e->words + word)) {
+    for (uint32_t word = SPV_HEADER_WORDS; word < e->functions_at;
+         word += spv_length(e->words + word)) {
         const uint32_t *at = e->words + word;
-        uint32_t id = spirv_op(at) == OP_DECORATE ? at[1] : 0;
+        uint32_t id = spv_op(at) == OP_DECORATE ? at[1] : 0;
         if (id && at[2] == DECORATION_BUILTIN && e->source[id].at &&
-            spirv_op(e->words + e->source[id].at) != OP_VARIABLE)
+            spv_op(e->words + e->source[id].at) != OP_VARIABLE)
             e->results[id].live = true;
     }
 }
@@ -218,13 +216,13 @@ static void renumber(struct renumbering *r, uint32_t *at, uint32_t first, uint32
    belongs to the function. */
 static bool renumber_front(struct renumbering *r, uint32_t *at)
 {
-    uint32_t op = spirv_op(at), first, last;
+    uint32_t op = spv_op(at), first, last;
     bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
     if (op == OP_ENTRY_POINT) {
         for (first = 3; at[first] >> 24 != 0;)
             ++first; /* its name */
         renumber(r, at, 2, 3);
-        renumber(r, at, first + 1, spirv_length(at));
+        renumber(r, at, first + 1, spv_length(at));
     } else if (op == OP_EXT_INST_IMPORT || op == OP_EXECUTION_MODE || op == OP_DECORATE ||
                op == OP_MEMBER_DECORATE) {
         renumber(r, at, 1, 2);
@@ -240,7 +238,7 @@ static bool renumber_front(struct renumbering *r, uint32_t *at)
 
 static void renumber_function(struct renumbering *r, uint32_t *at)
 {
-    uint32_t op = spirv_op(at);
+    uint32_t op = spv_op(at);
     struct spirv_shape shape = spirv_shape(op);
     uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
     if (op == OP_FUNCTION)
@@ -249,7 +247,7 @@ static void renumber_function(struct renumbering *r, uint32_t *at)
         renumber(r, at, 1, 3);
     if (op == OP_LABEL)
         renumber(r, at, 1, 2);
-    for (uint32_t i = head; i < spirv_length(at); ++i) {
+    for (uint32_t i = head; i < spv_length(at); ++i) {
         if (spirv_operand_is_id(shape, i - head))
             renumber(r, at, i, i + 1);
     }
@@ -264,8 +262,8 @@ static void renumber_ids(struct evaluation *e, struct word_list *out)
         e->failed = true;
         return;
     }
-    for (uint32_t word = SPIRV_HEADER_WORDS; word < out->count;
-         word += spirv_length(out->words + word)) {
+    for (uint32_t word = SPV_HEADER_WORDS; word < out->count;
+         word += spv_length(out->words + word)) {
         if (!renumber_front(&r, out->words + word))
             renumber_function(&r, out->words + word);
     }
@@ -276,14 +274,14 @@ static void renumber_ids(struct evaluation *e, struct word_list *out)
 uint32_t *evaluate_write(struct evaluation *e, size_t *word_count)
 {
     const uint32_t *function = e->words + e->source[e->entry].at;
-    const uint32_t label[] = {spirv_head(OP_LABEL, 2), e->first_label};
-    const uint32_t end = spirv_head(OP_FUNCTION_END, 1);
+    const uint32_t label[] = {spv_head(OP_LABEL, 2), e->first_label};
+    const uint32_t end = spv_head(OP_FUNCTION_END, 1);
     struct word_list out = {0};
     mark_roots(e, function);
     if (!mark_body(e))
         return NULL;
     for (uint32_t word = 0; word < e->variables.count;
-         word += spirv_length(e->variables.words + word)) {
+         word += spv_length(e->variables.words + word)) {
         const uint32_t *at = e->variables.words + word;
         if (e->results[at[2]].live)
             e->results[at[1]].live = true;
@@ -291,7 +289,7 @@ uint32_t *evaluate_write(struct evaluation *e, size_t *word_count)
     mark_globals(e);
     put_head(e, &out);
     put_live(e, &out, &e->globals);
-    put(e, &out, function, spirv_length(function));
+    put(e, &out, function, spv_length(function));
     put(e, &out, label, 2);
     put_live(e, &out, &e->variables);
     put_body(e, &out);

@@ -20,7 +20,7 @@ static uint32_t min_words(uint32_t op)
 static bool read_instruction(struct evaluation *e, uint32_t at, uint32_t *function, uint32_t *label)
 {
     const uint32_t *words = e->words + at;
-    uint32_t op = spirv_op(words), length = spirv_length(words);
+    uint32_t op = spv_op(words), length = spv_length(words);
     struct spirv_shape shape = spirv_shape(op);
     uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS, id = 0;
     if (length < min_words(op))
@@ -61,7 +61,7 @@ static bool is_head(uint32_t op)
 static bool read_global(struct evaluation *e, uint32_t at, uint32_t *spec_of)
 {
     const uint32_t *words = e->words + at;
-    uint32_t op = spirv_op(words), length = spirv_length(words), id = 0;
+    uint32_t op = spv_op(words), length = spv_length(words), id = 0;
     if (op == OP_DECORATE || op == OP_MEMBER_DECORATE) {
         if (length < 3 || words[1] >= e->source_count)
             return false;
@@ -102,17 +102,17 @@ static bool read_global(struct evaluation *e, uint32_t at, uint32_t *spec_of)
 bool evaluate_read(struct evaluation *e, uint32_t *spec_of)
 {
     uint32_t function = 0, label = 0, last = OP_NOP;
-    for (uint32_t at = SPIRV_HEADER_WORDS; at < e->count; at += spirv_length(e->words + at)) {
-        uint32_t length = spirv_length(e->words + at);
+    for (uint32_t at = SPV_HEADER_WORDS; at < e->count; at += spv_length(e->words + at)) {
+        uint32_t length = spv_length(e->words + at);
         if (length == 0 || length > e->count - at)
             return false;
-        last = spirv_op(e->words + at);
-        if (!e->functions_at && spirv_op(e->words + at) == OP_FUNCTION)
+        last = spv_op(e->words + at);
+        if (!e->functions_at && spv_op(e->words + at) == OP_FUNCTION)
             e->functions_at = at;
         if (!(e->functions_at ? read_instruction(e, at, &function, &label)
                               : read_global(e, at, spec_of)))
             return false;
     }
     return last == OP_FUNCTION_END && e->entry &&
-           spirv_op(e->words + e->source[e->entry].at) == OP_FUNCTION;
+           spv_op(e->words + e->source[e->entry].at) == OP_FUNCTION;
 }

@@ -11,12 +11,12 @@ enum { BINDINGS_MAX = 64 };
 /* Bits of the bindings whose variables the instruction names. */
 static uint64_t named_bindings(const uint32_t *at, const uint8_t *binding_of, uint32_t bound)
 {
-    struct spirv_shape shape = spirv_shape(spirv_op(at));
+    struct spirv_shape shape = spirv_shape(spv_op(at));
     uint64_t bits = 0;
-    if (spirv_op(at) == OP_FUNCTION_CALL)
+    if (spv_op(at) == OP_FUNCTION_CALL)
         shape = (struct spirv_shape){.result = true, .ids = UINT32_MAX};
     uint32_t head = shape.result ? HEAD_WORDS_RESULT : HEAD_WORDS;
-    for (uint32_t i = head; i < spirv_length(at); ++i) {
+    for (uint32_t i = head; i < spv_length(at); ++i) {
         if (spirv_operand_is_id(shape, i - head) && at[i] < bound && binding_of[at[i]])
             bits |= UINT64_C(1) << (binding_of[at[i]] - 1);
     }
@@ -28,9 +28,9 @@ static bool inspect_words(const uint32_t *words, size_t word_count, uint8_t *bin
                           struct spirv_info *out)
 {
     bool in_function = false;
-    for (size_t at = SPIRV_HEADER_WORDS; at < word_count; at += spirv_length(words + at)) {
+    for (size_t at = SPV_HEADER_WORDS; at < word_count; at += spv_length(words + at)) {
         const uint32_t *instruction = words + at;
-        uint32_t length = spirv_length(instruction), op = spirv_op(instruction);
+        uint32_t length = spv_length(instruction), op = spv_op(instruction);
         if (length == 0 || length > word_count - at)
             return false;
         if (op == OP_DECORATE && length == 4 && instruction[2] == DECORATION_BINDING &&
@@ -48,7 +48,7 @@ static bool inspect_words(const uint32_t *words, size_t word_count, uint8_t *bin
 bool spirv_inspect(const uint32_t *words, size_t word_count, struct spirv_info *out)
 {
     *out = (struct spirv_info){0};
-    if (word_count <= SPIRV_HEADER_WORDS || words[0] != SPIRV_MAGIC || words[3] == 0 ||
+    if (word_count <= SPV_HEADER_WORDS || words[0] != SPV_MAGIC || words[3] == 0 ||
         words[3] > SPIRV_BOUND_MAX)
         return false;
     uint8_t *binding_of = array_alloc_zeroed(words[3], 1);

@@ -18,9 +18,9 @@ static struct extent extent_of(const struct spv_module *m, uint32_t type)
     struct extent extent = {0};
     if (!def || spv_length(def) < 4)
         return extent;
-    if (spv_op(def) == SPV_TYPE_VECTOR || spv_op(def) == SPV_TYPE_MATRIX)
+    if (spv_op(def) == OP_TYPE_VECTOR || spv_op(def) == OP_TYPE_MATRIX)
         return (struct extent){.fixed = true, .count = def[3]};
-    if (spv_op(def) != SPV_TYPE_ARRAY)
+    if (spv_op(def) != OP_TYPE_ARRAY)
         return extent;
     extent.fixed = spv_constant_value(m, def[3], &extent.count);
     extent.count_id = def[3];
@@ -34,10 +34,10 @@ static uint32_t as_uint(struct spv_module *m, uint32_t id)
     if (type == u)
         return id;
     const uint32_t *def = spv_def(m, type);
-    if (!def || spv_op(def) != SPV_TYPE_INT || def[2] != 32)
+    if (!def || spv_op(def) != OP_TYPE_INT || def[2] != 32)
         return 0;
     uint32_t cast = m->next_id++;
-    SPV_EMIT(m, SPV_BITCAST, u, cast, id);
+    SPV_EMIT(m, OP_BITCAST, u, cast, id);
     return cast;
 }
 
@@ -48,8 +48,8 @@ static uint32_t last_of(struct spv_module *m, struct extent extent)
         return spv_constant(m, u, extent.count - 1);
     uint32_t count = extent.is_uint ? extent.count_id : as_uint(m, extent.count_id),
              some = m->next_id++, last = m->next_id++;
-    SPV_EMIT(m, SPV_EXT_INST, u, some, m->glsl, SPV_GLSL_UMAX, count, spv_constant(m, u, 1));
-    SPV_EMIT(m, SPV_I_SUB, u, last, some, spv_constant(m, u, 1));
+    SPV_EMIT(m, OP_EXT_INST, u, some, m->glsl, GLSL_UMAX, count, spv_constant(m, u, 1));
+    SPV_EMIT(m, OP_I_SUB, u, last, some, spv_constant(m, u, 1));
     return last;
 }
 
@@ -66,7 +66,7 @@ static uint32_t clamp(struct spv_module *m, uint32_t index, struct extent extent
         return 0;
     }
     uint32_t last = last_of(m, extent), id = m->next_id++;
-    SPV_EMIT(m, SPV_EXT_INST, u, id, m->glsl, SPV_GLSL_UMIN, from, last);
+    SPV_EMIT(m, OP_EXT_INST, u, id, m->glsl, GLSL_UMIN, from, last);
     return id;
 }
 
@@ -77,12 +77,12 @@ static struct extent extent_of_buffer(struct spv_module *m, const uint32_t *chai
     struct extent extent = {0};
     const uint32_t *pointer = spv_def(m, spv_type_of(m, chain[3]));
     const uint32_t *block = pointer ? spv_def(m, pointer[3]) : NULL;
-    if (depth != 1 || !block || spv_op(block) != SPV_TYPE_STRUCT ||
+    if (depth != 1 || !block || spv_op(block) != OP_TYPE_STRUCT ||
         !spv_constant_value(m, chain[4], &member))
         return extent;
     extent.count_id = m->next_id++;
     extent.is_uint = true;
-    SPV_EMIT(m, SPV_ARRAY_LENGTH, u, extent.count_id, chain[3], member);
+    SPV_EMIT(m, OP_ARRAY_LENGTH, u, extent.count_id, chain[3], member);
     return extent;
 }
 
@@ -92,7 +92,7 @@ static uint32_t element_of(const struct spv_module *m, uint32_t type, uint32_t i
     uint32_t member;
     if (!def || spv_length(def) < 3)
         return 0;
-    if (spv_op(def) != SPV_TYPE_STRUCT)
+    if (spv_op(def) != OP_TYPE_STRUCT)
         return def[2];
     return spv_constant_value(m, index, &member) && member < spv_length(def) - 2 ? def[2 + member]
                                                                                  : 0;
@@ -102,7 +102,7 @@ static bool take_chain(struct spv_module *m, const uint32_t *words, const char *
 {
     uint32_t length = spv_length(words), out[CHAIN_MAX];
     const uint32_t *pointer = spv_def(m, spv_type_of(m, words[3]));
-    if (length > CHAIN_MAX || !pointer || spv_op(pointer) != SPV_TYPE_POINTER) {
+    if (length > CHAIN_MAX || !pointer || spv_op(pointer) != OP_TYPE_POINTER) {
         *why = "an index of a kind that is not known here";
         return false;
     }
@@ -111,9 +111,9 @@ static bool take_chain(struct spv_module *m, const uint32_t *words, const char *
     for (uint32_t i = 4; i < length && !*why; ++i) {
         const uint32_t *def = spv_def(m, type);
         uint32_t op = def ? spv_op(def) : 0;
-        if (op == SPV_TYPE_RUNTIME_ARRAY)
+        if (op == OP_TYPE_RUNTIME_ARRAY)
             out[i] = clamp(m, words[i], extent_of_buffer(m, words, i - 4), why);
-        else if (op != SPV_TYPE_STRUCT)
+        else if (op != OP_TYPE_STRUCT)
             out[i] = clamp(m, words[i], extent_of(m, type), why);
         type = element_of(m, type, words[i]);
     }
@@ -126,7 +126,7 @@ static bool take_chain(struct spv_module *m, const uint32_t *words, const char *
 static bool take_vector(struct spv_module *m, const uint32_t *words, const char **why)
 {
     uint32_t length = spv_length(words), out[6];
-    bool extracts = spv_op(words) == SPV_VECTOR_EXTRACT_DYNAMIC;
+    bool extracts = spv_op(words) == OP_VECTOR_EXTRACT_DYNAMIC;
     if (length != (extracts ? 5u : 6u)) {
         *why = "an index of a kind that is not known here";
         return false;
@@ -143,11 +143,11 @@ static bool take_vector(struct spv_module *m, const uint32_t *words, const char 
 bool bounds_take(struct spv_module *m, const uint32_t *words, const char **why)
 {
     switch (spv_op(words)) {
-    case SPV_ACCESS_CHAIN:
-    case SPV_IN_BOUNDS_ACCESS_CHAIN:
+    case OP_ACCESS_CHAIN:
+    case OP_IN_BOUNDS_ACCESS_CHAIN:
         return take_chain(m, words, why);
-    case SPV_VECTOR_EXTRACT_DYNAMIC:
-    case SPV_VECTOR_INSERT_DYNAMIC:
+    case OP_VECTOR_EXTRACT_DYNAMIC:
+    case OP_VECTOR_INSERT_DYNAMIC:
         return take_vector(m, words, why);
     default:
         return false;

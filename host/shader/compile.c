@@ -10,11 +10,11 @@
 #include "base/array.h"
 #include "base/foreign.h"
 #include "base/keep.h"
+#include "base/spirv.h"
 #include "base/text.h"
 #include "shader/expand.h"
 #include "shader/glslang.h"
 #include "shader/scan.h"
-#include "shader/spirv.h"
 #include "sources.h"
 
 enum { REPLY_BYTES = 64 << 20, WHO_BYTES = 256 };

@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shader/spirv.h"
+#include "base/spirv.h"
 
 static bool is_float_operation(uint32_t op)
 {
-    return op == SPV_F_NEGATE || op == SPV_F_ADD || op == SPV_F_SUB || op == SPV_F_MUL ||
-           op == SPV_F_DIV || op == SPV_F_REM || op == SPV_F_MOD ||
-           (op >= SPV_VECTOR_TIMES_SCALAR && op <= SPV_DOT);
+    return op == OP_F_NEGATE || op == OP_F_ADD || op == OP_F_SUB || op == OP_F_MUL ||
+           op == OP_F_DIV || op == OP_F_REM || op == OP_F_MOD ||
+           (op >= OP_VECTOR_TIMES_SCALAR && op <= OP_DOT);
 }
 
 struct scan {
@@ -24,9 +24,9 @@ static bool scan_module(const uint32_t *words, size_t count, struct scan *scan)
         uint32_t length = spv_length(words + at), op = spv_op(words + at);
         if (length == 0 || length > count - at)
             return false;
-        if (op == SPV_TYPE_VOID && scan->types_at == 0)
+        if (op == OP_TYPE_VOID && scan->types_at == 0)
             scan->types_at = at;
-        if (op == SPV_DECORATE && length == 3 && words[at + 2] == SPV_DECORATION_NO_CONTRACTION &&
+        if (op == OP_DECORATE && length == 3 && words[at + 2] == DECORATION_NO_CONTRACTION &&
             words[at + 1] < words[SPV_BOUND_AT])
             scan->marked[words[at + 1]] = true;
         if (!is_float_operation(op))
@@ -45,9 +45,9 @@ static size_t put_decorations(uint32_t *out, const uint32_t *words, size_t count
     for (size_t at = SPV_HEADER_WORDS; at < count; at += spv_length(words + at)) {
         if (!is_float_operation(spv_op(words + at)) || marked[words[at + 2]])
             continue;
-        out[used++] = spv_head(SPV_DECORATE, 3);
+        out[used++] = spv_head(OP_DECORATE, 3);
         out[used++] = words[at + 2];
-        out[used++] = SPV_DECORATION_NO_CONTRACTION;
+        out[used++] = DECORATION_NO_CONTRACTION;
     }
     return used;
 }

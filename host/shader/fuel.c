@@ -7,10 +7,10 @@ static void put_number(struct spv_module *m, uint32_t number)
 {
     uint32_t u = spv_uint(m), zero = spv_constant(m, u, 0);
     uint32_t before = m->next_id++, first = m->next_id++, after = m->next_id++;
-    SPV_EMIT(m, SPV_LOAD, u, before, m->fuel_loop);
-    SPV_EMIT(m, SPV_I_EQUAL, spv_bool(m), first, before, zero);
-    SPV_EMIT(m, SPV_SELECT, u, after, first, spv_constant(m, u, number), before);
-    SPV_EMIT(m, SPV_STORE, m->fuel_loop, after);
+    SPV_EMIT(m, OP_LOAD, u, before, m->fuel_loop);
+    SPV_EMIT(m, OP_I_EQUAL, spv_bool(m), first, before, zero);
+    SPV_EMIT(m, OP_SELECT, u, after, first, spv_constant(m, u, number), before);
+    SPV_EMIT(m, OP_STORE, m->fuel_loop, after);
 }
 
 /* Opens the loop's guard behind its header: a block that leaves the loop where there is no fuel,
@@ -22,19 +22,19 @@ static void put_guard(struct fuel *fuel, struct spv_module *m)
              less = m->next_id++;
     loop->out = m->next_id++;
     loop->in = m->next_id++;
-    SPV_EMIT(m, SPV_BRANCH, guard);
-    SPV_EMIT(m, SPV_LABEL, guard);
-    SPV_EMIT(m, SPV_LOAD, u, left, m->fuel);
-    SPV_EMIT(m, SPV_I_EQUAL, spv_bool(m), none, left, spv_constant(m, u, 0));
-    SPV_EMIT(m, SPV_SELECTION_MERGE, loop->in, 0);
-    SPV_EMIT(m, SPV_BRANCH_CONDITIONAL, none, loop->out, loop->in);
-    SPV_EMIT(m, SPV_LABEL, loop->out);
+    SPV_EMIT(m, OP_BRANCH, guard);
+    SPV_EMIT(m, OP_LABEL, guard);
+    SPV_EMIT(m, OP_LOAD, u, left, m->fuel);
+    SPV_EMIT(m, OP_I_EQUAL, spv_bool(m), none, left, spv_constant(m, u, 0));
+    SPV_EMIT(m, OP_SELECTION_MERGE, loop->in, 0);
+    SPV_EMIT(m, OP_BRANCH_CONDITIONAL, none, loop->out, loop->in);
+    SPV_EMIT(m, OP_LABEL, loop->out);
     if (m->fuel_loop)
         put_number(m, fuel->count);
-    SPV_EMIT(m, SPV_BRANCH, loop->merge);
-    SPV_EMIT(m, SPV_LABEL, loop->in);
-    SPV_EMIT(m, SPV_I_SUB, u, less, left, spv_constant(m, u, 1));
-    SPV_EMIT(m, SPV_STORE, m->fuel, less);
+    SPV_EMIT(m, OP_BRANCH, loop->merge);
+    SPV_EMIT(m, OP_LABEL, loop->in);
+    SPV_EMIT(m, OP_I_SUB, u, less, left, spv_constant(m, u, 1));
+    SPV_EMIT(m, OP_STORE, m->fuel, less);
 }
 
 static void begin_loop(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
@@ -71,21 +71,21 @@ static void put_phi(const struct fuel *fuel, struct spv_module *m, const uint32_
 bool fuel_take(struct fuel *fuel, struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
-    if (fuel->waits && op != SPV_LINE && op != SPV_NO_LINE) {
+    if (fuel->waits && op != OP_LINE && op != OP_NO_LINE) {
         fuel->waits = false;
         put_guard(fuel, m);
     }
     switch (op) {
-    case SPV_FUNCTION:
+    case OP_FUNCTION:
         fuel->block_count = 0;
         return false;
-    case SPV_LABEL:
+    case OP_LABEL:
         fuel->label = words[1];
         return false;
-    case SPV_LOOP_MERGE:
+    case OP_LOOP_MERGE:
         begin_loop(fuel, m, words);
         return true;
-    case SPV_PHI:
+    case OP_PHI:
         put_phi(fuel, m, words);
         return true;
     default:

@@ -102,7 +102,7 @@ void glslang_warm(void)
 
 static bool is_counted(uint32_t op)
 {
-    return op != SPV_LINE && op != SPV_NO_LINE && op != SPV_LABEL;
+    return op != OP_LINE && op != OP_NO_LINE && op != OP_LABEL;
 }
 
 /* Variables of the user's begin as 0, so that the same text gives the same bytes. They are written
@@ -110,14 +110,14 @@ static bool is_counted(uint32_t op)
 static void begin_variables(struct compilation *c, struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
-    if (op == SPV_VARIABLE && m->user_function && spv_length(words) == 4)
+    if (op == OP_VARIABLE && m->user_function && spv_length(words) == 4)
         spv_put(m, &c->unset, words + 1, 2);
-    if (op == SPV_VARIABLE || op == SPV_LINE || op == SPV_NO_LINE)
+    if (op == OP_VARIABLE || op == OP_LINE || op == OP_NO_LINE)
         return;
     for (uint32_t i = 0; i < c->unset.count; i += 2) {
         const uint32_t *pointer = spv_def(m, c->unset.words[i]);
         if (pointer && spv_length(pointer) == 4)
-            SPV_EMIT(m, SPV_STORE, c->unset.words[i + 1], spv_null(m, pointer[3]));
+            SPV_EMIT(m, OP_STORE, c->unset.words[i + 1], spv_null(m, pointer[3]));
     }
     c->unset.count = 0;
 }
@@ -139,9 +139,9 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
     uint32_t op = spv_op(words);
     const char *why = user ? refuse_instruction(m, words) : NULL;
     char called[SHADER_REASON_BYTES];
-    if (!why && user && op == SPV_VARIABLE)
+    if (!why && user && op == OP_VARIABLE)
         why = refuse_variable(&c->variables, m, words);
-    if (!why && m->user_function && op == SPV_FUNCTION_CALL && refuse_call(m, words, called))
+    if (!why && m->user_function && op == OP_FUNCTION_CALL && refuse_call(m, words, called))
         why = called;
     if (why)
         report(c, m->place, why);
@@ -166,7 +166,7 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
 static void check_global(struct compilation *c, struct spv_module *m, const uint32_t *name)
 {
     const uint32_t *variable = spv_def(m, name[1]);
-    if (!variable || spv_op(variable) != SPV_VARIABLE || variable[3] != SPV_STORAGE_PRIVATE)
+    if (!variable || spv_op(variable) != OP_VARIABLE || variable[3] != STORAGE_PRIVATE)
         return;
     struct spv_place place = {UINT32_MAX, 0};
     if (!messages_find_word(c->question, (const char *)(name + 2), &place.file, &place.line))
@@ -184,7 +184,7 @@ static void check_module(struct compilation *c, struct spv_module *m)
     if (c->question->user_at == c->question->user_end)
         return;
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (spv_op(m->words + at) == SPV_NAME && spv_length(m->words + at) > 2)
+        if (spv_op(m->words + at) == OP_NAME && spv_length(m->words + at) > 2)
             check_global(c, m, m->words + at);
     }
     uint32_t capability = refuse_capability(m, &name);
@@ -259,7 +259,7 @@ static struct spv_words link_module(struct compilation *c, const struct spv_word
     c->answer.instructions = 0;
     bool functions = false;
     for (uint32_t at = SPV_HEADER_WORDS; at < out.count; at += spv_length(out.words + at)) {
-        functions = functions || spv_op(out.words + at) == SPV_FUNCTION;
+        functions = functions || spv_op(out.words + at) == OP_FUNCTION;
         c->answer.instructions += functions && is_counted(spv_op(out.words + at));
     }
     return out;

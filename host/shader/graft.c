@@ -34,7 +34,7 @@ static const char **read_names(const struct spv_module *m)
     for (size_t at = SPV_HEADER_WORDS; names && at < m->functions_at;
          at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        if (spv_op(words) == SPV_NAME && spv_length(words) > 2 && words[1] < m->bound &&
+        if (spv_op(words) == OP_NAME && spv_length(words) > 2 && words[1] < m->bound &&
             memchr(words + 2, 0, 4 * (size_t)(spv_length(words) - 2)))
             names[words[1]] = (const char *)(words + 2);
     }
@@ -52,7 +52,7 @@ static bool has_decoration(const struct spv_module *m, uint32_t id)
 {
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         uint32_t op = spv_op(m->words + at);
-        if ((op == SPV_DECORATE || op == SPV_MEMBER_DECORATE) && m->words[at + 1] == id)
+        if ((op == OP_DECORATE || op == OP_MEMBER_DECORATE) && m->words[at + 1] == id)
             return true;
     }
     return false;
@@ -72,7 +72,7 @@ static uint32_t find_same(const struct graft *g, const uint32_t *asked, uint32_t
                           const char *name)
 {
     const struct spv_module *base = &g->base;
-    bool record = spv_op(asked) == SPV_TYPE_STRUCT;
+    bool record = spv_op(asked) == OP_TYPE_STRUCT;
     for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
          at += spv_length(base->words + at)) {
         const uint32_t *words = base->words + at;

@@ -31,7 +31,7 @@ static void take_variable(struct link *l, const uint32_t *words)
     uint32_t own = words[2] == l->g.user.fuel        ? l->g.base.fuel
                    : words[2] == l->g.user.fuel_loop ? l->g.base.fuel_loop
                                                      : 0;
-    if (words[3] != SPV_STORAGE_PRIVATE) {
+    if (words[3] != STORAGE_PRIVATE) {
         l->g.why = "buffers and shared variables are whit's own";
     } else if (own) {
         l->g.ids[words[2]] = own;
@@ -49,14 +49,14 @@ static void take_globals(struct link *l)
          at += spv_length(user->words + at)) {
         const uint32_t *words = user->words + at;
         uint32_t op = spv_op(words), id = spv_result(user, words);
-        if (op == SPV_VARIABLE)
+        if (op == OP_VARIABLE)
             take_variable(l, words);
-        else if (op == SPV_EXT_INST_IMPORT)
+        else if (op == OP_EXT_INST_IMPORT)
             l->g.ids[id] = l->g.base.glsl;
-        else if (op >= SPV_SPEC_CONSTANT_TRUE && op <= SPV_SPEC_CONSTANT_OP)
+        else if (op >= OP_SPEC_CONSTANT_TRUE && op <= OP_SPEC_CONSTANT_OP)
             l->g.why = "specialization constants are whit's own";
         else if (id && !spv_is_remark(op))
-            graft_value(&l->g, words, id == words[1] && op <= SPV_TYPE_FUNCTION ? 1 : 2);
+            graft_value(&l->g, words, id == words[1] && op <= OP_TYPE_FUNCTION ? 1 : 2);
     }
 }
 
@@ -136,13 +136,13 @@ static bool is_taken(const struct link *l, const uint32_t *words)
 static bool is_long_switch(const struct spv_module *m, const uint32_t *words)
 {
     const uint32_t *type = spv_def(m, spv_type_of(m, words[1]));
-    return !type || spv_op(type) != SPV_TYPE_INT || type[2] != 32;
+    return !type || spv_op(type) != OP_TYPE_INT || type[2] != 32;
 }
 
 /* kernel/hook.comp calls everything, so that the compiler looks at it. */
 static bool is_call_of_all(const struct link *l, const uint32_t *words)
 {
-    return spv_op(words) == SPV_FUNCTION_CALL && words[3] < l->g.user.bound &&
+    return spv_op(words) == OP_FUNCTION_CALL && words[3] < l->g.user.bound &&
            graft_same_name(l->g.user_names[words[3]], "call_all(");
 }
 
@@ -156,7 +156,7 @@ static void map_functions(struct link *l)
         bool taken = is_taken(l, user->words + at);
         for (; at < end && !l->g.why && !l->g.base.failed; at += spv_length(user->words + at)) {
             const uint32_t *words = user->words + at;
-            if (spv_op(words) == SPV_SWITCH && is_long_switch(user, words))
+            if (spv_op(words) == OP_SWITCH && is_long_switch(user, words))
                 l->g.why = "a switch is over integers of 32 bits";
             else if (taken && !spv_is_remark(spv_op(words)) && !is_call_of_all(l, words))
                 graft_put(&l->g, &l->mapped, words);
@@ -171,7 +171,7 @@ static void list_functions(struct link *l)
     const struct spv_module *base = &l->g.base;
     for (uint32_t at = 0, end; at < l->mapped.count; at = end) {
         end = at;
-        while (spv_op(l->mapped.words + end) != SPV_FUNCTION_END)
+        while (spv_op(l->mapped.words + end) != OP_FUNCTION_END)
             end += spv_length(l->mapped.words + end);
         end++;
         add_function(l, l->mapped.words[at + 2], l->mapped.words + at, end - at);
@@ -192,7 +192,7 @@ static void reach(struct link *l, uint32_t id)
         return;
     function->reached = true;
     for (uint32_t at = 0; at < function->count; at += spv_length(function->words + at)) {
-        if (spv_op(function->words + at) == SPV_FUNCTION_CALL)
+        if (spv_op(function->words + at) == OP_FUNCTION_CALL)
             reach(l, function->words[at + 3]);
     }
 }
@@ -202,7 +202,7 @@ static void reach_all(struct link *l)
     const struct spv_module *base = &l->g.base;
     for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
          at += spv_length(base->words + at)) {
-        if (spv_op(base->words + at) == SPV_ENTRY_POINT)
+        if (spv_op(base->words + at) == OP_ENTRY_POINT)
             reach(l, base->words[at + 2]);
     }
     for (size_t at = spv_next_function(base, base->functions_at); at < base->count;
@@ -222,7 +222,7 @@ static void reach_all(struct link *l)
 static bool has_capability(const struct spv_module *m, uint32_t capability)
 {
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (spv_op(m->words + at) == SPV_CAPABILITY && m->words[at + 1] == capability)
+        if (spv_op(m->words + at) == OP_CAPABILITY && m->words[at + 1] == capability)
             return true;
     }
     return false;
@@ -234,7 +234,7 @@ static void put_capabilities(struct link *l, struct spv_words *out)
     for (size_t at = SPV_HEADER_WORDS; at < user->functions_at;
          at += spv_length(user->words + at)) {
         const uint32_t *words = user->words + at;
-        if (spv_op(words) == SPV_CAPABILITY && !has_capability(&l->g.base, words[1]))
+        if (spv_op(words) == OP_CAPABILITY && !has_capability(&l->g.base, words[1]))
             spv_put(&l->g.base, out, words, 2);
     }
 }
@@ -247,11 +247,11 @@ static void put_globals(struct link *l, struct spv_words *out)
          at += spv_length(base->words + at)) {
         const uint32_t *words = base->words + at;
         uint32_t op = spv_op(words), length = spv_length(words), first = out->count;
-        bool decorates = op == SPV_DECORATE || op == SPV_MEMBER_DECORATE;
+        bool decorates = op == OP_DECORATE || op == OP_MEMBER_DECORATE;
         if (spv_is_remark(op) || (decorates && words[1] < base->bound && l->dropped[words[1]]))
             continue;
         spv_put(&l->g.base, out, words, length);
-        if (op != SPV_ENTRY_POINT || l->g.base.failed)
+        if (op != OP_ENTRY_POINT || l->g.base.failed)
             continue;
         spv_put(&l->g.base, out, l->variables, l->variable_count);
         if (!l->g.base.failed)

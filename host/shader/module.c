@@ -9,7 +9,7 @@ static const uint32_t WHIT_OWN = UINT32_MAX;
 
 static bool is_type(uint32_t op)
 {
-    return op >= SPV_TYPE_VOID && op <= SPV_TYPE_FUNCTION;
+    return op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
 }
 
 /* The result of an instruction; 0: it has none. What has a type has it in front of its result, and
@@ -17,11 +17,11 @@ static bool is_type(uint32_t op)
 uint32_t spv_result(const struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words), length = spv_length(words);
-    if ((is_type(op) || op == SPV_STRING || op == SPV_EXT_INST_IMPORT || op == SPV_LABEL) &&
+    if ((is_type(op) || op == OP_STRING || op == OP_EXT_INST_IMPORT || op == OP_LABEL) &&
         length >= 2)
         return words[1];
-    if (length < 3 || op == SPV_NAME || op == SPV_MEMBER_NAME || op == SPV_DECORATE ||
-        op == SPV_DECORATE + 1 || op == SPV_ENTRY_POINT || op == SPV_LINE)
+    if (length < 3 || op == OP_NAME || op == OP_MEMBER_NAME || op == OP_DECORATE ||
+        op == OP_DECORATE + 1 || op == OP_ENTRY_POINT || op == OP_LINE)
         return 0;
     const uint32_t *type = spv_def(m, words[1]);
     return type && is_type(spv_op(type)) ? words[2] : 0;
@@ -41,7 +41,7 @@ uint32_t spv_type_of(const struct spv_module *m, uint32_t id)
 bool spv_constant_value(const struct spv_module *m, uint32_t id, uint32_t *value)
 {
     const uint32_t *def = spv_def(m, id);
-    if (!def || spv_op(def) != SPV_CONSTANT || spv_length(def) != 4)
+    if (!def || spv_op(def) != OP_CONSTANT || spv_length(def) != 4)
         return false;
     *value = def[3];
     return true;
@@ -50,7 +50,7 @@ bool spv_constant_value(const struct spv_module *m, uint32_t id, uint32_t *value
 const char *spv_string(const struct spv_module *m, uint32_t id)
 {
     const uint32_t *def = spv_def(m, id);
-    if (!def || spv_op(def) != SPV_STRING)
+    if (!def || spv_op(def) != OP_STRING)
         return "";
     const char *text = (const char *)(def + 2);
     return memchr(text, 0, 4 * (size_t)(spv_length(def) - 2)) ? text : "";
@@ -60,7 +60,7 @@ const char *spv_name(const struct spv_module *m, uint32_t id)
 {
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        if (spv_op(words) == SPV_NAME && spv_length(words) > 2 && words[1] == id)
+        if (spv_op(words) == OP_NAME && spv_length(words) > 2 && words[1] == id)
             return (const char *)(words + 2);
     }
     return "";
@@ -77,7 +77,7 @@ static uint64_t usual_length(const struct spv_module *m, uint32_t id)
 {
     const uint32_t *def = spv_def(m, id);
     bool known = def && spv_length(def) == 4 &&
-                 (spv_op(def) == SPV_CONSTANT || spv_op(def) == SPV_SPEC_CONSTANT);
+                 (spv_op(def) == OP_CONSTANT || spv_op(def) == OP_SPEC_CONSTANT);
     return known ? def[3] : UINT64_MAX;
 }
 
@@ -88,17 +88,17 @@ uint64_t spv_size(const struct spv_module *m, uint32_t type)
     if (!def || spv_length(def) < 2)
         return UINT64_MAX;
     switch (spv_op(def)) {
-    case SPV_TYPE_BOOL:
+    case OP_TYPE_BOOL:
         return 4;
-    case SPV_TYPE_INT:
-    case SPV_TYPE_FLOAT:
+    case OP_TYPE_INT:
+    case OP_TYPE_FLOAT:
         return (def[2] + 7) / 8;
-    case SPV_TYPE_VECTOR:
-    case SPV_TYPE_MATRIX:
+    case OP_TYPE_VECTOR:
+    case OP_TYPE_MATRIX:
         return times(spv_size(m, def[2]), def[3]);
-    case SPV_TYPE_ARRAY:
+    case OP_TYPE_ARRAY:
         return times(spv_size(m, def[2]), usual_length(m, def[3]));
-    case SPV_TYPE_STRUCT:
+    case OP_TYPE_STRUCT:
         for (uint32_t i = 2; i < spv_length(def); ++i) {
             uint64_t size = spv_size(m, def[i]);
             sum = size > UINT64_MAX - sum ? UINT64_MAX : sum + size;
@@ -124,7 +124,7 @@ static void read_name(struct spv_module *m, const uint32_t *words)
 static bool is_private(const struct spv_module *m, uint32_t id)
 {
     const uint32_t *def = spv_def(m, id);
-    return def && spv_op(def) == SPV_VARIABLE && def[3] == SPV_STORAGE_PRIVATE;
+    return def && spv_op(def) == OP_VARIABLE && def[3] == STORAGE_PRIVATE;
 }
 
 bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const char *own)
@@ -146,11 +146,11 @@ bool spv_read(struct spv_module *m, const uint32_t *words, size_t count, const c
             return false;
         if (id)
             m->defined_at[id] = (uint32_t)at;
-        if (op == SPV_FUNCTION && !m->functions_at)
+        if (op == OP_FUNCTION && !m->functions_at)
             m->functions_at = at;
-        if (op == SPV_NAME && length > 2)
+        if (op == OP_NAME && length > 2)
             read_name(m, words + at);
-        if (op == SPV_EXT_INST_IMPORT)
+        if (op == OP_EXT_INST_IMPORT)
             m->glsl = words[at + 1];
     }
     m->fuel = is_private(m, m->fuel) ? m->fuel : 0;
@@ -172,14 +172,14 @@ void spv_finish(struct spv_module *m)
 uint32_t spv_function_words(const struct spv_module *m, size_t at)
 {
     size_t end = at;
-    while (end < m->count && spv_op(m->words + end) != SPV_FUNCTION_END)
+    while (end < m->count && spv_op(m->words + end) != OP_FUNCTION_END)
         end += spv_length(m->words + end);
     return (uint32_t)((end < m->count ? end + 1 : end) - at);
 }
 
 size_t spv_next_function(const struct spv_module *m, size_t at)
 {
-    while (at < m->count && spv_op(m->words + at) != SPV_FUNCTION)
+    while (at < m->count && spv_op(m->words + at) != OP_FUNCTION)
         at += spv_length(m->words + at);
     return at;
 }
@@ -191,22 +191,22 @@ static uint32_t id_words(uint32_t op, uint32_t length)
 {
     static const struct {
         uint16_t op, words;
-    } few[] = {{SPV_TYPE_INT, 2},
-               {SPV_TYPE_FLOAT, 2},
-               {SPV_TYPE_VECTOR, 3},
-               {SPV_TYPE_MATRIX, 3},
-               {SPV_CONSTANT, 3},
-               {SPV_SPEC_CONSTANT, 3},
-               {SPV_COMPOSITE_EXTRACT, 4},
-               {SPV_COMPOSITE_INSERT, 5},
-               {SPV_VECTOR_SHUFFLE, 5},
-               {SPV_LOAD, 4},
-               {SPV_STORE, 3},
-               {SPV_COPY_MEMORY, 3},
-               {SPV_ARRAY_LENGTH, 4},
-               {SPV_LOOP_MERGE, 3},
-               {SPV_SELECTION_MERGE, 2},
-               {SPV_BRANCH_CONDITIONAL, 4}};
+    } few[] = {{OP_TYPE_INT, 2},
+               {OP_TYPE_FLOAT, 2},
+               {OP_TYPE_VECTOR, 3},
+               {OP_TYPE_MATRIX, 3},
+               {OP_CONSTANT, 3},
+               {OP_SPEC_CONSTANT, 3},
+               {OP_COMPOSITE_EXTRACT, 4},
+               {OP_COMPOSITE_INSERT, 5},
+               {OP_VECTOR_SHUFFLE, 5},
+               {OP_LOAD, 4},
+               {OP_STORE, 3},
+               {OP_COPY_MEMORY, 3},
+               {OP_ARRAY_LENGTH, 4},
+               {OP_LOOP_MERGE, 3},
+               {OP_SELECTION_MERGE, 2},
+               {OP_BRANCH_CONDITIONAL, 4}};
     for (size_t i = 0; i < sizeof few / sizeof *few; ++i) {
         if (few[i].op == op && few[i].words < length)
             return few[i].words;
@@ -217,14 +217,14 @@ static uint32_t id_words(uint32_t op, uint32_t length)
 bool spv_is_id(const uint32_t *words, uint32_t i)
 {
     switch (spv_op(words)) {
-    case SPV_TYPE_POINTER:
+    case OP_TYPE_POINTER:
         return i != 2;
-    case SPV_VARIABLE:
-    case SPV_FUNCTION:
+    case OP_VARIABLE:
+    case OP_FUNCTION:
         return i != 3;
-    case SPV_EXT_INST:
+    case OP_EXT_INST:
         return i != 4;
-    case SPV_SWITCH: /* numbers of 32 bits before labels */
+    case OP_SWITCH: /* numbers of 32 bits before labels */
         return i < 3 || i % 2 == 0;
     default:
         return i < id_words(spv_op(words), spv_length(words));
@@ -247,9 +247,9 @@ static struct spv_place place_of(const struct spv_module *m, const uint32_t *lin
 bool spv_follow(struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words), length = spv_length(words);
-    if (op == SPV_LINE && length == 4)
+    if (op == OP_LINE && length == 4)
         m->place = place_of(m, words);
-    if (op == SPV_FUNCTION && length == 5) {
+    if (op == OP_FUNCTION && length == 5) {
         m->function = words[2];
         m->return_type = words[1];
         m->user_function = m->place.file != WHIT_OWN;
@@ -290,7 +290,7 @@ static uint32_t find_global(const struct spv_module *m, uint32_t op, uint32_t wi
 {
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        if (spv_op(words) == op && (op == SPV_TYPE_BOOL || (words[2] == width && words[3] == sign)))
+        if (spv_op(words) == op && (op == OP_TYPE_BOOL || (words[2] == width && words[3] == sign)))
             return words[1];
     }
     return 0;
@@ -327,19 +327,19 @@ static uint32_t find_or_add(struct spv_module *m, uint32_t op)
     if (!id) {
         id = m->next_id++;
         const uint32_t operands[] = {id, 32, 0};
-        put_instruction(m, &m->globals, op, operands, op == SPV_TYPE_BOOL ? 1 : 3);
+        put_instruction(m, &m->globals, op, operands, op == OP_TYPE_BOOL ? 1 : 3);
     }
     return keep_constant(m, (struct spv_constant){LOOKED_UP, op, id});
 }
 
 uint32_t spv_uint(struct spv_module *m)
 {
-    return find_or_add(m, SPV_TYPE_INT);
+    return find_or_add(m, OP_TYPE_INT);
 }
 
 uint32_t spv_bool(struct spv_module *m)
 {
-    return find_or_add(m, SPV_TYPE_BOOL);
+    return find_or_add(m, OP_TYPE_BOOL);
 }
 
 uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
@@ -349,7 +349,7 @@ uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
         return id;
     id = m->next_id++;
     const uint32_t operands[] = {type, id, value};
-    put_instruction(m, &m->globals, SPV_CONSTANT, operands, 3);
+    put_instruction(m, &m->globals, OP_CONSTANT, operands, 3);
     return keep_constant(m, (struct spv_constant){type, value, id});
 }
 
@@ -367,20 +367,19 @@ static uint32_t plain_constant(struct spv_module *m, uint32_t key, uint32_t op, 
 
 uint32_t spv_null(struct spv_module *m, uint32_t type)
 {
-    return plain_constant(m, NULL_OF, SPV_CONSTANT_NULL, type);
+    return plain_constant(m, NULL_OF, OP_CONSTANT_NULL, type);
 }
 
 uint32_t spv_true(struct spv_module *m, uint32_t type)
 {
-    return plain_constant(m, TRUE_OF, SPV_CONSTANT_TRUE, type);
+    return plain_constant(m, TRUE_OF, OP_CONSTANT_TRUE, type);
 }
 
 static uint32_t find_pointer(const struct spv_module *m, uint32_t type)
 {
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        if (spv_op(words) == SPV_TYPE_POINTER && words[2] == SPV_STORAGE_FUNCTION &&
-            words[3] == type)
+        if (spv_op(words) == OP_TYPE_POINTER && words[2] == STORAGE_FUNCTION && words[3] == type)
             return words[1];
     }
     return 0;
@@ -394,22 +393,22 @@ uint32_t spv_pointer(struct spv_module *m, uint32_t type)
     id = find_pointer(m, type);
     if (!id) {
         id = m->next_id++;
-        const uint32_t operands[] = {id, SPV_STORAGE_FUNCTION, type};
-        put_instruction(m, &m->globals, SPV_TYPE_POINTER, operands, 3);
+        const uint32_t operands[] = {id, STORAGE_FUNCTION, type};
+        put_instruction(m, &m->globals, OP_TYPE_POINTER, operands, 3);
     }
     return keep_constant(m, (struct spv_constant){POINTER_TO, type, id});
 }
 
 bool spv_is_remark(uint32_t op)
 {
-    return (op >= SPV_SOURCE_CONTINUED && op <= SPV_LINE) || op == SPV_NO_LINE ||
-           op == SPV_MODULE_PROCESSED;
+    return (op >= OP_SOURCE_CONTINUED && op <= OP_LINE) || op == OP_NO_LINE ||
+           op == OP_MODULE_PROCESSED;
 }
 
 static bool begins_as_zero(const struct spv_module *m, const uint32_t *words)
 {
     bool found = false;
-    for (uint32_t i = 0; spv_op(words) == SPV_VARIABLE && i < m->zeroed.count; ++i)
+    for (uint32_t i = 0; spv_op(words) == OP_VARIABLE && i < m->zeroed.count; ++i)
         found = found || m->zeroed.words[i] == words[2];
     return found && spv_length(words) == 4;
 }
@@ -419,8 +418,8 @@ static void put_zeroed(struct spv_module *m, struct spv_words *out, const uint32
 {
     const uint32_t zero[] = {spv_def(m, words[1])[3], m->next_id++};
     const uint32_t variable[] = {words[1], words[2], words[3], zero[1]};
-    put_instruction(m, out, SPV_CONSTANT_NULL, zero, 2);
-    put_instruction(m, out, SPV_VARIABLE, variable, 4);
+    put_instruction(m, out, OP_CONSTANT_NULL, zero, 2);
+    put_instruction(m, out, OP_VARIABLE, variable, 4);
 }
 
 struct spv_words spv_write(struct spv_module *m, bool keeps_remarks)

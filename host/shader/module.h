@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/spirv.h"
 #include "shader/compile.h"
-#include "shader/spirv.h"
 
 struct spv_words {
     uint32_t *words;

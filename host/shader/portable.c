@@ -131,7 +131,7 @@ static const struct stand_in instructions[] = {
 
 static const struct stand_in *find_stand_in(const uint32_t *words)
 {
-    bool extended = spv_op(words) == SPV_EXT_INST && spv_length(words) > 4;
+    bool extended = spv_op(words) == OP_EXT_INST && spv_length(words) > 4;
     const struct stand_in *rows = extended ? instructions : operations;
     size_t count = extended ? sizeof instructions / sizeof *instructions
                             : sizeof operations / sizeof *operations;
@@ -174,13 +174,13 @@ static void append_type(const struct spv_module *m, uint32_t type, char *name)
     size_t room = NAME_BYTES - used;
     if (!def)
         return;
-    if (spv_op(def) == SPV_TYPE_MATRIX) {
+    if (spv_op(def) == OP_TYPE_MATRIX) {
         row = spv_def(m, def[2]);
         snprintf(at, room, "mf%u%u;", def[3], row ? row[3] : 0);
         return;
     }
-    row = spv_op(def) == SPV_TYPE_VECTOR ? spv_def(m, def[2]) : def;
-    if (row && spv_op(row) == SPV_TYPE_INT)
+    row = spv_op(def) == OP_TYPE_VECTOR ? spv_def(m, def[2]) : def;
+    if (row && spv_op(row) == OP_TYPE_INT)
         letter = row[3] ? 'i' : 'u';
     if (row != def)
         snprintf(at, room, "v%c%u;", letter, def[3]);
@@ -195,7 +195,7 @@ static uint32_t find_function(const struct portable *p, const struct stand_in *r
     const struct spv_module *user = &p->g.user;
     char name[NAME_BYTES];
     snprintf(name, sizeof name, "portable_%s(", row->function);
-    for (uint32_t i = spv_op(words) == SPV_EXT_INST ? 5 : 3; i < spv_length(words); ++i)
+    for (uint32_t i = spv_op(words) == OP_EXT_INST ? 5 : 3; i < spv_length(words); ++i)
         append_type(&p->g.base, spv_type_of(&p->g.base, words[i]), name);
     for (size_t at = spv_next_function(user, user->functions_at); at < user->count;
          at = spv_next_function(user, at + spv_function_words(user, at))) {
@@ -222,7 +222,7 @@ static uint32_t spec_id(const struct spv_module *m, uint32_t id)
 {
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        if (spv_op(words) == SPV_DECORATE && words[1] == id && words[2] == SPV_DECORATION_SPEC_ID)
+        if (spv_op(words) == OP_DECORATE && words[1] == id && words[2] == DECORATION_SPEC_ID)
             return words[3];
     }
     return UINT32_MAX;
@@ -231,11 +231,10 @@ static uint32_t spec_id(const struct spv_module *m, uint32_t id)
 /* OWN_DIVISION or OWN_COMPARISON, which is set here. */
 static void take_switch(struct portable *p, const uint32_t *words)
 {
-    enum { CONSTANT_FALSE = 42 };
     struct spv_module *base = &p->g.base;
     bool own =
         spec_id(&p->g.user, words[2]) == 0 ? p->params->own_division : p->params->own_comparison;
-    uint32_t op = own ? SPV_CONSTANT_TRUE : CONSTANT_FALSE;
+    uint32_t op = own ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE;
     const uint32_t constant[] = {spv_head(op, 3), p->g.ids[words[1]], graft_id(&p->g, words[2])};
     spv_put(base, &base->globals, constant, 3);
 }
@@ -247,8 +246,8 @@ static void take_global(struct portable *p, uint32_t id)
     if (!words || p->g.ids[id])
         return;
     uint32_t op = spv_op(words);
-    bool is_type = op >= SPV_TYPE_VOID && op <= SPV_TYPE_FUNCTION;
-    if (op == SPV_EXT_INST_IMPORT) {
+    bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
+    if (op == OP_EXT_INST_IMPORT) {
         p->g.ids[id] = p->g.base.glsl;
         return;
     }
@@ -256,7 +255,7 @@ static void take_global(struct portable *p, uint32_t id)
         if (spv_is_id(words, i) && words[i] != id)
             take_global(p, words[i]);
     }
-    if (op == SPV_SPEC_CONSTANT_TRUE)
+    if (op == OP_SPEC_CONSTANT_TRUE)
         take_switch(p, words);
     else
         graft_value(&p->g, words, is_type ? 1 : 2);
@@ -270,7 +269,7 @@ static void take_instruction(struct portable *p, const uint32_t *words)
         if (def && def < user->words + user->functions_at)
             take_global(p, words[i]);
     }
-    if (spv_op(words) == SPV_FUNCTION_CALL)
+    if (spv_op(words) == OP_FUNCTION_CALL)
         want(p, words[3]);
     if (!spv_is_remark(spv_op(words)))
         graft_put(&p->g, &p->g.base.body, words);
@@ -295,14 +294,14 @@ static void take_functions(struct portable *p)
 static bool replace(struct portable *p, const struct stand_in *row, const uint32_t *words)
 {
     struct spv_module *base = &p->g.base;
-    uint32_t first = spv_op(words) == SPV_EXT_INST ? 5 : 3, count = spv_length(words) - first;
+    uint32_t first = spv_op(words) == OP_EXT_INST ? 5 : 3, count = spv_length(words) - first;
     uint32_t function = row->function ? find_function(p, row, words) : 0;
     if (!function) {
         refuse(p, row, words);
         return false;
     }
     want(p, function);
-    const uint32_t head[] = {spv_head(SPV_FUNCTION_CALL, 4 + count), words[1], words[2],
+    const uint32_t head[] = {spv_head(OP_FUNCTION_CALL, 4 + count), words[1], words[2],
                              graft_id(&p->g, function)};
     spv_put(base, &base->body, head, 4);
     spv_put(base, &base->body, words + first, count);
@@ -338,7 +337,7 @@ struct mode {
     uint32_t capability, mode;
 };
 
-enum { MODES = 3, EXECUTION_MODE = 16 };
+enum { MODES = 3 };
 
 static void list_modes(const struct portable_params *params, struct mode modes[MODES])
 {
@@ -351,7 +350,7 @@ static void put_modes(struct spv_module *m, struct spv_words *out, const struct 
                       uint32_t entry)
 {
     for (int i = 0; i < MODES; ++i) {
-        const uint32_t mode[] = {spv_head(EXECUTION_MODE, 4), entry, modes[i].mode, 32};
+        const uint32_t mode[] = {spv_head(OP_EXECUTION_MODE, 4), entry, modes[i].mode, 32};
         if (modes[i].asked)
             spv_put(m, out, mode, 4);
     }
@@ -365,18 +364,18 @@ static struct spv_words write_module(struct portable *p)
     list_modes(p->params, modes);
     spv_put(base, &out, base->words, SPV_HEADER_WORDS);
     for (int i = 0; i < MODES; ++i) {
-        const uint32_t capability[] = {spv_head(SPV_CAPABILITY, 2), modes[i].capability};
+        const uint32_t capability[] = {spv_head(OP_CAPABILITY, 2), modes[i].capability};
         if (modes[i].asked)
             spv_put(base, &out, capability, 2);
     }
     for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
          at += spv_length(base->words + at)) {
         const uint32_t *words = base->words + at;
-        bool decorates = spv_op(words) == SPV_DECORATE && words[1] < base->bound;
+        bool decorates = spv_op(words) == OP_DECORATE && words[1] < base->bound;
         if (spv_is_remark(spv_op(words)) || (decorates && p->replaced[words[1]]))
             continue;
         spv_put(base, &out, words, spv_length(words));
-        if (spv_op(words) == SPV_ENTRY_POINT)
+        if (spv_op(words) == OP_ENTRY_POINT)
             put_modes(base, &out, modes, words[2]);
     }
     spv_put(base, &out, base->globals.words, base->globals.count);

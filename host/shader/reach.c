@@ -75,12 +75,12 @@ void reach_begin(struct reach *reach, const struct spv_module *m)
     memset(reach, 0, sizeof *reach);
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at, *def;
-        if (spv_op(words) == SPV_MEMBER_NAME && spv_length(words) > 3)
+        if (spv_op(words) == OP_MEMBER_NAME && spv_length(words) > 3)
             name_member(reach, words);
-        if (spv_op(words) != SPV_NAME || spv_length(words) < 3)
+        if (spv_op(words) != OP_NAME || spv_length(words) < 3)
             continue;
         def = spv_def(m, words[1]);
-        for (uint32_t i = 0; def && spv_op(def) == SPV_TYPE_STRUCT && i < REACH_RECORDS; ++i) {
+        for (uint32_t i = 0; def && spv_op(def) == OP_TYPE_STRUCT && i < REACH_RECORDS; ++i) {
             if (strcmp((const char *)(words + 2), records[i]) == 0)
                 reach->records[i].type = words[1];
         }
@@ -98,11 +98,11 @@ static uint32_t bits_of_part(const struct reach *reach, const struct spv_module 
         if (reach->records[i].type == *type && index < REACH_MEMBERS_MAX)
             bits = reach->records[i].members[index];
     }
-    op = def ? spv_op(def) : SPV_TYPE_VOID;
+    op = def ? spv_op(def) : OP_TYPE_VOID;
     *type = 0;
-    if (op == SPV_TYPE_STRUCT && index < spv_length(def) - 2)
+    if (op == OP_TYPE_STRUCT && index < spv_length(def) - 2)
         *type = def[2 + index];
-    else if (op == SPV_TYPE_ARRAY || op == SPV_TYPE_RUNTIME_ARRAY)
+    else if (op == OP_TYPE_ARRAY || op == OP_TYPE_RUNTIME_ARRAY)
         *type = def[2];
     return bits;
 }
@@ -110,22 +110,22 @@ static uint32_t bits_of_part(const struct reach *reach, const struct spv_module 
 static uint32_t pointed_type(const struct spv_module *m, uint32_t pointer)
 {
     const uint32_t *def = spv_def(m, spv_type_of(m, pointer));
-    return def && spv_op(def) == SPV_TYPE_POINTER ? def[3] : 0;
+    return def && spv_op(def) == OP_TYPE_POINTER ? def[3] : 0;
 }
 
 uint32_t reach_of(const struct reach *reach, const struct spv_module *m, const uint32_t *words)
 {
     uint32_t bits = 0, op = spv_op(words), length = spv_length(words), type, index;
-    if (op == SPV_FUNCTION_CALL)
+    if (op == OP_FUNCTION_CALL)
         return bits_of_call(spv_name(m, words[3]));
-    if (op == SPV_ACCESS_CHAIN || op == SPV_IN_BOUNDS_ACCESS_CHAIN) {
+    if (op == OP_ACCESS_CHAIN || op == OP_IN_BOUNDS_ACCESS_CHAIN) {
         type = pointed_type(m, words[3]);
         for (uint32_t i = 4; type && i < length; ++i) {
             index = UINT32_MAX;
             spv_constant_value(m, words[i], &index);
             bits |= bits_of_part(reach, m, &type, index);
         }
-    } else if (op == SPV_COMPOSITE_EXTRACT) {
+    } else if (op == OP_COMPOSITE_EXTRACT) {
         type = spv_type_of(m, words[3]);
         for (uint32_t i = 4; type && i < length; ++i)
             bits |= bits_of_part(reach, m, &type, words[i]);

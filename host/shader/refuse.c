@@ -17,18 +17,18 @@ static bool within(uint32_t op, uint32_t first, uint32_t last)
 
 static const char *refused_operation(uint32_t op)
 {
-    if (op == SPV_CONTROL_BARRIER || op == SPV_MEMORY_BARRIER)
+    if (op == OP_CONTROL_BARRIER || op == OP_MEMORY_BARRIER)
         return "barriers are whit's own: functions of users run for one ray alone";
-    if (op == SPV_KILL || op == TERMINATE || op == DEMOTE)
+    if (op == OP_KILL || op == TERMINATE || op == DEMOTE)
         return "a ray cannot be discarded: return something";
-    if (within(op, SPV_ATOMIC_FIRST, SPV_ATOMIC_LAST))
+    if (within(op, OP_ATOMIC_LOAD, OP_ATOMIC_XOR))
         return "atomic operations are whit's own: functions of users write nothing but their "
                "results";
-    if (within(op, SPV_IMAGE_FIRST, SPV_IMAGE_LAST) || op == SPV_IMAGE_TEXEL_POINTER)
+    if (within(op, OP_IMAGE_FIRST, OP_IMAGE_LAST) || op == OP_IMAGE_TEXEL_POINTER)
         return "images are whit's own";
-    if (within(op, SPV_GROUP_FIRST, SPV_GROUP_LAST))
+    if (within(op, OP_GROUP_ELECT, OP_GROUP_LAST))
         return "subgroups are whit's own: which rays go together is not told";
-    if (within(op, SPV_DPDX_FIRST, SPV_FWIDTH_LAST))
+    if (within(op, OP_DPDX_FIRST, OP_FWIDTH_LAST))
         return "there are no derivatives: functions of users run for one ray alone";
     if (op > LAST_PLAIN)
         return "an operation that is not to be had here";
@@ -43,10 +43,10 @@ static bool is_fuel(const struct spv_module *m, uint32_t id)
 static const char *refused_write(const struct spv_module *m, const uint32_t *words)
 {
     const uint32_t *pointer = spv_def(m, spv_type_of(m, words[1]));
-    uint32_t storage = pointer && spv_op(pointer) == SPV_TYPE_POINTER ? pointer[2] : UINT32_MAX;
+    uint32_t storage = pointer && spv_op(pointer) == OP_TYPE_POINTER ? pointer[2] : UINT32_MAX;
     if (is_fuel(m, words[1]))
         return "whit_fuel is whit's own";
-    if (storage == SPV_STORAGE_FUNCTION || storage == SPV_STORAGE_PRIVATE)
+    if (storage == STORAGE_FUNCTION || storage == STORAGE_PRIVATE)
         return NULL;
     return "writes into buffers are whit's own: functions of users write nothing but their results";
 }
@@ -54,11 +54,11 @@ static const char *refused_write(const struct spv_module *m, const uint32_t *wor
 static const char *refused_type(const struct spv_module *m, uint32_t type)
 {
     const uint32_t *def = spv_def(m, type);
-    while (def && (spv_op(def) == SPV_TYPE_VECTOR || spv_op(def) == SPV_TYPE_MATRIX))
+    while (def && (spv_op(def) == OP_TYPE_VECTOR || spv_op(def) == OP_TYPE_MATRIX))
         def = spv_def(m, def[2]);
-    if (def && spv_op(def) == SPV_TYPE_FLOAT && def[2] != 32)
+    if (def && spv_op(def) == OP_TYPE_FLOAT && def[2] != 32)
         return "floats have 32 bits here: no double, no half";
-    if (def && spv_op(def) == SPV_TYPE_INT && def[2] < 32)
+    if (def && spv_op(def) == OP_TYPE_INT && def[2] < 32)
         return "integers have 32 bits or 64 here";
     return NULL;
 }
@@ -66,22 +66,22 @@ static const char *refused_type(const struct spv_module *m, uint32_t type)
 const char *refuse_instruction(const struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
-    if (op == SPV_LINE || op == SPV_NO_LINE || op == SPV_LABEL || spv_length(words) < 2)
-        return refused_operation(op == SPV_NO_LINE ? SPV_LINE : op);
-    if (op == SPV_LOAD && is_fuel(m, words[3]))
+    if (op == OP_LINE || op == OP_NO_LINE || op == OP_LABEL || spv_length(words) < 2)
+        return refused_operation(op == OP_NO_LINE ? OP_LINE : op);
+    if (op == OP_LOAD && is_fuel(m, words[3]))
         return "whit_fuel is whit's own";
-    const char *why = op == SPV_STORE || op == SPV_COPY_MEMORY ? refused_write(m, words) : NULL;
+    const char *why = op == OP_STORE || op == OP_COPY_MEMORY ? refused_write(m, words) : NULL;
     if (!why)
         why = refused_operation(op);
     if (why)
         return why;
-    return refused_type(m, op == SPV_STORE ? spv_type_of(m, words[2]) : words[1]);
+    return refused_type(m, op == OP_STORE ? spv_type_of(m, words[2]) : words[1]);
 }
 
 const char *refuse_file(const struct spv_module *m, const uint32_t *function)
 {
     const uint32_t *line = function - 4; /* where glslang puts it */
-    if (line < m->words + m->functions_at - 4 || line[0] != spv_head(SPV_LINE, 4))
+    if (line < m->words + m->functions_at - 4 || line[0] != spv_head(OP_LINE, 4))
         return "";
     const char *name = spv_string(m, line[1]);
     size_t length = strlen(m->own);
@@ -120,8 +120,8 @@ static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint
 static bool is_argument(const struct spv_module *m, const uint32_t *words, const uint32_t *pointer)
 {
     const uint32_t *type = pointer && spv_length(pointer) == 4 ? spv_def(m, pointer[3]) : NULL;
-    uint32_t op = type ? spv_op(type) : SPV_TYPE_STRUCT;
-    return op >= SPV_TYPE_BOOL && op <= SPV_TYPE_VECTOR &&
+    uint32_t op = type ? spv_op(type) : OP_TYPE_STRUCT;
+    return op >= OP_TYPE_BOOL && op <= OP_TYPE_VECTOR &&
            strcmp(spv_name(m, words[2]), "param") == 0;
 }
 
@@ -150,7 +150,7 @@ uint32_t refuse_capability(const struct spv_module *m, const char **name)
                  {39, "8-bit integers"}, {51, "derivatives"}, {5, "addresses"}};
     for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        bool found = spv_op(words) != SPV_CAPABILITY;
+        bool found = spv_op(words) != OP_CAPABILITY;
         for (size_t i = 0; !found && i < sizeof known / sizeof *known; ++i)
             found = words[1] == known[i];
         if (found)

@@ -28,20 +28,20 @@ struct returns {
 
 static bool is_return(uint32_t op)
 {
-    return op == SPV_RETURN || op == SPV_RETURN_VALUE;
+    return op == OP_RETURN || op == OP_RETURN_VALUE;
 }
 
 /* Whether a function returns from within a loop or a switch. */
 static bool is_needed(const uint32_t *at)
 {
     uint32_t open[64], count = 0, selection = 0;
-    for (; spv_op(at) != SPV_FUNCTION_END; at += spv_length(at)) {
+    for (; spv_op(at) != OP_FUNCTION_END; at += spv_length(at)) {
         uint32_t op = spv_op(at);
-        while (op == SPV_LABEL && count && open[count - 1] == at[1])
+        while (op == OP_LABEL && count && open[count - 1] == at[1])
             count--;
-        if ((op == SPV_LOOP_MERGE || op == SPV_SWITCH) && count < sizeof open / sizeof *open)
-            open[count++] = op == SPV_SWITCH ? selection : at[1];
-        selection = op == SPV_SELECTION_MERGE ? at[1] : selection;
+        if ((op == OP_LOOP_MERGE || op == OP_SWITCH) && count < sizeof open / sizeof *open)
+            open[count++] = op == OP_SWITCH ? selection : at[1];
+        selection = op == OP_SELECTION_MERGE ? at[1] : selection;
         if (is_return(op) && count)
             return true;
     }
@@ -58,7 +58,7 @@ static void push(struct returns *r, struct spv_module *m, uint32_t merge)
 static void begin_function(struct returns *r, struct spv_module *m, const uint32_t *words)
 {
     const uint32_t *type = spv_def(m, words[1]);
-    r->is_void = type && spv_op(type) == SPV_TYPE_VOID;
+    r->is_void = type && spv_op(type) == OP_TYPE_VOID;
     r->needed = is_needed(words);
     r->begins = r->needed;
     r->open_count = r->moved_count = 0;
@@ -71,11 +71,11 @@ static void put_variables(struct returns *r, struct spv_module *m)
     uint32_t b = spv_bool(m);
     r->begins = false;
     r->flag = m->next_id++;
-    SPV_EMIT(m, SPV_VARIABLE, spv_pointer(m, b), r->flag, SPV_STORAGE_FUNCTION, spv_null(m, b));
+    SPV_EMIT(m, OP_VARIABLE, spv_pointer(m, b), r->flag, STORAGE_FUNCTION, spv_null(m, b));
     if (r->is_void)
         return;
     r->value = m->next_id++;
-    SPV_EMIT(m, SPV_VARIABLE, spv_pointer(m, m->return_type), r->value, SPV_STORAGE_FUNCTION);
+    SPV_EMIT(m, OP_VARIABLE, spv_pointer(m, m->return_type), r->value, STORAGE_FUNCTION);
 }
 
 /* To the end of what is open, or out of the function. */
@@ -84,13 +84,13 @@ static void put_way_out(struct returns *r, struct spv_module *m)
     if (r->open_count) {
         struct construct *around = &r->open[r->open_count - 1];
         around->is_left = true;
-        SPV_EMIT(m, SPV_BRANCH, around->merge);
+        SPV_EMIT(m, OP_BRANCH, around->merge);
     } else if (r->is_void) {
-        spv_emit(m, SPV_RETURN, NULL, 0);
+        spv_emit(m, OP_RETURN, NULL, 0);
     } else {
         uint32_t value = m->next_id++;
-        SPV_EMIT(m, SPV_LOAD, m->return_type, value, r->value);
-        SPV_EMIT(m, SPV_RETURN_VALUE, value);
+        SPV_EMIT(m, OP_LOAD, m->return_type, value, r->value);
+        SPV_EMIT(m, OP_RETURN_VALUE, value);
     }
 }
 
@@ -102,12 +102,12 @@ static void put_question(struct returns *r, struct spv_module *m)
     if (!ARRAY_PUSH(r->moved, r->moved_count, r->moved_capacity, moved))
         m->failed = true;
     r->waits = false;
-    SPV_EMIT(m, SPV_LOAD, spv_bool(m), left, r->flag);
-    SPV_EMIT(m, SPV_SELECTION_MERGE, on, 0);
-    SPV_EMIT(m, SPV_BRANCH_CONDITIONAL, left, out, on);
-    SPV_EMIT(m, SPV_LABEL, out);
+    SPV_EMIT(m, OP_LOAD, spv_bool(m), left, r->flag);
+    SPV_EMIT(m, OP_SELECTION_MERGE, on, 0);
+    SPV_EMIT(m, OP_BRANCH_CONDITIONAL, left, out, on);
+    SPV_EMIT(m, OP_LABEL, out);
     put_way_out(r, m);
-    SPV_EMIT(m, SPV_LABEL, on);
+    SPV_EMIT(m, OP_LABEL, on);
 }
 
 static void begin_block(struct returns *r, struct spv_module *m, const uint32_t *words)
@@ -135,9 +135,9 @@ static void put_phi(const struct returns *r, struct spv_module *m, const uint32_
 static void put_return(struct returns *r, struct spv_module *m, const uint32_t *words)
 {
     uint32_t b = spv_bool(m);
-    if (spv_op(words) == SPV_RETURN_VALUE)
-        SPV_EMIT(m, SPV_STORE, r->value, words[1]);
-    SPV_EMIT(m, SPV_STORE, r->flag, spv_true(m, b));
+    if (spv_op(words) == OP_RETURN_VALUE)
+        SPV_EMIT(m, OP_STORE, r->value, words[1]);
+    SPV_EMIT(m, OP_STORE, r->flag, spv_true(m, b));
     put_way_out(r, m);
 }
 
@@ -145,30 +145,30 @@ static void put_return(struct returns *r, struct spv_module *m, const uint32_t *
 static void put_end(struct returns *r, struct spv_module *m)
 {
     if (r->is_void)
-        spv_emit(m, SPV_RETURN, NULL, 0);
+        spv_emit(m, OP_RETURN, NULL, 0);
     else
-        SPV_EMIT(m, SPV_RETURN_VALUE, spv_null(m, m->return_type));
+        SPV_EMIT(m, OP_RETURN_VALUE, spv_null(m, m->return_type));
 }
 
 static void take(struct returns *r, struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
-    if (op == SPV_FUNCTION)
+    if (op == OP_FUNCTION)
         begin_function(r, m, words);
-    if (r->waits && op != SPV_PHI && op != SPV_LINE && op != SPV_NO_LINE)
+    if (r->waits && op != OP_PHI && op != OP_LINE && op != OP_NO_LINE)
         put_question(r, m);
-    if (r->needed && op == SPV_LABEL) {
+    if (r->needed && op == OP_LABEL) {
         begin_block(r, m, words);
-    } else if (r->needed && op == SPV_PHI) {
+    } else if (r->needed && op == OP_PHI) {
         put_phi(r, m, words);
     } else if (r->needed && is_return(op) && r->open_count) {
         put_return(r, m, words);
-    } else if (op == SPV_UNREACHABLE) {
+    } else if (op == OP_UNREACHABLE) {
         put_end(r, m);
     } else {
-        if (r->needed && (op == SPV_LOOP_MERGE || op == SPV_SWITCH))
-            push(r, m, op == SPV_SWITCH ? r->selection : words[1]);
-        r->selection = op == SPV_SELECTION_MERGE ? words[1] : r->selection;
+        if (r->needed && (op == OP_LOOP_MERGE || op == OP_SWITCH))
+            push(r, m, op == OP_SWITCH ? r->selection : words[1]);
+        r->selection = op == OP_SELECTION_MERGE ? words[1] : r->selection;
         spv_put(m, &m->body, words, spv_length(words));
     }
 }

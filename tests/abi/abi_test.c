@@ -13,26 +13,13 @@
 #include "abi/queues.h"
 #include "abi/shade.h"
 #include "abi/spec.h"
+#include "base/spirv.h"
 #include "kernels.h"
 
 #include "abi_check.h"
 #include "records.h"
 
 enum { IDS_MAX = 65536, MEMBERS_MAX = 64 };
-
-/* Numbers of the SPIR-V specification. */
-enum {
-    OP_NAME = 5,
-    OP_MEMBER_NAME = 6,
-    OP_TYPE_RUNTIME_ARRAY = 29,
-    OP_TYPE_STRUCT = 30,
-    OP_SPEC_CONSTANT = 50,
-    OP_DECORATE = 71,
-    OP_MEMBER_DECORATE = 72,
-    DECORATION_SPEC_ID = 1,
-    DECORATION_ARRAY_STRIDE = 6,
-    DECORATION_OFFSET = 35,
-};
 
 /* In the order of the header: a record, then its members. */
 static const struct entry {
@@ -77,7 +64,7 @@ static void read_decoration(struct id *id, uint32_t decoration, uint32_t value)
 static void read_instruction(struct module *module, const uint32_t *op, uint32_t length)
 {
     struct id *id = &module->ids[op[1]];
-    switch (op[0] & 0xffff) {
+    switch (spv_op(op)) {
     case OP_NAME:
         id->name = (const char *)&op[2];
         break;
@@ -111,8 +98,8 @@ static void read_instruction(struct module *module, const uint32_t *op, uint32_t
 
 static struct module module_read(const uint32_t *words, size_t bytes)
 {
-    struct module module = {.count = words[3]};
-    assert_int_equal(words[0], 0x07230203);
+    struct module module = {.count = words[SPV_BOUND_AT]};
+    assert_int_equal(words[0], SPV_MAGIC);
     assert_true(module.count < IDS_MAX);
     module.ids = calloc(module.count, sizeof *module.ids);
     assert_non_null(module.ids);
@@ -120,8 +107,8 @@ static struct module module_read(const uint32_t *words, size_t bytes)
         module.ids[i].spec_id = -1;
         memset(module.ids[i].offsets, -1, sizeof module.ids[i].offsets);
     }
-    for (size_t i = 5; i < bytes / sizeof *words;) {
-        uint32_t length = words[i] >> 16;
+    for (size_t i = SPV_HEADER_WORDS; i < bytes / sizeof *words;) {
+        uint32_t length = spv_length(words + i);
         assert_true(length > 0 && i + length <= bytes / sizeof *words);
         if (length > 1 && words[i + 1] < module.count)
             read_instruction(&module, &words[i], length);

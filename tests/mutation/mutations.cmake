@@ -121,7 +121,7 @@ set_source_files_properties(twin/traverse.c PROPERTIES COMPILE_OPTIONS
 
 mutation(contracted_kernels spirv RED ".* float operations may be contracted"
   GREEN ": 0 of [0-9]+ float operations" TARGET kernel_dump)
-change(host/shader/exact.c is_float_operation [[op == SPV_F_MUL]] [[false]])
+change(host/shader/exact.c is_float_operation [[op == OP_F_MUL]] [[false]])
 
 # lavapipe rounds fma() twice, so that no picture shows it there.
 mutation(fused_edges_in_kernels spirv RED ".* float operations may be contracted"

@@ -1,41 +1,37 @@
 /* Kernels with their constants filled in. No device is needed. */
 #include "abi/bindings.h"
 #include "abi/spec.h"
+#include "base/spirv.h"
 #include "device/device.h"
 #include "device/specialize.h"
 #include "kernels.h"
 #include "unit.h"
-
-enum { HEADER_WORDS = 5, OP_SPEC_FIRST = 48, OP_SPEC_LAST = 52, OP_DECORATE = 71 };
-enum { OP_FUNCTION = 54, OP_CALL = 57 };
-enum { DECORATION_NO_CONTRACTION = 42 };
 
 struct tally {
     uint32_t instructions, spec_constants, float_operations, exact, functions, calls;
     uint32_t inexact; /* float operations that are not marked */
 };
 
-/* OpFAdd 129, OpFSub 131, OpFMul 133, OpFDiv 136. */
 static bool is_float_operation(uint32_t opcode)
 {
-    return opcode == 129 || opcode == 131 || opcode == 133 || opcode == 136;
+    return opcode == OP_F_ADD || opcode == OP_F_SUB || opcode == OP_F_MUL || opcode == OP_F_DIV;
 }
 
 /* Decorations come before functions, so one way through sees them first. */
 static struct tally tally_of(const uint32_t *words, size_t count)
 {
     struct tally tally = {0};
-    size_t at = HEADER_WORDS;
-    bool *marked = calloc(words[3], sizeof *marked); /* the bound of ids */
+    size_t at = SPV_HEADER_WORDS;
+    bool *marked = calloc(words[SPV_BOUND_AT], sizeof *marked); /* the bound of ids */
     assert_non_null(marked);
     while (at < count) {
-        uint32_t opcode = words[at] & 0xffff, length = words[at] >> 16;
+        uint32_t opcode = spv_op(words + at), length = spv_length(words + at);
         assert_true(length > 0 && length <= count - at);
         ++tally.instructions;
-        tally.spec_constants += opcode >= OP_SPEC_FIRST && opcode <= OP_SPEC_LAST;
+        tally.spec_constants += opcode >= OP_SPEC_CONSTANT_TRUE && opcode <= OP_SPEC_CONSTANT_OP;
         tally.float_operations += is_float_operation(opcode);
         tally.functions += opcode == OP_FUNCTION;
-        tally.calls += opcode == OP_CALL;
+        tally.calls += opcode == OP_FUNCTION_CALL;
         if (opcode == OP_DECORATE && words[at + 2] == DECORATION_NO_CONTRACTION) {
             ++tally.exact;
             marked[words[at + 1]] = true;
@@ -137,7 +133,7 @@ TEST(cut_kernels_are_refused)
     const uint32_t total = (uint32_t)(kernels[KERNEL_TRACE].bytes / 4);
     const struct gpu_spec spec = GPU_SPEC_DEFAULTS;
     uint32_t cuts = 0;
-    for (uint32_t at = HEADER_WORDS, i = 0; at < total; at += words[at] >> 16, ++i) {
+    for (uint32_t at = SPV_HEADER_WORDS, i = 0; at < total; at += spv_length(words + at), ++i) {
         uint32_t *cut = malloc(at * sizeof *cut), *out = NULL; /* so that reading on is seen */
         size_t count = 0;
         if (!cut || (i > 500 && i % 97)) {

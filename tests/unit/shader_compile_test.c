@@ -94,11 +94,11 @@ static uint32_t count_in(const uint32_t *words, size_t count, uint32_t functions
 {
     uint32_t found = 0;
     *ends = 0;
-    for (size_t at = 5; at < count; at += words[at] >> 16) {
-        uint32_t op = words[at] & 0xffff;
-        *ends += op == 56;
+    for (size_t at = SPV_HEADER_WORDS; at < count; at += spv_length(words + at)) {
+        uint32_t op = spv_op(words + at);
+        *ends += op == OP_FUNCTION_END;
         if (*ends < functions)
-            found += number < 100 ? op == 12 && words[at + 4] == number : op == number;
+            found += number < 100 ? op == OP_EXT_INST && words[at + 4] == number : op == number;
     }
     return found;
 }

@@ -6,6 +6,7 @@
 
 #include <spirv-tools/libspirv.h>
 
+#include "base/spirv.h"
 #include "shader/compile.h"
 #include "unit.h"
 

@@ -1,7 +1,6 @@
 /* Functions of users in whit's own kernels: what comes out is a module that drivers take, whatever
    the file has, and it holds the user's functions in the place of whit's. */
 #include "shader/program.h"
-#include "shader/spirv.h"
 #include "shader_fixture.h"
 
 /* NULL: it is refused, with `errors`. */
@@ -22,7 +21,7 @@ static uint32_t count_functions(const struct shader_code *code)
 {
     uint32_t count = 0;
     for (size_t at = SPV_HEADER_WORDS; at < code->bytes / 4; at += spv_length(code->words + at))
-        count += spv_op(code->words + at) == SPV_FUNCTION;
+        count += spv_op(code->words + at) == OP_FUNCTION;
     return count;
 }
 

@@ -189,9 +189,8 @@ TEST_IN(indices_stay_within, compiler_begin, compiler_end)
 /* Whether a module has a constant of this value. */
 static bool has_constant(const struct shader_code *code, uint32_t value)
 {
-    for (size_t at = 5; at < code->bytes / 4; at += code->words[at] >> 16) {
-        if ((code->words[at] & 0xffff) == 43 && code->words[at] >> 16 == 4 &&
-            code->words[at + 3] == value)
+    for (size_t at = SPV_HEADER_WORDS; at < code->bytes / 4; at += spv_length(code->words + at)) {
+        if (code->words[at] == spv_head(OP_CONSTANT, 4) && code->words[at + 3] == value)
             return true;
     }
     return false;
@@ -300,7 +299,8 @@ TEST_IN(operations_stay_exact, compiler_begin, compiler_end)
     assert_true(count(text, "NoContraction") == 2);
     assert_int_equal(count(text, "OpLine") + count(text, "OpName") + count(text, "OpString"), 0);
     free(text);
-    for (size_t at = 5; at < code.bytes / 4; at += code.words[at] >> 16)
-        assert_false((code.words[at] & 0xffff) >= 2 && (code.words[at] & 0xffff) <= 8);
+    for (size_t at = SPV_HEADER_WORDS; at < code.bytes / 4; at += spv_length(code.words + at))
+        assert_false(spv_op(code.words + at) >= OP_SOURCE_CONTINUED &&
+                     spv_op(code.words + at) <= OP_LINE);
     shader_code_free(&code);
 }

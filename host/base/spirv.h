@@ -1,0 +1,181 @@
+/* Single SPIR-V instructions (SPIR-V 1.5): what is read and written of modules that glslang made.
+ */
+#ifndef BASE_SPIRV_H
+#define BASE_SPIRV_H
+
+#include <stdint.h>
+
+enum {
+    SPV_MAGIC = 0x07230203,
+    SPV_HEADER_WORDS = 5,
+    SPV_BOUND_AT = 3, /* the word of the header that all ids are below */
+    SPV_BOUND_MAX = 1 << 24,
+};
+
+/* Numbers of section 3.32. */
+enum {
+    OP_NOP = 0,
+    OP_UNDEF = 1,
+    OP_SOURCE_CONTINUED = 2,
+    OP_SOURCE = 3,
+    OP_SOURCE_EXTENSION = 4,
+    OP_NAME = 5,
+    OP_MEMBER_NAME = 6,
+    OP_STRING = 7,
+    OP_LINE = 8,
+    OP_EXTENSION = 10,
+    OP_EXT_INST_IMPORT = 11,
+    OP_EXT_INST = 12,
+    OP_MEMORY_MODEL = 14,
+    OP_ENTRY_POINT = 15,
+    OP_EXECUTION_MODE = 16,
+    OP_CAPABILITY = 17,
+    OP_TYPE_VOID = 19,
+    OP_TYPE_BOOL = 20,
+    OP_TYPE_INT = 21,
+    OP_TYPE_FLOAT = 22,
+    OP_TYPE_VECTOR = 23,
+    OP_TYPE_MATRIX = 24,
+    OP_TYPE_IMAGE = 25,
+    OP_TYPE_ARRAY = 28,
+    OP_TYPE_RUNTIME_ARRAY = 29,
+    OP_TYPE_STRUCT = 30,
+    OP_TYPE_POINTER = 32,
+    OP_TYPE_FUNCTION = 33,
+    OP_CONSTANT_TRUE = 41,
+    OP_CONSTANT_FALSE = 42,
+    OP_CONSTANT = 43,
+    OP_CONSTANT_COMPOSITE = 44,
+    OP_CONSTANT_NULL = 46,
+    OP_SPEC_CONSTANT_TRUE = 48,
+    OP_SPEC_CONSTANT_FALSE = 49,
+    OP_SPEC_CONSTANT = 50,
+    OP_SPEC_CONSTANT_COMPOSITE = 51,
+    OP_SPEC_CONSTANT_OP = 52,
+    OP_FUNCTION = 54,
+    OP_FUNCTION_PARAMETER = 55,
+    OP_FUNCTION_END = 56,
+    OP_FUNCTION_CALL = 57,
+    OP_VARIABLE = 59,
+    OP_IMAGE_TEXEL_POINTER = 60,
+    OP_LOAD = 61,
+    OP_STORE = 62,
+    OP_COPY_MEMORY = 63,
+    OP_ACCESS_CHAIN = 65,
+    OP_IN_BOUNDS_ACCESS_CHAIN = 66,
+    OP_ARRAY_LENGTH = 68,
+    OP_DECORATE = 71,
+    OP_MEMBER_DECORATE = 72,
+    OP_VECTOR_EXTRACT_DYNAMIC = 77,
+    OP_VECTOR_INSERT_DYNAMIC = 78,
+    OP_VECTOR_SHUFFLE = 79,
+    OP_COMPOSITE_CONSTRUCT = 80,
+    OP_COMPOSITE_EXTRACT = 81,
+    OP_COMPOSITE_INSERT = 82,
+    OP_COPY_OBJECT = 83,
+    OP_TRANSPOSE = 84,
+    OP_IMAGE_FIRST = 86, /* OpSampledImage to OpImageQuerySamples */
+    OP_IMAGE_FETCH = 95,
+    OP_IMAGE_WRITE = 99,
+    OP_IMAGE = 100,
+    OP_IMAGE_LAST = 107,
+    OP_CONVERT_FIRST = 109,
+    OP_BITCAST = 124,
+    OP_S_NEGATE = 126,
+    OP_F_NEGATE = 127,
+    OP_I_ADD = 128,
+    OP_F_ADD = 129,
+    OP_I_SUB = 130,
+    OP_F_SUB = 131,
+    OP_I_MUL = 132,
+    OP_F_MUL = 133,
+    OP_F_DIV = 136,
+    OP_F_REM = 140,
+    OP_F_MOD = 141,
+    OP_VECTOR_TIMES_SCALAR = 142,
+    OP_DOT = 148,
+    OP_S_MUL_EXTENDED = 152,
+    OP_ANY = 154,
+    OP_LOGICAL_EQUAL = 164,
+    OP_LOGICAL_NOT_EQUAL = 165,
+    OP_LOGICAL_OR = 166,
+    OP_LOGICAL_AND = 167,
+    OP_LOGICAL_NOT = 168,
+    OP_SELECT = 169,
+    OP_I_EQUAL = 170,
+    OP_I_NOT_EQUAL = 171,
+    OP_U_GREATER = 172,
+    OP_U_GREATER_EQUAL = 174,
+    OP_U_LESS = 176,
+    OP_U_LESS_EQUAL = 178,
+    OP_F_UNORD_GREATER_EQUAL = 191,
+    OP_SHIFT_RIGHT = 194,
+    OP_SHIFT_LEFT = 196,
+    OP_BITWISE_OR = 197,
+    OP_BITWISE_XOR = 198,
+    OP_BITWISE_AND = 199,
+    OP_NOT = 200,
+    OP_BIT_COUNT = 205,
+    OP_DPDX_FIRST = 207,
+    OP_FWIDTH_LAST = 215,
+    OP_CONTROL_BARRIER = 224,
+    OP_MEMORY_BARRIER = 225,
+    OP_ATOMIC_LOAD = 227,
+    OP_ATOMIC_STORE = 228,
+    OP_ATOMIC_XOR = 242,
+    OP_PHI = 245,
+    OP_LOOP_MERGE = 246,
+    OP_SELECTION_MERGE = 247,
+    OP_LABEL = 248,
+    OP_BRANCH = 249,
+    OP_BRANCH_CONDITIONAL = 250,
+    OP_SWITCH = 251,
+    OP_KILL = 252,
+    OP_RETURN = 253,
+    OP_RETURN_VALUE = 254,
+    OP_UNREACHABLE = 255,
+    OP_NO_LINE = 317,
+    OP_MODULE_PROCESSED = 330,
+    OP_GROUP_ELECT = 333,
+    OP_GROUP_BALLOT_BIT_COUNT = 342,
+    OP_GROUP_SHUFFLE_XOR = 346,
+    OP_GROUP_I_ADD = 349,
+    OP_GROUP_U_MAX = 357,
+    OP_GROUP_LAST = 366,
+    OP_COPY_LOGICAL = 400,
+};
+
+enum { CAPABILITY_INT64 = 11 };
+enum {
+    STORAGE_UNIFORM = 2,
+    STORAGE_WORKGROUP = 4,
+    STORAGE_PRIVATE = 6,
+    STORAGE_FUNCTION = 7,
+    STORAGE_BUFFER = 12,
+};
+enum {
+    DECORATION_SPEC_ID = 1,
+    DECORATION_ARRAY_STRIDE = 6,
+    DECORATION_BUILTIN = 11,
+    DECORATION_BINDING = 33,
+    DECORATION_OFFSET = 35,
+    DECORATION_NO_CONTRACTION = 42,
+};
+enum { GLSL_UMIN = 38, GLSL_UMAX = 41 }; /* of GLSL.std.450 */
+
+static inline uint32_t spv_op(const uint32_t *words)
+{
+    return words[0] & 0xffff;
+}
+
+static inline uint32_t spv_length(const uint32_t *words)
+{
+    return words[0] >> 16;
+}
+
+static inline uint32_t spv_head(uint32_t op, uint32_t length)
+{
+    return length << 16 | op;
+}
+
+#endif
