@@ -198,7 +198,7 @@ static inline const char *find_fault(const struct soup *soup, const struct bvh_p
     uint32_t parts = bvh->reference_count - soup->count;
     double share = params->spatial_budget == 0.0f ? 0.5 : fmax((double)params->spatial_budget, 0.0);
     if (bvh_validate(&silent, bvh, soup->boxes, limit) != WHIT_OK)
-        return last_error;
+        return messages.last_error;
     if (bvh->primitive_count != soup->count || bvh->leaf_largest > limit ||
         bvh->depth >= BVH_DEPTH_MAX || !isfinite(bvh->sah_cost))
         return "counts or costs out of range";

@@ -236,7 +236,7 @@ TEST(matrices_without_inverse_are_refused)
     for (int k = 0; k < 5; ++k) {
         pose->instances[1].m[0] = bad[k];
         assert_int_equal(accel_pose(accel, pose), WHIT_ERROR_INPUT);
-        assert_string_equal(last_error,
+        assert_string_equal(messages.last_error,
                             "test: instance 1 ``: its matrix has no inverse in range at 0 s");
         assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
     }

@@ -3,39 +3,22 @@
 #ifndef ACCEL_FIXTURE_H
 #define ACCEL_FIXTURE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "../cases.h"
 #include "../scenes.h"
 #include "accel/accel.h"
 #include "accel/extent.h"
+#include "messages_fixture.h"
 #include "random_fixture.h"
 #include "scene/pose.h"
 #include "scene/shapes.h"
 #include "twin/ray.h"
 #include "twin/traverse.h"
+#include "unit.h"
 
-/* The last error that went to `silent`. */
-static char last_error[512];
-
-static inline void keep_error(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    if (level == WHIT_LOG_ERROR)
-        snprintf(last_error, sizeof last_error, "%s", message);
-}
-
-static const whit_log silent = {.fn = keep_error, .level = WHIT_LOG_ERROR};
+static const whit_log silent = {.fn = messages_collect, .user = &messages, .level = WHIT_LOG_ERROR};
 
 /* ---- Random numbers ---- */
 

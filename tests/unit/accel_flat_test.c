@@ -225,7 +225,7 @@ TEST(a_pose_builds_anew)
     struct gpu_hit before = trace(flat, &ray), after;
     pose->instances[3].m[3] = 1e30;
     assert_int_equal(accel_pose(flat, pose), WHIT_ERROR_INPUT);
-    assert_non_null(strstr(last_error, "instance 3 `object`"));
+    assert_non_null(strstr(messages.last_error, "instance 3 `object`"));
     assert_int_equal(accel_validate(flat), WHIT_OK);
     after = trace(flat, &ray);
     assert_memory_equal(&before, &after, sizeof before);
@@ -398,8 +398,9 @@ TEST(too_many_triangles_are_refused)
         whit_result result = accel_create(&silent, scene, &flatten, &accel);
         assert_int_equal(result, rows[i].said ? WHIT_ERROR_INPUT : WHIT_OK);
         assert_int_equal(accel == NULL, rows[i].said != NULL);
-        if (rows[i].said && !(strstr(last_error, rows[i].said) && strstr(last_error, rows[i].also)))
-            fail_msg("row %zu: said `%s`", i, last_error);
+        if (rows[i].said && !(strstr(messages.last_error, rows[i].said) &&
+                              strstr(messages.last_error, rows[i].also)))
+            fail_msg("row %zu: said `%s`", i, messages.last_error);
         accel_destroy(accel);
         scene_destroy(scene);
     }

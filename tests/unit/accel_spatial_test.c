@@ -249,9 +249,9 @@ TEST(lost_parts_are_noticed)
             continue;
         leaf->hi[axis] = leaf->lo[axis] + 0.05f * (leaf->hi[axis] - leaf->lo[axis]);
         bvh_set_axis(pair);
-        last_error[0] = 0;
+        messages.last_error[0] = 0;
         refused += accel_validate(accel) != WHIT_OK;
-        by_points += strstr(last_error, "a part of a primitive") != NULL;
+        by_points += strstr(messages.last_error, "a part of a primitive") != NULL;
         memcpy(pair, kept, sizeof kept);
     }
     assert_true(refused > 50 && by_points > 10);

@@ -106,7 +106,8 @@ TEST(flat_keeps_spheres_that_stay_spheres)
         whit_result result = accel_create(&silent, scene, &flat, &one);
         assert_int_equal(result, turned ? WHIT_ERROR_INPUT : WHIT_OK);
         if (turned)
-            assert_non_null(strstr(last_error, "instance 1 `second`: spheres that are turned"));
+            assert_non_null(
+                strstr(messages.last_error, "instance 1 `second`: spheres that are turned"));
         struct accel *many = accel_of(scene, (struct accel_params){0});
         uint32_t same = 0;
         for (uint32_t i = 0; !turned && i < 10000; ++i) {

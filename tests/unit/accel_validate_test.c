@@ -154,10 +154,12 @@ static void change_word(struct bvh *bvh, size_t row)
 static void assert_said(const struct bvh *bvh, const struct bvh_box *boxes, const char *name,
                         const char *reason)
 {
-    last_error[0] = 0;
+    messages.last_error[0] = 0;
     whit_result result = bvh_validate(&silent, bvh, boxes, 4);
-    if (result != (reason ? WHIT_ERROR_FAILED : WHIT_OK) || (reason && !strstr(last_error, reason)))
-        fail_msg("%s: expected `%s`, said `%s`", name, reason ? reason : "nothing", last_error);
+    if (result != (reason ? WHIT_ERROR_FAILED : WHIT_OK) ||
+        (reason && !strstr(messages.last_error, reason)))
+        fail_msg("%s: expected `%s`, said `%s`", name, reason ? reason : "nothing",
+                 messages.last_error);
 }
 
 TEST(broken_trees_are_refused)

@@ -11,7 +11,8 @@
 #include "folder_fixture.h"
 
 /* All that is said, however small. */
-static const whit_log full_log = {.fn = collect, .level = WHIT_LOG_DEBUG};
+static const whit_log full_log = {
+    .fn = messages_collect, .user = &messages, .level = WHIT_LOG_DEBUG};
 
 static int entry_count(void)
 {

@@ -54,9 +54,9 @@ static whit_result cycle_dispatch(struct cycle *cycle)
     return result;
 }
 
-static whit_result cycle_run(struct messages *messages, bool validation)
+static whit_result cycle_run(struct messages *told, bool validation)
 {
-    whit_log log = messages_log(messages);
+    whit_log log = messages_log(told);
     struct device_params params = {.validation = validation};
     struct cycle cycle = {0};
     whit_result result = device_create(&log, &params, &cycle.device);
@@ -77,7 +77,6 @@ static whit_result cycle_run(struct messages *messages, bool validation)
 /* Until a run has fewer calls than the number of the one that is to fail. */
 static void fail_each_call(bool staged, bool validation)
 {
-    struct messages messages;
     whit_result result = WHIT_ERROR_FAILED;
     unsigned call = 0;
     setenv("WHIT_STAGING", staged ? "1" : "0", 1);
@@ -119,7 +118,6 @@ TEST(nothing_is_left_behind)
 
 TEST(memory_running_out_is_told_apart)
 {
-    struct messages messages;
     setenv("WHIT_FAULT", "vkAllocateMemory:2", 1);
     struct device *device = device_open(&messages, false);
     unsetenv("WHIT_FAULT");
@@ -140,7 +138,6 @@ TEST(memory_running_out_is_told_apart)
 
 TEST(loss_is_for_good)
 {
-    struct messages messages;
     setenv("WHIT_FAULT", "vkWaitForFences:1", 1);
     struct device *device = device_open(&messages, false);
     unsetenv("WHIT_FAULT");
@@ -169,7 +166,6 @@ TEST(loss_is_for_good)
 
 TEST(fifty_devices_in_turn)
 {
-    struct messages messages;
     for (int i = 0; i < 50; ++i)
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
 }
@@ -212,7 +208,6 @@ static void write_all(const char *path, const uint8_t *data, size_t data_bytes)
 static void damage_and_run(const char *path)
 {
     static uint8_t good[1 << 20], broken[1 << 20], now[1 << 20];
-    struct messages messages;
     size_t bytes = read_all(path, good, sizeof good);
     assert_true(bytes > 32 && bytes < sizeof good);
     for (int damage = 0; damage < 5; ++damage) {
@@ -233,7 +228,6 @@ static void damage_and_run(const char *path)
 TEST(damaged_cache_files_are_replaced)
 {
     char folder[] = "/tmp/whit-device-XXXXXX", path[512], cache[64];
-    struct messages messages;
     assert_non_null(mkdtemp(folder));
     setenv("XDG_CACHE_HOME", folder, 1);
     assert_int_equal(cycle_run(&messages, false), WHIT_OK); /* WHIT_NO_CACHE is on */
@@ -269,7 +263,6 @@ bool __wrap_threads_have_room(uint32_t count)
 /* A driver of the CPU would wait for them for ever. */
 TEST(no_device_without_room_for_its_threads)
 {
-    struct messages messages;
     whit_log log = messages_log(&messages);
     struct device *device = device_open(&messages, false);
     bool on_cpu = device_get_info(device)->kind == DEVICE_CPU;
@@ -286,7 +279,6 @@ TEST(no_device_without_room_for_its_threads)
 static int plain_environment(void **state)
 {
     (void)state;
-    struct messages messages;
     unsetenv("WHIT_VALIDATION");
     setenv("WHIT_NO_CACHE", "1", 1);
     device_destroy(device_open(&messages, false));

@@ -78,7 +78,6 @@ TEST(bounds_are_those_of_c)
 {
     static struct filter_answer expected[CASES];
     uint32_t differ = 0, said[4] = {0};
-    struct messages messages;
     struct device *device = device_open(&messages, false);
     random_state = 17;
     for (uint32_t i = 0; i < CASES; ++i)

@@ -2,47 +2,17 @@
 #ifndef DEVICE_FIXTURE_H
 #define DEVICE_FIXTURE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "device/device.h"
 #include "device/pipeline.h"
-
-struct messages {
-    int errors, validation, lines; /* lines: errors and warnings */
-    char text[16384];              /* one a line, from the first */
-};
-
-static inline void messages_collect(void *user, whit_log_level level, const char *message)
-{
-    struct messages *messages = user;
-    if (level > WHIT_LOG_WARNING)
-        return;
-    messages->errors += level == WHIT_LOG_ERROR;
-    messages->validation += strncmp(message, "validation: ", 12) == 0;
-    ++messages->lines;
-    size_t used = strlen(messages->text);
-    snprintf(messages->text + used, sizeof messages->text - used, "%s\n", message);
-}
-
-static inline whit_log messages_log(struct messages *messages)
-{
-    *messages = (struct messages){0};
-    return (whit_log){.fn = messages_collect, .user = messages, .level = WHIT_LOG_DEBUG};
-}
+#include "messages_fixture.h"
+#include "unit.h"
 
 /* No device fails the test, unless WHIT_TEST_NO_DEVICE=skip says that there is none. */
-static inline struct device *device_open(struct messages *messages, bool validation)
+static inline struct device *device_open(struct messages *told, bool validation)
 {
-    whit_log log = messages_log(messages);
+    whit_log log = messages_log(told);
     struct device_params params = {.validation = validation};
     struct device *device;
     whit_result result = device_create(&log, &params, &device);
@@ -50,18 +20,18 @@ static inline struct device *device_open(struct messages *messages, bool validat
     if (result == WHIT_ERROR_NO_DEVICE && no_device && strcmp(no_device, "skip") == 0)
         skip();
     if (result != WHIT_OK)
-        print_message("%s", messages->text);
+        print_message("%s", told->text);
     assert_int_equal(result, WHIT_OK);
     return device;
 }
 
 /* Leaks show here as validation messages, when validation is on. */
-static inline void device_close(struct device *device, struct messages *messages)
+static inline void device_close(struct device *device, struct messages *told)
 {
     device_destroy(device);
-    if (messages->validation > 0)
-        print_message("%s", messages->text);
-    assert_int_equal(messages->validation, 0);
+    if (told->validation > 0)
+        print_message("%s", told->text);
+    assert_int_equal(told->validation, 0);
 }
 
 /* A kernel whose one or two bindings are storage buffers; what it takes beside them is added. */

@@ -9,7 +9,6 @@ static uint32_t info_count;
 static int list_devices(void **state)
 {
     (void)state;
-    struct messages messages;
     whit_log log = messages_log(&messages);
     whit_result result = device_list(&log, &infos, &info_count);
     const char *no_device = getenv("WHIT_TEST_NO_DEVICE");
@@ -25,10 +24,9 @@ static int free_list(void **state)
     return 0;
 }
 
-static whit_result create_with(const char *selector, struct messages *messages,
-                               struct device **device)
+static whit_result create_with(const char *selector, struct messages *told, struct device **device)
 {
-    whit_log log = messages_log(messages);
+    whit_log log = messages_log(told);
     struct device_params params = {.selector = selector};
     return device_create(&log, &params, device);
 }
@@ -65,7 +63,6 @@ static void lists_what_there_is(void **state)
 static void chooses_by_number_and_name(void **state)
 {
     (void)state;
-    struct messages messages;
     if (info_count == 0)
         skip();
     for (uint32_t i = 0; i < info_count; ++i) {
@@ -91,7 +88,6 @@ static void chooses_by_number_and_name(void **state)
 static void automatic_prefers_the_better_kind(void **state)
 {
     (void)state;
-    struct messages messages;
     if (info_count == 0)
         skip();
     const char *const selectors[] = {NULL, "auto", ""};
@@ -113,7 +109,6 @@ static void refuses_what_is_not_there(void **state)
     snprintf(past, sizeof past, "%u", info_count);
     const char *const selectors[] = {past, "99999999999999999999", "no such device", "-1"};
     for (size_t i = 0; i < 4; ++i) {
-        struct messages messages;
         struct device *device = (struct device *)&messages;
         assert_int_equal(create_with(selectors[i], &messages, &device), WHIT_ERROR_NO_DEVICE);
         assert_null(device);
@@ -126,7 +121,6 @@ static void refuses_what_is_not_there(void **state)
 /* In a process of its own, as drivers stay loaded: 0 when all is as it should be. */
 static int without_driver(void)
 {
-    struct messages messages;
     whit_log log = messages_log(&messages);
     struct device_info *list = NULL;
     uint32_t count = 1;

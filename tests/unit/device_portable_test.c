@@ -321,7 +321,6 @@ static bool try_row(struct device *device, const struct row *row, uint32_t step)
 TEST(functions_are_right_within_their_bounds)
 {
     const char *floats = getenv("WHIT_TEST_FLOATS"), *only = getenv("WHIT_TEST_FUNCTION");
-    struct messages messages;
     struct device *device = device_open(&messages, false);
     random_state = 11;
     uint32_t wrong = 0;

@@ -11,7 +11,6 @@ static uint32_t indices[POINTS], points[POINTS][2];
 
 TEST(points_are_those_of_the_host)
 {
-    struct messages messages;
     struct device *device = device_open(&messages, false);
     for (uint32_t i = 0; i < POINTS; ++i)
         indices[i] = i < SMALL ? i : i * 0x9e3779b9u;

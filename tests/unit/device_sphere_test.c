@@ -55,7 +55,6 @@ static struct sphere_answer answer_of(const struct sphere_case *c)
 TEST(spheres_are_met_as_in_c)
 {
     static const struct gpu_spec exact = {.SPEC_NUMERICS = NUMERICS_EXACT};
-    struct messages messages;
     struct device *device = device_open(&messages, false);
     for (uint32_t k = 0; k < SPHERE_KINDS; ++k) {
         random_state = 100 + k;

@@ -42,7 +42,6 @@ static void devices_come_and_go_beside_others(void **state)
         assert_non_null(users[i].thread);
     }
     for (int i = 0; i < CREATED; ++i) {
-        struct messages messages = {0};
         struct device *device = device_open(&messages, false);
         device_close(device, &messages);
     }

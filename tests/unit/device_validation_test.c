@@ -37,7 +37,6 @@ static void run_affine(struct device *device, bool with_barrier)
 TEST(normal_use_is_silent)
 {
     for (int staged = 0; staged < 2; ++staged) {
-        struct messages messages;
         setenv("WHIT_STAGING", staged ? "1" : "0", 1);
         struct device *device = device_open(&messages, true);
         run_affine(device, true);
@@ -49,7 +48,6 @@ TEST(normal_use_is_silent)
 
 TEST(missing_barrier_is_reported)
 {
-    struct messages messages;
     struct device *device = device_open(&messages, true);
     run_affine(device, false);
     assert_true(device_validation_messages(device) >= 1);
@@ -61,7 +59,6 @@ TEST(missing_barrier_is_reported)
 TEST(write_outside_is_reported)
 {
     for (uint32_t index = 3; index <= 100; index += 97) {
-        struct messages messages;
         struct device *device = device_open(&messages, true);
         struct buffer *values = buffer_make(device, 16, BUFFER_STORAGE, "values");
         struct pipeline_params params =
@@ -78,7 +75,6 @@ TEST(write_outside_is_reported)
 
 TEST(leaks_are_reported)
 {
-    struct messages messages;
     struct device *device = device_open(&messages, true);
     struct buffer *lost = buffer_make(device, 16, BUFFER_STORAGE, "forgotten");
     device_destroy(device);
@@ -89,7 +85,6 @@ TEST(leaks_are_reported)
 
 TEST(environment_turns_it_on)
 {
-    struct messages messages;
     for (int on = 0; on < 2; ++on) {
         setenv("WHIT_VALIDATION", on ? "1" : "0", 1);
         struct device *device = device_open(&messages, false);
@@ -103,7 +98,6 @@ TEST(environment_turns_it_on)
 /* Last, since it hides the layer. */
 TEST(absence_is_an_error)
 {
-    struct messages messages;
     whit_log log = messages_log(&messages);
     struct device_params params = {.validation = true};
     struct device *device;

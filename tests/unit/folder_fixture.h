@@ -4,26 +4,10 @@
 
 #include <unistd.h>
 
-#include "base/log.h"
+#include "messages_fixture.h"
 #include "unit.h"
 
 static char folder[32];
-
-static struct messages {
-    int count, errors, warnings;
-    char last[512];
-} messages;
-
-static inline void collect(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    ++messages.count;
-    messages.errors += level == WHIT_LOG_ERROR;
-    messages.warnings += level == WHIT_LOG_WARNING;
-    snprintf(messages.last, sizeof messages.last, "%s", message);
-}
-
-static const whit_log warnings_log = {.fn = collect, .level = WHIT_LOG_WARNING};
 
 static inline int folder_begin(void **state)
 {

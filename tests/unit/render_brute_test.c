@@ -1,4 +1,5 @@
 /* Without trees: the hits, pictures and ids that trees give, whatever the number of triangles. */
+#include "messages_fixture.h"
 #include "ray_fixture.h"
 #include "render/probe.h"
 #include "render_scenes.h"
@@ -121,23 +122,13 @@ static whit_result trace_stack(const struct fixture *f, uint32_t count)
     return WHIT_OK;
 }
 
-static char last_error[512];
-
-static void keep_error(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    if (level == WHIT_LOG_ERROR)
-        snprintf(last_error, sizeof last_error, "%s", message);
-}
-
 static void check_refused(struct scene *scene, const char *why)
 {
-    const whit_log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
     struct accel *accel;
     assert_int_equal(scene_freeze(scene), WHIT_OK);
-    assert_int_equal(accel_create(&log, scene, &no_trees, &accel), WHIT_ERROR_USAGE);
+    assert_int_equal(accel_create(&warnings_log, scene, &no_trees, &accel), WHIT_ERROR_USAGE);
     assert_null(accel);
-    assert_non_null(strstr(last_error, why));
+    assert_non_null(strstr(messages.last_error, why));
     scene_destroy(scene);
 }
 
@@ -200,7 +191,6 @@ TEST(pictures_equal_those_of_trees)
    noticed by the kernel. */
 TEST(many_shadows_are_refused)
 {
-    const whit_log log = {.fn = keep_error, .level = WHIT_LOG_ERROR};
     struct scene *scene = scene_begin(&fixture_log, "ground");
     scene_put(scene, mesh_terrain(8.0, 0.6, 120, 1), NULL);
     scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
@@ -212,12 +202,14 @@ TEST(many_shadows_are_refused)
     struct fixture f = fixture_open(scene, &no_trees, NULL);
     const whit_renderer_params params = {.width = 8, .height = 8, .light_samples = 64};
     renderer_destroy(f.renderer);
-    assert_int_equal(renderer_create(&log, f.device, f.accel, &params, &f.renderer), WHIT_OK);
+    assert_int_equal(renderer_create(&warnings_log, f.device, f.accel, &params, &f.renderer),
+                     WHIT_OK);
     bool limited = device_get_info(f.device)->loop_limited;
     assert_int_equal(renderer_render(f.renderer), limited ? WHIT_ERROR_USAGE : WHIT_OK);
     if (limited) {
         struct probe_report report;
-        assert_non_null(strstr(last_error, "without trees every ray tests 28800 primitives"));
+        assert_non_null(
+            strstr(messages.last_error, "without trees every ray tests 28800 primitives"));
         assert_int_equal(renderer_probe(f.renderer, 4, 4, 0, &report), WHIT_ERROR_USAGE);
         f.accel->iterations = 0;
         assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_STATUS);

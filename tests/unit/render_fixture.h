@@ -47,9 +47,9 @@ static inline struct device *fixture_device(void)
 
 static inline void fixture_validate(void)
 {
-    int messages = fixture_validation;
+    int said = fixture_validation;
     fixture_validation = 0;
-    assert_int_equal(messages, 0);
+    assert_int_equal(said, 0);
 }
 
 /* Ends a program of which `failed` checks failed: after none, what they did not destroy on the

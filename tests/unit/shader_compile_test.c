@@ -42,7 +42,7 @@ TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_
         free(made);
         shader_code_free(&code);
     }
-    assert_string_equal(logged, "");
+    assert_string_equal(messages.text, "");
 }
 
 /* Each of them, where it stands alone. */
@@ -189,7 +189,7 @@ TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
                                      .defines = defines,
                                      .define_count = 2};
     size_t bytes;
-    char *text = shader_expand(&shader_log, NULL, &request, &bytes, &errors);
+    char *text = shader_expand(&warnings_log, NULL, &request, &bytes, &errors);
     assert_non_null(text);
     assert_int_equal(strlen(text), bytes);
     const char *extension = strstr(text, "#extension GL_GOOGLE_include_directive");
@@ -205,7 +205,7 @@ TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
     struct shader_code code;
     errors.count = 0;
     assert_int_equal(shader_compile(compiler, NULL, &request, &code, &errors), WHIT_ERROR_INPUT);
-    assert_non_null(strstr(logged, "no shader kernel/none.comp is embedded"));
+    assert_non_null(strstr(messages.text, "no shader kernel/none.comp is embedded"));
 }
 
 /* ---- Errors ---- */
@@ -306,17 +306,17 @@ TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
         char place[64];
         snprintf(place, sizeof place,
                  own ? "whit:kernel/test.comp:13: " : "a.glsl:%u: ", broken[i].line);
-        bool right = strcmp(error->file, own ? "whit:kernel/test.comp" : "a.glsl") == 0 &&
-                     error->line == (own ? 13 : broken[i].line) &&
-                     strstr(error->reason, broken[i].reason) &&
-                     strncmp(logged, place, strlen(place)) == 0 &&
-                     !strstr(logged, "compilation terminated") && !strstr(logged, "No code");
+        bool right =
+            strcmp(error->file, own ? "whit:kernel/test.comp" : "a.glsl") == 0 &&
+            error->line == (own ? 13 : broken[i].line) && strstr(error->reason, broken[i].reason) &&
+            strncmp(messages.text, place, strlen(place)) == 0 &&
+            !strstr(messages.text, "compilation terminated") && !strstr(messages.text, "No code");
         uint32_t column = own ? 0 : column_of(error, broken[i].content);
         columns += column != 0;
         right = right && error->column == column;
         if (!right)
             print_error("%s\nline %u, column %u, not %u, %s:\n%s\n", broken[i].content,
-                        broken[i].line, column, error->column, broken[i].reason, logged);
+                        broken[i].line, column, error->column, broken[i].reason, messages.text);
         bad += !right;
     }
     const uint32_t all = sizeof broken / sizeof *broken;
@@ -348,11 +348,11 @@ TEST_IN(lines_are_right_through_two_levels, compiler_begin, compiler_end)
     for (uint32_t i = 0; i < 3; ++i)
         whole[i].bytes = strlen(whole[i].text);
     errors.count = 0;
-    assert_int_equal(shader_text_from(&shader_log, whole, 3, &text, &errors), WHIT_OK);
+    assert_int_equal(shader_text_from(&warnings_log, whole, 3, &text, &errors), WHIT_OK);
     assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
-    assert_non_null(strstr(logged, "lib/c.glsl:4: 'missing_c'"));
-    assert_non_null(strstr(logged, "lib/b.glsl:3: 'missing_b'"));
-    assert_non_null(strstr(logged, "a.glsl:4: 'missing_a'"));
+    assert_non_null(strstr(messages.text, "lib/c.glsl:4: 'missing_c'"));
+    assert_non_null(strstr(messages.text, "lib/b.glsl:3: 'missing_b'"));
+    assert_non_null(strstr(messages.text, "a.glsl:4: 'missing_a'"));
     shader_text_free(&text);
 }
 
@@ -397,14 +397,15 @@ TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
         compile_files("\nfloat f(float x, int n) { return n < 1 ? x : f(x, n - 1); }\n", NULL,
                       false, &code),
         WHIT_ERROR_INPUT);
-    assert_non_null(strstr(logged, "a.glsl:2: f calls itself"));
+    assert_non_null(strstr(messages.text, "a.glsl:2: f calls itself"));
     assert_int_equal(compile_files("float g(float x, int n);\n"
                                    "float f(float x, int n) { return n < 1 ? x : g(x, n - 1); }\n"
                                    "float g(float x, int n) { return f(x, n); }\n",
                                    NULL, false, &code),
                      WHIT_ERROR_INPUT);
-    assert_non_null(strstr(logged, "which leads back to it"));
-    assert_true(strstr(logged, "a.glsl:2: f calls g") || strstr(logged, "a.glsl:3: g calls f"));
+    assert_non_null(strstr(messages.text, "which leads back to it"));
+    assert_true(strstr(messages.text, "a.glsl:2: f calls g") ||
+                strstr(messages.text, "a.glsl:3: g calls f"));
 }
 
 /* A line of the user's is no line of whit's. */
@@ -442,7 +443,7 @@ TEST_IN(a_file_included_again_and_again_is_refused, compiler_begin, compiler_end
     struct shader_code code;
     const struct shader_request request = {.kernel = "kernel/test.comp",
                                            .kernel_text = test_kernel};
-    assert_int_equal(shader_text_from(&shader_log, sources, 14, &text, &errors), WHIT_OK);
+    assert_int_equal(shader_text_from(&warnings_log, sources, 14, &text, &errors), WHIT_OK);
     errors.count = 0;
     assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
     assert_non_null(strstr(errors.items[0].reason, "larger than 16 MiB"));
@@ -529,8 +530,8 @@ TEST(limits_are_kept)
         struct shader_code code;
         compiler_open(&cases[i].limits);
         assert_int_equal(compile_files(long_text, NULL, false, &code), cases[i].result);
-        if (!strstr(logged, cases[i].reason))
-            fail_msg("\"%s\" is not in \"%s\"", cases[i].reason, logged);
+        if (!strstr(messages.text, cases[i].reason))
+            fail_msg("\"%s\" is not in \"%s\"", cases[i].reason, messages.text);
         shader_compiler_destroy(compiler);
         assert_int_equal(children(), 0);
     }

@@ -7,6 +7,7 @@
 #include <spirv-tools/libspirv.h>
 
 #include "base/spirv.h"
+#include "messages_fixture.h"
 #include "shader/compile.h"
 #include "unit.h"
 
@@ -31,28 +32,17 @@ static const char test_kernel[] =
 
 static struct shader_compiler *compiler;
 static struct shader_errors errors;
-static char logged[8192]; /* errors and warnings, one a line */
-
-static inline void keep_message(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    size_t used = strlen(logged);
-    snprintf(logged + used, sizeof logged - used, "%s\n", message);
-}
-
-static const whit_log shader_log = {.fn = keep_message, .level = WHIT_LOG_WARNING};
 
 static inline void compiler_open(const struct shader_limits *limits)
 {
-    compiler = shader_compiler_create(&shader_log, limits);
+    compiler = shader_compiler_create(&warnings_log, limits);
     assert_non_null(compiler);
 }
 
 static inline int compiler_begin(void **state)
 {
     (void)state;
-    logged[0] = 0;
+    messages = (struct messages){0};
     compiler_open(NULL);
     return 0;
 }
@@ -75,8 +65,8 @@ static inline whit_result compile_files(const char *a, const char *b, bool trust
     struct shader_text text;
     errors = (struct shader_errors){0};
     *code = (struct shader_code){0};
-    logged[0] = 0;
-    whit_result result = shader_text_from(&shader_log, sources, b ? 2 : 1, &text, &errors);
+    messages = (struct messages){0};
+    whit_result result = shader_text_from(&warnings_log, sources, b ? 2 : 1, &text, &errors);
     if (result == WHIT_OK)
         result = shader_compile(compiler, &text, &request, code, &errors);
     shader_text_free(&text);
@@ -145,7 +135,7 @@ static inline struct shader_code must_compile(const char *a)
 {
     struct shader_code code;
     if (compile_files(a, NULL, false, &code) != WHIT_OK)
-        fail_msg("%s\n%s", a, logged);
+        fail_msg("%s\n%s", a, messages.text);
     return code;
 }
 

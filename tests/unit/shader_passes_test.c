@@ -243,7 +243,7 @@ TEST_IN(what_users_may_not_do_is_refused, compiler_begin, compiler_end)
                 fail_msg("it is not refused: %s", refused[i].content);
             if (errors.items[0].line != refused[i].line ||
                 !strstr(errors.items[0].reason, refused[i].reason))
-                fail_msg("%s\n%s", refused[i].content, logged);
+                fail_msg("%s\n%s", refused[i].content, messages.text);
         }
     }
     /* A table is one, however often it is looked into. */
@@ -280,13 +280,13 @@ TEST_IN(what_is_not_for_users_is_not_called, compiler_begin, compiler_end)
         const struct shader_request request = {.kernel = "kernel/test.comp", .kernel_text = kernel};
         struct shader_text text;
         struct shader_code code;
-        logged[0] = 0;
+        messages = (struct messages){0};
         errors.count = 0;
-        assert_int_equal(shader_text_from(&shader_log, &source, 1, &text, &errors), WHIT_OK);
+        assert_int_equal(shader_text_from(&warnings_log, &source, 1, &text, &errors), WHIT_OK);
         whit_result result = shader_compile(compiler, &text, &request, &code, &errors);
-        if (cases[i].reason ? result == WHIT_OK || !strstr(logged, cases[i].reason)
+        if (cases[i].reason ? result == WHIT_OK || !strstr(messages.text, cases[i].reason)
                             : result != WHIT_OK)
-            fail_msg("%s: %s", cases[i].content, logged);
+            fail_msg("%s: %s", cases[i].content, messages.text);
         shader_code_free(&code);
         shader_text_free(&text);
     }

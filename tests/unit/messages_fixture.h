@@ -1,0 +1,44 @@
+/* What a check is told by the library. */
+#ifndef MESSAGES_FIXTURE_H
+#define MESSAGES_FIXTURE_H
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/log.h"
+
+static struct messages {
+    int count, errors, warnings, validation; /* validation: of the layers */
+    char last[1024], last_error[1024];
+    int lines; /* errors and warnings, whose text is one a line, from the first */
+    char text[1 << 14];
+} messages;
+
+static inline void messages_collect(void *user, whit_log_level level, const char *message)
+{
+    struct messages *told = user;
+    ++told->count;
+    snprintf(told->last, sizeof told->last, "%s", message);
+    if (level > WHIT_LOG_WARNING)
+        return;
+    told->errors += level == WHIT_LOG_ERROR;
+    told->warnings += level == WHIT_LOG_WARNING;
+    told->validation += strncmp(message, "validation: ", 12) == 0;
+    if (level == WHIT_LOG_ERROR)
+        snprintf(told->last_error, sizeof told->last_error, "%s", message);
+    ++told->lines;
+    size_t used = strlen(told->text);
+    snprintf(told->text + used, sizeof told->text - used, "%s\n", message);
+}
+
+/* Of all levels. */
+static inline whit_log messages_log(struct messages *told)
+{
+    *told = (struct messages){0};
+    return (whit_log){.fn = messages_collect, .user = told, .level = WHIT_LOG_DEBUG};
+}
+
+static const whit_log warnings_log = {
+    .fn = messages_collect, .user = &messages, .level = WHIT_LOG_WARNING};
+
+#endif
