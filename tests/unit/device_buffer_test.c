@@ -1,12 +1,9 @@
 #include "device/vulkan.h"
-#include "device_fixture.h"
+#include "one_device_fixture.h"
 #include "unit.h"
 
 /* More than one staging buffer, and no multiple of anything. */
 enum { LARGE_BYTES = (33 << 20) + 12345 };
-
-static struct device *device;
-static struct messages messages;
 
 /* What was asked of Vulkan last. */
 static VkDeviceSize created_bytes, viewed_bytes;
@@ -32,27 +29,6 @@ VkResult __wrap_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *in
 {
     viewed_bytes = info->range;
     return __real_vkCreateBufferView(vk, info, allocator, view);
-}
-
-static int open_direct(void **state)
-{
-    (void)state;
-    device = device_open(&messages, false);
-    return 0;
-}
-
-static int open_staged(void **state)
-{
-    setenv("WHIT_STAGING", "1", 1);
-    return open_direct(state);
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    unsetenv("WHIT_STAGING");
-    device_close(device, &messages);
-    return 0;
 }
 
 TEST(sizes_are_rounded_up)
@@ -211,6 +187,7 @@ TEST(destroy_accepts_null)
 int main(void)
 {
     setenv("WHIT_NO_CACHE", "1", 1);
-    int failed = unit_run(open_direct, close_device);
-    return failed + unit_run(open_staged, close_device);
+    int failed = unit_run(device_begin, device_end);
+    setenv("WHIT_STAGING", "1", 1);
+    return failed + unit_run(device_begin, device_end);
 }

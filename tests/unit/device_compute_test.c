@@ -2,6 +2,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include "affine_fixture.h"
+#include "one_device_fixture.h"
 
 #include "device/buffer.h"
 #include "device/commands.h"
@@ -10,23 +11,6 @@
 #include "device_spin.h"
 #include "device_texels.h"
 #include "unit.h"
-
-static struct device *device;
-static struct messages messages;
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = device_open(&messages, false);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    device_close(device, &messages);
-    return 0;
-}
 
 /* So that a kernel cannot be specialized (-Wl,--wrap). */
 static bool cannot_specialize;
@@ -510,5 +494,5 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
 int main(void)
 {
     setenv("WHIT_NO_CACHE", "1", 1);
-    return unit_run(open_device, close_device);
+    return unit_run(device_begin, device_end);
 }

@@ -2,7 +2,7 @@
    formulas than the shader's, of the angle itself and not of its rounded cosine. */
 #include <math.h>
 
-#include "device_fixture.h"
+#include "one_device_fixture.h"
 #include "random_fixture.h"
 
 #include "device_optics.h"
@@ -25,28 +25,12 @@ struct optics_answer {
 
 enum { CASES_MAX = 40000 };
 
-static struct device *device;
-static struct messages messages;
 static struct optics_case cases[CASES_MAX];
 static struct optics_answer answers[CASES_MAX];
 static double angles[CASES_MAX]; /* of incidence, of each case */
 static uint32_t count;
 
 static const double indices[] = {1.33, 1.5, 2.42};
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = device_open(&messages, false);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    device_close(device, &messages);
-    return 0;
-}
 
 static int begin(void **state)
 {
@@ -389,5 +373,5 @@ TEST_IN(ggx_keeps_its_tip, begin, NULL)
 
 int main(void)
 {
-    return unit_run(open_device, close_device);
+    return unit_run(device_begin, device_end);
 }
