@@ -1,29 +1,9 @@
 /* The reference through the public header: no device. */
 #include <math.h>
 
-#include "unit.h"
-#include "whit.h"
+#include "scene_fixture.h"
 
 enum { WIDTH = 16, HEIGHT = 12 };
-
-struct opened {
-    whit_scene *scene;
-    whit_accel *accel;
-};
-
-static struct opened open_scene(const char *path)
-{
-    struct opened o = {0};
-    assert_int_equal(whit_scene_load(path, NULL, NULL, &o.scene), WHIT_OK);
-    assert_int_equal(whit_accel_create(o.scene, NULL, &o.accel), WHIT_OK);
-    return o;
-}
-
-static void close_scene(struct opened *o)
-{
-    whit_accel_destroy(o->accel);
-    whit_scene_destroy(o->scene);
-}
 
 static void note_progress(void *user, double done)
 {
@@ -34,7 +14,7 @@ static void note_progress(void *user, double done)
 
 TEST(draws_pictures_and_ray_trees)
 {
-    struct opened o = open_scene(WHIT_SCENES_DIR "/default.json");
+    scene_open(WHIT_SCENES_DIR "/default.json");
     double last = 0.0;
     whit_renderer_params params = whit_renderer_defaults();
     params.width = WIDTH;
@@ -44,7 +24,7 @@ TEST(draws_pictures_and_ray_trees)
     params.progress_user = &last;
     whit_reference *reference = NULL;
     whit_image *color = NULL, *ids = NULL;
-    assert_int_equal(whit_reference_create(o.accel, &params, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
     assert_int_equal(whit_reference_render(reference, &color, &ids), WHIT_OK);
     assert_true(last == 1.0);
     whit_stats stats;
@@ -74,10 +54,10 @@ TEST(draws_pictures_and_ray_trees)
     whit_image_destroy(color);
     whit_image_destroy(ids);
     whit_reference_destroy(reference);
-    close_scene(&o);
+    scene_close();
 }
 
-static whit_image *draw_samples(whit_accel *accel, uint32_t first, uint32_t count)
+static whit_image *draw_samples(uint32_t first, uint32_t count)
 {
     whit_renderer_params params = whit_renderer_defaults();
     whit_reference *reference = NULL;
@@ -94,11 +74,11 @@ static whit_image *draw_samples(whit_accel *accel, uint32_t first, uint32_t coun
 TEST(any_number_of_samples_is_their_mean)
 {
     enum { COUNT = 13 };
-    struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
+    scene_open(WHIT_SCENES_DIR "/cube.json");
     double sums[WIDTH * HEIGHT * 4] = {0};
     for (uint32_t count = 1; count <= COUNT; ++count) {
-        whit_image *one = draw_samples(o.accel, count - 1, 1);
-        whit_image *all = draw_samples(o.accel, 0, count);
+        whit_image *one = draw_samples(count - 1, 1);
+        whit_image *all = draw_samples(0, count);
         for (int i = 0; i < WIDTH * HEIGHT * 4; ++i) {
             sums[i] += (double)whit_image_floats(one)[i];
             double mean = sums[i] / count, drawn = (double)whit_image_floats(all)[i];
@@ -108,12 +88,12 @@ TEST(any_number_of_samples_is_their_mean)
         whit_image_destroy(one);
         whit_image_destroy(all);
     }
-    close_scene(&o);
+    scene_close();
 }
 
 TEST(refuses_what_it_cannot_draw)
 {
-    struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json");
+    scene_open(WHIT_SCENES_DIR "/cube.json");
     const whit_renderer_params refused[] = {
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}},
         {.effects_removed = 1},
@@ -121,14 +101,14 @@ TEST(refuses_what_it_cannot_draw)
         {.sampling.count = 4097}};
     whit_reference *reference = NULL;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
-        assert_int_equal(whit_reference_create(o.accel, &refused[i], 0, &reference),
+        assert_int_equal(whit_reference_create(accel, &refused[i], 0, &reference),
                          WHIT_ERROR_USAGE);
         assert_null(reference);
     }
     const volatile bool cancel = true;
     const whit_renderer_params cancelled = {.cancel = &cancel};
     whit_image *color = NULL;
-    assert_int_equal(whit_reference_create(o.accel, &cancelled, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_create(accel, &cancelled, 0, &reference), WHIT_OK);
     assert_int_equal(whit_reference_render(reference, &color, NULL), WHIT_ERROR_CANCELLED);
     assert_null(color);
     whit_probe_ray *rays = NULL;
@@ -136,5 +116,5 @@ TEST(refuses_what_it_cannot_draw)
     assert_int_equal(whit_reference_rays(reference, 640, 0, 0, &rays, &count), WHIT_ERROR_USAGE);
     assert_null(rays);
     whit_reference_destroy(reference);
-    close_scene(&o);
+    scene_close();
 }

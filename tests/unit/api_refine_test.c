@@ -4,44 +4,20 @@
 #include <math.h>
 
 #include "../cases.h"
-#include "unit.h"
-#include "whit.h"
-#include "whit_program.h"
+#include "scene_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
 
-static whit_device *device;
-
-static int open_device(void **state)
-{
-    (void)state;
-    if (whit_device_create(NULL, NULL, &device) != WHIT_OK)
-        return -1;
-    whit_device_keep_kernels(device);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    whit_device_destroy(device);
-    return 0;
-}
-
-struct opened {
-    whit_scene *scene;
-    whit_accel *accel;
+struct refining {
     whit_renderer *renderer;
     whit_refine *refine;
     whit_renderer_params params;
 };
 
-static struct opened open_scene(const char *path, const whit_renderer_params *params)
+static struct refining begin(const whit_renderer_params *params)
 {
-    struct opened o = {.params = *params};
-    assert_int_equal(whit_scene_load(path, NULL, NULL, &o.scene), WHIT_OK);
-    assert_int_equal(whit_accel_create(o.scene, NULL, &o.accel), WHIT_OK);
-    assert_int_equal(whit_renderer_create(device, o.accel, &o.params, &o.renderer), WHIT_OK);
+    struct refining o = {.params = *params};
+    assert_int_equal(whit_renderer_create(device, accel, &o.params, &o.renderer), WHIT_OK);
     assert_int_equal(whit_refine_create(o.renderer, &o.params, &o.refine), WHIT_OK);
     return o;
 }
@@ -56,15 +32,13 @@ static whit_renderer_params params_of(uint32_t depth, double bailout)
     return params;
 }
 
-static void close_scene(struct opened *o)
+static void end(struct refining *o)
 {
     whit_refine_destroy(o->refine);
     whit_renderer_destroy(o->renderer);
-    whit_accel_destroy(o->accel);
-    whit_scene_destroy(o->scene);
 }
 
-static whit_refine_info step(const struct opened *o)
+static whit_refine_info step(const struct refining *o)
 {
     whit_refine_info info;
     assert_int_equal(whit_refine_step(o->refine), WHIT_OK);
@@ -72,7 +46,7 @@ static whit_refine_info step(const struct opened *o)
     return info;
 }
 
-static whit_refine_info refine_to(const struct opened *o, uint32_t samples)
+static whit_refine_info refine_to(const struct refining *o, uint32_t samples)
 {
     whit_refine_info info;
     do
@@ -82,7 +56,7 @@ static whit_refine_info refine_to(const struct opened *o, uint32_t samples)
     return info;
 }
 
-static whit_image *picture_of(const struct opened *o)
+static whit_image *picture_of(const struct refining *o)
 {
     whit_image *image = NULL;
     assert_int_equal(whit_refine_image(o->refine, &image), WHIT_OK);
@@ -92,7 +66,8 @@ static whit_image *picture_of(const struct opened *o)
 TEST(a_refined_picture_is_that_of_as_many_samples)
 {
     const whit_renderer_params few = params_of(3, 0.05);
-    struct opened o = open_scene(WHIT_SCENES_DIR "/balls.json", &few);
+    scene_open(WHIT_SCENES_DIR "/balls.json");
+    struct refining o = begin(&few);
     whit_refine_info info = step(&o);
     assert_int_equal(info.samples, 1);
     assert_true(info.error < 0.0);
@@ -110,7 +85,7 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
         refined = picture_of(&o);
         whit_refine_get_stats(o.refine, &stats);
         params.sampling.count = samples;
-        assert_int_equal(whit_renderer_create(device, o.accel, &params, &renderer), WHIT_OK);
+        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
         assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
         assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &drawn), WHIT_OK);
         assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_CUTS, &cuts), WHIT_OK);
@@ -138,16 +113,18 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
         whit_image_destroy(cuts);
         whit_renderer_destroy(renderer);
     }
-    close_scene(&o);
+    end(&o);
+    scene_close();
 }
 
 TEST(a_step_that_is_cancelled_can_be_taken_again)
 {
     volatile bool cancel = false;
     whit_renderer_params params = params_of(8, 0.0);
-    struct opened other = open_scene(WHIT_SCENES_DIR "/cube.json", &params);
+    scene_open(WHIT_SCENES_DIR "/cube.json");
+    struct refining other = begin(&params);
     params.cancel = &cancel;
-    struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json", &params);
+    struct refining o = begin(&params);
     refine_to(&o, 2);
     whit_image *before = picture_of(&o);
     cancel = true;
@@ -165,14 +142,16 @@ TEST(a_step_that_is_cancelled_can_be_taken_again)
     whit_image_destroy(kept);
     whit_image_destroy(after);
     whit_image_destroy(straight);
-    close_scene(&other);
-    close_scene(&o);
+    end(&other);
+    end(&o);
+    scene_close();
 }
 
 TEST(what_is_not_there_is_refused)
 {
     const whit_renderer_params params = params_of(8, 0.0);
-    struct opened o = open_scene(WHIT_SCENES_DIR "/cube.json", &params);
+    scene_open(WHIT_SCENES_DIR "/cube.json");
+    struct refining o = begin(&params);
     whit_image *image = NULL;
     assert_int_equal(whit_refine_image(o.refine, &image), WHIT_ERROR_USAGE);
     assert_null(image);
@@ -186,11 +165,12 @@ TEST(what_is_not_there_is_refused)
     assert_int_equal(whit_refine_step(o.refine), WHIT_ERROR_USAGE);
     whit_renderer *no_device = NULL;
     whit_refine *refine = NULL;
-    assert_int_equal(whit_renderer_create(NULL, o.accel, &o.params, &no_device), WHIT_OK);
+    assert_int_equal(whit_renderer_create(NULL, accel, &o.params, &no_device), WHIT_OK);
     assert_int_equal(whit_refine_create(no_device, &o.params, &refine), WHIT_ERROR_USAGE);
     assert_null(refine);
     whit_renderer_destroy(no_device);
-    close_scene(&o);
+    end(&o);
+    scene_close();
 }
 
 /* ---- The estimate beside the truth ---- */
@@ -250,7 +230,7 @@ static const struct {
     {"strands.json", noisy},
 };
 
-static whit_image *truth_of(const struct opened *o, double bailout)
+static whit_image *truth_of(const struct refining *o, double bailout)
 {
     whit_renderer_params params = o->params;
     whit_reference *reference = NULL;
@@ -258,7 +238,7 @@ static whit_image *truth_of(const struct opened *o, double bailout)
     params.sampling.count = TRUTH_SAMPLES;
     params.depth = TRUTH_DEPTH;
     params.bailout = bailout;
-    assert_int_equal(whit_reference_create(o->accel, &params, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
     assert_int_equal(whit_reference_render(reference, &image, NULL), WHIT_OK);
     whit_reference_destroy(reference);
     return image;
@@ -313,7 +293,8 @@ static bool is_good(const struct judged *judged)
 static bool judge_scene(const char *path, const char *name)
 {
     const struct question question = question_of(name);
-    struct opened o = open_scene(path, &question.params);
+    scene_open(path);
+    struct refining o = begin(&question.params);
     whit_image *truth = truth_of(&o, question.truth_bailout);
     int pixels = (int)(question.params.width * question.params.height);
     bool good = true;
@@ -331,7 +312,8 @@ static bool judge_scene(const char *path, const char *name)
         whit_image_destroy(estimate);
     }
     whit_image_destroy(truth);
-    close_scene(&o);
+    end(&o);
+    scene_close();
     return good;
 }
 
@@ -382,7 +364,5 @@ TEST(the_estimate_is_no_less_than_the_error_and_not_much_more)
 
 int main(void)
 {
-    int failed = open_device(NULL) == 0 ? unit_run(NULL, NULL) : 1;
-    close_device(NULL);
-    return failed;
+    return unit_run(device_begin, device_end);
 }

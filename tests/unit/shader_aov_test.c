@@ -25,18 +25,16 @@ static whit_shader *shader;
 
 static int begin(void **state)
 {
-    (void)state;
-    bool fine =
-        hooks_begin(WHIT_SCENES_DIR "/default.json") && hooks_load(content, &shader) == WHIT_OK;
-    return fine ? 0 : -1;
+    hooks_begin(state);
+    scene_open(WHIT_SCENES_DIR "/default.json");
+    assert_int_equal(hooks_load(content, &shader), WHIT_OK);
+    return 0;
 }
 
 static int end(void **state)
 {
-    (void)state;
     whit_shader_destroy(shader);
-    hooks_end();
-    return 0;
+    return hooks_end(state);
 }
 
 static whit_renderer_params usual(uint32_t samples)

@@ -8,14 +8,8 @@ enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
 
 static int begin(void **state)
 {
-    (void)state;
-    return hooks_begin(WHIT_SCENES_DIR "/default.json") ? 0 : -1;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    hooks_end();
+    hooks_begin(state);
+    scene_open(WHIT_SCENES_DIR "/default.json");
     return 0;
 }
 
@@ -444,5 +438,5 @@ TEST(rays_of_functions_are_counted)
 
 int main(void)
 {
-    return unit_run(begin, end);
+    return unit_run(begin, hooks_end);
 }

@@ -24,30 +24,29 @@ static const char content[] =
 static whit_shader *shader, *plain;
 
 /* `blank`: without the name dbg. */
-static bool load(bool blank, whit_shader **out)
+static void load(bool blank, whit_shader **out)
 {
     char text[sizeof content];
     strcpy(text, content);
     for (char *at = text; blank && (at = strstr(at, "dbg("));)
         memcpy(at, "   ", 3);
-    return hooks_load(text, out) == WHIT_OK;
+    assert_int_equal(hooks_load(text, out), WHIT_OK);
 }
 
 static int begin(void **state)
 {
-    (void)state;
-    bool fine =
-        hooks_begin(WHIT_SCENES_DIR "/whitted.json") && load(false, &shader) && load(true, &plain);
-    return fine ? 0 : -1;
+    hooks_begin(state);
+    scene_open(WHIT_SCENES_DIR "/whitted.json");
+    load(false, &shader);
+    load(true, &plain);
+    return 0;
 }
 
 static int end(void **state)
 {
-    (void)state;
     whit_shader_destroy(shader);
     whit_shader_destroy(plain);
-    hooks_end();
-    return 0;
+    return hooks_end(state);
 }
 
 static whit_renderer *make(const whit_shader *with, uint32_t samples)

@@ -5,29 +5,13 @@
 
 #include "base/clock.h"
 #include "folder_fixture.h"
-#include "whit.h"
-#include "whit_program.h"
+#include "hooks_fixture.h"
 
 enum { WIDTH = 16, HEIGHT = 12, PIXELS = WIDTH * HEIGHT };
 
-static whit_device *device;
-static whit_shader_compiler *compiler;
-static whit_scene *scene;
-static whit_accel *accel;
 static float good_pixels[PIXELS * 4];
-static char logged[1 << 14];
 static uint32_t reported, tried;
 static double slowest_ms;
-
-static void keep_message(void *user, whit_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    size_t used = strlen(logged);
-    snprintf(logged + used, sizeof logged - used, "%s\n", message);
-}
-
-static const whit_log harm_log = {.fn = keep_message, .level = WHIT_LOG_WARNING};
 
 static void put(const char *name, const char *content)
 {
@@ -66,13 +50,10 @@ static void draw_good(float *pixels)
 
 static int begin(void **state)
 {
-    int failed = folder_begin(state);
-    if (failed || whit_shader_compiler_create(NULL, &harm_log, &compiler) != WHIT_OK ||
-        whit_device_create(NULL, &harm_log, &device) != WHIT_OK ||
-        whit_scene_load(WHIT_SCENES_DIR "/cube.json", NULL, NULL, &scene) != WHIT_OK ||
-        whit_accel_create(scene, NULL, &accel) != WHIT_OK)
+    if (folder_begin(state) != 0)
         return -1;
-    whit_device_keep_kernels(device);
+    hooks_begin(state);
+    scene_open(WHIT_SCENES_DIR "/cube.json");
     put("good.glsl", "vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
     draw_good(good_pixels);
     reported = tried = 0;
@@ -82,10 +63,7 @@ static int begin(void **state)
 
 static int end(void **state)
 {
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    whit_device_destroy(device);
-    whit_shader_compiler_destroy(compiler);
+    hooks_end(state);
     return folder_end(state);
 }
 
@@ -95,7 +73,7 @@ static bool is_told(const char *place, const char *reason)
 {
     char begins[512];
     snprintf(begins, sizeof begins, "%s/%s", folder, place ? place : "");
-    const char *line = place ? strstr(logged, begins) : logged;
+    const char *line = place ? strstr(messages.text, begins) : messages.text;
     const char *why = line ? strstr(line, reason) : NULL;
     return why && why < strchr(line, '\n');
 }
@@ -105,8 +83,10 @@ static void count(const char *name, double start_ms, bool as_wanted)
 {
     double ms = clock_ms() - start_ms;
     float pixels[PIXELS * 4];
-    const char *place = strstr(logged, folder);
-    const char *told = place ? place + strlen(folder) + 1 : logged[0] ? logged : "a picture\n";
+    const char *place = strstr(messages.text, folder);
+    const char *told = place              ? place + strlen(folder) + 1
+                       : messages.text[0] ? messages.text
+                                          : "a picture\n";
     tried++;
     reported += as_wanted;
     slowest_ms = ms > slowest_ms ? ms : slowest_ms;
@@ -128,7 +108,7 @@ static void all_are_reported(void)
 static void refuse(const char *name, const char *place, const char *reason)
 {
     whit_shader *shader = NULL;
-    logged[0] = 0;
+    messages = (struct messages){0};
     double start_ms = clock_ms();
     whit_result result = whit_shader_load(compiler, in_folder("a.glsl"), false, &shader);
     count(name, start_ms, result == WHIT_ERROR_INPUT && !shader && is_told(place, reason));
@@ -256,7 +236,7 @@ static void fail_to_draw(const whit_shader *shader, const char *sliders, const c
                          const char *reason)
 {
     float pixels[PIXELS * 4];
-    logged[0] = 0;
+    messages = (struct messages){0};
     double start_ms = clock_ms();
     whit_result result = draw(shader, sliders, pixels);
     count(sliders, start_ms, result == WHIT_ERROR_STATUS && is_told(place, reason));
@@ -350,11 +330,11 @@ TEST_IN(what_is_no_number_has_no_picture, begin, end)
         }
     }
     fail_to_draw(shader, "where=division", NULL, "not finite: in ");
-    logged[0] = 0;
+    messages = (struct messages){0};
     double start_ms = clock_ms();
     bool same =
         draw(shader, "where=aov", pixels) == WHIT_OK && memcmp(usual, pixels, sizeof usual) == 0;
-    count("where=aov", start_ms, same && !logged[0]);
+    count("where=aov", start_ms, same && !messages.text[0]);
     whit_shader_destroy(shader);
     all_are_reported();
 }
@@ -379,14 +359,14 @@ TEST_IN(indices_and_divisions_of_integers_have_a_picture, begin, end)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         float pixels[PIXELS * 4];
         char sliders[32];
-        logged[0] = 0;
+        messages = (struct messages){0};
         snprintf(sliders, sizeof sliders, "how=%s", cases[i].name);
         double start_ms = clock_ms();
         bool fine = draw(shader, sliders, pixels) == WHIT_OK;
         for (uint32_t k = 0; fine && k < PIXELS; ++k)
             fine = cases[i].value < 0.0f ? pixels[4 * k] >= 1.0f && pixels[4 * k] <= 4.0f
                                          : pixels[4 * k] == cases[i].value;
-        count(sliders, start_ms, fine && !logged[0]);
+        count(sliders, start_ms, fine && !messages.text[0]);
     }
     whit_shader_destroy(shader);
     all_are_reported();

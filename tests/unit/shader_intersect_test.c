@@ -34,25 +34,15 @@ static const char real_ball[] = "{\"shape\":\"ball\",\"radius\":0.7,"
 #define GIVE       "    return dot(aside, aside) < 0.49 && t >= 0.0;\n}\n"
 #define SHAPE_TEXT BOX INTERSECT MEET GIVE
 
-/* The room with `part` in it; destroyed by close_room(). */
+/* The room with `part` in it; destroyed by scene_close(). */
 static void open_room(const char *part)
 {
     char path[] = "/tmp/whit_room_XXXXXX.json";
     FILE *stream = fdopen(mkstemps(path, 5), "w");
     assert_non_null(stream);
     assert_true(fprintf(stream, room, part) >= 0 && fclose(stream) == 0);
-    if (whit_scene_load(path, NULL, &keeps, &scene) != WHIT_OK)
-        fail_msg("%s", logged);
+    scene_open(path);
     remove(path);
-    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
-}
-
-static void close_room(void)
-{
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    accel = NULL;
-    scene = NULL;
 }
 
 struct picture {
@@ -84,7 +74,7 @@ static whit_result draw(const char *part, const whit_shader *shader, whit_numeri
     whit_image_destroy(color);
     whit_image_destroy(ids);
     whit_renderer_destroy(renderer);
-    close_room();
+    scene_close();
     return result;
 }
 
@@ -140,7 +130,7 @@ TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
     whit_probe_report_destroy(report);
     whit_renderer_destroy(renderer);
     whit_shader_destroy(shader);
-    close_room();
+    scene_close();
 }
 
 /* What the user's other functions trace meets the shape, and its loops have their own fuel. */
@@ -174,7 +164,7 @@ TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
                                 &shader),
                      WHIT_OK);
     assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL), WHIT_OK);
-    assert_non_null(strstr(warned, "wears a material `gald`; did you mean `gold`?"));
+    assert_non_null(strstr(messages.text, "wears a material `gald`; did you mean `gold`?"));
     whit_shader_destroy(shader);
 }
 
@@ -182,12 +172,13 @@ TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
 static void expect_error(const char *content, whit_result wanted, const char *part)
 {
     whit_shader *shader = NULL;
-    logged[0] = 0;
+    messages = (struct messages){0};
     whit_result result = hooks_load(content, &shader);
     if (result == WHIT_OK)
         result = draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL);
-    if (result != wanted || !strstr(logged, part))
-        fail_msg("%d, `%s` in place of %d, `%s`", (int)result, logged, (int)wanted, part);
+    if (result != wanted || !strstr(messages.last_error, part))
+        fail_msg("%d, `%s` in place of %d, `%s`", (int)result, messages.last_error, (int)wanted,
+                 part);
     whit_shader_destroy(shader);
 }
 
@@ -243,5 +234,5 @@ TEST(files_with_half_a_shape_are_refused)
 
 int main(void)
 {
-    return unit_run(hooks_setup, hooks_teardown);
+    return unit_run(hooks_begin, hooks_end);
 }

@@ -24,20 +24,6 @@ static uint64_t effects(const char *names)
     return bits;
 }
 
-static void open_scene(const char *path)
-{
-    assert_int_equal(whit_scene_load(path, NULL, &keeps, &scene), WHIT_OK);
-    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
-}
-
-static void close_scene(void)
-{
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    accel = NULL;
-    scene = NULL;
-}
-
 static whit_image *draw(const whit_renderer_params *params, uint64_t *compiled)
 {
     whit_renderer *renderer;
@@ -128,7 +114,7 @@ static void check(const char *content, const char *removed, const char *read)
     uint64_t compiled, whole;
     whit_shader *shader;
     if (hooks_load(content, &shader) != WHIT_OK)
-        fail_msg("%s", logged);
+        fail_msg("%s", messages.last_error);
     whit_renderer_params params = params_of(shader, removed);
     whit_image *usual = draw(&params, &compiled);
     compiled &= called;
@@ -153,13 +139,13 @@ TEST(what_is_not_read_is_not_compiled)
         char path[512];
         snprintf(path, sizeof path, "%s%s", WHIT_SCENES_DIR, cases[i].scene);
         if (strcmp(opened, cases[i].scene) != 0) {
-            close_scene();
-            open_scene(path);
+            scene_close();
+            scene_open(path);
             opened = cases[i].scene;
         }
         check(cases[i].content, cases[i].removed, cases[i].read);
     }
-    close_scene();
+    scene_close();
 }
 
 /* Instructions of the kernel of surface() and shade(). */
@@ -183,7 +169,7 @@ TEST(the_kernel_of_functions_has_what_they_read)
         "void surface(inout Surface s) { s.ns = normalize(s.ns + 0.1 * s.p); s.color *= 0.5; }\n",
     };
     uint32_t least = 0;
-    open_scene(WHIT_SCENES_DIR "/default.json");
+    scene_open(WHIT_SCENES_DIR "/default.json");
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
         uint64_t compiled;
         whit_shader *shader;
@@ -206,14 +192,14 @@ TEST(the_kernel_of_functions_has_what_they_read)
         }
         whit_shader_destroy(shader);
     }
-    close_scene();
+    scene_close();
 }
 
 /* What a save may read is there in a renderer that keeps it, and one that does not is made anew. */
 TEST(another_version_may_read_more)
 {
     whit_shader *flat, *smooth;
-    open_scene(WHIT_SCENES_DIR SHAPES);
+    scene_open(WHIT_SCENES_DIR SHAPES);
     assert_int_equal(hooks_load(SHADE "s.ng; }\n", &flat), WHIT_OK);
     assert_int_equal(hooks_load(SHADE "s.ns; }\n", &smooth), WHIT_OK);
     for (int keeps_all = 0; keeps_all < 2; ++keeps_all) {
@@ -227,10 +213,10 @@ TEST(another_version_may_read_more)
     }
     whit_shader_destroy(smooth);
     whit_shader_destroy(flat);
-    close_scene();
+    scene_close();
 }
 
 int main(void)
 {
-    return unit_run(hooks_setup, hooks_teardown);
+    return unit_run(hooks_begin, hooks_end);
 }

@@ -1,0 +1,46 @@
+/* A device that keeps its kernels, and a scene with its trees, by the functions of the public
+   header. */
+#ifndef SCENE_FIXTURE_H
+#define SCENE_FIXTURE_H
+
+#include "messages_fixture.h"
+#include "unit.h"
+#include "whit.h"
+#include "whit_program.h"
+
+static whit_device *device;
+static whit_scene *scene;
+static whit_accel *accel;
+
+static inline int device_begin(void **state)
+{
+    (void)state;
+    if (whit_device_create(NULL, &warnings_log, &device) != WHIT_OK)
+        fail_msg("%s", messages.last_error);
+    whit_device_keep_kernels(device);
+    return 0;
+}
+
+static inline int device_end(void **state)
+{
+    (void)state;
+    whit_device_destroy(device);
+    return 0;
+}
+
+static inline void scene_open(const char *path)
+{
+    if (whit_scene_load(path, NULL, &warnings_log, &scene) != WHIT_OK)
+        fail_msg("%s", messages.last_error);
+    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
+}
+
+static inline void scene_close(void)
+{
+    whit_accel_destroy(accel);
+    whit_scene_destroy(scene);
+    accel = NULL;
+    scene = NULL;
+}
+
+#endif
