@@ -1,13 +1,5 @@
 /* Records as the kernels see them, read from SPIR-V, against the C compiler's. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
+#include "../unit/unit.h"
 
 #include "abi/bvh.h"
 #include "abi/queues.h"
@@ -171,9 +163,8 @@ static uint32_t check_module(const uint32_t *words, size_t bytes)
     return strides;
 }
 
-static void every_record_has_the_same_layout(void **state)
+TEST(every_record_has_the_same_layout)
 {
-    (void)state;
     uint32_t records = 0;
     for (size_t i = 0; i < TABLE_COUNT; ++i)
         records += !table[i].member;
@@ -181,9 +172,8 @@ static void every_record_has_the_same_layout(void **state)
     assert_int_equal(check_module(abi_check, sizeof abi_check), records);
 }
 
-static void kernels_use_these_layouts(void **state)
+TEST(kernels_use_these_layouts)
 {
-    (void)state;
     for (int i = 0; i < KERNEL_COUNT; ++i) {
         uint32_t records = check_module(kernels[i].words, kernels[i].bytes);
         assert_true(records > 0);
@@ -210,9 +200,8 @@ static void check_constants(const uint32_t *words, size_t bytes, bool all)
 }
 
 /* render/ passes struct gpu_spec as an array of words indexed by id. */
-static void constants_are_in_the_order_of_their_ids(void **state)
+TEST(constants_are_in_the_order_of_their_ids)
 {
-    (void)state;
     assert_int_equal(sizeof constants / sizeof *constants, GPU_SPEC_COUNT);
     const struct gpu_spec defaults = GPU_SPEC_DEFAULTS;
     uint32_t words[GPU_SPEC_COUNT];
@@ -224,14 +213,4 @@ static void constants_are_in_the_order_of_their_ids(void **state)
     check_constants(abi_check, sizeof abi_check, true);
     for (int i = 0; i < KERNEL_COUNT; ++i)
         check_constants(kernels[i].words, kernels[i].bytes, false);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_record_has_the_same_layout),
-        cmocka_unit_test(kernels_use_these_layouts),
-        cmocka_unit_test(constants_are_in_the_order_of_their_ids),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

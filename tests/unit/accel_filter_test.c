@@ -383,9 +383,8 @@ static struct subject climb_for(const struct search *search)
     return s;
 }
 
-static void errors_stay_within_their_bounds(void **state)
+TEST(errors_stay_within_their_bounds)
 {
-    (void)state;
     const uint32_t climbs = cases_of(120);
     struct rational *rational = rational_create(NULL);
     assert_non_null(rational);
@@ -412,10 +411,4 @@ static void errors_stay_within_their_bounds(void **state)
             fail_msg("%s", search->name);
     }
     rational_destroy(rational);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(errors_stay_within_their_bounds)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

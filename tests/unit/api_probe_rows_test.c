@@ -1,6 +1,4 @@
 /* Ray trees in rows: what brought most first, shadow rays that ended alike in one row. */
-#include <string.h>
-
 #include "unit.h"
 #include "whit.h"
 
@@ -100,7 +98,4 @@ TEST(a_report_without_rays_has_no_rows)
     report.ray_count = RAYS;
 }
 
-int main(void)
-{
-    return unit_run(make_report, NULL);
-}
+TESTS_IN(make_report, NULL)

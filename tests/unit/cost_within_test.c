@@ -1,6 +1,5 @@
 /* What `whit cost` and --budget-ms give up for time, by reports that nobody measured. */
 #include <math.h>
-#include <string.h>
 
 #include "cost/within.h"
 #include "unit.h"
@@ -251,9 +250,4 @@ TEST(other_scenes_are_told_otherwise)
     text = sentence_of(0.001, 0.3, 1.19);
     assert_non_null(strstr(text, "o eye tells the usual picture from the reference (FLIP 0.0010)"));
     assert_non_null(strstr(text, "exact hits cost at most 23 %, as closely as could be measured"));
-}
-
-int main(void)
-{
-    return unit_run(NULL, NULL);
 }

@@ -31,9 +31,8 @@ static whit_result create_with(const char *selector, struct messages *told, stru
     return device_create(&log, &params, device);
 }
 
-static void lists_what_there_is(void **state)
+TEST(lists_what_there_is)
 {
-    (void)state;
     if (info_count == 0)
         skip();
     for (uint32_t i = 0; i < info_count; ++i) {
@@ -60,9 +59,8 @@ static void lists_what_there_is(void **state)
     }
 }
 
-static void chooses_by_number_and_name(void **state)
+TEST(chooses_by_number_and_name)
 {
-    (void)state;
     if (info_count == 0)
         skip();
     for (uint32_t i = 0; i < info_count; ++i) {
@@ -85,9 +83,8 @@ static void chooses_by_number_and_name(void **state)
     }
 }
 
-static void automatic_prefers_the_better_kind(void **state)
+TEST(automatic_prefers_the_better_kind)
 {
-    (void)state;
     if (info_count == 0)
         skip();
     const char *const selectors[] = {NULL, "auto", ""};
@@ -100,9 +97,8 @@ static void automatic_prefers_the_better_kind(void **state)
     }
 }
 
-static void refuses_what_is_not_there(void **state)
+TEST(refuses_what_is_not_there)
 {
-    (void)state;
     if (info_count == 0)
         skip();
     char past[16];
@@ -134,9 +130,8 @@ static int without_driver(void)
     return messages.errors == 1 && strstr(messages.text, "mesa-vulkan-drivers") ? 0 : 4;
 }
 
-static void no_driver_says_what_to_install(void **state)
+TEST(no_driver_says_what_to_install)
 {
-    (void)state;
     pid_t child = fork();
     if (child == 0) {
         setenv("VK_DRIVER_FILES", "/nonexistent", 1);
@@ -150,9 +145,8 @@ static void no_driver_says_what_to_install(void **state)
     assert_int_equal(WEXITSTATUS(status), 0);
 }
 
-static void silent_log_is_fine(void **state)
+TEST(silent_log_is_fine)
 {
-    (void)state;
     struct device_params params = {.selector = "no such device"};
     struct device *device;
     assert_int_equal(device_create(NULL, &params, &device), WHIT_ERROR_NO_DEVICE);
@@ -165,13 +159,5 @@ int main(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "--without-driver") == 0)
         return without_driver();
     setenv("WHIT_NO_CACHE", "1", 1);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_what_there_is),
-        cmocka_unit_test(chooses_by_number_and_name),
-        cmocka_unit_test(automatic_prefers_the_better_kind),
-        cmocka_unit_test(refuses_what_is_not_there),
-        cmocka_unit_test(no_driver_says_what_to_install),
-        cmocka_unit_test(silent_log_is_fine),
-    };
-    return cmocka_run_group_tests(tests, list_devices, free_list);
+    return unit_run(list_devices, free_list);
 }

@@ -371,7 +371,4 @@ TEST_IN(ggx_keeps_its_tip, begin, NULL)
     assert_true(max <= 2e-6);
 }
 
-int main(void)
-{
-    return unit_run(device_begin, device_end);
-}
+TESTS_IN(device_begin, device_end)

@@ -28,9 +28,8 @@ static void use(void *context)
     }
 }
 
-static void devices_come_and_go_beside_others(void **state)
+TEST(devices_come_and_go_beside_others)
 {
-    (void)state;
     struct user users[USERS] = {{0}};
     atomic_bool stop = false;
     for (int i = 0; i < USERS; ++i) {
@@ -51,10 +50,4 @@ static void devices_come_and_go_beside_others(void **state)
         assert_true(users[i].made > 0);
         device_close(users[i].device, &users[i].messages);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(devices_come_and_go_beside_others)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

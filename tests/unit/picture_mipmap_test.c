@@ -1,13 +1,5 @@
 /* The smaller levels of textures, and which of them a pixel asks for. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "../random.h"
 #include "../scenes.h"
@@ -212,9 +204,4 @@ TEST(samples_stand_for_parts_of_even_patterns)
             pattern *= 4;
         assert_true(mipmap_sample_share(i) == 1.0 / pattern);
     }
-}
-
-int main(void)
-{
-    return unit_run(NULL, NULL);
 }

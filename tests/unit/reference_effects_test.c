@@ -249,8 +249,3 @@ TEST(touching_smooth_bodies_agree)
     picture_finish(&reference);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -307,8 +307,3 @@ TEST(levels_that_do_not_fit_are_left_out)
     image_finish(&without);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

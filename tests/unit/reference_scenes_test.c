@@ -145,8 +145,3 @@ TEST(default_scenes_agree)
     assert_true(compared >= sizeof quick_scenes / sizeof *quick_scenes);
     globfree(&paths);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

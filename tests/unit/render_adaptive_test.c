@@ -214,8 +214,3 @@ TEST(nonsense_is_refused)
     fixture_refuses(&f, wrong, sizeof wrong / sizeof *wrong);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

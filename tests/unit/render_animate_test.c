@@ -231,8 +231,3 @@ TEST(an_old_picture_is_not_taken_for_a_new_one)
     image_finish(&image);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

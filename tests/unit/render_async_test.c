@@ -219,8 +219,3 @@ TEST(anything_may_come_in_between)
     image_finish(&before);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -230,8 +230,3 @@ TEST(empty_scenes_have_a_picture)
     picture_finish(&picture);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -385,8 +385,3 @@ TEST(near_and_far_share_a_picture)
         assert_near(image.pixels[4 * p], p % 40 < 20 ? 0.25 : 0.75, 0.0);
     image_finish(&image);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

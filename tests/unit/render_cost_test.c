@@ -389,8 +389,3 @@ TEST(samples_add_up)
     counted_finish(&counted);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

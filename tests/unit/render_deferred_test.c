@@ -77,8 +77,3 @@ TEST(pictures_are_those_of_looks_in_place)
                   (whit_camera)CAMERA_AT(3, 1000, 3, 3, 0, 3, 0, 0, -1, 1), 100);
     check_picture("glass", glass_scene(), glass_camera, 1);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -600,8 +600,3 @@ TEST_BY_TURNS(what_comes_into_view_is_right_at_once, 1, 2)
     picture_finish(&expected);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -179,8 +179,3 @@ TEST(bailout_keeps_its_bound)
         image_finish(&full);
     }
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -3,21 +3,13 @@
 #define TESTS_RENDER_FIXTURE_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "../random.h"
 #include "../scenes.h"
 #include "accel/validate.h"
 #include "base/array.h"
 #include "render/render.h"
+#include "unit.h"
 
 /* Messages of the validation layers since fixture_validate. */
 static int fixture_validation;
@@ -36,22 +28,6 @@ static const whit_log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WA
    pictures take to draw. Checks that want the same kernel share its pipeline. */
 static struct device *fixture_shared;
 
-static inline struct device *fixture_device(void)
-{
-    if (!fixture_shared) {
-        assert_int_equal(device_create(&fixture_log, NULL, &fixture_shared), WHIT_OK);
-        device_keep_pipelines(fixture_shared);
-    }
-    return fixture_shared;
-}
-
-static inline void fixture_validate(void)
-{
-    int said = fixture_validation;
-    fixture_validation = 0;
-    assert_int_equal(said, 0);
-}
-
 /* Ends a program of which `failed` checks failed: after none, what they did not destroy on the
    device becomes messages here. */
 static inline int fixture_end(int failed)
@@ -61,6 +37,23 @@ static inline int fixture_end(int failed)
         fixture_shared = NULL;
     }
     return failed + (fixture_validation > 0);
+}
+
+static inline struct device *fixture_device(void)
+{
+    if (!fixture_shared) {
+        assert_int_equal(device_create(&fixture_log, NULL, &fixture_shared), WHIT_OK);
+        device_keep_pipelines(fixture_shared);
+        unit_at_end(fixture_end);
+    }
+    return fixture_shared;
+}
+
+static inline void fixture_validate(void)
+{
+    int said = fixture_validation;
+    fixture_validation = 0;
+    assert_int_equal(said, 0);
 }
 
 /* Everything between a scene and its hits. */

@@ -366,8 +366,3 @@ TEST(packets_to_a_light_shade_as_rays_do)
         fixture_close(&f);
     }
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

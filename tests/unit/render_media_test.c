@@ -430,8 +430,3 @@ TEST_BY_TURNS(liquid_in_a_glass, 3, 4)
     }
     image_finish(&touching);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

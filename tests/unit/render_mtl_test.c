@@ -206,8 +206,3 @@ TEST(schlick_takes_the_place_of_fresnel)
     image_finish(&image);
     image_finish(&all);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -52,15 +52,13 @@ static void check_levels(struct scene *scene, const struct accel_params *accel_p
     free(hits);
 }
 
-static void one_mesh(void **state)
+TEST(one_mesh)
 {
-    (void)state;
     check_levels(terrain_scene(), NULL);
 }
 
-static void instances(void **state)
+TEST(instances)
 {
-    (void)state;
     if (!unit_turn(0, 2))
         skip();
     check_levels(ring_scene(), NULL);
@@ -68,9 +66,8 @@ static void instances(void **state)
 }
 
 /* 2^-20 as large as the terrain of one_mesh: no level knows a length. */
-static void split_triangles(void **state)
+TEST(split_triangles)
 {
-    (void)state;
     if (!unit_turn(1, 2))
         skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
@@ -80,9 +77,8 @@ static void split_triangles(void **state)
 }
 
 /* Keys that tie: the same triangle many times, in one mesh and in instances at one place. */
-static void ties(void **state)
+TEST(ties)
 {
-    (void)state;
     if (!unit_turn(0, 2))
         skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
@@ -93,9 +89,8 @@ static void ties(void **state)
 }
 
 /* Balls through terrain: order among what is decided in both ways. aim_rays aims at triangles. */
-static void spheres(void **state)
+TEST(spheres)
 {
-    (void)state;
     if (!unit_turn(1, 2))
         skip();
     struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
@@ -105,9 +100,8 @@ static void spheres(void **state)
 }
 
 /* Rays from inside a sphere, at vertices and edges. */
-static void only_fast_leaks(void **state)
+TEST(only_fast_leaks)
 {
-    (void)state;
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_sphere(2.0, 80, 40), NULL);
     whit_renderer_params params = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
@@ -148,9 +142,8 @@ static const whit_renderer_params glass_params = {
 
 /* Glass rings over ground: shadows through filters, media, all kinds of traversals. In the long run
    alone: larger pictures at all levels are in tests/check/whit.suite (check_own). */
-static void pictures_agree(void **state)
+TEST(pictures_agree)
 {
-    (void)state;
     if (cases_times() == 0)
         skip();
     whit_renderer_params params = glass_params;
@@ -181,9 +174,8 @@ static void pictures_agree(void **state)
 }
 
 /* Neither integers nor what waits for them mind that every box is that of everything. */
-static void trees_do_not_matter(void **state)
+TEST(trees_do_not_matter)
 {
-    (void)state;
     const struct accel_params none = {.mesh = {.builder = WHIT_BUILD_NONE}};
     whit_renderer_params params = glass_params;
     params.width = 24;
@@ -195,15 +187,4 @@ static void trees_do_not_matter(void **state)
     assert_same_picture("without trees", &with, &without);
     picture_finish(&with);
     picture_finish(&without);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_mesh),        cmocka_unit_test(instances),
-        cmocka_unit_test(split_triangles), cmocka_unit_test(ties),
-        cmocka_unit_test(spheres),         cmocka_unit_test(only_fast_leaks),
-        cmocka_unit_test(pictures_agree),  cmocka_unit_test(trees_do_not_matter),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

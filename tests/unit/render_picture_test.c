@@ -456,8 +456,3 @@ TEST(nonsense_is_refused)
     fixture_refuses(&f, bad, sizeof bad / sizeof *bad);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

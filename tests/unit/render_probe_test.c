@@ -220,9 +220,8 @@ static void assert_all_kinds(const struct sums *sums)
 
 /* surfaces_let_rays_pass checks the same with `exact` alone, whose kernels take the driver longest:
    what passes at other levels is in scenes_of_all_kinds. */
-static void rays_are_those_of_the_picture(void **state)
+TEST(rays_are_those_of_the_picture)
 {
-    (void)state;
     if (!unit_turn(0, 2))
         skip();
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
@@ -279,9 +278,8 @@ static struct scene *sieve_scene(void)
 static const whit_renderer_params sieve_params = {
     .width = SIDE, .height = 6, .depth = 3, .bailout = 0.05, .light_samples = 4};
 
-static void surfaces_let_rays_pass(void **state)
+TEST(surfaces_let_rays_pass)
 {
-    (void)state;
     if (!unit_turn(1, 2))
         skip();
     whit_renderer_params params = sieve_params;
@@ -295,9 +293,8 @@ static void surfaces_let_rays_pass(void **state)
     fixture_close(&f);
 }
 
-static void trees_do_not_matter(void **state)
+TEST(trees_do_not_matter)
 {
-    (void)state;
     static const struct accel_params trees[] = {{.mesh.builder = WHIT_BUILD_NONE},
                                                 {.flatten = true}};
     whit_renderer_params params = sieve_params;
@@ -317,9 +314,8 @@ static void trees_do_not_matter(void **state)
 /* ---- Scenes from files ---- */
 
 /* Media that touch and absorb, spheres, cut-outs in textures, lamps made of glowing surfaces. */
-static void scenes_of_all_kinds(void **state)
+TEST(scenes_of_all_kinds)
 {
-    (void)state;
     static const struct {
         const char *name;
         bool through, straight; /* wine that touches its glass; cut-outs */
@@ -341,9 +337,8 @@ static void scenes_of_all_kinds(void **state)
 }
 
 /* Passes and buffers of the probe go along with the renderer's. */
-static void another_time_and_size(void **state)
+TEST(another_time_and_size)
 {
-    (void)state;
     if (!unit_turn(0, 2))
         skip();
     const whit_renderer_params params = {.width = SIDE, .height = 6, .depth = 3};
@@ -363,9 +358,8 @@ static void another_time_and_size(void **state)
 
 /* ---- More samples, less room, and nothing ---- */
 
-static void color_is_of_all_samples(void **state)
+TEST(color_is_of_all_samples)
 {
-    (void)state;
     if (!unit_turn(1, 2))
         skip();
     whit_renderer_params params = small;
@@ -402,9 +396,8 @@ static uint32_t busiest_pixel(struct fixture *f, uint32_t *rays)
     return best;
 }
 
-static void rays_without_room_are_counted(void **state)
+TEST(rays_without_room_are_counted)
 {
-    (void)state;
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
     uint32_t all, pixel = busiest_pixel(&f, &all);
     struct probe_report whole = probe(&f, pixel % SIDE, pixel / SIDE, 0);
@@ -421,9 +414,8 @@ static void rays_without_room_are_counted(void **state)
     fixture_close(&f);
 }
 
-static void pixels_outside_are_refused(void **state)
+TEST(pixels_outside_are_refused)
 {
-    (void)state;
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
     struct probe_report report;
     assert_int_equal(renderer_probe(f.renderer, SIDE, 0, 0, &report), WHIT_ERROR_USAGE);
@@ -443,9 +435,8 @@ static struct pipeline_info kernel_of(const struct pass *pass)
 }
 
 /* Before the first probe there is nothing of it; afterwards it is in a kernel of its own. */
-static void pictures_know_nothing_of_it(void **state)
+TEST(pictures_know_nothing_of_it)
 {
-    (void)state;
     struct fixture f = fixture_open(glass_scene(), NULL, &small);
     struct renderer *r = f.renderer;
     struct image picture = render(&f);
@@ -468,20 +459,4 @@ static void pictures_know_nothing_of_it(void **state)
     assert_true(r->scene_buffers.bytes > bytes);
     print_message("  %u instructions, %u of a probe\n", before.instructions, probe.instructions);
     fixture_close(&f);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_are_those_of_the_picture),
-        cmocka_unit_test(surfaces_let_rays_pass),
-        cmocka_unit_test(trees_do_not_matter),
-        cmocka_unit_test(scenes_of_all_kinds),
-        cmocka_unit_test(another_time_and_size),
-        cmocka_unit_test(color_is_of_all_samples),
-        cmocka_unit_test(rays_without_room_are_counted),
-        cmocka_unit_test(pixels_outside_are_refused),
-        cmocka_unit_test(pictures_know_nothing_of_it),
-    };
-    return fixture_end(cmocka_run_group_tests(tests, NULL, NULL));
 }

@@ -246,8 +246,3 @@ TEST(paths_are_reversible)
         assert_true(fabs(share[0] - expected) < 1e-5 && fabs(share[1] - expected) < 1e-5);
     }
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -126,8 +126,3 @@ TEST(a_larger_view_keeps_the_kernels)
     picture_finish(&after);
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -282,7 +282,4 @@ TEST(other_samples_are_refused)
     }
 }
 
-int main(void)
-{
-    return fixture_end(unit_run(open_scene, close_scene));
-}
+TESTS_IN(open_scene, close_scene)

@@ -71,8 +71,3 @@ TEST(pictures_do_not_depend_on_the_unit)
     compare_sizes(true, scales, sizeof scales / sizeof *scales);
     compare_sizes(false, extremes, sizeof extremes / sizeof *extremes);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

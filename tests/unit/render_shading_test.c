@@ -284,8 +284,3 @@ TEST(frames_stand_in_every_direction)
         assert_even(scene, expected, 2e-6);
     }
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -423,8 +423,3 @@ TEST(narrow_gaps_stay_dark)
         assert_int_equal(narrow, 0);
     }
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

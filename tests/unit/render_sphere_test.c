@@ -226,8 +226,3 @@ TEST(one_sided_balls_hide_their_inside)
         image_finish(&image);
     }
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -353,8 +353,3 @@ TEST(cut_traversals_are_reported)
     }
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -239,8 +239,3 @@ TEST(what_views_do_not_go_with_is_refused)
     }
     fixture_close(&f);
 }
-
-int main(void)
-{
-    return fixture_end(unit_run(NULL, NULL));
-}

@@ -9,6 +9,7 @@ enum { CHECKS_MAX = 64 };
 
 static struct CMUnitTest checks[CHECKS_MAX]; /* cmocka leaves out those without a name. */
 static size_t check_count;
+static int (*at_end)(int failed);
 
 __attribute__((constructor)) static void run_only(void)
 {
@@ -32,7 +33,13 @@ bool unit_turn(size_t index, size_t every)
 
 int unit_run(CMFixtureFunction begin, CMFixtureFunction end)
 {
-    return cmocka_run_group_tests(checks, begin, end);
+    int failed = cmocka_run_group_tests(checks, begin, end);
+    return at_end ? at_end(failed) : failed;
+}
+
+void unit_at_end(int (*end)(int failed))
+{
+    at_end = end;
 }
 
 __attribute__((weak)) int main(void)

@@ -3,8 +3,9 @@
    down behind it, TEST_IN(name, begin, end). TEST_BY_TURNS(name, i, n) { ... } wants kernels of its
    own, which the driver takes long to compile: of n such checks the short run has one, others with
    each commit, and the entry *_long all of them. All checks of a program run in the order in which
-   they stand in its file, by the main() of unit.c; a file that has more to do there has a main() of
-   its own, which calls unit_run(). */
+   they stand in its file, by the main() of unit.c, or between the two functions of
+   TESTS_IN(begin, end) behind them; a file that has more to do has a main() of its own, which calls
+   unit_run(). */
 #ifndef UNIT_H
 #define UNIT_H
 
@@ -30,6 +31,11 @@
             unit_add(#name, name, begin, end);                                                     \
     }                                                                                              \
     static void name(__attribute__((unused)) void **state)
+#define TESTS_IN(begin, end)                                                                       \
+    int main(void)                                                                                 \
+    {                                                                                              \
+        return unit_run(begin, end);                                                               \
+    }
 
 void unit_add(const char *name, CMUnitTestFunction check, CMFixtureFunction begin,
               CMFixtureFunction end);
@@ -39,5 +45,8 @@ bool unit_turn(size_t index, size_t every);
 
 /* Runs all checks between `begin` and `end`, which may be NULL. How many failed. */
 int unit_run(CMFixtureFunction begin, CMFixtureFunction end);
+
+/* unit_run() then gives what `end` makes of that number, once all checks have run. */
+void unit_at_end(int (*end)(int failed));
 
 #endif
