@@ -4,10 +4,9 @@
 #include <errno.h>
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "base/foreign.h"
-#include "unit.h"
+#include "folder_fixture.h"
 #include "whit.h"
 
 /* All that a sandbox or a handler would change of this process. */
@@ -33,36 +32,26 @@ static void look_at_host(struct host *host)
         if (sigaction(i, NULL, &action) == 0)
             host->handlers[i] = action.sa_handler;
     assert_int_equal(sigprocmask(SIG_BLOCK, NULL, &host->blocked), 0);
-    DIR *folder = opendir("/proc/self/fd");
-    while (folder && readdir(folder))
+    DIR *opened = opendir("/proc/self/fd");
+    while (opened && readdir(opened))
         host->descriptors++;
-    closedir(folder);
-}
-
-static void put(const char *path, const char *text, size_t bytes)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, bytes, file), bytes);
-    assert_int_equal(fclose(file), 0);
+    closedir(opened);
 }
 
 static const char model[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 /* A model by the importer, and a picture by a decoder. */
-TEST(the_host_is_left_as_it_was)
+TEST_IN(the_host_is_left_as_it_was, folder_begin, folder_end)
 {
     static const char sky[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81";
     static const char scene_text[] =
         "{\"objects\": [{\"model\": \"a.obj\"}], \"environment\": {\"map\": \"a.hdr\"}}";
-    char folder[] = "/tmp/whit-load-XXXXXX";
     static struct host before, after;
     whit_scene *scene = NULL;
-    assert_non_null(mkdtemp(folder));
     assert_int_equal(chdir(folder), 0);
-    put("a.obj", model, sizeof model - 1);
-    put("a.hdr", sky, sizeof sky - 1);
-    put("a.json", scene_text, sizeof scene_text - 1);
+    put_file("a.obj", model, sizeof model - 1);
+    put_file("a.hdr", sky, sizeof sky - 1);
+    put_file("a.json", scene_text, sizeof scene_text - 1);
     look_at_host(&before);
     assert_non_null(strstr(before.confinement, "NoNewPrivs:\t0"));
     assert_int_equal(whit_scene_load("a.json", NULL, NULL, &scene), WHIT_OK);
@@ -102,16 +91,13 @@ static void loads(const char *path, const whit_load_params *params)
     whit_scene_destroy(scene);
 }
 
-TEST(limits_are_those_that_were_asked_for)
+TEST_IN(limits_are_those_that_were_asked_for, folder_begin, folder_end)
 {
-    char folder[] = "/tmp/whit-load-XXXXXX", path[64];
     const whit_load_params asked = {.import_limit_s = 99.0,
                                     .time_limit_s = 7.0,
                                     .memory_limit_bytes = UINT64_C(1) << 30,
                                     .require_sandbox = true};
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/a.obj", folder);
-    put(path, model, sizeof model - 1);
+    const char *path = put_text("a.obj", model);
     loads(path, NULL);
     assert_true(allowed.cpu_s >= 8.0 && allowed.cpu_s < 8.001);
     assert_true(child_clock_limit_s(&allowed) >= 80.0 && !allowed.require_sandbox);

@@ -13,22 +13,17 @@ static void wake(void *user)
     sem_post(&woken);
 }
 
-static void put(const char *name, const char *text)
-{
-    put_file(in_folder(name), text, strlen(text));
-}
-
 TEST_IN(changes_are_told_once, folder_begin, folder_end)
 {
     struct watch *watch = watch_create(wake);
     assert_non_null(watch);
-    put("a.json", "1");
+    put_text("a.json", "1");
     watch_add(watch, in_folder("a.json"));
     assert_false(watch_changed(watch));
-    put("a.json", "2");
+    put_text("a.json", "2");
     assert_true(watch_changed(watch));
     assert_false(watch_changed(watch));
-    put("new", "3"); /* as editors do */
+    put_text("new", "3"); /* as editors do */
     assert_false(watch_changed(watch));
     assert_int_equal(rename(in_folder("new"), in_folder("a.json")), 0);
     assert_true(watch_changed(watch));
@@ -46,7 +41,7 @@ TEST_IN(who_waits_is_woken, folder_begin, folder_end)
     assert_int_equal(clock_gettime(CLOCK_REALTIME, &until), 0);
     until.tv_sec += 60;
     for (int i = 0; i < 3; ++i) {
-        put("a.json", "1");
+        put_text("a.json", "1");
         assert_int_equal(sem_timedwait(&woken, &until), 0);
         assert_true(watch_changed(watch));
     }
@@ -57,16 +52,16 @@ TEST_IN(others_are_nobodys_business, folder_begin, folder_end)
 {
     struct watch *watch = watch_create(wake);
     watch_add(watch, in_folder("a.json"));
-    put("b.json", "1");
+    put_text("b.json", "1");
     assert_false(watch_changed(watch));
     watch_add(watch, in_folder("b.json"));
-    put("b.json", "2");
+    put_text("b.json", "2");
     assert_true(watch_changed(watch));
     watch_clear(watch);
-    put("a.json", "3");
+    put_text("a.json", "3");
     assert_false(watch_changed(watch));
     watch_add(watch, in_folder("a.json")); /* again, after the folder was let go */
-    put("a.json", "4");
+    put_text("a.json", "4");
     assert_true(watch_changed(watch));
     watch_destroy(watch);
 }

@@ -1,11 +1,11 @@
 /* Every checked Vulkan call is made to fail in turn; and the pipeline cache's file is damaged. */
 #include <dirent.h>
-#include <unistd.h>
 
 #include "affine_fixture.h"
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "device/pipeline.h"
+#include "folder_fixture.h"
 #include "unit.h"
 
 /* Everything a user does with a device, once. */
@@ -170,11 +170,10 @@ TEST(fifty_devices_in_turn)
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
 }
 
-/* The one file in `folder`/whit whose name begins so, "" when there is none. */
-static void cache_file(const char *folder, const char *begin, char *path, size_t path_bytes)
+/* The one file of the cache whose name begins so, "" when there is none. */
+static void cache_file(const char *begin, char *path, size_t path_bytes)
 {
-    char cache[128];
-    snprintf(cache, sizeof cache, "%s/whit", folder);
+    const char *cache = in_folder("whit");
     path[0] = '\0';
     DIR *dir = opendir(cache);
     if (!dir)
@@ -196,14 +195,6 @@ static size_t read_all(const char *path, uint8_t *data, size_t data_bytes)
     return bytes;
 }
 
-static void write_all(const char *path, const uint8_t *data, size_t data_bytes)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(data, 1, data_bytes, file), data_bytes);
-    assert_int_equal(fclose(file), 0);
-}
-
 /* Damages the file in several ways; each time the next run makes it anew, and says nothing. */
 static void damage_and_run(const char *path)
 {
@@ -216,7 +207,7 @@ static void damage_and_run(const char *path)
         broken[bytes - 1] ^= damage == 0;
         broken[0] ^= damage == 1;
         broken[24] ^= damage == 4; /* the driver's first byte, which only the checksum guards */
-        write_all(path, broken, broken_bytes);
+        put_file(path, broken, broken_bytes);
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
         assert_int_equal(messages.lines, 0);
         assert_int_equal(read_all(path, now, sizeof now), bytes);
@@ -225,29 +216,26 @@ static void damage_and_run(const char *path)
     }
 }
 
-TEST(damaged_cache_files_are_replaced)
+TEST_IN(damaged_cache_files_are_replaced, folder_begin, folder_end)
 {
-    char folder[] = "/tmp/whit-device-XXXXXX", path[512], cache[64];
-    assert_non_null(mkdtemp(folder));
+    char path[512], *cache = in_folder("whit");
     setenv("XDG_CACHE_HOME", folder, 1);
     assert_int_equal(cycle_run(&messages, false), WHIT_OK); /* WHIT_NO_CACHE is on */
-    cache_file(folder, "", path, sizeof path);
+    cache_file("", path, sizeof path);
     assert_string_equal(path, "");
 
     unsetenv("WHIT_NO_CACHE");
     assert_int_equal(cycle_run(&messages, false), WHIT_OK);
-    cache_file(folder, "pipelines-", path, sizeof path);
+    cache_file("pipelines-", path, sizeof path);
     assert_true(path[0] != '\0');
     damage_and_run(path);
     assert_int_equal(unlink(path), 0);
-    snprintf(cache, sizeof cache, "%s/whit", folder);
     assert_int_equal(rmdir(cache), 0);
     /* A file where the folder should be: no cache, and no complaint. */
-    write_all(cache, (const uint8_t[]){0}, 1);
+    put_file(cache, (const uint8_t[]){0}, 1);
     assert_int_equal(cycle_run(&messages, false), WHIT_OK);
     assert_int_equal(messages.lines, 0);
     assert_int_equal(unlink(cache), 0);
-    (void)rmdir(folder); /* unless a driver keeps something there too */
     setenv("WHIT_NO_CACHE", "1", 1);
     unsetenv("XDG_CACHE_HOME");
 }

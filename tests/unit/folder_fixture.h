@@ -25,12 +25,12 @@ static inline int folder_end(void **state)
     return system(command);
 }
 
-/* A path in the folder, which seven more calls leave as it is. */
+/* A path in the folder, which fifteen more calls leave as it is. */
 static inline char *in_folder(const char *name)
 {
-    static char paths[8][320];
+    static char paths[16][320];
     static int next;
-    char *path = paths[next++ % 8];
+    char *path = paths[next++ % 16];
     snprintf(path, sizeof paths[0], "%s/%s", folder, name);
     return path;
 }
@@ -41,6 +41,19 @@ static inline void put_file(const char *path, const void *data, size_t bytes)
     assert_non_null(file);
     assert_int_equal(fwrite(data, 1, bytes, file), bytes);
     assert_int_equal(fclose(file), 0);
+}
+
+/* A file of the folder; its path, as in_folder(). */
+static inline const char *put_data(const char *name, const void *data, size_t bytes)
+{
+    const char *path = in_folder(name);
+    put_file(path, data, bytes);
+    return path;
+}
+
+static inline const char *put_text(const char *name, const char *text)
+{
+    return put_data(name, text, strlen(text));
 }
 
 #endif

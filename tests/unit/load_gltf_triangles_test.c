@@ -5,8 +5,8 @@
 #include "unit.h"
 
 /* Writes b.bin and a file of one mesh around it, in whose texts ' stands for ". */
-static const char *write_gltf(struct fixture *fixture, const void *data, size_t size_bytes,
-                              const char *views, const char *accessors, const char *primitives)
+static const char *write_gltf(const void *data, size_t size_bytes, const char *views,
+                              const char *accessors, const char *primitives)
 {
     char *text =
         string_format("{'asset':{'version':'2.0'},'buffers':[{'byteLength':%zu,'uri':'b.bin'}],"
@@ -16,8 +16,8 @@ static const char *write_gltf(struct fixture *fixture, const void *data, size_t 
     assert_non_null(text);
     for (char *at = text; (at = strchr(at, '\''));)
         *at = '"';
-    fixture_write(fixture, "b.bin", data, size_bytes);
-    const char *path = fixture_text(fixture, "a.gltf", text);
+    put_data("b.bin", data, size_bytes);
+    const char *path = put_text("a.gltf", text);
     free(text);
     return path;
 }
@@ -26,7 +26,7 @@ static const struct scene_mesh *load(struct fixture *fixture, const char *path)
 {
     whit_result result = fixture_load(fixture, path);
     if (result != WHIT_OK)
-        fail_msg("%s", fixture->last_error);
+        fail_msg("%s", messages.last_error);
     return &fixture->scene->meshes[fixture->scene->mesh_count - 1];
 }
 
@@ -86,14 +86,13 @@ TEST_IN(components_become_floats, fixture_begin, fixture_end)
                       "'count':3,'type':'VEC%d'}",
             rows[i].component, rows[i].normalized, rows[i].count);
         const struct scene_mesh *mesh =
-            load(*state, write_gltf(*state, &data, sizeof data,
+            load(*state, write_gltf(&data, sizeof data,
                                     "{'buffer':0,'byteLength':36},"
                                     "{'buffer':0,'byteOffset':36,'byteLength':64,'byteStride':20}",
                                     accessors, "{'attributes':{'POSITION':0,'COLOR_0':1}}"));
         assert_int_equal(mesh->indices[1], 1);
         assert_floats(mesh->colors + 4, rows[i].wanted, 4, accessors);
         free(accessors);
-        fixture_forget(*state);
     }
 }
 
@@ -123,7 +122,7 @@ TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
                       "'values':{'bufferView':1,'byteOffset':8}}}",
             rows[i].view, rows[i].component);
         const struct scene_mesh *mesh =
-            load(*state, write_gltf(*state, &data, sizeof data,
+            load(*state, write_gltf(&data, sizeof data,
                                     "{'buffer':0,'byteLength':36},"
                                     "{'buffer':0,'byteOffset':36,'byteLength':24},"
                                     "{'buffer':0,'byteOffset':60,'byteLength':24}",
@@ -133,7 +132,6 @@ TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
             wanted[k] = k % 2 && rows[i].wanted[k] > 4 ? 1 - rows[i].wanted[k] : rows[i].wanted[k];
         assert_floats(mesh->uvs[0], wanted, 6, accessors);
         free(accessors);
-        fixture_forget(*state);
     }
 }
 
@@ -170,15 +168,14 @@ TEST_IN(modes_and_indices, fixture_begin, fixture_end)
         char *primitive = string_format("{'mode':%d,'attributes':{'POSITION':0}%s}", rows[i].mode,
                                         rows[i].component ? ",'indices':1" : "");
         const struct scene_mesh *mesh =
-            load(*state, write_gltf(*state, &data, sizeof data, "{'buffer':0,'byteLength':72}",
-                                    accessors, primitive));
+            load(*state, write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':72}", accessors,
+                                    primitive));
         assert_int_equal(mesh->triangle_count, rows[i].triangles);
         for (uint32_t k = 0; k < 3 * rows[i].triangles; k++)
             if (mesh->indices[k] != rows[i].wanted[k])
                 fail_msg("%s %s: corner %u is %u", primitive, accessors, k, mesh->indices[k]);
         free(accessors);
         free(primitive);
-        fixture_forget(*state);
     }
     assert_true(fixture_noted(*state, "meshes[0].primitives[0]: 1 of 2 triangles are damaged and"));
 }
@@ -189,7 +186,7 @@ TEST_IN(normals_that_are_missing, fixture_begin, fixture_end)
     const float normals[9] = {NAN, 0, 0, 1, 0, 0, 0, 0, 0};
     struct data data = triangle_data(normals, sizeof normals);
     const struct scene_mesh *mesh =
-        load(*state, write_gltf(*state, &data, sizeof data, "{'buffer':0,'byteLength':100}",
+        load(*state, write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':100}",
                                 POSITIONS ",{'bufferView':0,'byteOffset':36,'componentType':5126,"
                                           "'count':3,'type':'VEC3'}",
                                 "{'attributes':{'POSITION':0,'NORMAL':1}},{'attributes':"
@@ -244,13 +241,12 @@ TEST_IN(bad_accessors_are_refused, fixture_begin, fixture_end)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct fixture *fixture = *state;
         struct data data = triangle_data(nines, sizeof nines);
-        const char *path = write_gltf(fixture, &data, sizeof data,
+        const char *path = write_gltf(&data, sizeof data,
                                       "{'buffer':0,'byteLength':36},"
                                       "{'buffer':0,'byteOffset':36,'byteLength':35}",
                                       rows[i].accessors, rows[i].primitive);
-        fixture->errors = 0;
+        messages.errors = 0;
         fixture_refused(fixture, path, rows[i].reason);
-        fixture_forget(fixture);
     }
 }
 
@@ -261,12 +257,12 @@ TEST_IN(small_files_stay_small, fixture_begin, fixture_end)
     struct data data = triangle_data("", 0);
     fixture->scene->memory_limit = UINT64_C(1) << 28;
     const char *path =
-        write_gltf(fixture, &data, sizeof data, "{'buffer':0,'byteLength':36}",
+        write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':36}",
                    "{'componentType':5126,'count':10000000,'type':'VEC3','sparse':{'count':1,"
                    "'indices':{'bufferView':0,'componentType':5121},'values':{'bufferView':0}}}",
                    "{'attributes':{'POSITION':0}},{'attributes':{'POSITION':0}}");
     assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
-    assert_non_null(strstr(fixture->last_error, "meshes[0].primitives[1] of 10000000 vertices"));
+    assert_non_null(strstr(messages.last_error, "meshes[0].primitives[1] of 10000000 vertices"));
     assert_int_equal(fixture->scene->memory_taken, 0);
 }
 
@@ -290,8 +286,8 @@ static const uint8_t packed[150] = {
     "{'attributes':{'POSITION':0,'TEXCOORD_0':1,'COLOR_0':2" more "},'indices':3,'extensions':"    \
     "{'KHR_draco_mesh_compression':{'bufferView':0,'attributes':{" attributes "}}}}"
 
-static const char *write_packed(struct fixture *fixture, const uint8_t *bytes, unsigned vertices,
-                                const char *uv_type, const char *primitive)
+static const char *write_packed(const uint8_t *bytes, unsigned vertices, const char *uv_type,
+                                const char *primitive)
 {
     uint8_t data[152 + 48] = {0};
     memcpy(data, bytes, sizeof packed);
@@ -303,7 +299,7 @@ static const char *write_packed(struct fixture *fixture, const uint8_t *bytes, u
         "{'componentType':5125,'count':6,'type':'SCALAR'},"
         "{'bufferView':1,'componentType':5126,'count':%u,'type':'VEC3'}",
         vertices, uv_type, vertices, vertices, vertices);
-    const char *path = write_gltf(fixture, data, sizeof data,
+    const char *path = write_gltf(data, sizeof data,
                                   "{'buffer':0,'byteLength':150},"
                                   "{'buffer':0,'byteOffset':152,'byteLength':48}",
                                   accessors, primitive);
@@ -320,7 +316,7 @@ TEST_IN(draco_is_unpacked, fixture_begin, fixture_end)
     const uint32_t indices[6] = {0, 1, 2, 2, 1, 3};
     const struct scene_mesh *mesh = load(
         *state,
-        write_packed(*state, packed, 4, "'componentType':5126",
+        write_packed(packed, 4, "'componentType':5126",
                      PACKED_PRIMITIVE(",'NORMAL':4", "'POSITION':0,'TEXCOORD_0':1,'COLOR_0':2")));
     assert_int_equal(mesh->vertex_count, 4);
     assert_int_equal(mesh->triangle_count, 2);
@@ -352,9 +348,8 @@ TEST_IN(bad_draco_is_refused, fixture_begin, fixture_end)
         memcpy(bytes, packed, sizeof packed);
         bytes[0] = rows[i].first;
         const char *path =
-            write_packed(fixture, bytes, rows[i].vertices, rows[i].uv_type, rows[i].primitive);
-        fixture->errors = 0;
+            write_packed(bytes, rows[i].vertices, rows[i].uv_type, rows[i].primitive);
+        messages.errors = 0;
         fixture_refused(fixture, path, rows[i].reason);
-        fixture_forget(fixture);
     }
 }

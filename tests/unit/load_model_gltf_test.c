@@ -32,7 +32,7 @@ static void append_base64(char *to, const uint8_t *from, size_t size)
 
 /* The file with `members` beside its buffer, view, accessors and one mesh. Accessors: 0 positions,
    1 times, 2 translations, 3 instances, 4 rotations, 5 texture coordinates. */
-static const char *write_gltf(struct fixture *fixture, const char *members)
+static const char *write_gltf(const char *members)
 {
     char base64[4 * sizeof data / 3 + 1];
     append_base64(base64, (const uint8_t *)data, sizeof data);
@@ -59,7 +59,7 @@ static const char *write_gltf(struct fixture *fixture, const char *members)
         sizeof data, base64, sizeof data, strstr(members, "\"materials\"") ? ",\"material\":0" : "",
         members);
     assert_non_null(text);
-    const char *path = fixture_text(fixture, "a.gltf", text);
+    const char *path = put_text("a.gltf", text);
     free(text);
     return path;
 }
@@ -67,14 +67,14 @@ static const char *write_gltf(struct fixture *fixture, const char *members)
 static const struct scene *load(void **state, const char *members)
 {
     struct fixture *fixture = *state;
-    assert_int_equal(fixture_load(fixture, write_gltf(fixture, members)), WHIT_OK);
-    assert_int_equal(fixture->errors, 0);
+    assert_int_equal(fixture_load(fixture, write_gltf(members)), WHIT_OK);
+    assert_int_equal(messages.errors, 0);
     return fixture->scene;
 }
 
 static void refused(void **state, const char *members, const char *reason)
 {
-    fixture_refused(*state, write_gltf(*state, members), reason);
+    fixture_refused(*state, write_gltf(members), reason);
 }
 
 #define ONE_NODE "\"nodes\":[{\"mesh\":0}]"
@@ -117,9 +117,9 @@ TEST_IN(nodes_hang_below_the_given_one, fixture_begin, fixture_end)
     struct scene_node node;
     scene_node_init(&node, "placed", SCENE_NONE);
     assert_int_equal(scene_add_node(fixture->scene, node), 0);
-    const char *path = write_gltf(fixture, "\"nodes\":[{\"mesh\":0,\"camera\":0}],"
-                                           "\"cameras\":[{\"type\":\"perspective\","
-                                           "\"perspective\":{\"yfov\":1,\"znear\":1}}]");
+    const char *path = write_gltf("\"nodes\":[{\"mesh\":0,\"camera\":0}],"
+                                  "\"cameras\":[{\"type\":\"perspective\","
+                                  "\"perspective\":{\"yfov\":1,\"znear\":1}}]");
     assert_int_equal(load_model(fixture->scene, path, 0, true, false, NULL), WHIT_OK);
     assert_int_equal(fixture->scene->nodes[1].parent, 0);
     assert_int_equal(fixture->scene->camera_count, 0);
@@ -176,13 +176,13 @@ TEST_IN(unknown_extensions_are_refused_by_name, fixture_begin, fixture_end)
 
 TEST_IN(old_versions_are_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, fixture_text(*state, "a.gltf", "{\"asset\":{\"version\":\"1.0\"}}"),
+    fixture_refused(*state, put_text("a.gltf", "{\"asset\":{\"version\":\"1.0\"}}"),
                     "version `1.0`");
 }
 
 TEST_IN(syntax_errors_have_a_line, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, fixture_text(*state, "a.gltf", "{\n\"asset\":\n}"), "a.gltf:3:");
+    fixture_refused(*state, put_text("a.gltf", "{\n\"asset\":\n}"), "a.gltf:3:");
 }
 
 /* --- cameras and lights --------------------------------------------------------------------- */
@@ -343,9 +343,9 @@ TEST_IN(quantized_attributes, fixture_begin, fixture_end)
     uint8_t bytes[48];
     memcpy(bytes, data, 36);
     memcpy(bytes + 36, uvs, 12);
-    fixture_write(fixture, "b c.bin", bytes, sizeof bytes);
-    const char *path = fixture_text(
-        fixture, "q.gltf",
+    put_data("b c.bin", bytes, sizeof bytes);
+    const char *path = put_text(
+        "q.gltf",
         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"b%20c.bin\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"
         "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":12}],"
@@ -365,9 +365,9 @@ TEST_IN(quantized_attributes, fixture_begin, fixture_end)
 TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    fixture_write(fixture, "b.bin", data, 48);
-    const char *path = fixture_text(
-        fixture, "q.gltf",
+    put_data("b.bin", data, 48);
+    const char *path = put_text(
+        "q.gltf",
         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"b.bin\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48}],"
         "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":4000000000,\"type\":"
@@ -379,9 +379,9 @@ TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
 TEST_IN(missing_buffers_are_named, fixture_begin, fixture_end)
 {
     fixture_refused(*state,
-                    fixture_text(*state, "q.gltf",
-                                 "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":4,"
-                                 "\"uri\":\"gone.bin\"}]}"),
+                    put_text("q.gltf",
+                             "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":4,"
+                             "\"uri\":\"gone.bin\"}]}"),
                     "buffers[0]: its file `gone.bin`: there is no such file");
 }
 

@@ -191,8 +191,8 @@ TEST(reasons_are_one_line)
 TEST_IN(colors_of_scans, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(
-        fixture, "a.ply", PLY_HEADER "0 0 0 255 0 0\n1 0 0 0 128 0\n0 1 0 0 0 255\n3 0 1 2\n");
+    const char *path =
+        put_text("a.ply", PLY_HEADER "0 0 0 255 0 0\n1 0 0 0 128 0\n0 1 0 0 0 255\n3 0 1 2\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = &fixture->scene->meshes[0];
     assert_non_null(mesh->colors);
@@ -216,7 +216,7 @@ TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
     memcpy(file, header, sizeof header - 1);
     memcpy(file + sizeof header - 1, positions, sizeof positions);
     memcpy(file + sizeof header - 1 + sizeof positions, face, sizeof face);
-    const char *path = fixture_write(fixture, "a.ply", file, sizeof file - 1);
+    const char *path = put_data("a.ply", file, sizeof file - 1);
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = &fixture->scene->meshes[0];
     assert_int_equal(mesh->triangle_count, 1);
@@ -271,14 +271,13 @@ TEST_IN(strips_become_triangles, fixture_begin, fixture_end)
         fputs(rows[i].header, file);
         append_strip_file(file, rows[i].format);
         assert_int_equal(fclose(file), 0);
-        const char *path = fixture_write(fixture, "strip.ply", bytes, size);
+        const char *path = put_data("strip.ply", bytes, size);
         free(bytes);
         if (fixture_load(fixture, path) != WHIT_OK)
-            fail_msg("%s: %s", rows[i].format, fixture->last_error);
+            fail_msg("%s: %s", rows[i].format, messages.last_error);
         const struct scene_mesh *mesh = &fixture->scene->meshes[i];
         assert_int_equal(mesh->triangle_count, 3);
         assert_memory_equal(mesh->indices, wanted, sizeof wanted);
-        fixture_forget(fixture);
     }
 }
 
@@ -293,18 +292,17 @@ TEST_IN(damaged_strips_are_refused, fixture_begin, fixture_end)
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         struct fixture *fixture = *state;
-        fixture->errors = 0;
-        fixture_refused(fixture, fixture_text(fixture, "strip.ply", files[i]),
+        messages.errors = 0;
+        fixture_refused(fixture, put_text("strip.ply", files[i]),
                         "strip.ply: its triangle strips are cut short, are no whole numbers");
-        fixture_forget(fixture);
     }
 }
 
 TEST_IN(facets_are_welded, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(
-        fixture, "a.stl",
+    const char *path = put_text(
+        "a.stl",
         "solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
         "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 1 1 0\n"
         "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
@@ -323,19 +321,19 @@ TEST_IN(refusals_name_the_file, fixture_begin, fixture_end)
     struct fixture *fixture = *state;
     char rubbish[401] = "";
     memset(rubbish, 'x', sizeof rubbish - 1);
-    const char *path = fixture_text(fixture, "lamp.stl", rubbish);
+    const char *path = put_text("lamp.stl", rubbish);
     assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
-    assert_int_equal(fixture->errors, 1);
-    assert_non_null(strstr(fixture->last_error, ": assimp: "));
-    assert_non_null(strstr(strstr(fixture->last_error, ": assimp: "), "lamp.stl"));
-    assert_null(strstr(fixture->last_error, "model.stl"));
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.last_error, ": assimp: "));
+    assert_non_null(strstr(strstr(messages.last_error, ": assimp: "), "lamp.stl"));
+    assert_null(strstr(messages.last_error, "model.stl"));
 }
 
 TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(
-        fixture, "a.ply",
+    const char *path = put_text(
+        "a.ply",
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
         "property float y\nproperty float z\nelement face 4000000000\n"
         "property list uchar int vertex_indices\nend_header\n0123456789");
@@ -347,9 +345,8 @@ TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
 TEST_IN(headers_without_an_end_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(fixture, "a.ply",
-                                    "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\n"
-                                    "property float x\r\nend_heade");
+    const char *path = put_text("a.ply", "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\n"
+                                         "property float x\r\nend_heade");
     fixture_refused(fixture, path, ".ply:6: the file ends within its header");
 }
 
@@ -369,10 +366,9 @@ static char *circle(const char *word, unsigned count)
 }
 
 /* The first half of the numbers, a line end that joins, the second half. */
-static const char *write_round_obj(struct fixture *fixture, const char *name, unsigned count)
+static const char *write_round_obj(const char *name, unsigned count)
 {
-    char *corners = circle("v ", count), path[64];
-    snprintf(path, sizeof path, "%s/%s", fixture->folder, name);
+    char *corners = circle("v ", count), *path = in_folder(name);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fprintf(file, "%sf 1 2 3\nf", corners);
@@ -381,17 +377,16 @@ static const char *write_round_obj(struct fixture *fixture, const char *name, un
     fputs("\nf 1 2 4\n", file);
     assert_int_equal(fclose(file), 0);
     free(corners);
-    fixture->files[fixture->file_count++] = string_copy(path);
-    return fixture->files[fixture->file_count - 1];
+    return path;
 }
 
 /* assimp's time for one face is its corners cubed. */
 TEST_IN(faces_of_very_many_corners_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    fixture_refused(fixture, write_round_obj(fixture, "a.obj", 1025),
+    fixture_refused(fixture, write_round_obj("a.obj", 1025),
                     "a.obj:1027: a face has 1025 corners, at most 1024 are possible");
-    assert_int_equal(fixture_load(fixture, write_round_obj(fixture, "b.obj", 1024)), WHIT_OK);
+    assert_int_equal(fixture_load(fixture, write_round_obj("b.obj", 1024)), WHIT_OK);
     assert_int_equal(fixture->scene->meshes[0].triangle_count, 1024);
 }
 
@@ -411,7 +406,7 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
         fprintf(file, " %u", i);
     fputc('\n', file);
     assert_int_equal(fclose(file), 0);
-    fixture_refused(fixture, fixture_text(fixture, "a.ply", text),
+    fixture_refused(fixture, put_text("a.ply", text),
                     "a.ply: face 1 has 1025 corners, at most 1024 are possible");
     free(corners);
     free(text);
@@ -421,34 +416,33 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
 TEST_IN(crashes_stay_in_the_child, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path =
-        fixture_text(fixture, "a.ply",
-                     "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
-                     "property float y\nproperty float z\nelement face 1\n"
-                     "property list uchar int vertex_indices\nend_header\n\1\1\1\1\1\1\1\1\1\1\1\1"
-                     "\377\377\377\377\377\377\377\377\377\377\377\377\377");
+    const char *path = put_text(
+        "a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+                 "property float y\nproperty float z\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n\1\1\1\1\1\1\1\1\1\1\1\1"
+                 "\377\377\377\377\377\377\377\377\377\377\377\377\377");
     assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
-    assert_int_equal(fixture->errors, 1);
-    assert_non_null(strstr(fixture->last_error, path));
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.last_error, path));
 }
 
 TEST_IN(time_limits_are_kept, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const whit_load_params params = {.time_limit_s = 2.5e-3};
-    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     importer_hangs = true;
     whit_result result = load_model(fixture->scene, path, SCENE_NONE, true, true, &params);
     importer_hangs = false;
     assert_int_equal(result, WHIT_ERROR_INPUT);
-    assert_int_equal(fixture->errors, 1);
-    assert_non_null(strstr(fixture->last_error, "or 0.0025 s by the clock"));
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.last_error, "or 0.0025 s by the clock"));
 }
 
 TEST_IN(importers_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     importer_opens = true;
     fixture_refused(fixture, path, "the importer tried on this file what it may not");
     importer_opens = false;
@@ -460,20 +454,17 @@ TEST_IN(cancelling_is_not_the_files_fault, fixture_begin, fixture_end)
     struct fixture *fixture = *state;
     const bool cancel = true;
     const whit_load_params params = {.cancel = &cancel};
-    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_int_equal(load_model(fixture->scene, path, SCENE_NONE, true, true, &params),
                      WHIT_ERROR_CANCELLED);
 }
 
 TEST_IN(unknown_kinds_are_named, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, fixture_text(*state, "a.blend", "x"), "`.blend`");
+    fixture_refused(*state, put_text("a.blend", "x"), "`.blend`");
 }
 
 TEST_IN(missing_files_are_named, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
-    char path[64];
-    snprintf(path, sizeof path, "%s/gone.obj", fixture->folder);
-    fixture_refused(fixture, path, "gone.obj");
+    fixture_refused(*state, in_folder("gone.obj"), "gone.obj");
 }

@@ -25,9 +25,8 @@ static const struct scene_mesh *only_mesh(const struct fixture *fixture)
 /* One quad for each class of material. */
 static const struct scene_material *load_material(struct fixture *fixture, const char *mtl)
 {
-    fixture_text(fixture, "a.mtl", mtl);
-    const char *path =
-        fixture_text(fixture, "a.obj", "mtllib a.mtl\n" QUAD "usemtl m\nf 1 2 3 4\n");
+    put_text("a.mtl", mtl);
+    const char *path = put_text("a.obj", "mtllib a.mtl\n" QUAD "usemtl m\nf 1 2 3 4\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     return material(fixture, "m");
 }
@@ -35,10 +34,9 @@ static const struct scene_material *load_material(struct fixture *fixture, const
 TEST_IN(quads_and_negative_indices, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(fixture, "a.obj",
-                                    QUAD "f -4 -3 -2\nf -4 -2 -1\n"
-                                         "v 2 0 0\nv 3 0 0\nv 3.5 1 0\nv 2.5 2 0\nv 2 1 0\n"
-                                         "f 5 6 7 8 9\n");
+    const char *path = put_text("a.obj", QUAD "f -4 -3 -2\nf -4 -2 -1\n"
+                                              "v 2 0 0\nv 3 0 0\nv 3.5 1 0\nv 2.5 2 0\nv 2 1 0\n"
+                                              "f 5 6 7 8 9\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     assert_int_equal(mesh->triangle_count, 2 + 3);
@@ -67,18 +65,17 @@ TEST_IN(odd_material_lines_lose_nothing, fixture_begin, fixture_end)
     assert_true(fixture_noted(fixture, "a.mtl:7: `Ks`"));
     assert_true(fixture_noted(fixture, "a.mtl:8: `rubbish`"));
     assert_false(fixture_noted(fixture, "a.mtl:9"));
-    assert_int_equal(fixture->errors, 0);
+    assert_int_equal(messages.errors, 0);
 }
 
 TEST_IN(several_libraries_and_missing_ones, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    fixture_text(fixture, "b.mtl", "newmtl b\nKd 0 1 0\n");
-    fixture_text(fixture, "with blank.mtl", "newmtl c\nKd 0 0 1\n");
+    put_text("b.mtl", "newmtl b\nKd 0 1 0\n");
+    put_text("with blank.mtl", "newmtl c\nKd 0 0 1\n");
     const char *path =
-        fixture_text(fixture, "a.obj",
-                     "mtllib gone.mtl b.mtl\nmtllib with blank.mtl\n" QUAD
-                     "usemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\nusemtl nobody\nf 2 3 4\n");
+        put_text("a.obj", "mtllib gone.mtl b.mtl\nmtllib with blank.mtl\n" QUAD
+                          "usemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\nusemtl nobody\nf 2 3 4\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     assert_float_equal(material(fixture, "b")->diffuse[1], 1, 0);
     assert_float_equal(material(fixture, "c")->diffuse[2], 1, 0);
@@ -91,20 +88,19 @@ TEST_IN(several_libraries_and_missing_ones, fixture_begin, fixture_end)
 TEST_IN(missing_library_is_grey, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path =
-        fixture_text(fixture, "a.obj", "mtllib gone.mtl\n" QUAD "usemtl b\nf 1 2 3\n");
+    const char *path = put_text("a.obj", "mtllib gone.mtl\n" QUAD "usemtl b\nf 1 2 3\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_material *m = material(fixture, "b");
     assert_float_equal(m->diffuse[0], m->diffuse[1], 0);
-    assert_int_equal(fixture->errors, 0);
+    assert_int_equal(messages.errors, 0);
 }
 
 TEST_IN(groups_keep_their_materials, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    fixture_text(fixture, "a.mtl", "newmtl r\nKd 1 0 0\nnewmtl g\nKd 0 1 0\n");
-    const char *path = fixture_text(
-        fixture, "a.obj", QUAD "g left\nusemtl g\nf 1 2 3\ng right\nusemtl r\nf 1 3 4\nf 2 3 4\n");
+    put_text("a.mtl", "newmtl r\nKd 1 0 0\nnewmtl g\nKd 0 1 0\n");
+    const char *path =
+        put_text("a.obj", QUAD "g left\nusemtl g\nf 1 2 3\ng right\nusemtl r\nf 1 3 4\nf 2 3 4\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     assert_int_equal(mesh->group_count, 2);
@@ -119,8 +115,7 @@ TEST_IN(groups_keep_their_materials, fixture_begin, fixture_end)
 TEST_IN(uvs_grow_downwards, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path =
-        fixture_text(fixture, "a.obj", QUAD "vt 0.25 0.25\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
+    const char *path = put_text("a.obj", QUAD "vt 0.25 0.25\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     assert_non_null(mesh->uvs[0]);
@@ -131,8 +126,7 @@ TEST_IN(uvs_grow_downwards, fixture_begin, fixture_end)
 TEST_IN(numbers_without_a_leading_digit, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path =
-        fixture_text(fixture, "a.obj", "v .5 0 -.25\nv 1 .125e1 0\nv 0 1 0\nf 1 2 3\n");
+    const char *path = put_text("a.obj", "v .5 0 -.25\nv 1 .125e1 0\nv 0 1 0\nf 1 2 3\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     const float *a = mesh->positions + 3 * mesh->indices[0];
@@ -146,7 +140,7 @@ TEST_IN(vertex_colors, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     const char *path =
-        fixture_text(fixture, "a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+        put_text("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     assert_non_null(mesh->colors);
@@ -157,8 +151,7 @@ TEST_IN(vertex_colors, fixture_begin, fixture_end)
 TEST_IN(flat_group_beside_a_smooth_one, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path =
-        fixture_text(fixture, "a.obj", QUAD "vn 0 1 0\ng a\nf 1//1 2//1 3//1\ng b\nf 1 3 4\n");
+    const char *path = put_text("a.obj", QUAD "vn 0 1 0\ng a\nf 1//1 2//1 3//1\ng b\nf 1 3 4\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     assert_non_null(mesh->normals);
@@ -174,14 +167,14 @@ TEST_IN(wide_text, fixture_begin, fixture_end)
     size_t size = 2;
     for (const char *c = text; *c; c++, size += 2)
         wide[size + 1] = (uint8_t)*c;
-    assert_int_equal(fixture_load(fixture, fixture_write(fixture, "a.obj", wide, size)), WHIT_OK);
+    assert_int_equal(fixture_load(fixture, put_data("a.obj", wide, size)), WHIT_OK);
     assert_int_equal(only_mesh(fixture)->triangle_count, 1);
 }
 
 TEST_IN(lines_and_points_are_noted, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(fixture, "a.obj", QUAD "f 1 2 3\nl 1 2 3\np 4\n");
+    const char *path = put_text("a.obj", QUAD "f 1 2 3\nl 1 2 3\np 4\n");
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     assert_int_equal(only_mesh(fixture)->triangle_count, 1);
     assert_true(fixture_noted(fixture, "2 lines are not drawn"));
@@ -190,13 +183,13 @@ TEST_IN(lines_and_points_are_noted, fixture_begin, fixture_end)
 
 TEST_IN(nothing_to_draw_is_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, fixture_text(*state, "a.obj", QUAD "l 1 2\nl 3 4\n"),
+    fixture_refused(*state, put_text("a.obj", QUAD "l 1 2\nl 3 4\n"),
                     "no triangles in it (0 points, 2 lines");
 }
 
 TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, fixture_text(*state, "a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
+    fixture_refused(*state, put_text("a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
 }
 
 /* --- classes -------------------------------------------------------------------------------- */
@@ -276,7 +269,7 @@ TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 static void write_picture(struct fixture *fixture, const char *name, float left_alpha)
 {
     struct image image;
-    const char *path = fixture_write(fixture, name, "", 0);
+    const char *path = put_data(name, "", 0);
     assert_int_equal(image_init(&image, 4, 4, 4, false), WHIT_OK);
     for (uint32_t i = 0; i < 16; i++)
         for (uint32_t k = 0; k < 4; k++)
@@ -320,7 +313,7 @@ TEST_IN(channels_and_ranges_of_maps, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
     struct image image;
-    const char *path = fixture_write(fixture, "t.png", "", 0);
+    const char *path = put_data("t.png", "", 0);
     assert_int_equal(image_init(&image, 1, 1, 4, false), WHIT_OK);
     for (int k = 0; k < 4; k++)
         image.pixels[k] = k == 3 ? 0.6f : image_linear_from_srgb((float)(50 * (k + 1)) / 255.0f);
@@ -402,10 +395,10 @@ TEST_IN(whole_pictures_cut_out_nothing, fixture_begin, fixture_end)
 TEST_IN(models_too_large_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
-    const char *path = fixture_text(fixture, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     fixture->scene->memory_limit = 200;
     assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
-    assert_int_equal(fixture->errors, 1);
-    assert_non_null(strstr(fixture->last_error, "mesh `a.obj` of 1 triangles would take"));
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.last_error, "mesh `a.obj` of 1 triangles would take"));
     assert_int_equal(fixture->scene->mesh_count, 0);
 }

@@ -1,7 +1,9 @@
 /* What foreign files name reaches no further than their folder: each way to name a file is tried
    with each kind of reference, and every file that is opened is looked at. */
 #define _GNU_SOURCE
-#include "load_model_fixture.h"
+#include "base/array.h"
+#include "load/model.h"
+#include "messages_fixture.h"
 #include "unit.h"
 
 #include <dirent.h>
@@ -10,6 +12,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 WHIT_PRINTF(2, 3)
 static void print_path(char to[PATH_MAX], const char *format, ...)
@@ -84,17 +87,7 @@ char *__wrap_realpath(const char *path, char *resolved)
 
 struct place {
     char top[PATH_MAX], in[PATH_MAX];
-    char heard[8192]; /* errors */
-    whit_log log;
 };
-
-static void hear(void *user, whit_log_level level, const char *message)
-{
-    struct place *place = user;
-    size_t used = strlen(place->heard);
-    if (level == WHIT_LOG_ERROR)
-        snprintf(place->heard + used, sizeof place->heard - used, "%s\n", message);
-}
 
 static void write_file(const char *folder, const char *name, const void *data, size_t bytes)
 {
@@ -157,7 +150,6 @@ static int begin(void **state)
 {
     static struct place place;
     char sub[PATH_MAX], top[] = "/tmp/whit-reach-XXXXXX", *resolved;
-    place = (struct place){.log = {.fn = hear, .user = &place, .level = WHIT_LOG_INFO}};
     resolved = mkdtemp(top) ? __real_realpath(top, NULL) : NULL;
     assert_non_null(resolved);
     snprintf(place.top, sizeof place.top, "%s", resolved);
@@ -314,15 +306,15 @@ static bool holds_secret(const struct scene *scene)
            (scene->instance_count && !scene->texture_count && strstr(scene->name, "model.json"));
 }
 
-static void load(struct place *place, const char *path, const char *allowed, struct outcome *out)
+static void load(const char *path, const char *allowed, struct outcome *out)
 {
     struct scene *scene = NULL;
     *out = (struct outcome){0};
-    place->heard[0] = 0;
+    const whit_log log = messages_log(&messages);
     const whit_load_params params = {
         .allowed_folders = &allowed, .allowed_count = allowed ? 1 : 0, .refused = &out->refused};
-    out->result = load_scene(&place->log, path, &params, &scene);
-    size_t used = (size_t)snprintf(out->text, sizeof out->text, "%s", place->heard);
+    out->result = load_scene(&log, path, &params, &scene);
+    size_t used = (size_t)snprintf(out->text, sizeof out->text, "%s", messages.text);
     for (uint32_t i = 0; scene && i < scene->note_count; i++)
         used += (size_t)snprintf(out->text + used, sizeof out->text - used, "%s\n",
                                  scene->notes[i].text);
@@ -343,7 +335,7 @@ TEST_IN(nothing_outside_is_read, begin, end)
                 continue;
             spell(tricks[t].name, kind->extension, reference, sizeof reference);
             write_model(place, kind, reference, path);
-            load(place, path, NULL, &out);
+            load(path, NULL, &out);
             count++;
             bool told = strstr(out.text, "--allow-path") != NULL;
             if (leak_count || odd_count || out.secret || strstr(out.text, "nonsense") ||
@@ -369,11 +361,11 @@ TEST_IN(an_allowed_folder_is_read, begin, end)
             char reference[PATH_MAX], path[PATH_MAX], folder[PATH_MAX];
             spell(names[t], kinds[k].extension, reference, sizeof reference);
             write_model(place, &kinds[k], reference, path);
-            load(place, path, NULL, &out);
+            load(path, NULL, &out);
             assert_string_equal(out.refused.folder, outside);
             leak_count = 0;
             print_path(folder, "%s", out.refused.folder);
-            load(place, path, folder, &out);
+            load(path, folder, &out);
             if (!out.secret || !leak_count || out.refused.count)
                 fail_msg("%s: `%s`: %s", kinds[k].file, reference, out.text);
             leak_count = 0;
@@ -388,7 +380,7 @@ TEST_IN(the_model_itself_may_be_a_link, begin, end)
     char path[PATH_MAX];
     make_link(place->in, "model.obj", "../out/secret.obj");
     print_path(path, "%s/model.obj", place->in);
-    load(place, path, NULL, &out);
+    load(path, NULL, &out);
     assert_int_equal(out.result, WHIT_OK);
     assert_int_equal(out.refused.count, 0);
     leak_count = 0;
@@ -400,11 +392,11 @@ TEST_IN(a_folder_that_is_not_there_cannot_be_allowed, begin, end)
     struct outcome out;
     char path[PATH_MAX], file[PATH_MAX];
     write_model(place, &kinds[0], "x.mtl", path);
-    load(place, path, "/tmp/no such folder", &out);
+    load(path, "/tmp/no such folder", &out);
     assert_int_equal(out.result, WHIT_ERROR_INPUT);
     assert_non_null(strstr(out.text, "/tmp/no such folder: cannot be allowed: No such file"));
     print_path(file, "%s/secret.bin", outside);
-    load(place, path, file, &out);
+    load(path, file, &out);
     assert_non_null(strstr(out.text, "cannot be allowed: Not a directory"));
 }
 
@@ -426,7 +418,7 @@ TEST_IN(a_folder_that_is_swapped_is_not_followed, begin, end)
         for (bool more = true; more; times++) {
             swapped = folder;
             swap_after = times + 1;
-            load(place, path, NULL, &out);
+            load(path, NULL, &out);
             assert_int_equal(leak_count, 0);
             more = swapped == NULL;
             if (more) {
@@ -458,7 +450,7 @@ TEST_IN(what_is_no_file_is_not_opened, begin, end)
             if (strstr(kinds[k].file, "model.json"))
                 continue; /* its names end in those of models */
             write_model(place, &kinds[k], names[t], path);
-            load(place, path, NULL, &out);
+            load(path, NULL, &out);
             assert_int_equal(odd_count, 0);
             bool link = strcmp(names[t], "zero") == 0;
             if (!strstr(out.text, link ? "it lies outside" : "not a file"))
@@ -475,11 +467,11 @@ TEST_IN(the_option_can_be_pasted, begin, end)
     struct outcome out;
     char path[PATH_MAX];
     write_model(place, &kinds[2], "../a folder/x.png", path);
-    load(place, path, NULL, &out);
+    load(path, NULL, &out);
     char wanted[PATH_MAX];
     print_path(wanted, "--allow-path '%s/a folder' lets", place->top);
     assert_non_null(strstr(out.text, wanted));
     write_model(place, &kinds[2], "../a'$(reboot)'/x.png", path);
-    load(place, path, NULL, &out);
+    load(path, NULL, &out);
     assert_non_null(strstr(out.text, "--allow-path FOLDER lets"));
 }

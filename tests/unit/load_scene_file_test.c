@@ -1,230 +1,172 @@
 /* whit's own scene files: what they mean, and where their errors are. */
 #include <math.h>
-#include <unistd.h>
 
+#include "folder_fixture.h"
 #include "load/load.h"
 #include "scene/pose.h"
-#include "unit.h"
 
-#ifndef WHIT_SCENES_DIR
-#define WHIT_SCENES_DIR "scenes"
-#endif
-
-struct heard {
-    char errors[4][600];
-    uint32_t error_count;
-    char folder[64];
-};
-
-static void hear(void *user, whit_log_level level, const char *message)
+static whit_result load_text(const char *text, struct scene **out)
 {
-    struct heard *heard = user;
-    if (level != WHIT_LOG_ERROR)
-        return;
-    if (heard->error_count < 4)
-        snprintf(heard->errors[heard->error_count], sizeof heard->errors[0], "%s", message);
-    ++heard->error_count;
-}
-
-static int open_folder(void **state)
-{
-    struct heard *heard = calloc(1, sizeof *heard);
-    if (!heard)
-        return -1;
-    snprintf(heard->folder, sizeof heard->folder, "%s", "/tmp/whit-scene-XXXXXX");
-    *state = heard;
-    return mkdtemp(heard->folder) ? 0 : -1;
-}
-
-static int close_folder(void **state)
-{
-    struct heard *heard = *state;
-    int result = rmdir(heard->folder);
-    free(heard);
-    return result;
-}
-
-static void write_file(const char *path, const void *data, size_t size_bytes)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(data, 1, size_bytes, file), size_bytes);
-    assert_int_equal(fclose(file), 0);
-}
-
-static whit_result load_text(struct heard *heard, const char *text, struct scene **out)
-{
-    char path[128];
-    const whit_log log = {hear, heard, WHIT_LOG_DEBUG};
-    heard->error_count = 0;
-    snprintf(path, sizeof path, "%s/test.json", heard->folder);
-    write_file(path, text, strlen(text));
+    const whit_log log = messages_log(&messages);
+    const char *path = put_text("test.json", text);
     whit_result result = load_scene(&log, path, NULL, out);
     unlink(path);
     return result;
 }
 
 /* The one error: behind the folder's name it reads `expected` and goes on with anything. */
-static void assert_error(void **state, const char *text, const char *expected)
+static void assert_error(const char *text, const char *expected)
 {
-    struct heard *heard = *state;
     struct scene *scene = NULL;
-    assert_int_equal(load_text(heard, text, &scene), WHIT_ERROR_INPUT);
+    assert_int_equal(load_text(text, &scene), WHIT_ERROR_INPUT);
     assert_null(scene);
-    assert_int_equal(heard->error_count, 1);
-    const char *message = heard->errors[0] + strlen(heard->folder) + 1;
+    assert_int_equal(messages.errors, 1);
+    const char *message = messages.last_error + strlen(folder) + 1;
     if (strncmp(message, expected, strlen(expected)) != 0)
         fail_msg("expected `%s`, got `%s`", expected, message);
 }
 
-static struct scene *load_fine(void **state, const char *text)
+static struct scene *load_fine(const char *text)
 {
-    struct heard *heard = *state;
     struct scene *scene = NULL;
-    whit_result result = load_text(heard, text, &scene);
+    whit_result result = load_text(text, &scene);
     if (result != WHIT_OK)
-        fail_msg("refused: %s", heard->errors[0]);
+        fail_msg("refused: %s", messages.last_error);
     return scene;
 }
 
-TEST_IN(errors_name_line_and_column, open_folder, close_folder)
+TEST_IN(errors_name_line_and_column, folder_begin, folder_end)
 {
-    assert_error(state, "{\n  \"objects\": [,]\n}", "test.json:2:15: ");
-    assert_error(state, "{\"ambient\": 0.5\n \"objects\": [1 2]}",
+    assert_error("{\n  \"objects\": [,]\n}", "test.json:2:15: ");
+    assert_error("{\"ambient\": 0.5\n \"objects\": [1 2]}",
                  "test.json:2:10: '}' expected near '\"objects\"'; is a comma missing before it?");
-    assert_error(state, "{\"objects\": [\n1 2]}",
+    assert_error("{\"objects\": [\n1 2]}",
                  "test.json:2:3: ']' expected near '2'; is a comma missing before it?");
     assert_error(
-        state, "{\"objects\": [],\n}",
+        "{\"objects\": [],\n}",
         "test.json:2:1: string or '}' expected near '}'; is the comma before it one too many?");
-    assert_error(state, "{\"objects\": [\n{},\n]}",
+    assert_error("{\"objects\": [\n{},\n]}",
                  "test.json:3:1: unexpected token near ']'; is the comma before it one too many?");
-    assert_error(state, "{ // white\n\"ambient\": 1}",
+    assert_error("{ // white\n\"ambient\": 1}",
                  "test.json:1:3: string or '}' expected near '/'; JSON has no comments, but");
-    assert_error(state, "{\"ambient\": 1 // white\n}",
+    assert_error("{\"ambient\": 1 // white\n}",
                  "test.json:1:15: '}' expected near '/'; JSON has no comments, but");
-    assert_error(state, "{\"materials\": {\"a\": {\"mirror\": 1}}}",
+    assert_error("{\"materials\": {\"a\": {\"mirror\": 1}}}",
                  "test.json:1:22: materials.a.mirror: unknown key; did you mean `reflection`?");
-    assert_error(state, "{\"camera\": {\"position\": [0, 1, 5]}}",
+    assert_error("{\"camera\": {\"position\": [0, 1, 5]}}",
                  "test.json:1:13: camera.position: unknown key; did you mean `eye`?");
-    assert_error(state, "{\"camera\": {\"lookat\": [0, 1, 0]}}",
+    assert_error("{\"camera\": {\"lookat\": [0, 1, 0]}}",
                  "test.json:1:13: camera.lookat: unknown key; did you mean `target`?");
-    assert_error(state, "{\"objects\": [{\"type\": \"box\"}]}",
+    assert_error("{\"objects\": [{\"type\": \"box\"}]}",
                  "test.json:1:15: objects[0].type: unknown key; did you mean `shape`?");
-    assert_error(state, "{\"lights\": [{\"type\": \"spot\"}]}",
+    assert_error("{\"lights\": [{\"type\": \"spot\"}]}",
                  "test.json:1:14: lights[0].type: unknown key; did you mean `kind`?");
-    assert_error(state, "{\"lights\": [{\"kind\": \"spot\", \"angle\": 30}]}",
+    assert_error("{\"lights\": [{\"kind\": \"spot\", \"angle\": 30}]}",
                  "test.json:1:30: lights[0].angle: unknown key; did you mean `outer`?");
-    assert_error(state, "{\n  \"object\": []\n}",
+    assert_error("{\n  \"object\": []\n}",
                  "test.json:2:3: object: unknown key; did you mean `objects`?");
-    assert_error(state, "{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",
+    assert_error("{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",
                  "test.json:3:3: objects[1].shape: `bxo` is not one of: box, plane, sphere");
-    assert_error(state, "{\"objects\":[{\"shape\":\"sphere\",\"tube\":1}]}",
+    assert_error("{\"objects\":[{\"shape\":\"sphere\",\"tube\":1}]}",
                  "test.json:1:31: objects[0].tube: a sphere has no `tube`");
-    assert_error(state, "{\"objects\":[{\"shape\":\"sphere\",\n\"radius\":\"big\"}]}",
+    assert_error("{\"objects\":[{\"shape\":\"sphere\",\n\"radius\":\"big\"}]}",
                  "test.json:2:1: objects[0].radius: a number is expected");
-    assert_error(state, "{\"objects\":[{\"shape\":\"box\",\n\"translation\":[0,\n0,\n\"x\"]}]}",
+    assert_error("{\"objects\":[{\"shape\":\"box\",\n\"translation\":[0,\n0,\n\"x\"]}]}",
                  "test.json:4:1: objects[0].translation[2]: a number is expected");
-    assert_error(state, "{\"objects\":[{\"shape\":\"box\", \"translation\":[0,0]}]}",
+    assert_error("{\"objects\":[{\"shape\":\"box\", \"translation\":[0,0]}]}",
                  "test.json:1:29: objects[0].translation: 3 numbers in [ ] are expected");
-    assert_error(state, "[]", "test.json:1:1: an object { } is expected");
-    assert_error(state, "{\"a\": 1, \"a\": 2}", "test.json:1:");
-    assert_error(state, "", "test.json:1:1: ");
+    assert_error("[]", "test.json:1:1: an object { } is expected");
+    assert_error("{\"a\": 1, \"a\": 2}", "test.json:1:");
+    assert_error("", "test.json:1:1: ");
 }
 
 /* Strings with braces, escapes and wide letters must not confuse the search for a place. */
-TEST_IN(places_survive_odd_strings, open_folder, close_folder)
+TEST_IN(places_survive_odd_strings, folder_begin, folder_end)
 {
-    assert_error(state,
-                 "{ \"description\": \"} ] \\\" { \\\\\",\n"
+    assert_error("{ \"description\": \"} ] \\\" { \\\\\",\n"
                  "  \"materials\": {\"\xc3\xa4\": {\"diffuse\": 1}, \"b\": {\"diffuse\": -1}}}",
                  "test.json:2:44: materials.b.diffuse: -1 is out of range");
-    assert_error(state, "{\"objects\":[{\"name\":\"[1,{\",\"shape\":\"box\",\"children\":[1]}]}",
+    assert_error("{\"objects\":[{\"name\":\"[1,{\",\"shape\":\"box\",\"children\":[1]}]}",
                  "test.json:1:54: objects[0].children[0]: an object { } is expected");
 }
 
-TEST_IN(senseless_content_is_refused, open_folder, close_folder)
+TEST_IN(senseless_content_is_refused, folder_begin, folder_end)
 {
     assert_error(
-        state,
         "{\"materials\":{\"glass\":{}},\"objects\":[{\"shape\":\"box\",\"material\":\"glas\"}]}",
         "test.json:1:53: objects[0].material: there is no material `glas`; did you mean "
         "`glass`?");
-    assert_error(state, "{\"objects\":[{\"name\":\"x\"}]}",
+    assert_error("{\"objects\":[{\"name\":\"x\"}]}",
                  "test.json:1:13: objects[0]: an object needs a `shape`, a `model` or `children`");
-    assert_error(state, "{\"objects\":[{\"shape\":\"box\",\"scale\":0}]}",
+    assert_error("{\"objects\":[{\"shape\":\"box\",\"scale\":0}]}",
                  "test.json:1:28: objects[0].scale: a scale of 0");
-    assert_error(state,
-                 "{\"objects\":[{\"shape\":\"box\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0],"
+    assert_error("{\"objects\":[{\"shape\":\"box\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0],"
                  "\"scale\":2}]}",
                  "test.json:1:28: objects[0].matrix: `matrix` and `scale` exclude each other");
-    assert_error(state, "{\"objects\":[{\"model\":\"nowhere.obj\"}]}",
+    assert_error("{\"objects\":[{\"model\":\"nowhere.obj\"}]}",
                  "test.json:1:14: objects[0].model: `nowhere.obj`: there is no such file");
-    assert_error(state, "{\"objects\":[{\"model\":\"other.json\"}]}",
+    assert_error("{\"objects\":[{\"model\":\"other.json\"}]}",
                  "test.json:1:14: objects[0].model: `other.json` is no model");
-    assert_error(state, "{\"lights\":[{\"kind\":\"spot\",\"position\":[0,1,0]}]}",
+    assert_error("{\"lights\":[{\"kind\":\"spot\",\"position\":[0,1,0]}]}",
                  "test.json:1:12: lights[0]: this light needs a `direction` or a `target`");
-    assert_error(state, "{\"camera\":{\"eye\":[1,2,3],\"target\":[1,2,3]}}",
+    assert_error("{\"camera\":{\"eye\":[1,2,3],\"target\":[1,2,3]}}",
                  "test.json:1:2: camera: `eye` and `target` are the same point");
-    assert_error(state, "{\"environment\":{\"map\":\"no.hdr\"}}",
+    assert_error("{\"environment\":{\"map\":\"no.hdr\"}}",
                  "test.json:1:17: environment.map: `no.hdr`: there is no such file");
-    assert_error(state, "{\"environment\":\"#12345\"}",
+    assert_error("{\"environment\":\"#12345\"}",
                  "test.json:1:2: environment: `#12345` is no colour");
-    assert_error(state, "{\"materials\":{\"m\":{\"diffuse\":1,\"metallic\":1}}}",
+    assert_error("{\"materials\":{\"m\":{\"diffuse\":1,\"metallic\":1}}}",
                  "test.json:1:20: materials.m.diffuse: `diffuse` does not go with `metallic`; "
                  "use `base_color`");
     assert_error(
-        state, "{\"materials\":{\"m\":{\"color\":1}}}",
+        "{\"materials\":{\"m\":{\"color\":1}}}",
         "test.json:1:20: materials.m.color: `color` goes with `unlit` only; use `diffuse`");
-    assert_error(state, "{\"materials\":{\"m\":{\"unlit\":true,\"shininess\":1}}}",
+    assert_error("{\"materials\":{\"m\":{\"unlit\":true,\"shininess\":1}}}",
                  "test.json:1:33: materials.m.shininess: `shininess` does not go with `unlit`");
-    assert_error(state, "{\"objects\":[{\"shape\":\"box\",\"model\":\"x.obj\"}]}",
+    assert_error("{\"objects\":[{\"shape\":\"box\",\"model\":\"x.obj\"}]}",
                  "test.json:1:28: objects[0].model: `shape` and `model` exclude each other");
-    assert_error(state, "{\"objects\":[{\"children\":[],\"radius\":1}]}",
+    assert_error("{\"objects\":[{\"children\":[],\"radius\":1}]}",
                  "test.json:1:28: objects[0].radius: a group has no `radius`");
-    assert_error(state, "{\"lights\":[{\"position\":[0,1,0],\"direction\":[0,1,0]}]}",
+    assert_error("{\"lights\":[{\"position\":[0,1,0],\"direction\":[0,1,0]}]}",
                  "test.json:1:32: lights[0].direction: a point light has no `direction`");
-    assert_error(state, "{\"lights\":[{\"kind\":\"rectangle\",\"u\":[1,0,0],\"v\":[0,0,1]}]}",
+    assert_error("{\"lights\":[{\"kind\":\"rectangle\",\"u\":[1,0,0],\"v\":[0,0,1]}]}",
                  "test.json:1:12: lights[0]: a rectangle light needs a `position`");
-    assert_error(state,
-                 "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[0,1,0],\"u\":[1,0,0],"
+    assert_error("{\"lights\":[{\"kind\":\"rectangle\",\"position\":[0,1,0],\"u\":[1,0,0],"
                  "\"v\":[2,0,0]}]}",
                  "test.json:1:12: lights[0]: the light has no area");
-    assert_error(state, "{\"lights\":[{\"kind\":\"triangle\",\"points\":[[0,0,0],[1,0,0]]}]}",
+    assert_error("{\"lights\":[{\"kind\":\"triangle\",\"points\":[[0,0,0],[1,0,0]]}]}",
                  "test.json:1:12: lights[0]: a triangle light needs three `points`");
-    assert_error(state, "{\"camera\":{},\n\"cameras\":[]}",
+    assert_error("{\"camera\":{},\n\"cameras\":[]}",
                  "test.json:2:1: cameras: `camera` and `cameras` exclude each other");
     assert_error(
-        state,
         "{\"objects\":[{\"shape\":\"box\",\"animation\":{\"scale\":{\"times\":[1,1],\"values\":"
         "[[1,1,1],[1,1,1]]}}}]}",
         "test.json:1:61: objects[0].animation.scale.times[1]: times must increase");
-    assert_error(state,
-                 "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[100000,100000,1]}}]}",
+    assert_error("{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[100000,100000,1]}}]}",
                  "test.json:1:38: objects[0].repeat.count: more than 4000000 copies");
 }
 
-TEST_IN(camera_kinds_do_not_mix, open_folder, close_folder)
+TEST_IN(camera_kinds_do_not_mix, folder_begin, folder_end)
 {
-    assert_error(state, "{\"camera\":{\"panorama\":true,\n\"fov\":40}}",
+    assert_error("{\"camera\":{\"panorama\":true,\n\"fov\":40}}",
                  "test.json:2:1: camera.fov: a panorama has no `fov`");
-    assert_error(state, "{\"camera\":{\"panorama\":true,\n\"focus\":4}}",
+    assert_error("{\"camera\":{\"panorama\":true,\n\"focus\":4}}",
                  "test.json:2:1: camera.focus: a panorama has no `focus`");
-    assert_error(state, "{\"camera\":{\"height\":2,\n\"lens\":1}}",
+    assert_error("{\"camera\":{\"height\":2,\n\"lens\":1}}",
                  "test.json:2:1: camera.lens: a parallel view (`height`) has no lens");
-    assert_error(state, "{\"camera\":{\n\"focus\":1}}",
+    assert_error("{\"camera\":{\n\"focus\":1}}",
                  "test.json:2:1: camera.focus: `focus` is of a camera with a `lens`");
-    assert_error(state, "{\"camera\":{\n\"lens\":-1}}", "test.json:2:1: camera.lens: ");
-    assert_error(state, "{\"camera\":{\"lens\":1,\n\"focus\":0}}", "test.json:2:1: camera.focus: ");
-    assert_error(state, "{\"camera\":{\n\"panorama\":1}}", "test.json:2:1: camera.panorama: ");
-    assert_error(state, "{\"camera\":{\n\"fov\":180}}", "test.json:2:1: camera.fov: ");
+    assert_error("{\"camera\":{\n\"lens\":-1}}", "test.json:2:1: camera.lens: ");
+    assert_error("{\"camera\":{\"lens\":1,\n\"focus\":0}}", "test.json:2:1: camera.focus: ");
+    assert_error("{\"camera\":{\n\"panorama\":1}}", "test.json:2:1: camera.panorama: ");
+    assert_error("{\"camera\":{\n\"fov\":180}}", "test.json:2:1: camera.fov: ");
 }
 
-TEST_IN(camera_kinds_are_read, open_folder, close_folder)
+TEST_IN(camera_kinds_are_read, folder_begin, folder_end)
 {
     struct scene *scene =
-        load_fine(state, "{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
-                         "{\"panorama\":true},{\"panorama\":false,\"fov\":0.001}]}");
+        load_fine("{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
+                  "{\"panorama\":true},{\"panorama\":false,\"fov\":0.001}]}");
     const struct scene_camera *c = scene->cameras;
     assert_int_equal(c[0].kind, SCENE_CAMERA_PERSPECTIVE);
     assert_true(c[0].lens_radius == 0.25f && c[0].focus_distance == 7.0f);
@@ -236,16 +178,15 @@ TEST_IN(camera_kinds_are_read, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(nested_repeats_have_a_limit, open_folder, close_folder)
+TEST_IN(nested_repeats_have_a_limit, folder_begin, folder_end)
 {
     assert_error(
-        state,
         "{\"objects\":[{\"repeat\":{\"count\":[2000,1,1]},\"children\":[{\"shape\":\"box\","
         "\"repeat\":{\"count\":[2001,1,1]}}]}]}",
         "test.json:1:13: objects[0]: more than 4000000 instances");
 }
 
-TEST_IN(deep_children_are_refused, open_folder, close_folder)
+TEST_IN(deep_children_are_refused, folder_begin, folder_end)
 {
     enum { DEEP = 100 };
     char text[DEEP * 32] = "{\"objects\":[";
@@ -254,13 +195,12 @@ TEST_IN(deep_children_are_refused, open_folder, close_folder)
     for (int i = 0; i < DEEP; ++i)
         strcat(text, "]}");
     strcat(text, "]}");
-    assert_error(state, text, "test.json:1:");
+    assert_error(text, "test.json:1:");
 }
 
-TEST_IN(shapes_are_placed, open_folder, close_folder)
+TEST_IN(shapes_are_placed, folder_begin, folder_end)
 {
     struct scene *scene = load_fine(
-        state,
         "{\"objects\":[{\"shape\":\"box\",\"size\":[1,2,3],\"translation\":[5,0,0],"
         "\"rotation\":[0,90,0],\"scale\":2,\"children\":[{\"shape\":\"sphere\",\"segments\":8,"
         "\"rings\":4,\"translation\":[0,0,1]}]}]}");
@@ -276,11 +216,11 @@ TEST_IN(shapes_are_placed, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(equal_shapes_share_a_mesh, open_folder, close_folder)
+TEST_IN(equal_shapes_share_a_mesh, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
-        state, "{\"objects\":[{\"shape\":\"box\"},{\"shape\":\"box\",\"translation\":[3,0,0]},"
-               "{\"shape\":\"box\",\"size\":2}]}");
+    struct scene *scene =
+        load_fine("{\"objects\":[{\"shape\":\"box\"},{\"shape\":\"box\",\"translation\":[3,0,0]},"
+                  "{\"shape\":\"box\",\"size\":2}]}");
     assert_int_equal(scene->mesh_count, 2);
     assert_int_equal(scene->instance_count, 3);
     assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
@@ -288,11 +228,11 @@ TEST_IN(equal_shapes_share_a_mesh, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(repeat_places_copies_around, open_folder, close_folder)
+TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
-        state, "{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
-               "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
+    struct scene *scene =
+        load_fine("{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
+                  "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
     struct scene_pose pose;
     double min_x = 1e9, max_x = -1e9, max_z = -1e9;
     assert_int_equal(scene->instance_count, 12);
@@ -309,11 +249,11 @@ TEST_IN(repeat_places_copies_around, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(repeated_animation_moves_every_copy, open_folder, close_folder)
+TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
 {
     struct scene *scene = load_fine(
-        state, "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
-               "\"animation\":{\"translation\":{\"times\":[0,2],\"values\":[[0,0,0],[0,8,0]]}}}]}");
+        "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
+        "\"animation\":{\"translation\":{\"times\":[0,2],\"values\":[[0,0,0],[0,8,0]]}}}]}");
     struct scene_pose pose;
     assert_int_equal(scene->channel_count, 4);
     assert_int_equal(scene_pose_init(scene, 1.0, &pose), WHIT_OK);
@@ -323,11 +263,11 @@ TEST_IN(repeated_animation_moves_every_copy, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(sphereflake_is_instances, open_folder, close_folder)
+TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
 {
     struct scene *scene =
-        load_fine(state, "{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
-                         "\"rings\":4,\"radius\":2}]}");
+        load_fine("{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
+                  "\"rings\":4,\"radius\":2}]}");
     struct scene_pose pose;
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instance_count, 91);
@@ -339,16 +279,16 @@ TEST_IN(sphereflake_is_instances, open_folder, close_folder)
 }
 
 /* As such, in place of triangles; equal ones share a mesh, and each list is a mesh of its own. */
-TEST_IN(balls_are_spheres, open_folder, close_folder)
+TEST_IN(balls_are_spheres, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
-        state, "{\"materials\":{\"a\":{\"diffuse\":1},\"b\":{\"diffuse\":0.5}},\"objects\":["
-               "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\"},"
-               "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\","
-               "\"scale\":[1,2,3]},"
-               "{\"shape\":\"ball\",\"radius\":2,\"material\":\"b\"},"
-               "{\"shape\":\"balls\",\"spheres\":[[0,0,0,1],[5,0,-1,0.25]]},"
-               "{\"shape\":\"sphereflake\",\"level\":2,\"balls\":true}]}");
+    struct scene *scene =
+        load_fine("{\"materials\":{\"a\":{\"diffuse\":1},\"b\":{\"diffuse\":0.5}},\"objects\":["
+                  "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\"},"
+                  "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\","
+                  "\"scale\":[1,2,3]},"
+                  "{\"shape\":\"ball\",\"radius\":2,\"material\":\"b\"},"
+                  "{\"shape\":\"balls\",\"spheres\":[[0,0,0,1],[5,0,-1,0.25]]},"
+                  "{\"shape\":\"sphereflake\",\"level\":2,\"balls\":true}]}");
     assert_int_equal(scene->mesh_count, 4);
     assert_int_equal(scene->instance_count, 5);
     assert_int_equal(scene->triangle_total, 0);
@@ -361,16 +301,16 @@ TEST_IN(balls_are_spheres, open_folder, close_folder)
     assert_true(scene->meshes[0].hi[1] >= 4.0f && scene->meshes[0].hi[1] < 4.00001f);
     assert_int_equal(scene->meshes[3].sphere_count, 91);
     scene_destroy(scene);
-    assert_error(state, "{\"objects\":[{\"shape\":\"ball\",\"segments\":9}]}",
+    assert_error("{\"objects\":[{\"shape\":\"ball\",\"segments\":9}]}",
                  "test.json:1:29: objects[0].segments: a ball has no `segments`");
-    assert_error(state, "{\"objects\":[{\"shape\":\"ball\",\"radius\":0}]}",
+    assert_error("{\"objects\":[{\"shape\":\"ball\",\"radius\":0}]}",
                  "test.json:1:29: objects[0].radius: 0 is out of range (1e-15 to 1e+15)");
-    assert_error(state, "{\"objects\":[{\"shape\":\"balls\"}]}",
+    assert_error("{\"objects\":[{\"shape\":\"balls\"}]}",
                  "test.json:1:13: objects[0].spheres: 1 to 10000000 spheres [x, y, z, radius] "
                  "are expected");
-    assert_error(state, "{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0]]}]}",
+    assert_error("{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0]]}]}",
                  "test.json:1:41: objects[0].spheres[0]: 4 numbers in [ ] are expected");
-    assert_error(state, "{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0,-1]]}]}",
+    assert_error("{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0,-1]]}]}",
                  "test.json:1:41: objects[0].spheres[0]: the radius must be from 1e-15 to 1e+15");
 }
 
@@ -384,17 +324,17 @@ static const struct scene_material *material_named(const struct scene *scene, co
     return NULL;
 }
 
-TEST_IN(materials_mean_what_they_say, open_folder, close_folder)
+TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)
 {
     struct scene *scene =
-        load_fine(state, "{\"materials\":{\n\"plain\":{\"diffuse\":\"#ff0080\"},\n"
-                         "\"glass\":{\"transmission\":0.9,\"ior\":1.33,\"absorption\":[1,2,3]},\n"
-                         "\"mirror\":{\"reflection\":[0.9,0.8,0.7]},\n"
-                         "\"metal\":{\"base_color\":0.5,\"metallic\":1,\"roughness\":0.25},\n"
-                         "\"veil\":{\"opacity\":0.5},\n\"grid\":{\"alpha_cutoff\":0.3},\n"
-                         "\"sign\":{\"unlit\":true,\"color\":[0,1,0]},\n"
-                         "\"wine\":{\"transmission\":1,\"priority\":3,\"one_sided\":true},\n"
-                         "\"stage\":{\"shadow_catcher\":true}}}");
+        load_fine("{\"materials\":{\n\"plain\":{\"diffuse\":\"#ff0080\"},\n"
+                  "\"glass\":{\"transmission\":0.9,\"ior\":1.33,\"absorption\":[1,2,3]},\n"
+                  "\"mirror\":{\"reflection\":[0.9,0.8,0.7]},\n"
+                  "\"metal\":{\"base_color\":0.5,\"metallic\":1,\"roughness\":0.25},\n"
+                  "\"veil\":{\"opacity\":0.5},\n\"grid\":{\"alpha_cutoff\":0.3},\n"
+                  "\"sign\":{\"unlit\":true,\"color\":[0,1,0]},\n"
+                  "\"wine\":{\"transmission\":1,\"priority\":3,\"one_sided\":true},\n"
+                  "\"stage\":{\"shadow_catcher\":true}}}");
     const struct scene_material *m = material_named(scene, "plain");
     assert_true(m->diffuse[0] == 1.0f && m->diffuse[1] == 0.0f);
     assert_true(fabsf(m->diffuse[2] - 0.21586f) < 1e-4f); /* 0x80 in sRGB */
@@ -419,10 +359,9 @@ TEST_IN(materials_mean_what_they_say, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(patterns_become_textures, open_folder, close_folder)
+TEST_IN(patterns_become_textures, folder_begin, folder_end)
 {
     struct scene *scene = load_fine(
-        state,
         "{\"materials\":{\"a\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"],"
         "\"size\":8}}},\"b\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"]}}},"
         "\"c\":{\"texture\":{\"brick\":{\"colors\":[1,0]},\"rotation\":90,\"wrap\":\"mirror\"}}}}");
@@ -440,10 +379,9 @@ TEST_IN(patterns_become_textures, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-static void lights_cameras_and_sky(void **state)
+static void lights_cameras_and_sky(void)
 {
     struct scene *scene = load_fine(
-        state,
         "{\"ambient\":[0.1,0.2,0.3],\"environment\":{\"map\":\"sky.pfm\",\"scale\":2},"
         "\"cameras\":[{\"eye\":[0,0,3],\"fov\":90},{\"eye\":[0,0,3],\"height\":2}],"
         "\"lights\":[{\"kind\":\"spot\",\"position\":[0,4,0],\"target\":[0,0,0],\"outer\":60,"
@@ -463,12 +401,12 @@ static void lights_cameras_and_sky(void **state)
     scene_destroy(scene);
 }
 
-TEST_IN(flat_emitters, open_folder, close_folder)
+TEST_IN(flat_emitters, folder_begin, folder_end)
 {
     struct scene *scene = load_fine(
-        state, "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[1,4,2],\"u\":[2,0,0],"
-               "\"v\":[0,0,6],\"intensity\":8,\"two_sided\":true},"
-               "{\"kind\":\"triangle\",\"points\":[[1,1,1],[3,1,1],[1,2,1]],\"color\":[1,2,3]}]}");
+        "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[1,4,2],\"u\":[2,0,0],"
+        "\"v\":[0,0,6],\"intensity\":8,\"two_sided\":true},"
+        "{\"kind\":\"triangle\",\"points\":[[1,1,1],[3,1,1],[1,2,1]],\"color\":[1,2,3]}]}");
     const struct scene_light *panel = &scene->lights[0], *corner = &scene->lights[1];
     assert_int_equal(panel->kind, SCENE_LIGHT_RECTANGLE);
     assert_true(panel->position[0] == 0.0 && panel->position[2] == -1.0 && panel->two_sided);
@@ -479,10 +417,8 @@ TEST_IN(flat_emitters, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(sky_test, open_folder, close_folder)
+TEST_IN(sky_test, folder_begin, folder_end)
 {
-    struct heard *heard = *state;
-    char path[128];
     const char header[] = "PF\n2 2\n-1.0\n";
     float pixels[12] = {0};
     for (int i = 6; i < 12; ++i)
@@ -490,24 +426,18 @@ TEST_IN(sky_test, open_folder, close_folder)
     uint8_t file[sizeof header - 1 + sizeof pixels];
     memcpy(file, header, sizeof header - 1);
     memcpy(file + sizeof header - 1, pixels, sizeof pixels);
-    snprintf(path, sizeof path, "%s/sky.pfm", heard->folder);
-    write_file(path, file, sizeof file);
-    lights_cameras_and_sky(state);
-    unlink(path);
+    put_data("sky.pfm", file, sizeof file);
+    lights_cameras_and_sky();
 }
 
 /* An uncompressed TGA, found despite the wrong case and slash. */
-TEST_IN(textures_are_found, open_folder, close_folder)
+TEST_IN(textures_are_found, folder_begin, folder_end)
 {
-    struct heard *heard = *state;
-    char path[128];
     const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0, 0, 0, 0, 0, 0,
                            2, 0, 1, 0, 24, 0x20, 3, 2, 1, 6, 5, 4};
-    snprintf(path, sizeof path, "%s/Wood.TGA", heard->folder);
-    write_file(path, tga, sizeof tga);
-    struct scene *scene = load_fine(state, "{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
-                                           "\"b\":{\"texture\":\"Wood.TGA\"}}}");
-    unlink(path);
+    put_data("Wood.TGA", tga, sizeof tga);
+    struct scene *scene = load_fine("{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
+                                    "\"b\":{\"texture\":\"Wood.TGA\"}}}");
     const struct scene_texture *found =
         &scene->textures[material_named(scene, "a")->textures[0].texture];
     const uint8_t texels[] = {1, 2, 3, 255, 4, 5, 6, 255};
@@ -518,47 +448,38 @@ TEST_IN(textures_are_found, open_folder, close_folder)
 
 /* Textures that a scene file names itself have to be there; models do with a stand-in, even if the
    scene names it later. */
-TEST_IN(missing_textures_are_refused, open_folder, close_folder)
+TEST_IN(missing_textures_are_refused, folder_begin, folder_end)
 {
-    struct heard *heard = *state;
-    char obj[128], mtl[128];
-    assert_error(state, "{\"materials\":{\n\"a\":{\"texture\":\"no.png\"}}}",
+    assert_error("{\"materials\":{\n\"a\":{\"texture\":\"no.png\"}}}",
                  "test.json:2:6: materials.a.texture: texture `");
-    assert_error(state, "{\"materials\":{\"a\":{\"bump_map\":{\"file\":\"no.png\"}}}}",
+    assert_error("{\"materials\":{\"a\":{\"bump_map\":{\"file\":\"no.png\"}}}}",
                  "test.json:1:32: materials.a.bump_map.file: texture `");
-    assert_non_null(strstr(heard->errors[0], "no.png`: there is no such file"));
-    assert_error(state, "{\"materials\":{\"a\":{\"texture\":\"test.json\"}}}",
+    assert_non_null(strstr(messages.last_error, "no.png`: there is no such file"));
+    assert_error("{\"materials\":{\"a\":{\"texture\":\"test.json\"}}}",
                  "test.json:1:20: materials.a.texture: texture `");
-    assert_non_null(strstr(heard->errors[0], "it is not a picture"));
-    snprintf(obj, sizeof obj, "%s/a.obj", heard->folder);
-    snprintf(mtl, sizeof mtl, "%s/a.mtl", heard->folder);
+    assert_non_null(strstr(messages.last_error, "it is not a picture"));
     static const char obj_text[] = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
     static const char mtl_text[] = "newmtl m\nmap_Kd no.png\n";
-    write_file(obj, obj_text, sizeof obj_text - 1);
-    write_file(mtl, mtl_text, sizeof mtl_text - 1);
-    struct scene *scene = load_fine(state, "{\"objects\":[{\"model\":\"a.obj\"}]}");
+    put_text("a.obj", obj_text);
+    put_text("a.mtl", mtl_text);
+    struct scene *scene = load_fine("{\"objects\":[{\"model\":\"a.obj\"}]}");
     const uint8_t magenta[] = {255, 0, 255, 255};
     assert_int_equal(scene->texture_count, 1);
     assert_memory_equal(scene->textures[0].rgba, magenta, sizeof magenta);
     scene_destroy(scene);
-    assert_error(state,
-                 "{\"objects\":[{\"model\":\"a.obj\"},\n{\"shape\":\"box\",\"material\":"
+    assert_error("{\"objects\":[{\"model\":\"a.obj\"},\n{\"shape\":\"box\",\"material\":"
                  "{\"texture\":\"no.png\"}}]}",
                  "test.json:2:28: objects[1].material.texture: texture `");
-    unlink(obj);
-    unlink(mtl);
 }
 
-TEST_IN(large_textures_are_halved, open_folder, close_folder)
+TEST(large_textures_are_halved)
 {
-    struct heard *heard = *state;
     struct scene *scene = scene_create(NULL, "test");
     const whit_load_params params = {.texture_limit = 1};
     uint32_t index;
     const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
                            2, 0, 1, 0, 24, 0x20, 10, 20, 30, 20, 40, 61};
     const uint8_t mean[] = {46, 30, 15, 255};
-    (void)heard;
     assert_int_equal(load_texture(scene, "memory", tga, sizeof tga, &params, &index, NULL),
                      WHIT_OK);
     assert_int_equal(scene->textures[index].width, 1);
@@ -568,26 +489,20 @@ TEST_IN(large_textures_are_halved, open_folder, close_folder)
     scene_destroy(scene);
 }
 
-TEST_IN(unknown_files_are_refused, open_folder, close_folder)
+TEST_IN(unknown_files_are_refused, folder_begin, folder_end)
 {
-    struct heard *heard = *state;
     struct scene *scene;
-    char path[128];
-    const whit_log log = {hear, heard, WHIT_LOG_DEBUG};
-    heard->error_count = 0;
-    snprintf(path, sizeof path, "%s/nothing.json", heard->folder);
-    assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_ERROR_INPUT);
-    snprintf(path, sizeof path, "%s/scene.blend", heard->folder);
-    write_file(path, "x", 1);
-    assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_ERROR_INPUT);
-    unlink(path);
+    const whit_log log = messages_log(&messages);
+    assert_int_equal(load_scene(&log, in_folder("nothing.json"), NULL, &scene), WHIT_ERROR_INPUT);
+    assert_non_null(strstr(messages.last_error, "there is no such file"));
+    assert_int_equal(load_scene(&log, put_text("scene.blend", "x"), NULL, &scene),
+                     WHIT_ERROR_INPUT);
     assert_null(scene);
-    assert_int_equal(heard->error_count, 2);
-    assert_non_null(strstr(heard->errors[0], "there is no such file"));
-    assert_non_null(strstr(heard->errors[1], "`.blend` is not known"));
+    assert_int_equal(messages.errors, 2);
+    assert_non_null(strstr(messages.last_error, "`.blend` is not known"));
 }
 
-TEST_IN(shipped_scenes_have_their_sizes, open_folder, close_folder)
+TEST(shipped_scenes_have_their_sizes)
 {
     static const struct {
         const char *name;
@@ -602,8 +517,7 @@ TEST_IN(shipped_scenes_have_their_sizes, open_folder, close_folder)
         {"layers", 11914, 8},   {"strands", 20002, 2},
         {"atrium", 64616, 1},
     };
-    struct heard *heard = *state;
-    const whit_log log = {hear, heard, WHIT_LOG_DEBUG};
+    const whit_log log = messages_log(&messages);
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
         char path[512];
         struct scene *scene;

@@ -46,7 +46,7 @@ static const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
 #define TGA_BASE64 "AAACAAAAAAAAAAAAAgABABggChQeFCg9"
 
 /* A glTF of `count` images, each the picture of a material. */
-static const char *write_gltf(struct fixture *fixture, const char *const *images, uint32_t count)
+static const char *write_gltf(const char *const *images, uint32_t count)
 {
     char *lists[3] = {string_copy(""), string_copy(""), string_copy("")};
     for (uint32_t i = 0; i < count; i++) {
@@ -66,7 +66,7 @@ static const char *write_gltf(struct fixture *fixture, const char *const *images
                                "\"bufferViews\":[{\"buffer\":0,\"byteLength\":24}],"
                                "\"images\":[%s],\"textures\":[%s],\"materials\":[%s]}",
                                lists[0], lists[1], lists[2]);
-    const char *path = fixture_text(fixture, "a.gltf", text);
+    const char *path = put_text("a.gltf", text);
     for (int k = 0; k < 3; k++)
         free(lists[k]);
     free(text);
@@ -94,8 +94,8 @@ TEST_IN(one_file_of_many_names, begin, fixture_end)
     spell(spellings);
     for (uint32_t i = 0; i < SPELLINGS; i++)
         images[i] = spellings[i];
-    fixture_write(fixture, "a.tga", tga, sizeof tga);
-    assert_int_equal(fixture_load(fixture, write_gltf(fixture, images, SPELLINGS)), WHIT_OK);
+    put_data("a.tga", tga, sizeof tga);
+    assert_int_equal(fixture_load(fixture, write_gltf(images, SPELLINGS)), WHIT_OK);
     assert_int_equal(fixture->scene->material_count, SPELLINGS);
     assert_int_equal(fixture->scene->texture_count, 1);
     assert_int_equal(decoded, 1);
@@ -118,10 +118,10 @@ TEST_IN(one_picture_in_many_places, begin, fixture_end)
     uint8_t other[sizeof tga];
     memcpy(other, tga, sizeof tga);
     other[sizeof tga - 1]++;
-    fixture_write(fixture, "a.tga", tga, sizeof tga);
-    fixture_write(fixture, "b.tga", tga, sizeof tga);
-    fixture_write(fixture, "other.tga", other, sizeof other);
-    assert_int_equal(fixture_load(fixture, write_gltf(fixture, images, 6)), WHIT_OK);
+    put_data("a.tga", tga, sizeof tga);
+    put_data("b.tga", tga, sizeof tga);
+    put_data("other.tga", other, sizeof other);
+    assert_int_equal(fixture_load(fixture, write_gltf(images, 6)), WHIT_OK);
     assert_int_equal(fixture->scene->texture_count, 2);
     assert_int_equal(decoded, 2);
     assert_int_equal(fixture->scene->materials[5].textures[SCENE_SLOT_DIFFUSE].texture, 1);
@@ -146,8 +146,8 @@ TEST_IN(damaged_pictures_are_tried_once, begin, fixture_end)
     struct fixture *fixture = *state;
     uint32_t index, same;
     const char *reason = NULL;
-    const char *a = fixture_write(fixture, "a.tga", tga, 12);
-    const char *b = fixture_write(fixture, "b.tga", tga, 12);
+    const char *a = put_data("a.tga", tga, 12);
+    const char *b = put_data("b.tga", tga, 12);
     assert_int_equal(load_texture(fixture->scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
     assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &same, NULL), WHIT_OK);
     assert_int_equal(same, index);
@@ -167,10 +167,10 @@ TEST_IN(notes_quote_little, begin, fixture_end)
     char k[61] = "", name[96];
     memset(k, 'k', sizeof k - 1);
     snprintf(name, sizeof name, "%s1.tga", k);
-    const char *a = fixture_write(fixture, name, tga, 12);
+    const char *a = put_data(name, tga, 12);
     snprintf(name, sizeof name, "%s2.tga", k);
-    const char *b = fixture_write(fixture, name, tga, 12);
-    const char *large = fixture_write(fixture, "\033.tga", tga, 12);
+    const char *b = put_data(name, tga, 12);
+    const char *large = put_data("\033.tga", tga, 12);
     assert_int_equal(truncate(large, (off_t)1 << 30), 0);
     assert_int_equal(load_texture(fixture->scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
     assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &index, NULL), WHIT_OK);
@@ -183,7 +183,7 @@ TEST_IN(notes_quote_little, begin, fixture_end)
     assert_true(fixture_noted(fixture, "`\033.tga`: 1073741824 bytes, over the limit"));
     k[40] = 'k';
     assert_false(fixture_noted(fixture, k));
-    assert_false(fixture_noted(fixture, fixture->folder));
+    assert_false(fixture_noted(fixture, folder));
 }
 
 TEST_IN(textures_too_large_are_not_decoded, begin, fixture_end)
@@ -193,8 +193,8 @@ TEST_IN(textures_too_large_are_not_decoded, begin, fixture_end)
     fixture->scene->memory_limit = 17; /* two texels, on host and device, and smaller levels */
     assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),
                      WHIT_ERROR_INPUT);
-    assert_int_equal(fixture->errors, 1);
-    assert_non_null(strstr(fixture->last_error, "texture `a` of 2x1 pixels would take"));
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.last_error, "texture `a` of 2x1 pixels would take"));
     assert_int_equal(decoded, 0);
     fixture->scene->memory_limit = 18;
     assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),

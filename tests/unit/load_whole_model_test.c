@@ -10,8 +10,8 @@
 static const struct scene *load(struct fixture *fixture, const char *path)
 {
     if (fixture_load(fixture, path) != WHIT_OK)
-        fail_msg("%s", fixture->last_error);
-    assert_int_equal(fixture->errors, 0);
+        fail_msg("%s", messages.last_error);
+    assert_int_equal(messages.errors, 0);
     return fixture->scene;
 }
 
@@ -50,7 +50,7 @@ static const char off[] = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 2 0\n0 2 3\n4 0 1 2 3\n";
 
 TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, fixture_text(*state, "a.off", off));
+    const struct scene *scene = load(*state, put_text("a.off", off));
     assert_int_equal(scene->meshes[0].triangle_count, 2);
     assert_int_equal(scene->meshes[0].vertex_count, 4);
     assert_place(scene, 0, 0, 0, 0, 0);
@@ -104,19 +104,18 @@ static const char collada[] =
                       "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
 
 /* `libraries` and what a scene's node has of them. */
-static const char *write_collada(struct fixture *fixture, const char *effect, const char *libraries,
-                                 const char *nodes)
+static const char *write_collada(const char *effect, const char *libraries, const char *nodes)
 {
     char *text = string_format(collada, effect, libraries, nodes);
     assert_non_null(text);
-    const char *path = fixture_text(fixture, "a.dae", text);
+    const char *path = put_text("a.dae", text);
     free(text);
     return path;
 }
 
 TEST_IN(collada_in_half_metres_and_z_up, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada(*state, "f", "", ""));
+    const struct scene *scene = load(*state, write_collada("f", "", ""));
     assert_int_equal(scene->instance_count, 2);
     assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
     assert_place(scene, 0, 1, 2, 0, 0);
@@ -128,7 +127,7 @@ TEST_IN(collada_in_half_metres_and_z_up, fixture_begin, fixture_end)
 
 TEST_IN(collada_names_its_textures, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada(*state, "e", "", ""));
+    const struct scene *scene = load(*state, write_collada("e", "", ""));
     assert_true(fixture_noted(*state, "texture `no such.png`"));
     assert_int_not_equal(material_of(scene)->textures[SCENE_SLOT_DIFFUSE].texture, SCENE_NONE);
     assert_float_equal(material_of(scene)->emission[0], 0.5, 1e-6);
@@ -184,7 +183,7 @@ static const char moving_nodes[] =
 
 TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada(*state, "f", moving, moving_nodes));
+    const struct scene *scene = load(*state, write_collada("f", moving, moving_nodes));
     assert_int_equal(scene->channel_count, 0);
     assert_int_equal(scene->camera_count, 0);
     uint32_t skins = 0;
@@ -234,28 +233,28 @@ static const char fbx[] =
     "\tC: \"OP\",14,13, \"DiffuseColor\"\n}\n";
 
 /* One face of `corners`. */
-static const char *write_fbx(struct fixture *fixture, int corners)
+static const char *write_fbx(int corners)
 {
     char indices[4096] = "";
     for (int i = 0; i + 1 < corners; i++)
         strcat(indices, i % 2 ? "1," : "0,");
     char *text = string_format(fbx, corners, indices);
     assert_non_null(text);
-    const char *path = fixture_text(fixture, "a.fbx", text);
+    const char *path = put_text("a.fbx", text);
     free(text);
     return path;
 }
 
 TEST_IN(faces_of_too_many_corners_are_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, write_fbx(*state, 1025),
+    fixture_refused(*state, write_fbx(1025),
                     "a.fbx: face 0 has 1025 corners, at most 1024 are possible");
 }
 
 TEST_IN(fbx_in_two_centimetres_and_z_up, fixture_begin, fixture_end)
 {
-    fixture_text(*state, "wood.png", "no picture");
-    const struct scene *scene = load(*state, write_fbx(*state, 3));
+    put_text("wood.png", "no picture");
+    const struct scene *scene = load(*state, write_fbx(3));
     assert_int_equal(scene->instance_count, 1);
     assert_place(scene, 0, 1, 1, 0.5, 0);
     assert_place(scene, 0, 2, 0, 2.5, 0);
@@ -321,7 +320,7 @@ static void add_file(struct package *package, const char *name, const char *text
     package->entries++;
 }
 
-static const char *write_3mf(struct fixture *fixture, const char *unit, bool deflated)
+static const char *write_3mf(const char *unit, bool deflated)
 {
     struct package package = {0};
     char *model = string_format(
@@ -353,7 +352,7 @@ static const char *write_3mf(struct fixture *fixture, const char *unit, bool def
     put(package.bytes, &package.size, entries, sizeof entries);
     put(package.bytes, &package.size, ends, sizeof ends);
     put(package.bytes, &package.size, "\0", 2);
-    return fixture_write(fixture, "a.3mf", package.bytes, package.size);
+    return put_data("a.3mf", package.bytes, package.size);
 }
 
 TEST_IN(units_of_3mf, fixture_begin, fixture_end)
@@ -367,11 +366,10 @@ TEST_IN(units_of_3mf, fixture_begin, fixture_end)
                 {"unit=\"inch\"", true, 2.54},
                 {"unit='meter'", true, 100}};
     for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const struct scene *scene = load(*state, write_3mf(*state, rows[i].unit, rows[i].deflated));
+        const struct scene *scene = load(*state, write_3mf(rows[i].unit, rows[i].deflated));
         assert_int_equal(scene->instance_count, i + 1);
         assert_place(scene, i, 1, rows[i].metres, 0, 0);
         assert_place(scene, i, 2, 0, 2 * rows[i].metres, -rows[i].metres / 2);
-        fixture_forget(*state);
     }
     assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[0], 1, 1e-6);
     assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[2], 0, 1e-6);
@@ -384,8 +382,8 @@ TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
     static const char *const names[] = {"a.fbx", "a.dae", "a.3mf", "a.off"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct fixture *fixture = *state;
-        fixture->errors = 0;
-        fixture_refused(fixture, fixture_text(fixture, names[i], "no model at all\n"), "assimp: ");
+        messages.errors = 0;
+        fixture_refused(fixture, put_text(names[i], "no model at all\n"), "assimp: ");
     }
 }
 
@@ -422,21 +420,21 @@ static bool load_damaged(struct fixture *fixture, const char *name, const uint8_
                          size_t size_bytes)
 {
     struct scene *scene = NULL;
-    const char *path = fixture_write(fixture, name, data, size_bytes);
-    fixture->errors = 0;
+    const char *path = put_data(name, data, size_bytes);
+    messages.errors = 0;
     whit_result result = load_scene(&fixture->log, path, NULL, &scene);
     assert_true(result == WHIT_OK || result == WHIT_ERROR_INPUT || result == WHIT_ERROR_MEMORY);
     assert_int_equal(scene != NULL, result == WHIT_OK);
-    assert_int_equal(fixture->errors, result != WHIT_OK);
-    if (fixture->errors)
-        assert_non_null(strstr(fixture->last_error, path));
+    assert_int_equal(messages.errors, result != WHIT_OK);
+    if (messages.errors)
+        assert_non_null(strstr(messages.last_error, path));
     for (uint32_t i = 0; scene && i < scene->mesh_count; i++) {
         const struct scene_mesh *mesh = &scene->meshes[i];
         for (size_t k = 0; k < (size_t)mesh->triangle_count * 3; k++)
             assert_true(mesh->indices[k] < mesh->vertex_count);
     }
     scene_destroy(scene);
-    fixture_forget(fixture);
+    unlink(path);
     return result == WHIT_OK;
 }
 
@@ -447,15 +445,14 @@ TEST_IN(damaged_files_end_in_a_scene_or_one_error, fixture_begin, fixture_end)
     struct fixture *fixture = *state;
     uint64_t random = 1;
     for (int i = 0; i < SAMPLES; i++) {
-        const char *path = i == 0   ? fixture_text(fixture, names[i], off)
-                           : i == 1 ? write_collada(fixture, "e", moving, moving_nodes)
-                           : i == 2 ? write_fbx(fixture, 3)
-                                    : write_3mf(fixture, "unit='inch'", false);
+        const char *path = i == 0   ? put_text(names[i], off)
+                           : i == 1 ? write_collada("e", moving, moving_nodes)
+                           : i == 2 ? write_fbx(3)
+                                    : write_3mf("unit='inch'", false);
         uint8_t *data = NULL;
         size_t size_bytes = 0;
         uint32_t loaded = 0;
         assert_int_equal(file_read(&fixture->log, NULL, path, 0, &data, &size_bytes), WHIT_OK);
-        fixture_forget(fixture);
         assert_true(load_damaged(fixture, names[i], data, size_bytes)); /* as it is */
         uint8_t *damaged = malloc(size_bytes + RUN_MAX);
         assert_non_null(damaged);

@@ -8,10 +8,10 @@
 #include "base/log.h"
 
 static struct messages {
-    int count, errors, warnings, validation; /* validation: of the layers */
+    int count, errors, warnings, validation; /* count: notes too; validation: of the layers */
     char last[1024], last_error[1024];
-    int lines; /* errors and warnings, whose text is one a line, from the first */
-    char text[1 << 14];
+    int lines;          /* errors and warnings */
+    char text[1 << 14]; /* of these, one a line, from the first */
 } messages;
 
 static inline void messages_collect(void *user, whit_log_level level, const char *message)
@@ -31,7 +31,7 @@ static inline void messages_collect(void *user, whit_log_level level, const char
     snprintf(told->text + used, sizeof told->text - used, "%s\n", message);
 }
 
-/* Of all levels. */
+/* A log of all levels, of which nothing was told yet. */
 static inline whit_log messages_log(struct messages *told)
 {
     *told = (struct messages){0};

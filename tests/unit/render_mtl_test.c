@@ -1,7 +1,6 @@
 /* What each class of an MTL draws, by the format's formulas: one strip for each material, from the
    file to the pixel. */
-#include <unistd.h>
-
+#include "folder_fixture.h"
 #include "load/model.h"
 #include "picture_fixture.h"
 #include "unit.h"
@@ -92,14 +91,6 @@ static double expected(const struct strip *strip, bool schlick, int c)
     return seen + s->refracted * tf[c] * (1 - s->less_ks * ks[c]) * sky(-COS_INSIDE, c);
 }
 
-static void write_text(const char *name, const char *text)
-{
-    FILE *file = fopen(name, "wb");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 static void write_picture(const char *name, int code)
 {
     struct image image;
@@ -113,9 +104,7 @@ static void write_picture(const char *name, int code)
 /* Strip i lies at y = 0 from x = i to i + 1. */
 static struct scene *load_strips(void)
 {
-    static const char *const files[] = {"a.obj", "a.mtl", "color.png", "fifth.png", "half.png"};
     static char obj[16384], mtl[16384];
-    char folder[] = "/tmp/whit-mtl-XXXXXX";
     size_t to = (size_t)snprintf(obj, sizeof obj, "mtllib a.mtl\nvt 0.5 0.5\n"), at = 0;
     for (int i = 0; i < STRIPS; i++) {
         to += (size_t)snprintf(obj + to, sizeof obj - to,
@@ -126,20 +115,18 @@ static struct scene *load_strips(void)
                                strips[i].text);
     }
     assert_true(to < sizeof obj && at < sizeof mtl);
-    assert_non_null(mkdtemp(folder));
+    assert_int_equal(folder_begin(NULL), 0);
     assert_int_equal(chdir(folder), 0);
-    write_text("a.obj", obj);
-    write_text("a.mtl", mtl);
+    put_text("a.obj", obj);
+    put_text("a.mtl", mtl);
     write_picture("color.png", 188);
     write_picture("fifth.png", 51);
     write_picture("half.png", 128);
     struct scene *scene = scene_begin(&fixture_log, "classes");
     assert_int_equal(roots_init(&scene->roots, "a.obj"), WHIT_OK);
     assert_int_equal(load_model(scene, "a.obj", SCENE_NONE, false, false, NULL), WHIT_OK);
-    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
-        assert_int_equal(unlink(files[i]), 0);
-    assert_int_equal(rmdir(folder), 0);
     assert_int_equal(chdir("/"), 0);
+    assert_int_equal(folder_end(NULL), 0);
     return scene;
 }
 

@@ -21,11 +21,6 @@ static int end(void **state)
     return folder_end(state);
 }
 
-static void put(const char *name, const char *content)
-{
-    put_file(in_folder(name), content, strlen(content));
-}
-
 static whit_result read_first(void)
 {
     shader_text_free(&text);
@@ -55,7 +50,7 @@ static void assert_refused(const char *file, uint32_t line, const char *reason)
 
 static void assert_text_refused(const char *content, uint32_t line, const char *reason)
 {
-    put("a.glsl", content);
+    put_text("a.glsl", content);
     assert_refused("a.glsl", line, reason);
 }
 
@@ -65,10 +60,10 @@ TEST_IN(files_are_read_once_with_what_they_include, begin, end)
 {
     mkdir(in_folder("lib"), 0777);
     mkdir(in_folder("lib/deep"), 0777);
-    put("a.glsl", "#include \"lib/b.glsl\"\n\n  # include  \"c.glsl\" // last\n" FUNCTION);
-    put("lib/b.glsl", "#include \"deep/../deep/d.glsl\"\n#include \"../c.glsl\"\n");
-    put("lib/deep/d.glsl", "#define D 1\n");
-    put("c.glsl", "#define C 1");
+    put_text("a.glsl", "#include \"lib/b.glsl\"\n\n  # include  \"c.glsl\" // last\n" FUNCTION);
+    put_text("lib/b.glsl", "#include \"deep/../deep/d.glsl\"\n#include \"../c.glsl\"\n");
+    put_text("lib/deep/d.glsl", "#define D 1\n");
+    put_text("c.glsl", "#define C 1");
     assert_int_equal(read_first(), WHIT_OK);
     static const char *const relatives[] = {"a.glsl", "lib/b.glsl", "lib/deep/d.glsl", "c.glsl"};
     assert_int_equal(text.file_count, 4);
@@ -146,18 +141,18 @@ TEST_IN(what_is_no_file_is_refused_at_its_include, begin, end)
     assert_int_equal(symlink("/dev/zero", in_folder("zero")), 0);
     assert_int_equal(symlink(outside, in_folder("link")), 0);
     assert_int_equal(symlink("/etc", in_folder("inside")), 0);
-    put("swapped.glsl", "\n\n#include \"a.glsl\"\n");
+    put_text("swapped.glsl", "\n\n#include \"a.glsl\"\n");
     char *large = malloc((1 << 20) + 1);
     memset(large, '\n', (1 << 20) + 1);
     put_file(in_folder("large.glsl"), large, (1 << 20) + 1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         bool swapped = strcmp(cases[i].name, "swapped.glsl") == 0;
         snprintf(line, sizeof line, FUNCTION "#include \"%s\"\n", cases[i].name);
-        put("a.glsl", line);
+        put_text("a.glsl", line);
         assert_refused(swapped ? "swapped.glsl" : "a.glsl", swapped ? 3 : 2, cases[i].reason);
     }
     put_file(in_folder("large.glsl"), large, 1 << 20);
-    put("a.glsl", FUNCTION "#include \"large.glsl\"");
+    put_text("a.glsl", FUNCTION "#include \"large.glsl\"");
     assert_int_equal(read_first(), WHIT_OK);
     assert_int_equal(text.files[1].bytes, 1 << 20);
     free(large);
@@ -177,7 +172,7 @@ TEST_IN(the_first_file_is_refused_as_any, begin, end)
         assert_string_equal(errors.items[0].file, cases[i].path);
         assert_non_null(strstr(errors.items[0].reason, cases[i].reason));
     }
-    put("real.glsl", FUNCTION);
+    put_text("real.glsl", FUNCTION);
     assert_int_equal(symlink("real.glsl", in_folder("a.glsl")), 0);
     assert_int_equal(read_first(), WHIT_OK); /* what the user names may be a link */
     shader_text_free(&text);
@@ -191,26 +186,26 @@ TEST_IN(includes_go_16_deep_and_to_64_files, begin, end)
         snprintf(name, sizeof name, i ? "d%d.glsl" : "a.glsl", i);
         snprintf(content, sizeof content, i < 16 ? FUNCTION "#include \"d%d.glsl\"\n" : FUNCTION,
                  i + 1);
-        put(name, content);
+        put_text(name, content);
     }
     assert_refused("d15.glsl", 2, "16 deep");
-    put("d15.glsl", FUNCTION);
+    put_text("d15.glsl", FUNCTION);
     assert_int_equal(read_first(), WHIT_OK);
     assert_int_equal(text.file_count, 16);
     /* d2 was read where it is 3 deep; b includes it one deeper than there is room for. */
-    put("a.glsl", "#include \"d2.glsl\"\n#include \"b.glsl\"\n");
-    put("b.glsl", "#include \"b1.glsl\"\n");
-    put("b1.glsl", "\n#include \"d2.glsl\"\n");
+    put_text("a.glsl", "#include \"d2.glsl\"\n#include \"b.glsl\"\n");
+    put_text("b.glsl", "#include \"b1.glsl\"\n");
+    put_text("b1.glsl", "\n#include \"d2.glsl\"\n");
     assert_refused("b1.glsl", 2, "16 deep");
     for (int last = 64; last >= 63; --last) {
         size_t used = (size_t)snprintf(content, sizeof content, FUNCTION);
         for (int i = 1; i <= last; ++i) {
             snprintf(name, sizeof name, "e%d", i);
-            put(name, "\n");
+            put_text(name, "\n");
             used +=
                 (size_t)snprintf(content + used, sizeof content - used, "#include \"e%d\"\n", i);
         }
-        put("a.glsl", content);
+        put_text("a.glsl", content);
         if (last == 64)
             assert_refused("a.glsl", 65, "more than 64 files");
         else
@@ -229,7 +224,7 @@ TEST_IN(what_is_no_text_is_refused_with_its_line, begin, end)
     assert_text_refused("", 0, "no function");
     assert_text_refused("// nothing\n/* at all */\nconst float x = 1.0;\n", 0, "no function");
     assert_text_refused("float f();\nstruct S { float x; };\n", 0, "no function");
-    put("a.glsl", "\xef\xbb\xbf#define \xc3\x84 1\r\n// \xc3\xa4\r\n" FUNCTION);
+    put_text("a.glsl", "\xef\xbb\xbf#define \xc3\x84 1\r\n// \xc3\xa4\r\n" FUNCTION);
     assert_int_equal(read_first(), WHIT_OK);
 }
 
@@ -267,35 +262,35 @@ TEST_IN(what_is_whits_own_is_refused_with_its_line, begin, end)
         {1, "#include \"b.glsl\" /*\n*/\n" FUNCTION, "line of its own"},
         {1, "#include \"b.glsl\" x\n" FUNCTION, "line of its own"},
     };
-    put("b.glsl", "\n");
+    put_text("b.glsl", "\n");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         bool whole = strcmp(cases[i].reason, "no function") == 0;
         assert_text_refused(cases[i].content, whole ? 0 : cases[i].line, cases[i].reason);
     }
-    put("a.glsl", "// #version 100\n/* layout */\n#define layouts 1\n#error \"x\"\n" FUNCTION);
+    put_text("a.glsl", "// #version 100\n/* layout */\n#define layouts 1\n#error \"x\"\n" FUNCTION);
     assert_int_equal(read_first(), WHIT_OK);
 }
 
 TEST_IN(functions_with_a_body_at_the_top_level_are_found, begin, end)
 {
-    put("a.glsl", "float declared(vec3 x);\n"
-                  "// float commented() {}\n"
-                  "/* float commented() {} */\n"
-                  "#define macro() {}\n"
-                  "const float array[2] = float[2](1.0, 2.0);\n"
-                  "struct S { float x; } s;\n"
-                  "#include \"b.glsl\"\n"
-                  "vec3 shade(S s,\n"
-                  "           float[2] y)\n"
-                  "{ if (called(1.0) > 0.0) { inner(); } return vec3(0.0); }\n"
-                  "#ifdef A\n"
-                  "float either(float a) {\n"
-                  "#else\n"
-                  "float either(int a) {\n"
-                  "#endif\n"
-                  "    return 1.0; }\n"
-                  "float[2] behind(void) { return array; }");
-    put("b.glsl", "\n\\\nvoid  surf\\\nace ( inout S s )\n{\n}\n");
+    put_text("a.glsl", "float declared(vec3 x);\n"
+                       "// float commented() {}\n"
+                       "/* float commented() {} */\n"
+                       "#define macro() {}\n"
+                       "const float array[2] = float[2](1.0, 2.0);\n"
+                       "struct S { float x; } s;\n"
+                       "#include \"b.glsl\"\n"
+                       "vec3 shade(S s,\n"
+                       "           float[2] y)\n"
+                       "{ if (called(1.0) > 0.0) { inner(); } return vec3(0.0); }\n"
+                       "#ifdef A\n"
+                       "float either(float a) {\n"
+                       "#else\n"
+                       "float either(int a) {\n"
+                       "#endif\n"
+                       "    return 1.0; }\n"
+                       "float[2] behind(void) { return array; }");
+    put_text("b.glsl", "\n\\\nvoid  surf\\\nace ( inout S s )\n{\n}\n");
     assert_int_equal(read_first(), WHIT_OK);
     static const struct {
         const char *name;
@@ -335,7 +330,7 @@ TEST_IN(what_is_hard_to_scan_ends, begin, end)
                                          "#include \"b\"\n"};
     char content[512];
     uint32_t random = 1;
-    put("b", "\n");
+    put_text("b", "\n");
     for (int i = 0; i < 3000; ++i) {
         content[0] = 0;
         for (int j = 0; j < 40; ++j) {

@@ -14,10 +14,7 @@ static struct engine_frame frame;
 
 static void save(const char *text)
 {
-    FILE *to = fopen(settings.shader, "w");
-    assert_non_null(to);
-    fputs(text, to);
-    assert_int_equal(fclose(to), 0);
+    put_file(settings.shader, text, strlen(text));
 }
 
 static struct engine_status status_now(void)

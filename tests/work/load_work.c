@@ -26,10 +26,11 @@ void __sanitizer_cov_trace_pc(void)
 enum { FEW = 250, MANY = 4 * FEW };
 
 /* Writes `text` with what is in < > written `count` times, # being the number. */
-static const char *write_file(struct fixture *fixture, const char *name, const char *text,
-                              uint32_t count)
+static const char *write_file(const char *name, const char *text, uint32_t count)
 {
-    char *path = string_format("%s/%u%s", fixture->folder, count, name);
+    char numbered[64];
+    snprintf(numbered, sizeof numbered, "%u%s", count, name);
+    const char *path = in_folder(numbered);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     const char *start = NULL;
@@ -48,32 +49,29 @@ static const char *write_file(struct fixture *fixture, const char *name, const c
         }
     }
     assert_int_equal(fclose(file), 0);
-    fixture->files[fixture->file_count++] = path;
     return path;
 }
 
-static uint64_t work_of(struct fixture *fixture, const char *path)
+static uint64_t work_of(const char *path)
 {
     struct scene *scene;
-    const whit_log log = {.fn = fixture_hear, .user = fixture, .level = WHIT_LOG_ERROR};
+    const whit_log log = {.fn = messages_collect, .user = &messages, .level = WHIT_LOG_ERROR};
     branches = 0;
     if (load_scene(&log, path, NULL, &scene) != WHIT_OK)
-        fail_msg("%s", fixture->last_error);
+        fail_msg("%s", messages.last_error);
     scene_destroy(scene);
     return branches;
 }
 
 /* A second file is for the first to name. */
-static void check(void **state, const char *name, const char *text, const char *more_name,
-                  const char *more)
+static void check(const char *name, const char *text, const char *more_name, const char *more)
 {
-    struct fixture *fixture = *state;
     uint64_t work[2];
     for (int i = 0; i < 2; i++) {
         uint32_t count = i ? MANY : FEW;
         if (more)
-            write_file(fixture, more_name, more, count);
-        work[i] = work_of(fixture, write_file(fixture, name, text, count));
+            write_file(more_name, more, count);
+        work[i] = work_of(write_file(name, text, count));
     }
     print_message("%s: %llu and %llu branches\n", name, (unsigned long long)work[0],
                   (unsigned long long)work[1]);
@@ -87,17 +85,17 @@ static void check(void **state, const char *name, const char *text, const char *
     "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
 #define ACCESSOR "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}"
 
-static void primitives(void **state)
+TEST_IN(primitives, folder_begin, folder_end)
 {
-    check(state, "primitives.gltf",
+    check("primitives.gltf",
           GLTF "\"accessors\":[" ACCESSOR "],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":["
                "<~{\"attributes\":{\"POSITION\":0}}>]}]}",
           NULL, NULL);
 }
 
-static void meshes_and_materials(void **state)
+TEST_IN(meshes_and_materials, folder_begin, folder_end)
 {
-    check(state, "meshes.gltf",
+    check("meshes.gltf",
           GLTF
           "\"accessors\":[<~" ACCESSOR ">],\"nodes\":[<~{\"mesh\":#}>],"
           "\"meshes\":[<~{\"primitives\":[{\"attributes\":{\"POSITION\":#},\"material\":#}]}>],"
@@ -105,9 +103,9 @@ static void meshes_and_materials(void **state)
           NULL, NULL);
 }
 
-static void missing_pictures(void **state)
+TEST_IN(missing_pictures, folder_begin, folder_end)
 {
-    check(state, "pictures.gltf",
+    check("pictures.gltf",
           GLTF "\"accessors\":[" ACCESSOR "],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":["
                "{\"attributes\":{\"POSITION\":0}}]}],"
                "\"materials\":[<~{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":#}}}>],"
@@ -115,17 +113,17 @@ static void missing_pictures(void **state)
           NULL, NULL);
 }
 
-static void groups_and_their_materials(void **state)
+TEST_IN(groups_and_their_materials, folder_begin, folder_end)
 {
-    check(state, "groups.obj",
+    check("groups.obj",
           "mtllib #groups.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
           "<g g#\nusemtl m#\nf 1 2 3\n>",
           "groups.mtl", "<newmtl m#\nword# 1\n>");
 }
 
-static void objects(void **state)
+TEST_IN(objects, folder_begin, folder_end)
 {
-    check(state, "objects.json",
+    check("objects.json",
           "{\"camera\":{\"eye\":[0,0,9],\"target\":[0,0,0]},\"lights\":[{\"kind\":\"point\","
           "\"position\":[0,9,0]}],\"materials\":{\"m\":{\"diffuse\":0.5}},\"objects\":[<~{"
           "\"shape\":\"sphere\","
@@ -133,12 +131,11 @@ static void objects(void **state)
           NULL, NULL);
 }
 
-static void one_model_under_many_materials(void **state)
+TEST_IN(one_model_under_many_materials, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
-    fixture_text(fixture, "tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    put_text("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const char *path = write_file(
-        fixture, "models.json",
+        "models.json",
         "{\"camera\":{\"eye\":[0,0,9],\"target\":[0,0,0]},\"lights\":[{\"kind\":\"point\","
         "\"position\":[0,9,0]}],\"objects\":[<~{\"model\":\"././tri.obj\",\"material\":"
         "{\"diffuse\":0.#1}}>,{\"model\":\"tri.obj\"},{\"model\":\"tri.obj\"}]}",
@@ -160,17 +157,16 @@ static void one_model_under_many_materials(void **state)
 }
 
 /* They are where the model is placed. */
-static void one_model_with_lights_and_cameras(void **state)
+TEST_IN(one_model_with_lights_and_cameras, folder_begin, folder_end)
 {
-    struct fixture *fixture = *state;
-    fixture_text(fixture, "lamp.gltf",
-                 GLTF "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"name\":\"lamp\","
-                      "\"type\":\"point\"}]}},\"cameras\":[{\"name\":\"eye\",\"type\":"
-                      "\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],"
-                      "\"accessors\":[" ACCESSOR "],\"meshes\":[{\"primitives\":[{\"attributes\":"
-                      "{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,\"camera\":0,\"extensions\":"
-                      "{\"KHR_lights_punctual\":{\"light\":0}}}]}");
-    const char *path = write_file(fixture, "lamps.json",
+    put_text("lamp.gltf",
+             GLTF "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"name\":\"lamp\","
+                  "\"type\":\"point\"}]}},\"cameras\":[{\"name\":\"eye\",\"type\":"
+                  "\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}],"
+                  "\"accessors\":[" ACCESSOR "],\"meshes\":[{\"primitives\":[{\"attributes\":"
+                  "{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,\"camera\":0,\"extensions\":"
+                  "{\"KHR_lights_punctual\":{\"light\":0}}}]}");
+    const char *path = write_file("lamps.json",
                                   "{\"objects\":[<~{\"model\":\"lamp.gltf\",\"lights\":true,"
                                   "\"cameras\":true,\"translation\":[#,0,0]}>,{\"model\":"
                                   "\"lamp.gltf\",\"lights\":true,\"cameras\":true,"
@@ -190,20 +186,4 @@ static void one_model_with_lights_and_cameras(void **state)
         assert_string_equal(scene->cameras[i].name, "eye");
     }
     scene_destroy(scene);
-}
-
-#define TEST(fn) cmocka_unit_test_setup_teardown(fn, fixture_begin, fixture_end)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(primitives),
-        TEST(meshes_and_materials),
-        TEST(missing_pictures),
-        TEST(groups_and_their_materials),
-        TEST(objects),
-        TEST(one_model_under_many_materials),
-        TEST(one_model_with_lights_and_cameras),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
