@@ -1,6 +1,6 @@
 /* Error falls with samples and with bounces in every scene of scenes/, or it is said why not: each
    rise is listed, and its reason is checked. Errors are RMSE against the reference in double. */
-#include <dirent.h>
+#include <glob.h>
 #include <math.h>
 
 #include "scene_fixture.h"
@@ -15,16 +15,11 @@ static whit_renderer *renderer;
 static whit_image *reference_of(uint32_t samples)
 {
     whit_renderer_params params = usual;
-    whit_reference *reference = NULL;
-    whit_image *image = NULL;
     params.sampling.count = samples;
     params.depth = DEPTH;
     params.bailout = BAILOUT;
     params.light_samples = LIGHT_SAMPLES;
-    assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
-    assert_int_equal(whit_reference_render(reference, &image, NULL), WHIT_OK);
-    whit_reference_destroy(reference);
-    return image;
+    return reference_image(&params);
 }
 
 /* ---- Errors ---- */
@@ -57,10 +52,9 @@ static struct error error_of(const whit_image *a, const whit_image *b)
 
 static struct error measure(const whit_image *reference, const whit_renderer_params *view)
 {
-    whit_image *image = NULL;
     assert_int_equal(whit_renderer_set_view(renderer, view), WHIT_OK);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
+    whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
     struct error error = error_of(reference, image);
     whit_image_destroy(image);
     return error;
@@ -106,34 +100,23 @@ static void check_knob(const char *name, bool depth, struct tally *tally)
     whit_image_destroy(reference);
 }
 
-static int is_scene(const struct dirent *entry)
-{
-    const char *dot = strrchr(entry->d_name, '.');
-    return dot && strcmp(dot, ".json") == 0;
-}
-
 TEST_IN(error_falls_or_it_is_said_why, device_begin, device_end)
 {
-    struct dirent **names = NULL;
+    glob_t paths;
     struct tally tally = {0};
-    usual = whit_renderer_defaults();
-    usual.width = WIDTH;
-    usual.height = HEIGHT;
-    int count = scandir(WHIT_SCENES_DIR, &names, is_scene, alphasort);
-    assert_true(count > 0);
-    for (int i = 0; i < count; ++i) {
-        char path[1024];
-        snprintf(path, sizeof path, "%s/%s", WHIT_SCENES_DIR, names[i]->d_name);
-        scene_open(path);
-        assert_int_equal(whit_renderer_create(device, accel, &usual, &renderer), WHIT_OK);
-        check_knob(names[i]->d_name, false, &tally);
-        check_knob(names[i]->d_name, true, &tally);
+    usual = params_sized(WIDTH, HEIGHT, NULL);
+    assert_int_equal(glob(WHIT_SCENES_DIR "/*.json", 0, NULL, &paths), 0);
+    for (size_t i = 0; i < paths.gl_pathc; ++i) {
+        const char *name = strrchr(paths.gl_pathv[i], '/') + 1;
+        scene_open(paths.gl_pathv[i]);
+        renderer = renderer_of(&usual);
+        check_knob(name, false, &tally);
+        check_knob(name, true, &tally);
         whit_renderer_destroy(renderer);
         scene_close();
-        free(names[i]);
     }
-    free(names);
-    print_message("%d scenes, %d steps: %d rises, %d of them unexplained\n", count, tally.steps,
-                  tally.rises, tally.unexplained);
+    print_message("%zu scenes, %d steps: %d rises, %d of them unexplained\n", paths.gl_pathc,
+                  tally.steps, tally.rises, tally.unexplained);
+    globfree(&paths);
     assert_int_equal(tally.unexplained, 0);
 }

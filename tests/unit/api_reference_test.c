@@ -16,9 +16,7 @@ TEST(draws_pictures_and_ray_trees)
 {
     scene_open(WHIT_SCENES_DIR "/default.json");
     double last = 0.0;
-    whit_renderer_params params = whit_renderer_defaults();
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.all_effects = true;
     params.progress = note_progress;
     params.progress_user = &last;
@@ -59,16 +57,9 @@ TEST(draws_pictures_and_ray_trees)
 
 static whit_image *draw_samples(uint32_t first, uint32_t count)
 {
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_reference *reference = NULL;
-    whit_image *color = NULL;
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.sampling = (whit_sampling){.first = first, .count = count};
-    assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
-    assert_int_equal(whit_reference_render(reference, &color, NULL), WHIT_OK);
-    whit_reference_destroy(reference);
-    return color;
+    return reference_image(&params);
 }
 
 TEST(any_number_of_samples_is_their_mean)

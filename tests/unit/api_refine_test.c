@@ -17,16 +17,14 @@ struct refining {
 static struct refining begin(const whit_renderer_params *params)
 {
     struct refining o = {.params = *params};
-    assert_int_equal(whit_renderer_create(device, accel, &o.params, &o.renderer), WHIT_OK);
+    o.renderer = renderer_of(&o.params);
     assert_int_equal(whit_refine_create(o.renderer, &o.params, &o.refine), WHIT_OK);
     return o;
 }
 
 static whit_renderer_params params_of(uint32_t depth, double bailout)
 {
-    whit_renderer_params params = whit_renderer_defaults();
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.depth = depth;
     params.bailout = bailout;
     return params;
@@ -76,19 +74,17 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
     assert_true(info.cut_radiance > 0.0);
     for (uint32_t samples = 2; samples <= 8; samples *= 2) {
         whit_renderer_params params = o.params;
-        whit_renderer *renderer = NULL;
-        whit_image *refined, *drawn = NULL, *cuts = NULL;
         whit_stats stats, drawn_stats;
         info = step(&o);
         assert_int_equal(info.samples, samples);
         assert_true(info.error > info.error_of_cuts && info.error_of_cuts > 0.0 && !info.last);
-        refined = picture_of(&o);
+        whit_image *refined = picture_of(&o);
         whit_refine_get_stats(o.refine, &stats);
         params.sampling.count = samples;
-        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        whit_renderer *renderer = renderer_of(&params);
         assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &drawn), WHIT_OK);
-        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_CUTS, &cuts), WHIT_OK);
+        whit_image *drawn = image_of(renderer, WHIT_AOV_COLOR);
+        whit_image *cuts = image_of(renderer, WHIT_AOV_CUTS);
         whit_renderer_get_stats(renderer, &drawn_stats);
         assert_memory_equal(whit_image_floats(refined), whit_image_floats(drawn),
                             PIXELS * 4 * sizeof(float));
@@ -233,15 +229,10 @@ static const struct {
 static whit_image *truth_of(const struct refining *o, double bailout)
 {
     whit_renderer_params params = o->params;
-    whit_reference *reference = NULL;
-    whit_image *image = NULL;
     params.sampling.count = TRUTH_SAMPLES;
     params.depth = TRUTH_DEPTH;
     params.bailout = bailout;
-    assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
-    assert_int_equal(whit_reference_render(reference, &image, NULL), WHIT_OK);
-    whit_reference_destroy(reference);
-    return image;
+    return reference_image(&params);
 }
 
 struct judged {
@@ -362,7 +353,4 @@ TEST(the_estimate_is_no_less_than_the_error_and_not_much_more)
     assert_int_equal(other, 0);
 }
 
-int main(void)
-{
-    return unit_run(device_begin, device_end);
-}
+TESTS_IN(device_begin, device_end)

@@ -34,4 +34,23 @@ static inline whit_result hooks_load(const char *text, whit_shader **shader)
     return result;
 }
 
+/* The bit of an effect. */
+static inline uint64_t effect(const char *name)
+{
+    for (uint32_t i = 0; whit_effect_name(i); ++i) {
+        if (strcmp(whit_effect_name(i), name) == 0)
+            return UINT64_C(1) << i;
+    }
+    fail_msg("no effect %s", name);
+    return 0;
+}
+
+static inline uint64_t effects_compiled(const whit_renderer *renderer)
+{
+    uint64_t bits = 0;
+    for (uint32_t i = 0; whit_effect_name(i); ++i)
+        bits |= (uint64_t)whit_renderer_compiles(renderer, i) << i;
+    return bits;
+}
+
 #endif

@@ -43,4 +43,38 @@ static inline void scene_close(void)
     scene = NULL;
 }
 
+static inline whit_renderer_params params_sized(uint32_t width, uint32_t height,
+                                                const whit_shader *shader)
+{
+    whit_renderer_params params = whit_renderer_defaults();
+    params.width = width;
+    params.height = height;
+    params.shader = shader;
+    return params;
+}
+
+static inline whit_renderer *renderer_of(const whit_renderer_params *params)
+{
+    whit_renderer *renderer = NULL;
+    assert_int_equal(whit_renderer_create(device, accel, params, &renderer), WHIT_OK);
+    return renderer;
+}
+
+static inline whit_image *image_of(whit_renderer *renderer, whit_aov aov)
+{
+    whit_image *image = NULL;
+    assert_int_equal(whit_renderer_image(renderer, aov, &image), WHIT_OK);
+    return image;
+}
+
+static inline whit_image *reference_image(const whit_renderer_params *params)
+{
+    whit_reference *reference = NULL;
+    whit_image *image = NULL;
+    assert_int_equal(whit_reference_create(accel, params, 0, &reference), WHIT_OK);
+    assert_int_equal(whit_reference_render(reference, &image, NULL), WHIT_OK);
+    whit_reference_destroy(reference);
+    return image;
+}
+
 #endif

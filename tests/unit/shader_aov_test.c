@@ -1,8 +1,6 @@
 /* Functions of a shader that are kept beside the colour: what they say of the camera's hits, as
    means over samples, and that nothing else changes by them. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "hooks_fixture.h"
 
@@ -39,9 +37,7 @@ static int end(void **state)
 
 static whit_renderer_params usual(uint32_t samples)
 {
-    whit_renderer_params params = whit_renderer_defaults();
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.sampling.count = samples;
     params.shader = shader;
     return params;
@@ -54,11 +50,10 @@ struct drawn {
 static struct drawn draw(const whit_renderer_params *params)
 {
     struct drawn drawn = {0};
-    whit_renderer *renderer;
-    assert_int_equal(whit_renderer_create(device, accel, params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &drawn.color), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &drawn.ids), WHIT_OK);
+    drawn.color = image_of(renderer, WHIT_AOV_COLOR);
+    drawn.ids = image_of(renderer, WHIT_AOV_IDS);
     for (uint32_t i = 0; params->shader && i < AOVS; ++i)
         assert_int_equal(
             whit_renderer_image(renderer, (whit_aov)(WHIT_AOV_SHADER + i), &drawn.aovs[i]),
@@ -238,11 +233,10 @@ TEST_BY_TURNS(refined_pictures_have_those_of_all_samples, 1, 2)
 {
     whit_renderer_params params = usual(4);
     struct drawn four = draw(&params);
-    whit_renderer *renderer;
     whit_refine *refine;
     whit_refine_info info;
     whit_image *aov;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_refine_create(renderer, &params, &refine), WHIT_OK);
     do {
         assert_int_equal(whit_refine_step(refine), WHIT_OK);
@@ -311,9 +305,9 @@ static double render_ms(const whit_renderer *renderer)
 static void draw_again(whit_renderer *renderer, struct drawn *drawn)
 {
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &drawn->color), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &drawn->ids), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_SHADER, &drawn->aovs[0]), WHIT_OK);
+    drawn->color = image_of(renderer, WHIT_AOV_COLOR);
+    drawn->ids = image_of(renderer, WHIT_AOV_IDS);
+    drawn->aovs[0] = image_of(renderer, WHIT_AOV_SHADER);
 }
 
 /* The file's picture in the place of the one before. Whether it was drawn anew: a picture whose
@@ -376,11 +370,10 @@ static whit_shader *load_version(size_t i, bool posts)
 /* Where values beside the colour are others, and post(), colours are not drawn anew. */
 static void draw_versions(whit_renderer_params params, bool posts)
 {
-    whit_renderer *renderer;
     whit_shader *before = load_version(0, posts);
     params.shader = before;
     params.reuse_rays = true;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     for (size_t i = 1; i < VERSIONS; ++i) {
         whit_renderer *other;
@@ -389,7 +382,7 @@ static void draw_versions(whit_renderer_params params, bool posts)
         params.shader = version;
         if (draw_in_place(renderer, &params, &in_place) != versions[i].anew)
             fail_msg("drawn anew or not: %s", versions[i].value);
-        assert_int_equal(whit_renderer_create(device, accel, &params, &other), WHIT_OK);
+        other = renderer_of(&params);
         draw_again(other, &alone);
         assert_same_picture(&in_place, &alone);
         whit_renderer_destroy(other);
@@ -423,7 +416,7 @@ TEST(steps_show_other_values)
         struct drawn alone = {0}, in_place = {0};
         whit_renderer_params params = usual(1);
         params.shader = versions_of[1];
-        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        renderer = renderer_of(&params);
         draw_again(renderer, &alone);
         whit_renderer_destroy(renderer);
         struct steps steps = {.whole = floats(aov ? alone.aovs[0] : alone.color)};
@@ -431,7 +424,7 @@ TEST(steps_show_other_values)
         params.step = look_at_step;
         params.progress_user = &steps;
         params.reuse_rays = true;
-        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        renderer = renderer_of(&params);
         assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
         params.shader = versions_of[1];
         params.step_spacing = 8;
@@ -448,7 +441,4 @@ TEST(steps_show_other_values)
     whit_shader_destroy(versions_of[1]);
 }
 
-int main(void)
-{
-    return unit_run(begin, end);
-}
+TESTS_IN(begin, end)

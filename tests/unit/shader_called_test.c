@@ -1,6 +1,4 @@
 /* What a shading function of the user's asks for is compiled and traced, and nothing else. */
-#include <string.h>
-
 #include "../cases.h"
 #include "hooks_fixture.h"
 
@@ -20,34 +18,17 @@ static whit_shader *load(const char *content)
     return shader;
 }
 
-static uint64_t effect(const char *name)
-{
-    for (uint32_t i = 0; whit_effect_name(i); ++i) {
-        if (strcmp(whit_effect_name(i), name) == 0)
-            return UINT64_C(1) << i;
-    }
-    fail_msg("no effect %s", name);
-    return 0;
-}
-
 /* The picture with effects added; *compiled: bits of its effects. */
 static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *compiled,
                         uint32_t *kernels)
 {
-    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     whit_kernel list[WHIT_KERNELS_MAX];
-    whit_renderer *renderer;
-    whit_image *color;
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
     params.effects_added = added;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &color), WHIT_OK);
-    *compiled = 0;
-    for (uint32_t i = 0; whit_effect_name(i); ++i)
-        *compiled |= (uint64_t)whit_renderer_compiles(renderer, i) << i;
+    whit_image *color = image_of(renderer, WHIT_AOV_COLOR);
+    *compiled = effects_compiled(renderer);
     whit_renderer_destroy(renderer);
     *kernels = 0;
     uint32_t count;
@@ -141,9 +122,8 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
     };
     whit_shader *shader = load(AOV("one") SHADE "s.ns; }\n");
     whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
     params.shader = shader;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         whit_shader *other = load(cases[i].content);
         if (whit_renderer_takes_shader(renderer, other) != cases[i].taken)
@@ -165,7 +145,7 @@ static bool draw_in_place(whit_renderer *renderer, const uint32_t *calls, whit_i
 {
     uint32_t before = *calls;
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, out), WHIT_OK);
+    *out = image_of(renderer, WHIT_AOV_COLOR);
     return *calls > before;
 }
 
@@ -181,16 +161,12 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
     uint32_t calls = 0, kernels;
     uint64_t compiled;
     whit_shader *before = load(versions[0]);
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, before);
     whit_image *in_place;
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = before;
     params.reuse_rays = true;
     params.progress = count_call;
     params.progress_user = &calls;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_true(draw_in_place(renderer, &calls, &in_place));
     whit_image_destroy(in_place);
     for (size_t i = 1; i < count; ++i) {
@@ -255,15 +231,11 @@ TEST_BY_TURNS(rays_are_taken_again_for_the_same_view, 0, 2)
 {
     uint32_t calls = 0;
     whit_shader *shader = load(POST("c.bgr"));
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     whit_image *first, *again;
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
     params.progress = count_call;
     params.progress_user = &calls;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_true(draw_in_place(renderer, &calls, &first));
     assert_true(draw_in_place(renderer, &calls, &again));
     assert_same(first, again);
@@ -307,10 +279,7 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
                                     whit_image **out)
 {
     bool stops = false;
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.tile_size = 16;
     params.sampling.count = samples;
     params.shader = shaders[0];
@@ -318,7 +287,7 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
     params.progress = count_until_stop;
     params.progress_user = &stops;
     params.cancel = &stopping.stop;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     params.reuse_rays = false;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
@@ -357,13 +326,9 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
     whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     bool held;
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     assert_int_equal(whit_renderer_check_expectations(renderer, &held), WHIT_OK);
     assert_false(held);
@@ -376,18 +341,13 @@ static uint64_t traced_by_functions(const char *content, whit_numerics numerics,
 {
     enum { ODD_WIDTH = 51, ODD_HEIGHT = 37 }; /* of no tile */
     whit_shader *shader = load(content);
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
-    whit_image *ids;
+    whit_renderer_params params = params_sized(ODD_WIDTH, ODD_HEIGHT, shader);
     whit_stats stats;
-    params.width = ODD_WIDTH;
-    params.height = ODD_HEIGHT;
     params.depth = 0;
     params.numerics = numerics;
-    params.shader = shader;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &ids), WHIT_OK);
+    whit_image *ids = image_of(renderer, WHIT_AOV_IDS);
     whit_renderer_get_stats(renderer, &stats);
     *hits = 0;
     for (uint32_t i = 0; i < ODD_WIDTH * ODD_HEIGHT; ++i)
@@ -436,7 +396,4 @@ TEST(rays_of_functions_are_counted)
     }
 }
 
-int main(void)
-{
-    return unit_run(begin, hooks_end);
-}
+TESTS_IN(begin, hooks_end)

@@ -1,7 +1,5 @@
 /* dbg(x): what it is for a pixel that is looked at, from each function of a file, and that a
    picture knows nothing of it. */
-#include <stdlib.h>
-
 #include "hooks_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, X = 20, Y = 30, FLOOR_X = 5, FLOOR_Y = 40 };
@@ -51,13 +49,10 @@ static int end(void **state)
 
 static whit_renderer *make(const whit_shader *with, uint32_t samples)
 {
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
-    params.width = WIDTH;
-    params.height = HEIGHT;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.sampling.count = samples;
     params.shader = with;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     return renderer;
 }
@@ -173,10 +168,7 @@ static void assert_calls(whit_renderer *renderer, uint32_t count)
 TEST(another_view_and_another_version_are_followed)
 {
     whit_renderer *renderer = make(plain, 1);
-    whit_renderer_params params = whit_renderer_defaults();
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     assert_calls(renderer, 0);
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     assert_calls(renderer, 9);
@@ -223,8 +215,7 @@ TEST(a_value_that_is_recorded_is_the_value)
 {
     whit_renderer *renderer = make(plain, 4);
     whit_probe_report *report;
-    whit_image *image;
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
+    whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
     const float *pixel = whit_image_floats(image) + 4 * (Y * WIDTH + X);
     whit_renderer *looked_at = make(shader, 4);
     assert_int_equal(whit_probe(looked_at, X, Y, 0, &report), WHIT_OK);
@@ -239,7 +230,4 @@ TEST(a_value_that_is_recorded_is_the_value)
     whit_renderer_destroy(renderer);
 }
 
-int main(void)
-{
-    return unit_run(begin, end);
-}
+TESTS_IN(begin, end)

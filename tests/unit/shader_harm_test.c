@@ -13,20 +13,12 @@ static float good_pixels[PIXELS * 4];
 static uint32_t reported, tried;
 static double slowest_ms;
 
-static void put(const char *name, const char *content)
-{
-    put_file(in_folder(name), content, strlen(content));
-}
-
 /* The picture of a file with values of its sliders. `pixels` is set where there is one. */
 static whit_result draw(const whit_shader *shader, const char *sliders, float *pixels)
 {
-    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     whit_renderer *renderer = NULL;
     whit_image *color = NULL;
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
     params.sliders = sliders;
     whit_result result = whit_renderer_create(device, accel, &params, &renderer);
     if (result == WHIT_OK)
@@ -54,7 +46,7 @@ static int begin(void **state)
         return -1;
     hooks_begin(state);
     scene_open(WHIT_SCENES_DIR "/cube.json");
-    put("good.glsl", "vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
+    put_text("good.glsl", "vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
     draw_good(good_pixels);
     reported = tried = 0;
     slowest_ms = 0.0;
@@ -177,12 +169,12 @@ TEST_IN(texts_that_mean_harm_are_refused, begin, end)
          "a.glsl:1: ", "zero"},
         {"a pipe", "#include \"pipe\"\n" POST " return color; }\n", "a.glsl:1: ", "pipe"},
     };
-    put("b.glsl", "#include \"a.glsl\"\n");
+    put_text("b.glsl", "#include \"a.glsl\"\n");
     assert_int_equal(mkdir(in_folder("folder"), 0777), 0);
     assert_int_equal(symlink("/dev/zero", in_folder("zero")), 0);
     assert_int_equal(mkfifo(in_folder("pipe"), 0666), 0);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        put("a.glsl", cases[i].content);
+        put_text("a.glsl", cases[i].content);
         refuse(cases[i].name, cases[i].place, cases[i].reason);
     }
     put_file(in_folder("a.glsl"),
@@ -227,7 +219,7 @@ TEST_IN(a_macro_bomb_is_refused, begin, end)
 static whit_shader *load(const char *content)
 {
     whit_shader *shader = NULL;
-    put("a.glsl", content);
+    put_text("a.glsl", content);
     assert_int_equal(whit_shader_load(compiler, in_folder("a.glsl"), false, &shader), WHIT_OK);
     return shader;
 }

@@ -1,7 +1,6 @@
 /* A shape of the user's is in the scene as its meshes are, and an answer that is not a shape's is
  * told. */
 #include <math.h>
-#include <string.h>
 
 #include "hooks_fixture.h"
 
@@ -55,19 +54,16 @@ static whit_result draw(const char *part, const whit_shader *shader, whit_numeri
                         struct picture *out)
 {
     whit_renderer *renderer = NULL;
-    whit_renderer_params params = whit_renderer_defaults();
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     open_room(part);
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
     params.numerics = numerics;
     whit_result result = whit_renderer_create(device, accel, &params, &renderer);
     if (result == WHIT_OK)
         result = whit_renderer_render(renderer);
     whit_image *color = NULL, *ids = NULL;
     if (result == WHIT_OK && out) {
-        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &color), WHIT_OK);
-        assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &ids), WHIT_OK);
+        color = image_of(renderer, WHIT_AOV_COLOR);
+        ids = image_of(renderer, WHIT_AOV_IDS);
         memcpy(out->color, whit_image_floats(color), sizeof out->color);
         memcpy(out->ids, whit_image_words(ids), sizeof out->ids);
     }
@@ -115,15 +111,11 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
 TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
 {
     whit_shader *shader;
-    whit_renderer_params params = whit_renderer_defaults();
-    whit_renderer *renderer;
     whit_probe_report *report;
     open_room("");
     assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
+    whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_probe(renderer, WIDTH / 2, HEIGHT / 2, 0, &report), WHIT_OK);
     assert_int_equal(report->rays[0].device.instance, WHIT_INSTANCE_SHAPE);
     assert_true(report->ray_count > 2 && report->differing == 0);
@@ -232,7 +224,4 @@ TEST(files_with_half_a_shape_are_refused)
         expect_error(cases[i].content, WHIT_ERROR_INPUT, cases[i].part);
 }
 
-int main(void)
-{
-    return unit_run(hooks_begin, hooks_end);
-}
+TESTS_IN(hooks_begin, hooks_end)

@@ -1,7 +1,5 @@
 /* What no function of the user's reads of a surface and its material is not compiled, and the
    picture is the same as with it. */
-#include <string.h>
-
 #include "../cases.h"
 #include "hooks_fixture.h"
 
@@ -13,37 +11,24 @@ static uint64_t effects(const char *names)
     char text[NAMES_BYTES], *rest;
     uint64_t bits = 0;
     snprintf(text, sizeof text, "%s", names);
-    for (char *name = strtok_r(text, " ", &rest); name; name = strtok_r(NULL, " ", &rest)) {
-        uint32_t i = 0;
-        while (whit_effect_name(i) && strcmp(whit_effect_name(i), name) != 0)
-            ++i;
-        if (!whit_effect_name(i))
-            fail_msg("no effect %s", name);
-        bits |= UINT64_C(1) << i;
-    }
+    for (char *name = strtok_r(text, " ", &rest); name; name = strtok_r(NULL, " ", &rest))
+        bits |= effect(name);
     return bits;
 }
 
 static whit_image *draw(const whit_renderer_params *params, uint64_t *compiled)
 {
-    whit_renderer *renderer;
-    whit_image *color;
-    assert_int_equal(whit_renderer_create(device, accel, params, &renderer), WHIT_OK);
+    whit_renderer *renderer = renderer_of(params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &color), WHIT_OK);
-    *compiled = 0;
-    for (uint32_t i = 0; whit_effect_name(i); ++i)
-        *compiled |= (uint64_t)whit_renderer_compiles(renderer, i) << i;
+    whit_image *color = image_of(renderer, WHIT_AOV_COLOR);
+    *compiled = effects_compiled(renderer);
     whit_renderer_destroy(renderer);
     return color;
 }
 
 static whit_renderer_params params_of(const whit_shader *shader, const char *removed)
 {
-    whit_renderer_params params = whit_renderer_defaults();
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.shader = shader;
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     params.effects_removed = effects(removed);
     return params;
 }
@@ -204,9 +189,8 @@ TEST(another_version_may_read_more)
     assert_int_equal(hooks_load(SHADE "s.ns; }\n", &smooth), WHIT_OK);
     for (int keeps_all = 0; keeps_all < 2; ++keeps_all) {
         whit_renderer_params params = params_of(flat, RAYS);
-        whit_renderer *renderer;
         params.keep_unread = keeps_all;
-        assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+        whit_renderer *renderer = renderer_of(&params);
         assert_int_equal(whit_renderer_takes_shader(renderer, smooth), keeps_all);
         assert_true(whit_renderer_takes_shader(renderer, flat));
         whit_renderer_destroy(renderer);
@@ -216,7 +200,4 @@ TEST(another_version_may_read_more)
     scene_close();
 }
 
-int main(void)
-{
-    return unit_run(hooks_begin, hooks_end);
-}
+TESTS_IN(hooks_begin, hooks_end)
