@@ -131,7 +131,7 @@ static void say_lights(const whit_probe_report *report, const whit_scene *scene,
         }
     }
     if (told > LIGHTS_NAMED)
-        put(to, "; of %u more lights see the rays", told - LIGHTS_NAMED);
+        put(to, "; the rays tell of %u more lights", told - LIGHTS_NAMED);
     if (info.light_count == 0)
         put(to, "; the scene has no light but its surroundings");
 }

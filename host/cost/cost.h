@@ -171,8 +171,8 @@ struct cost_choice {
     bool found;
 };
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal);
-/* The choice by RMSE within COST_ROOM of `budget_ms`; where no setting keeps that 9 of 10 times, one
-   that keeps the budget in the median. */
+/* The choice by RMSE within COST_ROOM of `budget_ms`; where no setting keeps that 9 of 10 times,
+   one that keeps the budget in the median. */
 struct cost_choice cost_choose_budget(const struct cost_report *report, double budget_ms);
 void cost_choice_apply(const struct cost_choice *choice, struct settings *settings);
 /* As options of `whit render`. */

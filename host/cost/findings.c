@@ -38,7 +38,7 @@ static bool is_judged(const struct cost_row *row)
     return row->measured && !row->broken && row->knob_index != WHIT_NONE;
 }
 
-/* Ratios are of this clock. */
+/* Names the clock by which ratios are told. */
 static const char *time_name(const struct cost_report *report)
 {
     static const char *const names[COST_CLOCKS] = {"time", "processor time", "device time"};

@@ -148,8 +148,8 @@ static void take(struct search *search)
     }
 }
 
-/* Between two bail-outs that were measured, time and error go straight over the logarithm. The
-   choice takes the least power of two that keeps the limit. */
+/* Gives what is left of the limit to the bail-out: the least power of two that keeps it. Time and
+   error between two measured bail-outs are interpolated over the bail-out's logarithm. */
 static void tighten_bailout(struct search *search)
 {
     struct cost_choice *best = &search->best;

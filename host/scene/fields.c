@@ -1,5 +1,5 @@
-/* The fields of records that are plain values: what a change is told by, and what a hash has to
-   follow. */
+/* The tables of plain values: change.c names differences by them, and scene_parts_test holds hash.c
+   to all of them. */
 #include "scene/fields.h"
 
 #define FIELD(type, form, field, count, name)                                                      \

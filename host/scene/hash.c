@@ -32,6 +32,7 @@ static void hash_mesh(struct hash *hash, const struct scene_mesh *m)
 /* Field by field: padding and names must not count. */
 static void hash_material(struct hash *hash, const struct scene_material *m)
 {
+    /* One word, so that scenes without one-sided materials keep the hash that recipes have. */
     const uint32_t sides = (uint32_t)m->two_sided | (uint32_t)m->one_sided << 1;
     const uint32_t flags[] = {
         (uint32_t)m->model, (uint32_t)m->illum, m->fresnel, m->thin_walled, sides,

@@ -59,7 +59,7 @@ fi
 
 if part 1 2; then
     play "A minus B" "$BALLS" --size 96x64 --depth 0 <<END
-equal: still, press I, press T, press U | compare.other_colors = 0
+equal: still, press I, press T, press U | compare.other_colors = 0 | compare.scale = 1
 press I
 press Shift+T
 one: still, press I, press Equal
@@ -71,7 +71,6 @@ dragged: press U, move 48 32, button left down, move 24 32, button left up | com
 turned: move 80 20, button left down, move 90 25, button left up | words not as dragged | frame.pixels not as dragged
     | compare.other_ids = 0
 END
-    check "what no display shows is not stretched" about "$(value equal compare.scale)" "(1 / 255)"
     check "] doubles it" about "$(value scaled compare.scale)" "(2 * $(value difference compare.scale))"
     check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
 
@@ -105,6 +104,13 @@ mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose s
 menu: choose traversal, still, press Escape | panels.Settings has 126
 panel: press Escape | panels.Settings = (no panels.Settings)
 END
+
+    # What no display shows is not stretched until it looks like a difference.
+    play "last bits" "$BALLS" --size 320x400 --ui-scale 0.5 --depth 1 <<END
+last: still, press I, press Tab, still, choose portable, still, choose on, still, press Tab, press U
+    | words has --portable on | compare.other_ids = 0 | compare.other_colors > 0
+END
+    check "the scale ends at what a display shows" about "$(value last compare.scale)" "(1 / 255)"
 
     # ---- The panel of a pixel stands beside it ----
 
