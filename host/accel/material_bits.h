@@ -4,7 +4,7 @@
 
 #include "accel/accel.h"
 
-/* What traversal has to know of a material: bits of the primitive records that wear it. */
+/* The bits that a material sets in the records of its primitives, for traversal. */
 struct material_bits {
     uint32_t flags, shadow;
     bool masked;    /* SCENE_ALPHA_MASK: colours of vertices may cut it out */

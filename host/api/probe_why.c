@@ -70,7 +70,7 @@ static void say_parts(const whit_probe_report *report, struct sentence *to)
 
 /* ---- Which lights reach it ---- */
 
-/* What the shadow rays from the camera ray's hit say of a light. */
+/* How much of a light reaches the hit of the camera ray, by the shadow rays that start there. */
 struct reach {
     uint32_t rays, blocker;
     double share; /* of the light that passes, the mean of all rays */
@@ -112,7 +112,8 @@ static void say_light(const whit_scene *scene, const char *name, const struct re
         put(to, ", behind `%s`", blocker.name);
 }
 
-/* Those that the surface asked for come first. */
+/* Tells of each light whether it reaches the hit. Lights that shadow rays were sent to come first.
+ */
 static void say_lights(const whit_probe_report *report, const whit_scene *scene,
                        struct sentence *to)
 {

@@ -185,6 +185,9 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
 
 /* ---- What a report says first (findings.c) ---- */
 
+/* Names the report's clock: "time" by the wall clock, "processor time", "device time". */
+const char *cost_time_name(const struct cost_report *report);
+
 /* A sentence without its full stop, and the figures of the report that it rounds. */
 enum { COST_FINDINGS_MAX = 5, COST_FINDING_VALUES = 4 };
 struct cost_finding {

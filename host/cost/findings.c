@@ -38,8 +38,7 @@ static bool is_judged(const struct cost_row *row)
     return row->measured && !row->broken && row->knob_index != WHIT_NONE;
 }
 
-/* Names the clock by which ratios are told. */
-static const char *time_name(const struct cost_report *report)
+const char *cost_time_name(const struct cost_report *report)
 {
     static const char *const names[COST_CLOCKS] = {"time", "processor time", "device time"};
     return names[report->clock];
@@ -111,12 +110,12 @@ static bool find_more_time(const struct cost_report *report, struct cost_finding
     add_value(finding, row->error.flip_mean);
     if (left >= HALF_LOW && left <= HALF_HIGH)
         find(finding, "%.1f times the %s halves the visible error (%s %s: FLIP %.4f, was %.4f)",
-             ratio_of(report, row), time_name(report), row->knob, row->setting,
+             ratio_of(report, row), cost_time_name(report), row->knob, row->setting,
              row->error.flip_mean, usual);
     else
         find(finding,
              "%.1f times the %s leaves %.0f %% of the visible error (%s %s: FLIP %.4f, was %.4f)",
-             ratio_of(report, row), time_name(report), left, row->knob, row->setting,
+             ratio_of(report, row), cost_time_name(report), left, row->knob, row->setting,
              row->error.flip_mean, usual);
     return true;
 }
@@ -210,7 +209,7 @@ static bool find_saving(const struct cost_report *report, struct cost_finding *f
     double saved = 100.0 * (1.0 - ratio_of(report, best));
     add_value(finding, saved);
     find(finding, "%s %s is as right and takes %.0f %% less %s", best->knob, best->setting, saved,
-         time_name(report));
+         cost_time_name(report));
     return true;
 }
 
@@ -236,7 +235,7 @@ static bool find_dearest(const struct cost_report *report, struct cost_finding *
         return false;
     add_value(finding, 100.0 * (1.0 - least));
     find(finding, "without %s it would take %.0f %% less %s", what, 100.0 * (1.0 - least),
-         time_name(report));
+         cost_time_name(report));
     return true;
 }
 

@@ -1,5 +1,5 @@
-/* What partial evaluation (evaluate.h) knows of single SPIR-V instructions: which of their
-   words are ids, and what they give for known operands. */
+/* Single SPIR-V instructions, for partial evaluation (evaluate.h): tells which words of an
+   instruction are ids, and computes its result where the operands are known. */
 #ifndef DEVICE_SPIRV_OPS_H
 #define DEVICE_SPIRV_OPS_H
 

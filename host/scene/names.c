@@ -1,4 +1,4 @@
-/* What enumerations are called in receipts, messages and scene files. */
+/* The words of the scene's enumerations, in receipts, messages and scene files. */
 #include "scene/scene.h"
 
 const char *const scene_model_names[] = {

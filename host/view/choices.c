@@ -13,12 +13,13 @@ const struct setting *choice_next(const struct setting *row)
     return NULL;
 }
 
-bool choice_is_for_experts(const struct setting *row)
+enum choice_group choice_group(const struct setting *row)
 {
-    if (row->need == SETTING_NEEDS_SCENE) /* how a model is read is for everybody */
-        return false;
-    return row->change == SETTING_COST || row->change == SETTING_HITS ||
-           row->change == SETTING_PAINT;
+    if (row->need == SETTING_NEEDS_SCENE)
+        return CHOICE_SCENE;
+    bool is_for_experts =
+        row->change == SETTING_COST || row->change == SETTING_HITS || row->change == SETTING_PAINT;
+    return is_for_experts ? CHOICE_EXPERTS : CHOICE_PICTURE;
 }
 
 static uint32_t count_of(const struct setting_value *steps)

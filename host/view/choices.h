@@ -7,8 +7,10 @@
 
 /* The row behind `row`, or with NULL the first; NULL: there is none. */
 const struct setting *choice_next(const struct setting *row);
-/* Whether it is about how rays find what they hit, or about what that costs; it comes last. */
-bool choice_is_for_experts(const struct setting *row);
+/* Panels show settings in these groups, in this order: how a model is read (which way is up, what
+   lights it), what the picture shows, and how rays find what they hit or what that costs. */
+enum choice_group { CHOICE_SCENE, CHOICE_PICTURE, CHOICE_EXPERTS };
+enum choice_group choice_group(const struct setting *row);
 /* The steps in words, CHOICE_WORDS_MAX at most; 0: it is a number. */
 enum { CHOICE_WORDS_MAX = 16 };
 uint32_t choice_words(const struct setting *row, const char *words[CHOICE_WORDS_MAX]);

@@ -291,7 +291,7 @@ whit_result engine_refine_whole(const struct engine_task *task, struct engine_fr
     return result;
 }
 
-/* It has made *frame, and goes on beyond it. */
+/* Takes over *frame, which refining has made, as what the next samples are added to. */
 static void finish_whole(struct engine_refine *refine, const struct engine_frame *frame)
 {
     set_base(refine, frame);

@@ -244,7 +244,7 @@ static void look_bottom(struct view *view)
     look_along(view, 1, -1);
 }
 
-/* Where whit looks from at a file without a camera. */
+/* Takes the camera that whit chooses for files without one. */
 static void look_as_whit(struct view *view)
 {
     whit_camera camera;
@@ -258,7 +258,7 @@ static void look_as_whit(struct view *view)
     view_say(view, "whit's own camera");
 }
 
-/* Those of the file in their order, then whit's own. */
+/* Goes through the file's cameras in their order, and ends with whit's own. */
 static void next_camera(struct view *view)
 {
     uint32_t count = view->scene ? view->scene->info.camera_count : 0;
@@ -497,14 +497,14 @@ static const struct key_binding bindings[] = {
     {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
     {'F', 0, "F", "frame what is there", "frame what is under the mouse", pick_focus,
      .group = KEYS_CAMERA},
-    {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .says = true,
+    {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .shows_name = true,
      .group = KEYS_CAMERA},
-    {'2', 0, NULL, NULL, "from the right", look_right, .says = true, .group = KEYS_CAMERA},
-    {'3', 0, NULL, NULL, "from above", look_top, .says = true, .group = KEYS_CAMERA},
-    {'4', 0, "4 5 6", "from back left below", "from behind", look_back, .says = true,
+    {'2', 0, NULL, NULL, "from the right", look_right, .shows_name = true, .group = KEYS_CAMERA},
+    {'3', 0, NULL, NULL, "from above", look_top, .shows_name = true, .group = KEYS_CAMERA},
+    {'4', 0, "4 5 6", "from back left below", "from behind", look_back, .shows_name = true,
      .group = KEYS_CAMERA},
-    {'5', 0, NULL, NULL, "from the left", look_left, .says = true, .group = KEYS_CAMERA},
-    {'6', 0, NULL, NULL, "from below", look_bottom, .says = true, .group = KEYS_CAMERA},
+    {'5', 0, NULL, NULL, "from the left", look_left, .shows_name = true, .group = KEYS_CAMERA},
+    {'6', 0, NULL, NULL, "from below", look_bottom, .shows_name = true, .group = KEYS_CAMERA},
     {'0', 0, "0", "cameras: file's, whit's", "next camera", next_camera, .state = say_camera,
      .group = KEYS_CAMERA},
     {KEY_TAB, 0, "Tab", "settings, light, up", "settings by mouse", switch_settings,
@@ -590,7 +590,7 @@ static void add_setting(const struct setting *row, enum key_group group)
 static void add_group(enum key_group group)
 {
     for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
-        enum key_group own = choice_is_for_experts(row) ? KEYS_EXPERTS : KEYS_PICTURE;
+        enum key_group own = choice_group(row) == CHOICE_EXPERTS ? KEYS_EXPERTS : KEYS_PICTURE;
         if (row->key && own == group)
             add_setting(row, group);
     }
@@ -630,7 +630,7 @@ bool key_act(struct view *view, int key, unsigned mods)
             choice_turn(&view->settings, keys[i].setting, keys[i].by);
         else
             keys[i].act(view);
-        if (keys[i].says && view->camera_known)
+        if (keys[i].shows_name && view->camera_known)
             view_say(view, "%s", keys[i].name);
         view->dirty = true;
         return true;

@@ -23,7 +23,7 @@ struct key_binding {
     const struct setting *setting; /* that it turns, in place of `act` and `state`; NULL: none */
     int by;
     enum key_group group;
-    bool says; /* its name, when it was pressed */
+    bool shows_name; /* as a message, when the key is pressed */
 };
 const struct key_binding *key_bindings(uint32_t *count);
 /* False where there is nothing to say. */

@@ -151,17 +151,11 @@ static void draw_files(struct view *view)
         panels_load(view, names[value]);
 }
 
-/* How a model is read stands first: which way is up and what lights it is what is looked for. */
-enum choices { CHOICES_SCENE, CHOICES_PICTURE, CHOICES_EXPERTS };
-
-static void draw_choices(struct view *view, enum choices which)
+static void draw_choices(struct view *view, enum choice_group group)
 {
     for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
         bool rays = strcmp(row->name, "view-rays") == 0;
-        enum choices own = row->need == SETTING_NEEDS_SCENE ? CHOICES_SCENE
-                           : choice_is_for_experts(row)     ? CHOICES_EXPERTS
-                                                            : CHOICES_PICTURE;
-        if (own == which && (!rays || view->settings.paint != PAINT_COLOR))
+        if (choice_group(row) == group && (!rays || view->settings.paint != PAINT_COLOR))
             draw_choice(view, row);
     }
 }
@@ -170,13 +164,13 @@ static void draw_settings(struct view *view)
 {
     double fps = view->settings.fps_goal;
     if (ui_panel_begin("Settings", 0.0f, 0.0f, UI_PANEL_HOLD)) {
-        draw_choices(view, CHOICES_SCENE);
-        draw_choices(view, CHOICES_PICTURE);
+        draw_choices(view, CHOICE_SCENE);
+        draw_choices(view, CHOICE_PICTURE);
         if (ui_slider("fps goal", &fps, FPS_MIN, FPS_MAX, true))
             set_fps_goal(view, fps);
         draw_hud_choice(view);
         ui_separator();
-        draw_choices(view, CHOICES_EXPERTS);
+        draw_choices(view, CHOICE_EXPERTS);
         if (view->wish.stage != WISH_NONE && ui_button("choose again"))
             wish_again(view);
         draw_files(view);

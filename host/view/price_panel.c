@@ -107,8 +107,7 @@ static void draw_row(struct view *view, const struct cost_report *report,
 
 static void draw_table(struct view *view, const struct cost_report *report)
 {
-    static const char *const clocks[COST_CLOCKS] = {"by the clock", "CPU time", "device time"};
-    const char *const columns[] = {"knob", "setting", clocks[report->clock], "FLIP", "best"};
+    const char *const columns[] = {"knob", "setting", cost_time_name(report), "FLIP", "best"};
     char sentence[COST_SENTENCE_BYTES];
     cost_sentence(report, sentence);
     ui_paragraph(sentence);

@@ -45,15 +45,12 @@ static struct cost_choice find_choice(const struct view *view)
 {
     const struct settings *asked = &view->params->settings;
     const struct cost_report *report = &view->wish.figures->report;
+    bool within = asked->budget_ms > 0.0;
+    double limit = within ? asked->budget_ms / view->wish.slower : asked->max_error;
     const struct cost_goal goal = {
-        .kind = COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * asked->max_error};
-    const struct cost_goal again = {.kind = COST_WITHIN,
-                                    .metric = COST_RMSE,
-                                    .limit = COST_ROOM * asked->budget_ms / view->wish.slower};
-    if (asked->budget_ms > 0.0)
-        return view->wish.tries > 0 ? cost_choose(report, &again)
-                                    : cost_choose_budget(report, asked->budget_ms);
-    return cost_choose(report, &goal);
+        .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * limit};
+    return within && view->wish.tries == 0 ? cost_choose_budget(report, limit)
+                                           : cost_choose(report, &goal);
 }
 
 static void take_choice(struct view *view, double predicted_ms)

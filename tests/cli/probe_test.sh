@@ -48,7 +48,7 @@ why() {
     shift 3
     shows "why a pixel of $scene is as it is" "^why        $sentence\$" probe "$scene" $S --pixel "$pixel" --quiet "$@"
 }
-why whitted 32,20 "its light: [0-9]* % reflected, [0-9]* % transmitted; \`lamp\` adds nothing"
+why whitted 32,20 "its light: 1[0-9] % reflected, 8[0-9] % transmitted; \`lamp\` adds nothing"
 why default 50,36 "its light: 9[0-9] % direct, [0-9] % reflected; \`sun\` reaches it; [67][0-9] % of \`fill\` reaches it"
 why 34k 22,40 "its light: 100 % direct; \`warm\` does not reach it, behind \`hat\`; .*; \`top\` does not .*, behind \`hat\`"
 why room 40,40 "no light comes from it; the scene has no light but its surroundings" --light none

@@ -69,7 +69,7 @@ END
 fi
 
 if part 0 2; then
-    # F frames one of the two, and what is too far away for that from half as far; 0 goes over the cameras.
+    # F frames one of the two; 0 goes over the cameras.
     play "framed" "$OUT/boxes.json" $SMALL <<END
 start:
 frame: move 28 32, press F, until probe.number = 1, still | words has ,-0.8,0.2,-0.4,
@@ -78,6 +78,11 @@ own: press 0 | keys.next camera = by hand | toast = whit's own camera | words ha
 again: press 0 | words = --size 96x64
 side: press 2 | toast = from the right
 nothing: move 1 1, press F, until toast = nothing is there to frame | toast = nothing is there to frame
+END
+    # A model in one piece is not framed: the point under the mouse is seen from half as far.
+    play "nearer" "$CUBE" --size 97x65 --camera 0,0,4,0,0,0,0,1,0,40 <<END
+start:
+near: move 48 32, press F, until probe.number = 1, still | words has --camera 0,0,2.5,0,0,0.5,0,1,0,40
 END
     # Without trees: the same again, and back.
     play "no trees" "$CUBE" $SMALL <<END
