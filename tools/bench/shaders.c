@@ -312,7 +312,8 @@ static whit_result view_saves(struct saves *s, const char *scene, uint32_t edit,
     if (viewer.states)
         fclose(viewer.states);
     if (result != WHIT_OK && viewer.process.pid > 0)
-        kill(viewer.process.pid, SIGTERM); /* it may wait for what does not come */
+        kill(viewer.process.pid, SIGKILL); /* it waits for what does not come; its last message,
+                                              which process_end quotes, says why */
     whit_result end = viewer.process.pid > 0 ? process_end(&viewer.process, NULL) : WHIT_OK;
     return end == WHIT_OK ? result : end;
 }
