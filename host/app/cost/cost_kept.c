@@ -9,7 +9,7 @@
 #include "app/cost/cost_json.h"
 #include "app/cost/cost_kept.h"
 
-enum { KEPT_VERSION = 4 };
+enum { KEPT_VERSION = 5 };
 
 /* All that decides pixels or time but for what is chosen. */
 void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME])
