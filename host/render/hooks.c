@@ -152,6 +152,7 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
     const whit_shader *before = renderer->params.shader;
     uint32_t aovs = hooks_aov_count(&renderer->probe);
     renderer->params.shader = params->shader;
+    renderer->params.few_pixels = params->few_pixels;
     renderer->portable.shader = params->shader;
     stage_set_finish(&renderer->probe.stages.set);
     if (hooks_aov_count(&renderer->probe) != aovs)

@@ -56,6 +56,16 @@ static uint32_t hook_rows(const whit_shader *shader)
            (shader_has(shader, SHADER_HOOK_SHADE) ? HOOK_LIGHT_ROWS : 0);
 }
 
+/* Hits of one dispatch that rows are there for, of STAGE_HIT_FETCH. A tile of one block has no more
+   of them than a generation of the smallest queues, or of those that it had grown to. */
+static uint64_t met_rows(const struct target *target)
+{
+    enum { ITEMS = 1 << 15 };
+    _Static_assert(ITEMS >= RAYS_MIN / 4, "a generation of the smallest queues");
+    uint64_t items = larger(ITEMS, target->stages.rays_min / 4);
+    return variant_can_split_hits(target) ? items * MET_ROWS : 0;
+}
+
 whit_result queues_create(struct target *target)
 {
     const struct pixel_buffers *p = &target->buffers;
@@ -103,8 +113,8 @@ whit_result queues_create(struct target *target)
         {&queues->deferred,
          variant_has_deferred(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},
-        {&queues->hook_rows, rays * hook_rows(renderer->params.shader) * 16, loaded,
-         "functions at hits"},
+        {&queues->hook_rows, (rays * hook_rows(renderer->params.shader) + met_rows(target)) * 16,
+         loaded, "functions at hits"},
         {&queues->shape_shadows,
          shader_has(renderer->params.shader, SHADER_HOOK_INTERSECT)
              ? (uint64_t)queues->lit_capacity * 2 * sizeof(uint32_t)

@@ -57,7 +57,7 @@ static whit_result create_parts(struct renderer *renderer)
 whit_result renderer_compile(struct renderer *renderer)
 {
     if (stages_are_made(&renderer->picture) && !renderer->async.general)
-        return stages_bind(&renderer->picture);
+        return stages_complete(&renderer->picture);
     double start_ms = clock_ms();
     whit_result result = renderer->params.compile_async ? async_prepare(renderer)
                                                         : stages_compile(&renderer->picture);

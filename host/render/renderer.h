@@ -82,11 +82,14 @@ enum stage {
     STAGE_SHADOW_LATER,
     STAGE_RESOLVE, /* into pixels */
     STAGE_RESOLVE_LATER,
-    STAGE_MISS,  /* of a user's function */
-    STAGE_SHAPE, /* likewise, before rays go through the trees */
-    STAGE_HIT,   /* likewise, of what rays have met */
-    STAGE_AOV,   /* likewise, beside the colour */
-    STAGE_POST,  /* likewise, of pixels that have all samples */
+    STAGE_MISS,      /* of a user's function */
+    STAGE_SHAPE,     /* likewise, before rays go through the trees */
+    STAGE_HIT,       /* likewise, of what rays have met */
+    STAGE_HIT_FETCH, /* HIT_PART_FETCH and HIT_PART_CALL, which stand in for STAGE_HIT until it is
+                        made */
+    STAGE_HIT_CALL,
+    STAGE_AOV,  /* likewise, beside the colour */
+    STAGE_POST, /* likewise, of pixels that have all samples */
     STAGE_COUNT
 };
 

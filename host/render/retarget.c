@@ -24,6 +24,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.step_aov = from->step_aov;
     params.light_samples = from->light_samples;
     params.reuse_rays = from->reuse_rays;
+    params.few_pixels = from->few_pixels;
     params.bailout = from->bailout;
     params.depth = from->depth;
     return params;

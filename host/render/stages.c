@@ -59,11 +59,14 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     /* A shading function of the user's has asked them itself, as all but catchers do. */
     job->asks = !shader_has(shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
+    bool splits = variant_splits_hits(target);
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
         bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
+        bool part = i == STAGE_HIT_FETCH || i == STAGE_HIT_CALL;
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
+                         (!part || splits) && (i != STAGE_HIT || !splits) &&
                          (i != STAGE_MISS || shader_has(shader, SHADER_HOOK_MISS)) &&
                          (i != STAGE_SHAPE || shader_has(shader, SHADER_HOOK_INTERSECT)) &&
                          (i != STAGE_HIT || shader_has(shader, SHADER_HOOK_SURFACE) ||
@@ -142,7 +145,9 @@ whit_result stages_bind(struct target *target)
         if (stages->set.passes[i].pipeline)
             result = variant_bind_stage(target, &stages->set.passes[i]);
     }
-    stages->expected = target->renderer->has_secondary ? EXPECTED_FIRST : 1;
+    stages->expected = !target->renderer->has_secondary    ? 1
+                       : stages->expected > EXPECTED_FIRST ? stages->expected
+                                                           : EXPECTED_FIRST;
     if (result != WHIT_OK)
         stages_unbind(stages);
     return result;
@@ -154,7 +159,8 @@ static void count_instructions(struct target *target)
     for (int i = 0; i < STAGE_COUNT; ++i) {
         const struct pass *pass = &target->stages.set.passes[i];
         struct pipeline_info info = {0};
-        if (pass->pipeline)
+        bool idle = i == STAGE_HIT_FETCH && target->stages.set.passes[STAGE_HIT].pipeline;
+        if (pass->pipeline && !idle)
             pipeline_get_info(pass->pipeline, &info);
         target->stats.kernel_instructions += info.instructions;
     }
@@ -192,7 +198,8 @@ static bool both_have(const struct stages_job *a, const struct stages_job *b, en
 static void drop_same(const struct stages_job *was, bool same, struct stages_job *job)
 {
     /* Ids in other kernels move where a function that has one of its own is another. */
-    static const enum stage own[] = {STAGE_SHAPE, STAGE_HIT, STAGE_AOV, STAGE_MISS, STAGE_POST};
+    static const enum stage own[] = {STAGE_SHAPE, STAGE_HIT,  STAGE_HIT_CALL,
+                                     STAGE_AOV,   STAGE_MISS, STAGE_POST};
     for (int i = 0; i < STAGE_COUNT; ++i) {
         bool closely = false;
         for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
@@ -200,6 +207,20 @@ static void drop_same(const struct stages_job *was, bool same, struct stages_job
         job->wanted[i] = job->wanted[i] && (!same || !was->wanted[i] ||
                                             is_other(&was->stages[i], &job->stages[i], closely));
     }
+}
+
+/* Where the kernel of shade() is another and `splits`, only its parts are made. */
+static void put_off_hits(bool splits, struct stage_set *set, struct stages_job *job)
+{
+    if (!splits || job->wanted[STAGE_HIT_FETCH])
+        pass_finish(&set->passes[STAGE_HIT_FETCH]);
+    if (!splits || job->wanted[STAGE_HIT_CALL])
+        pass_finish(&set->passes[STAGE_HIT_CALL]);
+    if (splits && job->wanted[STAGE_HIT_CALL])
+        pass_finish(&set->passes[STAGE_HIT]);
+    bool needed = splits && !set->passes[STAGE_HIT].pipeline;
+    job->wanted[STAGE_HIT_FETCH] = needed && !set->passes[STAGE_HIT_FETCH].pipeline;
+    job->wanted[STAGE_HIT_CALL] = needed && !set->passes[STAGE_HIT_CALL].pipeline;
 }
 
 whit_result stages_replace(struct target *target, const whit_shader *before)
@@ -221,6 +242,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     stages_job_init(target, &spec, true, few, &job);
     bool same = was.classes == job.classes && memcmp(was.of, job.of, sizeof job.of) == 0;
     drop_same(&was, same, &job);
+    put_off_hits(variant_splits_hits(target), set, &job);
     for (int i = 0; i < STAGE_COUNT; ++i)
         renderer->kept.known &= !job.wanted[i] || i == STAGE_AOV || i == STAGE_POST;
     renderer->kept.aovs &= !job.wanted[STAGE_AOV];
@@ -241,6 +263,32 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     memcpy(set->calls, made.calls, sizeof set->calls);
     count_instructions(target);
     return WHIT_OK;
+}
+
+/* Makes the kernel of shade() whose parts have stood in for it. */
+static whit_result make_hits(struct target *target)
+{
+    struct stage_set *set = &target->stages.set, made;
+    struct gpu_spec spec = variant_spec(target);
+    struct stages_job job;
+    stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        job.wanted[i] = i == STAGE_HIT;
+    whit_result result = stages_job_run(target->renderer->device, &job, &made);
+    if (result != WHIT_OK)
+        return result;
+    stages_unbind(&target->stages);
+    set->passes[STAGE_HIT] = made.passes[STAGE_HIT];
+    pass_finish(&set->passes[STAGE_HIT_CALL]);
+    count_instructions(target);
+    return WHIT_OK;
+}
+
+whit_result stages_complete(struct target *target)
+{
+    bool parts = target->stages.set.passes[STAGE_HIT_CALL].pipeline;
+    whit_result result = parts && !variant_splits_hits(target) ? make_hits(target) : WHIT_OK;
+    return result == WHIT_OK ? stages_bind(target) : result;
 }
 
 whit_result stages_compile(struct target *target)
@@ -312,7 +360,7 @@ void stages_unbind(struct stages *stages)
 {
     for (int i = 0; i < STAGE_COUNT; ++i)
         pass_unbind(&stages->set.passes[i]);
-    stages->expected = stages->blocks_max = 0;
+    stages->blocks_max = 0;
 }
 
 uint64_t stages_generation_offset(uint32_t generation)
@@ -343,7 +391,7 @@ static uint32_t row_of(enum stage stage, uint32_t list)
     };
     if (stage == STAGE_SHAPE && list != LIST_RAYS)
         stage = STAGE_SHADOW;
-    if (stage == STAGE_HIT || stage == STAGE_AOV)
+    if (stage >= STAGE_HIT && stage <= STAGE_AOV)
         return RENDER_STAGE_SHADE + (list - LIST_HITS);
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
 }
@@ -449,10 +497,25 @@ static whit_result record_own_hits(struct tile_run *run, enum stage stage)
     return result;
 }
 
+/* The rows that STAGE_HIT_CALL takes are those of the dispatch before it. */
+static whit_result record_functions(struct tile_run *run)
+{
+    const struct stage_set *set = &run->target->stages.set;
+    whit_result result = WHIT_OK;
+    if (set->passes[STAGE_HIT].pipeline)
+        return record_own_hits(run, STAGE_HIT);
+    for (uint32_t i = 0; result == WHIT_OK && i < set->classes; ++i) {
+        result = dispatch_own(run, STAGE_HIT_FETCH, LIST_HITS + i);
+        if (result == WHIT_OK)
+            result = dispatch_own(run, STAGE_HIT_CALL, LIST_HITS + i);
+    }
+    return result;
+}
+
 /* Functions of users come first: where a shadow catcher is shaded there is no hit any more. */
 static whit_result record_hits(struct tile_run *run)
 {
-    whit_result result = record_own_hits(run, STAGE_HIT);
+    whit_result result = record_functions(run);
     if (result == WHIT_OK && run->chunk.generation == 0)
         result = record_own_hits(run, STAGE_AOV);
     if (result == WHIT_OK)

@@ -26,6 +26,9 @@ WHIT_CHECK whit_result stages_take(struct target *target, struct stage_set *set)
 WHIT_CHECK whit_result stages_replace(struct target *target, const whit_shader *before);
 /* Makes the scene's own set where there is none. */
 WHIT_CHECK whit_result stages_compile(struct target *target);
+/* Makes what few_pixels of the parameters has put off, where they have it no more, and binds the
+   set, which there is. */
+WHIT_CHECK whit_result stages_complete(struct target *target);
 /* Binds the set to the buffers that there are, where it is not bound. */
 WHIT_CHECK whit_result stages_bind(struct target *target);
 bool stage_set_is_made(const struct stage_set *set);

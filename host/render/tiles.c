@@ -26,7 +26,7 @@
 #include "render/tiles.h"
 #include "render/views.h"
 
-enum { TILE_FIRST_CPU = 96, TILE_FIRST = 192 };
+enum { TILE_FIRST_CPU = 128, TILE_FIRST = 192 };
 /* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
 static const double SUBMISSION_LIMIT_MS = 100.0;
 

@@ -462,6 +462,25 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
     spec->SPEC_PACKET_RAYS = packets_look(spec, stage == STAGE_SHADOW) ? 1 : renderer->packet_rays;
 }
 
+bool variant_can_split_hits(const struct target *target)
+{
+    const whit_renderer_params *params = &target->renderer->params;
+    const bool *called = target->renderer->effects.called;
+    const whit_shader *shader = params->shader;
+    /* What stands in rows is of hits that no function has changed, and of no ray that one made. */
+    return !target->probed && params->step && shader_has(shader, SHADER_HOOK_SHADE) &&
+           !shader_has(shader, SHADER_HOOK_SURFACE) && !shader_has(shader, SHADER_HOOK_CAMERA) &&
+           !shader->stages && (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_NORMAL_MAPS]);
+}
+
+bool variant_splits_hits(const struct target *target)
+{
+    enum { LOOKED_UP = SHADER_REACHES_TEXTURES | SHADER_REACHES_NORMALS };
+    const struct shader_code *code = hooks_code(target, hook_kernels[HOOK_KERNEL_HIT].name);
+    return target->renderer->params.few_pixels && variant_can_split_hits(target) && code &&
+           (code->reaches & LOOKED_UP);
+}
+
 /* Takes out of the kernel of surface() and shade() what neither of them reads, though other kernels
    may need it. Vertex colours stay where there is a surface(): its kernel stores them for
    shade.comp. */
@@ -510,6 +529,8 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
         [STAGE_SHAPE] = {&hook_kernels[HOOK_KERNEL_SHAPE], "shape", false, 3},
         [STAGE_HIT] = {&hook_kernels[HOOK_KERNEL_HIT], "hit", false, 3},
+        [STAGE_HIT_FETCH] = {&hook_kernels[HOOK_KERNEL_HIT], "hit, fetched", false, 3},
+        [STAGE_HIT_CALL] = {&hook_kernels[HOOK_KERNEL_HIT], "hit, called", false, 3},
         [STAGE_AOV] = {&hook_kernels[HOOK_KERNEL_AOV], "aov", false, 1},
         [STAGE_POST] = {&hook_kernels[HOOK_KERNEL_POST], "post", false, 1},
     };
@@ -527,11 +548,18 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     choose_packets(renderer, stage, spec);
     if (classes > 1 && stages[stage].kernel == &kernels[KERNEL_SHADE])
         narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN, spec);
-    if (stage == STAGE_HIT)
+    if (stage == STAGE_HIT || stage == STAGE_HIT_CALL)
         narrow_to_functions(target, spec);
+    spec->SPEC_HIT_PART = stage == STAGE_HIT_FETCH  ? HIT_PART_FETCH
+                          : stage == STAGE_HIT_CALL ? HIT_PART_CALL
+                                                    : HIT_PART_ALL;
     job->params = pass_params(target, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
                               sizeof(struct gpu_chunk), stages[stage].name);
     job->params.bindings = job->kinds;
+    if (stage == STAGE_HIT_FETCH) { /* the same for all versions of the file */
+        job->params.spirv = stages[stage].kernel->words;
+        job->params.spirv_bytes = stages[stage].kernel->bytes;
+    }
 }
 
 whit_result variant_bind_stage(const struct target *target, struct pass *pass)

@@ -19,6 +19,11 @@ bool variant_calls_rays(const struct gpu_spec *spec);
 /* Whether rays that floats leave open wait for a dispatch of their own: at NUMERICS_EXACT, unless
    they are counted or probed, which is to tell of every ray at once. */
 bool variant_has_deferred(const struct target *target);
+/* Whether STAGE_HIT_FETCH and STAGE_HIT_CALL may stand in for STAGE_HIT, for which there are rows
+   then, and whether they do: a shade() that reads what is looked up in textures. Drivers compile
+   its part in half of the time; without textures they gain nothing. */
+bool variant_can_split_hits(const struct target *target);
+bool variant_splits_hits(const struct target *target);
 /* Rows of 16 bytes of a hit: HIT_ROWS of bind/queues.glsl. */
 uint32_t variant_hit_rows(const struct renderer *renderer);
 /* What is needed to make the pipelines of a stage; stands alone, and is not to be copied or moved.

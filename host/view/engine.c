@@ -45,7 +45,7 @@ static void make_session_for(struct engine *engine, struct engine_lane *lane)
 {
     if (engine->job)
         return;
-    lane->failed = !engine_start_job(engine, &lane->settings);
+    lane->failed = !engine_start_job(engine, &lane->settings, false);
     engine_wake(engine);
 }
 

@@ -72,7 +72,8 @@ static void run_job(void *context)
 {
     struct engine_job *job = context;
     struct engine *engine = job->engine;
-    const struct session_parts parts = {job->scene, job->shader, engine->params.compiler};
+    const struct session_parts parts = {job->scene, job->shader, engine->params.compiler,
+                                        job->is_spare};
     const whit_log log = {session_message, job->session, WHIT_LOG_WARNING};
     const whit_log scene_log = {scene_message, engine, WHIT_LOG_WARNING};
     whit_result result = job->reloads ? reload(job, &parts)
@@ -179,7 +180,7 @@ static void take_out(struct engine *engine, struct session *session)
     }
 }
 
-bool engine_start_job(struct engine *engine, const struct settings *settings)
+bool engine_start_job(struct engine *engine, const struct settings *settings, bool is_spare)
 {
     struct session *version = find_version(engine, settings);
     struct engine_job *job = calloc(1, sizeof *job);
@@ -191,6 +192,7 @@ bool engine_start_job(struct engine *engine, const struct settings *settings)
         session->made = ++engine->jobs;
         job->session = session;
         job->reloads = version != NULL;
+        job->is_spare = is_spare;
         job->settings = *settings;
         job->engine = engine;
         job->start_ms = whit_clock_ms();
@@ -222,9 +224,8 @@ void engine_make_spare(struct engine *engine)
         return;
     engine->spare_ms = 0.0;
     if (lane->session && engine_is_done(lane) && !find_version(engine, &lane->settings) &&
-        lane->session->scene->info.triangle_count <= LARGE_SCENE &&
-        engine_start_job(engine, &lane->settings))
-        engine->job->is_spare = true;
+        lane->session->scene->info.triangle_count <= LARGE_SCENE)
+        engine_start_job(engine, &lane->settings, true); /* nobody waits for it */
 }
 
 /* ---- The sessions that there are ---- */

@@ -29,7 +29,8 @@ bool engine_same_but_version(const struct settings *a, const struct settings *b)
 /* Starts a session for the next version of the window's shader, once its picture has been there for
    a while, so that the first save does not wait for one. */
 void engine_make_spare(struct engine *engine);
-WHIT_CHECK bool engine_start_job(struct engine *engine, const struct settings *settings);
+/* Makes a session in a thread. False: engine->error says why not. */
+bool engine_start_job(struct engine *engine, const struct settings *settings, bool is_spare);
 /* Takes what a finished job made. */
 void engine_reap_job(struct engine *engine);
 void engine_job_destroy(struct engine_job *job);

@@ -175,13 +175,14 @@ static void note_step(void *user, const whit_step *step)
 }
 
 /* A small picture: drivers compile when a kernel is run for the first time. */
-static whit_result warm_up(struct session *session)
+static whit_result warm_up(struct session *session, bool few_pixels)
 {
     whit_renderer_params params = settings_picture(&session->settings);
     params.width = WARM_WIDTH;
     params.height = WARM_HEIGHT;
     params.sampling.count = 1;
     params.many_pictures = true;
+    params.few_pixels = few_pixels;
     params.keep_unread = true; /* saves and probes may read it */
     params.shader = session->shader ? session->shader->shader : NULL;
     params.cancel = &session->cancel;
@@ -231,7 +232,7 @@ whit_result session_open(struct session *session, const struct settings *setting
     tell(progress, SESSION_COMPILING);
     if (result == WHIT_OK) {
         whit_device_get_info(session->device, &session->device_info);
-        result = warm_up(session);
+        result = warm_up(session, parts->awaits_version);
     }
     tell(progress, SESSION_DONE);
     return result;
@@ -245,7 +246,7 @@ static whit_result draw_step(struct session *session, const whit_renderer_params
     if (!takes) {
         whit_renderer_destroy(session->renderer);
         session->renderer = NULL;
-        return warm_up(session);
+        return warm_up(session, false);
     }
     whit_result result = whit_renderer_set_shader(session->renderer, params);
     if (result != WHIT_OK) {
@@ -283,6 +284,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
         params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
         params.step_spacing = FIRST_STEP;
         params.reuse_rays = true;
+        params.few_pixels = true;
         params.step_aov = shader_ref_find_aov(session->shader, session->settings.aov) + 1;
         result = draw_step(session, &params);
     }

@@ -84,6 +84,7 @@ struct session_parts {
     struct scene_ref *scene;
     struct shader_ref *shader;
     whit_shader_compiler *compiler;
+    bool awaits_version; /* it is to draw with the next version of the shader, and nothing before */
 };
 
 /* Loads, builds, opens and compiles. Reasons are logged: those of the scene and its trees by

@@ -112,6 +112,10 @@ typedef struct whit_renderer_params {
        for values beside the colour camera rays alone are traced. The picture is the same;
        whit_stats are those of the last one. */
     bool reuse_rays;
+    /* With `step`, and a shade() of `shader`: kernels that are sooner made are right where they
+       draw slower, as of a picture that is given up after its first step. The picture is the
+       same. */
+    bool few_pixels;
     uint32_t tile_size; /* pixels on a side, 16..1024; 0: by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share done, 0..1; may be NULL. */

@@ -13,7 +13,7 @@
 #define LIT_ROWS 8u /* at most, see bind/lit.glsl */
 #define HOOK_SURFACE_ROWS 3u /* of a hit that a user's surface() has changed */
 #define HOOK_LIGHT_ROWS   1u /* of a hit whose light a user's shade() has said, behind these */
-
+#define MET_ROWS 17u /* of an invocation, HIT_PART_FETCH: the ray, its media, struct Surface, struct Optics */
 
 /* The sizes in rows of gpu_tally, gpu_generation and gpu_items. */
 #define TALLY_ROWS      2u

@@ -80,6 +80,11 @@
 #define HOOK_AOV     64u
 #define HOOK_INTERSECT 128u
 
+/* What the kernel of surface() and shade() does. */
+#define HIT_PART_ALL   0u
+#define HIT_PART_FETCH 1u /* of a hit what shade() is told, into rows: whit's alone */
+#define HIT_PART_CALL  2u /* shade(), of such rows: small, so that it is soon made */
+
 /* What decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u
 #define NUMERICS_FAST       1u /* Moeller and Trumbore, plain slabs: leaks */
@@ -145,7 +150,8 @@
     X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */        \
     X(56, SPEC_CHECK_WORDS, 1)        /* that have a bit for each check of a test */             \
     X(57, SPEC_AOVS, 0)               /* values of a user's functions beside the colour */        \
-    X(58, SPEC_VIEWS, 0)              /* views of many cameras, one below the other */
+    X(58, SPEC_VIEWS, 0)              /* views of many cameras, one below the other */             \
+    X(59, SPEC_HIT_PART, 0)           /* HIT_PART_*, of the kernel of surface() and shade() */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -21,7 +21,18 @@ struct Met {
     Crossing c;
 };
 
-// The hit of ray `id`, and what user's functions are told of the ray. `alive`: it is not another invocation's.
+// What user's functions are told of the ray.
+void tell_functions(Met met)
+{
+    hook_ray = met.ray;
+#ifdef HOOKS
+    hook_pixel = slot_pixel(met.slot);
+    hook_hit = met.hit;
+    hook_media = met.c.before;
+#endif
+}
+
+// The hit of ray `id`, of which user's functions are told. `alive`: it is not another invocation's.
 // `counts`: what is traversed for it is of the pixel's costs.
 Met fetch_met(uint id, bool alive, bool counts, inout uint status)
 {
@@ -42,12 +53,7 @@ Met fetch_met(uint id, bool alive, bool counts, inout uint status)
         met.ray.way += met.hit.t;
         take_footprint(met.s, met.ray.dir, texel_area(slot_pixel(met.slot), met.ray.way));
     }
-    hook_ray = met.ray;
-#ifdef HOOKS
-    hook_pixel = slot_pixel(met.slot);
-    hook_hit = met.hit;
-    hook_media = met.c.before;
-#endif
+    tell_functions(met);
     return met;
 }
 
@@ -55,19 +61,29 @@ Met fetch_met(uint id, bool alive, bool counts, inout uint status)
 const uint SURFACE_ROWS = (SPEC_HOOKS & HOOK_SURFACE) != 0u ? HOOK_SURFACE_ROWS : 0u;
 const uint HOOK_ROWS = SURFACE_ROWS + ((SPEC_HOOKS & HOOK_SHADE) != 0u ? HOOK_LIGHT_ROWS : 0u);
 
-void store_hook_row(uint row, vec4 value)
+void store_hook_words(uint row, uvec4 value)
 {
     if (SPEC_WIDE_ROWS != 0u)
-        wide_hook_rows[row] = wide_row(floatBitsToUint(value));
+        wide_hook_rows[row] = wide_row(value);
     else
-        hook_rows[row] = floatBitsToUint(value);
+        hook_rows[row] = value;
+}
+
+void store_hook_row(uint row, vec4 value)
+{
+    store_hook_words(row, floatBitsToUint(value));
+}
+
+uvec4 fetch_hook_words(uint row)
+{
+    if (SPEC_LOAD_PATH == LOAD_TEXEL)
+        return texelFetch(hook_texels, int(row));
+    return hook_rows[row];
 }
 
 vec4 fetch_hook_row(uint row)
 {
-    if (SPEC_LOAD_PATH == LOAD_TEXEL)
-        return uintBitsToFloat(texelFetch(hook_texels, int(row)));
-    return uintBitsToFloat(hook_rows[row]);
+    return uintBitsToFloat(fetch_hook_words(row));
 }
 
 // What surface() has changed of the hit of ray `id`. `lost`: it gave no number.
@@ -99,6 +115,98 @@ void store_hook_light(uint id, vec3 light)
 vec3 fetch_hook_light(uint id)
 {
     return fetch_hook_row(id * HOOK_ROWS + SURFACE_ROWS).xyz;
+}
+
+// ---- What HIT_PART_FETCH leaves to HIT_PART_CALL ----
+
+// The first row of the invocation, behind those of hits. False: there is no room for it.
+bool met_row(out uint row)
+{
+    uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
+    uint first = chunk.ray_capacity * HOOK_ROWS;
+    bool has_room = at < (hook_rows.length() - first) / MET_ROWS;
+    row = first + (has_room ? at * MET_ROWS : 0u);
+    return has_room;
+}
+
+void store_met(uint row, Met met)
+{
+    Surface s = met.s;
+    store_hook_words(row, uvec4(floatBitsToUint(met.ray.origin), met.slot));
+    store_hook_words(row + 1u, uvec4(floatBitsToUint(met.ray.dir), met.ray.steps));
+    store_hook_words(row + 2u, met.c.before);
+    store_hook_row(row + 3u, vec4(s.p, s.u));
+    store_hook_row(row + 4u, vec4(s.error, s.v));
+    store_hook_row(row + 5u, vec4(s.ng, s.color_alpha));
+    store_hook_row(row + 6u, vec4(s.ns, 0.0));
+    store_hook_words(row + 7u, uvec4(floatBitsToUint(s.e1), s.shade_index));
+    store_hook_words(row + 8u, uvec4(floatBitsToUint(s.e2), s.instance));
+    store_hook_words(row + 9u, uvec4(floatBitsToUint(s.footprint), s.material));
+    store_hook_words(row + 10u, uvec4(floatBitsToUint(s.color), uint(s.on_sphere)));
+}
+
+// Fills in what functions are told, and nothing else of `met`.
+Met fetch_stored_met(uint row)
+{
+    Met met;
+    uvec4 r0 = fetch_hook_words(row), r1 = fetch_hook_words(row + 1u);
+    met.ray.origin = row_vec3(r0);
+    met.slot = r0.w;
+    met.ray.dir = row_vec3(r1);
+    met.ray.steps = r1.w;
+    met.c.before = fetch_hook_words(row + 2u);
+    vec4 p = fetch_hook_row(row + 3u), error = fetch_hook_row(row + 4u), ng = fetch_hook_row(row + 5u);
+    uvec4 e1 = fetch_hook_words(row + 7u), e2 = fetch_hook_words(row + 8u);
+    uvec4 footprint = fetch_hook_words(row + 9u), color = fetch_hook_words(row + 10u);
+    met.s.p = p.xyz;
+    met.s.u = p.w;
+    met.s.error = error.xyz;
+    met.s.v = error.w;
+    met.s.ng = ng.xyz;
+    met.s.color_alpha = ng.w;
+    met.s.ns = fetch_hook_row(row + 6u).xyz;
+    met.s.e1 = row_vec3(e1);
+    met.s.shade_index = e1.w;
+    met.s.e2 = row_vec3(e2);
+    met.s.instance = e2.w;
+    met.s.footprint = row_vec3(footprint);
+    met.s.material = footprint.w;
+    met.s.color = row_vec3(color);
+    met.s.on_sphere = color.w != 0u;
+    return met;
+}
+
+void store_optics(uint row, Optics o)
+{
+    uint flags = uint(o.thin) | uint(o.unlit) << 1 | uint(o.metal_rough) << 2;
+    store_hook_row(row + 11u, vec4(o.diffuse, o.straight));
+    store_hook_row(row + 12u, vec4(o.ambient, o.shininess));
+    store_hook_row(row + 13u, vec4(o.highlight, o.alpha));
+    store_hook_row(row + 14u, vec4(o.emission, o.eta));
+    store_hook_words(row + 15u, uvec4(floatBitsToUint(o.reflected), flags));
+    store_hook_row(row + 16u, vec4(o.refracted, 0.0));
+}
+
+Optics fetch_optics(uint row)
+{
+    Optics o;
+    vec4 r0 = fetch_hook_row(row + 11u), r1 = fetch_hook_row(row + 12u);
+    vec4 r2 = fetch_hook_row(row + 13u), r3 = fetch_hook_row(row + 14u);
+    uvec4 r4 = fetch_hook_words(row + 15u);
+    o.diffuse = r0.xyz;
+    o.straight = r0.w;
+    o.ambient = r1.xyz;
+    o.shininess = r1.w;
+    o.highlight = r2.xyz;
+    o.alpha = r2.w;
+    o.emission = r3.xyz;
+    o.eta = r3.w;
+    o.reflected = row_vec3(r4);
+    o.refracted = fetch_hook_row(row + 16u).xyz;
+    o.thin = (r4.w & 1u) != 0u;
+    o.unlit = (r4.w & 2u) != 0u;
+    o.metal_rough = (r4.w & 4u) != 0u;
+    return o;
 }
 
 bool is_catcher(Met met)

@@ -32,22 +32,44 @@ void change_surface(uint id, bool alive, inout Surface s)
         store_changed(id, s, lost);
 }
 
-void main()
+// HIT_PART_FETCH: where there is no room, the tile is drawn again in smaller ones.
+void fetch_for_functions(uint id, bool alive)
 {
-    load_frame();
-    begin_user();
-    uint item = invocation_item(0u, hit_capacity());
-    bool alive = item != ITEM_NONE;
-    uint id = fetch_listed_hit(alive ? item : 0u);
-    id = alive ? id : 0u;
+    uint row, status = 0u;
+    bool has_room = met_row(row);
+    Met met = fetch_met(id, alive, false, status);
+    Optics o = look_at(met);
+    if (alive && has_room) {
+        store_met(row, met);
+        store_optics(row, o);
+    }
+    if (alive && !has_room)
+        report_status(STATUS_QUEUE_FULL);
+}
+
+// `row`: of HIT_PART_CALL.
+void call_functions(uint id, bool alive, uint row)
+{
+    const bool stored = SPEC_HIT_PART == HIT_PART_CALL;
     uint status = 0u;      // shade.comp reports it: what is not read here of the way through is not compiled
     record_for(id, false); // values of dbg(x) in camera() are recorded by closest.comp
-    Met met = fetch_met(id, alive, false, status);
+    Met met;
+    if (stored) {
+        met = fetch_stored_met(row);
+        met.hit = fetch_hit(id);
+        tell_functions(met);
+    } else {
+        met = fetch_met(id, alive, false, status);
+    }
     record_for(id, alive);
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
         change_surface(id, alive, met.s);
     if ((SPEC_HOOKS & HOOK_SHADE) != 0u) {
-        Optics o = look_at(met);
+        Optics o;
+        if (stored)
+            o = fetch_optics(row);
+        else
+            o = look_at(met);
         begin_hook();
         vec3 light = shade(met.s, o, -met.ray.dir);
         end_hook(true);
@@ -58,5 +80,22 @@ void main()
         report_status(hook_status);
         report_hooks();
         tally_traced(hook_traced);
+    }
+}
+
+void main()
+{
+    load_frame();
+    begin_user();
+    uint item = invocation_item(0u, hit_capacity()), row = 0u;
+    bool alive = item != ITEM_NONE;
+    uint id = fetch_listed_hit(alive ? item : 0u);
+    id = alive ? id : 0u;
+    if (SPEC_HIT_PART == HIT_PART_FETCH) {
+        fetch_for_functions(id, alive);
+    } else {
+        if (SPEC_HIT_PART == HIT_PART_CALL)
+            alive = met_row(row) && alive;
+        call_functions(id, alive, row);
     }
 }

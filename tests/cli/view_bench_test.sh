@@ -48,7 +48,7 @@ fi
 if [ "$FIGURES" = figures ]; then
     J=$OUT/files/shaders.json
     expect 0 "saves of a shader, quick" bench shaders cube 34k --quick --runs 2 --scenes "$SCENES" --json "$J"
-    check "each function" holds '[.tables[0].rows[].function] == (["shade", "surface", "miss", "aov", "post", "shade, visible", "intersect"] | . + .)'
+    check "each function" holds '[.tables[0].rows[].function] == (["shade", "surface", "miss", "aov", "post", "shade, lit", "shade, visible", "intersect"] | . + .)'
     every "from a save on" '.first_ms.p50 > 0 and .whole_ms.p95 >= .first_ms.p50 and .whole_ms.runs == 2'
     for key in gap_over_ms gap_drags_ms gap_pictures_ms; do
         every "with $key" ".scene == \"34k\" or .$key.saved > 0 and .$key.alone > 0"

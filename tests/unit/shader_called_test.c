@@ -84,6 +84,81 @@ TEST(what_is_not_asked_for_is_not_compiled)
     }
 }
 
+/* All that a shade() is told, in one sum. */
+#define TOLD                                                                                       \
+    "vec3 shade(Surface s, Optics o, vec3 to_eye)\n{\n"                                            \
+    "    vec3 sum = s.p + s.error * 1e6 + s.ng + s.ns + s.e1 + s.e2 + s.footprint + s.color;\n"    \
+    "    sum += vec3(s.color_alpha, s.u, s.v) + vec3(s.shade_index, s.instance, s.material);\n"    \
+    "    sum += vec3(s.on_sphere, o.thin, o.unlit) + o.diffuse + o.ambient + o.highlight;\n"       \
+    "    sum += o.emission + o.reflected + o.refracted + vec3(o.straight, o.shininess, "           \
+    "o.alpha);\n"                                                                                  \
+    "    sum += vec3(o.eta, o.metal_rough, bounces()) + to_eye + ray_dir() + ray_origin();\n"      \
+    "    sum += vec3(pixel(), ray_distance()) + visible(s, s.ns, 2.0);\n"
+
+static void no_step(void *user, const whit_step *step)
+{
+    (void)user;
+    (void)step;
+}
+
+static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
+                  const whit_shader *shader)
+{
+    whit_renderer_params usual = *params;
+    whit_stats stats, stats_usual;
+    usual.few_pixels = false;
+    usual.shader = shader;
+    whit_renderer *other = renderer_of(&usual);
+    assert_int_equal(whit_renderer_render(other), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    whit_image *a = image_of(renderer, WHIT_AOV_COLOR), *b = image_of(other, WHIT_AOV_COLOR);
+    assert_memory_equal(whit_image_floats(a), whit_image_floats(b),
+                        (size_t)params->width * params->height * 4 * sizeof(float));
+    whit_renderer_get_stats(renderer, &stats);
+    whit_renderer_get_stats(other, &stats_usual);
+    assert_int_equal(stats.rays_reflected, stats_usual.rays_reflected);
+    /* Both parts, with another kernel's beginning and end, or the one kernel. */
+    assert_int_equal(stats.kernel_instructions == stats_usual.kernel_instructions,
+                     !params->few_pixels);
+    whit_image_destroy(a);
+    whit_image_destroy(b);
+    whit_renderer_destroy(other);
+}
+
+/* In both kinds, after versions of each, and where a tile has more hits than there are rows for. */
+TEST(a_kernel_in_parts_draws_the_same)
+{
+    whit_shader *first = load(TOLD "    return sum;\n}\n");
+    whit_shader *second = load(TOLD "    return sum * 0.5;\n}\n");
+    whit_shader *flat = load("vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng + "
+                             "visible(s, s.ns, 2.0); }\n");
+    whit_renderer_params params = params_sized(WIDTH, HEIGHT, first);
+    params.step = no_step;
+    params.keep_unread = params.few_pixels = true;
+    params.tile_size = 256;
+    whit_renderer *renderer = renderer_of(&params);
+    is_as(renderer, &params, first);
+    params.shader = second;
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+    is_as(renderer, &params, second);
+    params.few_pixels = false;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    is_as(renderer, &params, second);
+    params.few_pixels = true;
+    params.shader = first;
+    params.width = params.height = 256; /* 65,536 pixels, 32,768 items */
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+    is_as(renderer, &params, first);
+    params.few_pixels = false; /* it reads nothing of textures: one kernel either way */
+    params.shader = flat;
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
+    is_as(renderer, &params, flat);
+    whit_renderer_destroy(renderer);
+    whit_shader_destroy(first);
+    whit_shader_destroy(second);
+    whit_shader_destroy(flat);
+}
+
 /* What is met nowhere is asked in a kernel of its own, of camera rays as of reflected ones. */
 TEST(misses_know_their_ray)
 {

@@ -29,6 +29,16 @@ static const struct edited {
     {"aov", "//@ aov height\nvec4 height(Surface s) { return vec4(s.p * %.9g, 1.0); }\n", "height",
      false},
     {"post", "vec3 post(ivec2 at, vec3 color) { return color * %.9g; }\n", NULL, false},
+    {"shade, lit",
+     "vec3 shade(Surface s, Optics o, vec3 to_eye)\n{\n"
+     "    vec3 sum = o.emission + o.ambient * ambient();\n"
+     "    for (uint i = 0u; i < light_count(); i++) {\n"
+     "        Light l = light(i, 0u, s);\n"
+     "        float shine = pow(max(dot(reflect(-l.dir, s.ns), to_eye), 0.0), o.shininess);\n"
+     "        float cosine = max(dot(s.ns, l.dir), 0.0);\n"
+     "        sum += (o.diffuse + o.highlight * shine) * l.arriving * cosine * %.9g;\n"
+     "    }\n    return sum;\n}\n",
+     NULL, false},
     {"shade, visible",
      "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.color * visible(s, s.ns, %.9g); }\n",
      NULL, true},
