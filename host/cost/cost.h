@@ -142,6 +142,8 @@ struct cost_request {
    there is nothing. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);
+/* Frees what keep_pictures has kept; the figures stay. */
+void cost_report_drop_pictures(struct cost_report *report);
 /* The size of a small picture whose time tells how fast the device is at this moment. */
 void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height);
 /* The FNV-1a hash of a text, for names of cached files. */
@@ -203,6 +205,26 @@ uint32_t cost_findings(const struct cost_report *report,
 /* The first ones as one sentence. */
 enum { COST_SENTENCE_BYTES = 1024 };
 void cost_sentence(const struct cost_report *report, char text[COST_SENTENCE_BYTES]);
+
+/* ---- One crop at several times (strip.c) ---- */
+
+/* A quarter of the usual time, once, four and sixteen times. */
+enum { COST_STRIP = 4 };
+struct cost_share {
+    double of_usual;
+    uint32_t row; /* the best picture within it; WHIT_NONE: nothing that was measured is as quick */
+};
+/* Adds what the strip shows to the goals of a request, and keeps its pictures. */
+void cost_strip_ask(struct cost_request *request);
+void cost_strip(const struct cost_report *report, struct cost_share strip[COST_STRIP]);
+/* Whether the reference can judge the row: the samples of a picture that has as many are the same
+   ones. */
+bool cost_is_judged(const struct cost_report *report, const struct cost_row *row);
+/* A fifth of the judged picture on each side, where the usual one is most visibly wrong. */
+struct cost_crop {
+    uint32_t x, y, width, height;
+};
+struct cost_crop cost_crop(const struct cost_report *report);
 
 /* ---- What is kept from one run to the next ---- */
 

@@ -33,7 +33,7 @@ static void add_value(struct cost_finding *finding, double value)
     finding->values[finding->value_count++] = value;
 }
 
-static bool is_judged(const struct cost_row *row)
+static bool is_told(const struct cost_row *row)
 {
     return row->measured && !row->broken && row->knob_index != WHIT_NONE;
 }
@@ -54,22 +54,13 @@ static const struct cost_row *row_of(const struct cost_report *report, const cha
 {
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
-        if (is_judged(row) && strcmp(row->knob, knob) == 0 && strcmp(row->setting, setting) == 0)
+        if (is_told(row) && strcmp(row->knob, knob) == 0 && strcmp(row->setting, setting) == 0)
             return row;
     }
     return NULL;
 }
 
 /* ---- More time ---- */
-
-/* Pictures of as many samples as the reference has are not judged by it: their samples are the
- * same.
- */
-static bool has_all_samples(const struct cost_report *report, const struct cost_row *row)
-{
-    return strcmp(row->knob, "aa") == 0 &&
-           !(strtod(row->setting, NULL) < (double)report->reference_samples);
-}
 
 /* The setting whose error falls most for each doubling of the time. */
 static const struct cost_row *best_buy(const struct cost_report *report)
@@ -79,8 +70,8 @@ static const struct cost_row *best_buy(const struct cost_report *report)
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         double ratio = ratio_of(report, row);
-        if (!is_judged(row) || row->price.verdict <= 0 || ratio <= 1.0 || ratio > RATIO_MAX ||
-            has_all_samples(report, row) || row->error.flip_mean > (1.0 - ERROR_SHARE) * usual)
+        if (!is_told(row) || row->price.verdict <= 0 || ratio <= 1.0 || ratio > RATIO_MAX ||
+            !cost_is_judged(report, row) || row->error.flip_mean > (1.0 - ERROR_SHARE) * usual)
             continue;
         double gain = log(usual / fmax(row->error.flip_mean, 1e-9)) / log(ratio);
         if (gain > most) {
@@ -193,7 +184,7 @@ static const struct cost_row *free_saving(const struct cost_report *report)
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         /* Trees take time to build, which a picture has to earn: cost_say_answers tells when. */
-        if (is_judged(row) && row->build_ms < 0.0 && ratio_of(report, row) < 1.0 - TIME_SHARE &&
+        if (is_told(row) && row->build_ms < 0.0 && ratio_of(report, row) < 1.0 - TIME_SHARE &&
             cost_use_of(report, row) == COST_USE_FREE &&
             (!best || ratio_of(report, row) < ratio_of(report, best)))
             best = row;

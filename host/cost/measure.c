@@ -368,12 +368,17 @@ whit_result cost_measure(const struct cost_request *request, struct cost_report 
     return result;
 }
 
-void cost_report_destroy(struct cost_report *report)
+void cost_report_drop_pictures(struct cost_report *report)
 {
-    if (!report)
-        return;
     for (uint32_t i = 0; i < COST_ROWS_MAX; ++i)
         destroy_pictures(&report->rows[i]);
     whit_image_destroy(report->reference);
+    report->reference = NULL;
+}
+
+void cost_report_destroy(struct cost_report *report)
+{
+    if (report)
+        cost_report_drop_pictures(report);
     free(report);
 }

@@ -119,11 +119,8 @@ static void complete(struct cost *cost)
             (struct cost_goal){.kind = COST_WITHIN,
                                .metric = (enum cost_metric)cost->metric,
                                .limit = cost->within_ms};
-    /* The page shows crops of the best picture within each of these multiples of the usual time. */
-    static const double steps[] = {0.25, 4.0, 16.0};
-    for (size_t i = 0; cost->html && i < sizeof steps / sizeof *steps; ++i)
-        request->goals[request->goal_count++] =
-            (struct cost_goal){.kind = COST_WITHIN, .metric = COST_FLIP, .of_usual = steps[i]};
+    if (cost->html)
+        cost_strip_ask(request);
 }
 
 static bool check_request(struct cli_reader *reader, struct cost *cost)
@@ -165,7 +162,6 @@ static whit_result find_out(struct cost *cost)
     request->settings = &job->settings;
     request->cancel = &cli_cancel;
     request->time_limit_s = cli_time_left_s();
-    request->keep_pictures = cost->html != NULL;
     request->progress = cost_on_progress;
     request->progress_user = &cost->progress;
     request->hush = cli_hush;

@@ -32,48 +32,14 @@ static json_t *picture_document(const struct cost_row *row, bool usual)
     return out;
 }
 
-/* ---- The crop ---- */
-
-enum { CROP_SHARE = 5, CROP_MIN = 32, CROP_STEP = 8 };
-
-static double sum_of(const whit_image *map, const whit_image_info *info, uint32_t x, uint32_t y,
-                     uint32_t width, uint32_t height)
-{
-    double sum = 0.0;
-    for (uint32_t row = y; row < y + height; ++row)
-        for (uint32_t column = x; column < x + width; ++column)
-            sum += (double)whit_image_floats(map)[(size_t)row * info->width + column];
-    return sum;
-}
-
-/* A fifth of the picture on each side, where the usual picture is most visibly wrong. */
 static json_t *crop_document(const struct cost_report *report)
 {
-    uint32_t width = report->judged_width, height = report->judged_height, best_x = 0, best_y = 0;
-    uint32_t w = width / CROP_SHARE > CROP_MIN ? width / CROP_SHARE : CROP_MIN;
-    uint32_t h = height / CROP_SHARE > CROP_MIN ? height / CROP_SHARE : CROP_MIN;
-    const whit_image *map = report->rows[0].flip;
-    double most = -1.0;
-    whit_image_info info;
-    w = w < width ? w : width;
-    h = h < height ? h : height;
-    if (map)
-        whit_image_get_info(map, &info);
-    for (uint32_t y = 0; map && y + h <= height; y += CROP_STEP) {
-        for (uint32_t x = 0; x + w <= width; x += CROP_STEP) {
-            double sum = sum_of(map, &info, x, y, w, h);
-            if (sum > most) {
-                most = sum;
-                best_x = x;
-                best_y = y;
-            }
-        }
-    }
+    const struct cost_crop crop = cost_crop(report);
     json_t *out = document_object();
-    document_count(out, "x", best_x);
-    document_count(out, "y", best_y);
-    document_count(out, "width", w);
-    document_count(out, "height", h);
+    document_count(out, "x", crop.x);
+    document_count(out, "y", crop.y);
+    document_count(out, "width", crop.width);
+    document_count(out, "height", crop.height);
     return out;
 }
 
