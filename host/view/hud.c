@@ -108,18 +108,12 @@ static void draw_stages(const struct engine_frame *frame)
     }
 }
 
-/* Where a value is between two others that it is in, by its logarithm, 0..1. */
-static float log_place(double value, double first, double last)
-{
-    return first == last ? 0.5f : (float)(log(value / first) / log(last / first));
-}
-
 /* The estimate of what is still wrong while the picture was refined, over the time of drawing. Both
    axes are logarithms, by which it falls along a line. */
 static void draw_estimates(const struct engine_frame *frame)
 {
     const struct engine_estimate *all = frame->estimates;
-    float x[ENGINE_ESTIMATES_MAX], y[ENGINE_ESTIMATES_MAX];
+    struct ui_point points[ENGINE_ESTIMATES_MAX];
     uint32_t count = frame->estimate_count;
     if (count == 0)
         return;
@@ -133,11 +127,17 @@ static void draw_estimates(const struct engine_frame *frame)
     }
     if (count < 2 || !(low > 0.0) || !(all[0].ms > 0.0))
         return;
-    for (uint32_t i = 0; i < count; ++i) {
-        x[i] = log_place(all[i].ms, all[0].ms, last->ms);
-        y[i] = log_place(all[i].error, low, high);
-    }
-    ui_curve(x, y, (int)count);
+    for (uint32_t i = 0; i < count; ++i)
+        points[i] = (struct ui_point){.x = ui_log_place(all[i].ms, all[0].ms, last->ms),
+                                      .y = ui_log_place(all[i].error, low, high),
+                                      .color = 0xFFD0E090u,
+                                      .radius = 2.0f,
+                                      .joined = true};
+    ui_plot_points(&(struct ui_plot){.width = 20.0f,
+                                     .height = 4.0f,
+                                     .line_color = 0xFFD0E090u,
+                                     .points = points,
+                                     .count = count});
     ui_text_dim("%.2g to %.2g from %u to %u samples, %.2f to %.2f s", all[0].error, last->error,
                 all[0].samples, last->samples, all[0].ms * 1e-3, last->ms * 1e-3);
 }

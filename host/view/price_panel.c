@@ -1,13 +1,14 @@
 /* Key P: the price list of this view, beside each switch. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "view/price_panel.h"
+#include "view/price_plot.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 
 static const double SPEND_S = 12.0;
-enum { TABLE_DRAWS = 3 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
                       COLOR_ERROR = 0xFF6070FFu;
 
@@ -46,11 +47,11 @@ void price_switch(struct view *view)
         view->prices_open = false;
         view_say(view, "prices are measured against the reference, which has no --shader");
     } else {
-        view->prices_drawn = 0;
         view->prices =
             prices_start(&(struct prices_params){.settings = &view->frame.settings,
                                                  .scene = view->scene,
                                                  .seconds = spend_s > 0.0 ? spend_s : SPEND_S,
+                                                 .strip = true,
                                                  .wake = window_wake,
                                                  .wake_user = view->window});
         if (!view->prices)
@@ -67,57 +68,103 @@ static void use(struct view *view, const struct cost_row *row)
     view_changed(view);
 }
 
+/* The time of a row, as a multiple of the usual one. */
+static double of_usual(const struct cost_report *report, const struct cost_row *row)
+{
+    return row->ms[report->clock] / report->rows[0].ms[report->clock];
+}
+
 static void draw_row(struct view *view, const struct cost_report *report,
                      const struct cost_row *row, uint32_t index)
 {
     uint32_t count;
     const struct knob *knobs = knob_table(&count);
-    const whit_difference *error = &row->error;
-    char label[COST_NAME + 16];
+    char label[COST_NAME + 16], text[COST_NOTE];
+    const char *name = row->setting[0] ? row->setting : "as it is";
     bool usable = row->knob_index < count && knob_level(&knobs[row->knob_index]) < KNOB_TREE;
     ui_table_next();
-    ui_text_dim("%s", row->knob);
-    ui_table_next();
-    snprintf(label, sizeof label, "%s##price%u", row->setting, index);
+    snprintf(label, sizeof label, "%s##price%u", name, index);
     if (!usable)
-        ui_text("%s", row->setting);
+        ui_text("%s", name);
     else if (ui_selectable(label, false))
         use(view, row);
-    if (!row->measured) {
-        ui_table_next();
-        ui_text_dim("%.40s", row->note);
-        for (int i = 0; i < 2; ++i)
-            ui_table_next();
-        return;
-    }
     ui_table_next();
-    if (index > 0 && row->price.verdict == 0)
+    if (!row->measured)
+        ui_text_dim("not measured");
+    else if (index > 0 && row->price.verdict == 0)
         ui_text_dim("as before");
     else
         ui_text_color(row->price.verdict < 0 ? COLOR_GOOD : 0xFFFFFFFFu, "%.1f ms",
                       row->ms[report->clock]);
-    ui_table_next();
     if (row->broken)
-        ui_text_color(COLOR_ERROR, "changed %llu pixels", (unsigned long long)row->pixels_changed);
+        snprintf(text, sizeof text, "changed %llu pixels", (unsigned long long)row->pixels_changed);
+    else if (row->measured)
+        snprintf(text, sizeof text, "FLIP %.3g", cost_error_of(&row->error, COST_FLIP));
     else
-        ui_text("%.3g", cost_error_of(error, COST_FLIP));
-    ui_table_next();
-    ui_text_color(COLOR_GOOD, "%s", row->best ? "*" : "");
+        snprintf(text, sizeof text, "%s", row->note);
+    ui_cell(row->broken ? COLOR_ERROR : 0xFFFFFFFFu, text);
+    ui_cell(COLOR_GOOD, row->best ? "*" : "");
 }
 
+static void widen(double range[2], double value)
+{
+    range[0] = fmin(range[0], value);
+    range[1] = fmax(range[1], value);
+}
+
+/* "depth: x 0.46 to 1.16, FLIP 0.0744 to 0.35": what the rows up to `end` span, all of one knob. */
+static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_t end)
+{
+    const char *knob = report->rows[first].knob;
+    double ratio[2] = {HUGE_VAL, 0.0}, flip[2] = {HUGE_VAL, 0.0};
+    char label[160];
+    bool best = false;
+    for (uint32_t i = first; i < end; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        if (row->measured) {
+            best = best || row->best;
+            widen(ratio, of_usual(report, row));
+            widen(flip, cost_error_of(&row->error, COST_FLIP));
+        }
+    }
+    if (flip[0] > flip[1])
+        snprintf(label, sizeof label, "%s: not measured##knob", knob);
+    else if (end == first + 1)
+        snprintf(label, sizeof label, "%s: x %.2f, FLIP %.3g##knob", knob, ratio[0], flip[0]);
+    else
+        snprintf(label, sizeof label, "%s: x %.2f to %.2f, FLIP %.3g to %.3g##knob", knob, ratio[0],
+                 ratio[1], flip[0], flip[1]);
+    return ui_fold(label, best);
+}
+
+/* Folded by knob. */
 static void draw_table(struct view *view, const struct cost_report *report)
 {
-    const char *const columns[] = {"knob", "setting", cost_time_name(report), "FLIP", "best"};
+    static const int widths[] = {19, 12, 18, 1};
+    for (uint32_t i = 0, end; i < report->row_count; i = end) {
+        const char *knob = report->rows[i].knob;
+        for (end = i + 1; end < report->row_count && strcmp(report->rows[end].knob, knob) == 0;)
+            ++end;
+        if (!begin_knob(report, i, end) || !ui_table_begin(knob, 4))
+            continue;
+        ui_table_widths(widths, 4);
+        for (uint32_t k = i; k < end; ++k)
+            draw_row(view, report, &report->rows[k], k);
+        ui_table_end();
+    }
+}
+
+static void draw_report(struct view *view, const struct cost_report *report,
+                        const struct price_strip *strip)
+{
     char sentence[COST_SENTENCE_BYTES];
     cost_sentence(report, sentence);
     ui_paragraph(sentence);
-    if (ui_table_begin("prices", 5)) {
-        ui_table_header(columns, 5);
-        for (uint32_t i = 0; i < report->row_count; ++i)
-            draw_row(view, report, &report->rows[i], i);
-        ui_table_end();
-    }
-    ui_text_dim("FLIP: to the picture in double, %u samples.", report->reference_samples);
+    price_strip_draw(strip, report);
+    ui_text_dim("By the clock; FLIP to the picture in double, %u samples.",
+                report->reference_samples);
+    price_plot_draw(report, strip);
+    draw_table(view, report);
     ui_text_dim("*: nothing is cheaper and as right.");
     ui_text_dim("Click a setting to take it; `whit cost` measures longer.");
 }
@@ -129,11 +176,7 @@ void price_draw(struct view *view)
     if (!view->prices)
         return;
     prices_get_state(view->prices, &state);
-    if (state.finished && view->prices_drawn < TABLE_DRAWS) {
-        ++view->prices_drawn; /* a table finds its columns in the draws after its first */
-        view->dirty = true;
-    }
-    if (ui_window_begin("Prices", 1.0f, 0.0f, 420.0f, 380.0f, false, &open)) {
+    if (ui_window_begin("Prices", 1.0f, 0.0f, 440.0f, 640.0f, false, &open)) {
         if (!settings_same_place(&state.settings, &view->settings))
             ui_text_color(COLOR_WARNING, "of another view: press P twice");
         if (!state.finished) {
@@ -141,7 +184,7 @@ void price_draw(struct view *view)
             snprintf(text, sizeof text, "%.60s, %.0f s", state.what, state.seconds_left);
             ui_progress((float)state.done, text);
         } else if (state.report) {
-            draw_table(view, state.report);
+            draw_report(view, state.report, state.strip);
         } else {
             ui_text_color(COLOR_ERROR, "%s", state.what);
         }

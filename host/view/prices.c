@@ -17,7 +17,7 @@ struct prices {
     struct scene_ref *scene;
     double seconds;
     uint64_t knobs;
-    bool of_effects;
+    bool of_effects, has_strip;
     volatile bool cancel;
     void (*wake)(void *user);
     void *wake_user;
@@ -26,6 +26,7 @@ struct prices {
     double done, seconds_left;
     char what[PRICES_TEXT];
     struct cost_report *report;
+    struct price_strip strip;
     struct effect_price effects[EFFECTS_MAX];
 };
 
@@ -54,7 +55,7 @@ static void on_message(void *user, whit_log_level level, const char *message)
 static whit_result measure(struct prices *prices, const whit_log *log, whit_device *device,
                            whit_accel *accel, struct cost_report **report)
 {
-    const struct cost_request request = {
+    struct cost_request request = {
         .device = device,
         .scene = prices->scene->scene,
         .accel = accel,
@@ -67,7 +68,14 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
         .progress_user = prices,
         .log = log,
     };
-    return cost_measure(&request, report);
+    if (prices->has_strip)
+        cost_strip_ask(&request);
+    whit_result result = cost_measure(&request, report);
+    if (*report && prices->has_strip) {
+        price_strip_init(&prices->strip, *report);
+        cost_report_drop_pictures(*report); /* the panel may stay open for long */
+    }
+    return result;
 }
 
 static void note_effect(void *user, uint32_t index, const struct cost_effect *effect)
@@ -171,6 +179,7 @@ struct prices *prices_start(const struct prices_params *params)
     prices->seconds = params->seconds;
     prices->knobs = params->knobs;
     prices->of_effects = params->effects;
+    prices->has_strip = params->strip;
     prices->wake = params->wake;
     prices->wake_user = params->wake_user;
     pthread_mutex_init(&prices->lock, NULL);
@@ -193,6 +202,7 @@ void prices_stop(struct prices *prices)
     prices->cancel = true;
     thread_join(prices->thread);
     cost_report_destroy(prices->report);
+    price_strip_finish(&prices->strip);
     scene_ref_drop(prices->scene);
     pthread_mutex_destroy(&prices->lock);
     free(prices);
@@ -230,6 +240,7 @@ void prices_get_state(struct prices *prices, struct prices_state *state)
         .done = prices->done,
         .seconds_left = prices->seconds_left,
         .report = prices->finished ? prices->report : NULL,
+        .strip = &prices->strip,
         .settings = prices->settings,
     };
     memcpy(state->what, prices->what, sizeof state->what);

@@ -4,6 +4,7 @@
 #define VIEW_PRICES_H
 
 #include "cost/cost.h"
+#include "view/price_strip.h"
 #include "view/session.h"
 
 struct prices;
@@ -21,6 +22,7 @@ struct prices_params {
     struct scene_ref *scene;
     double seconds;           /* that it may take, roughly */
     uint64_t knobs;           /* bits of knob_table; 0: all */
+    bool strip;               /* with the pictures of cost_strip */
     bool effects;             /* those of effects, in place of knobs; `seconds` says nothing */
     void (*wake)(void *user); /* from the thread, when there is more to see */
     void *wake_user;
@@ -38,6 +40,7 @@ struct prices_state {
     double done, seconds_left;        /* 0..1 */
     char what[PRICES_TEXT];           /* that is measured; where it failed: why */
     const struct cost_report *report; /* borrowed until prices_stop; NULL until finished */
+    const struct price_strip *strip;  /* likewise */
     struct settings settings;         /* that it is of */
 };
 /* Whether there is more to see than at the last call. */

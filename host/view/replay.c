@@ -73,18 +73,26 @@ static bool is_settled(const struct view *view, const struct engine_status *stat
            strcmp(status->error, view->status.error) == 0 && !view->dirty && !view->shot[0];
 }
 
+/* Nothing is measured, and what was is drawn. */
+static bool is_priced(struct view *view)
+{
+    if (!prices_are_still(view->prices))
+        return false;
+    view->dirty |= view->prices && prices_have_news(view->prices);
+    return !view->dirty;
+}
+
 /* As good as it gets, and seen. While the animation plays it never is: then nothing is waited for.
  */
-static bool is_still(const struct view *view)
+static bool is_still(struct view *view)
 {
     struct engine_status status;
     if (view_plays(view))
         return true;
     engine_get_status(view->engine, &status);
     return is_settled(view, &status) && !status.drawing && !view_is_moving(view) &&
-           engine_is_still(view->engine) && compare_is_still(view) &&
-           prices_are_still(view->prices) && wish_is_still(view) &&
-           (view->frame.number > 0 || status.error[0]);
+           engine_is_still(view->engine) && compare_is_still(view) && is_priced(view) &&
+           wish_is_still(view) && (view->frame.number > 0 || status.error[0]);
 }
 
 /* A picture of all that was asked for so far was shown, however good; or there is an error. */

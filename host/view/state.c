@@ -284,17 +284,24 @@ static json_t *measure_json(struct view_measure *measure)
 
 static json_t *price_list_json(const struct view *view)
 {
-    json_t *object = json_object();
+    json_t *object = json_object(), *best = json_array();
     struct prices_state state = {0};
     uint64_t broken = 0;
     if (view->prices)
         prices_get_state(view->prices, &state);
-    for (uint32_t i = 0; state.report && i < state.report->row_count; ++i)
-        broken += state.report->rows[i].broken;
+    for (uint32_t i = 0; state.report && i < state.report->row_count; ++i) {
+        const struct cost_row *row = &state.report->rows[i];
+        char name[COST_NAME];
+        broken += row->broken;
+        price_strip_name(state.strip, state.report, row, name);
+        if (row->best && cost_is_judged(state.report, row))
+            json_array_append_new(best, json_string(name));
+    }
     put_bool(object, "open", view->prices_open);
     put_bool(object, "finished", state.finished);
     put_count(object, "rows", state.report ? state.report->row_count : 0);
     put_count(object, "broken", broken);
+    json_object_set_new(object, "best", best);
     put_text(object, "why", state.finished && !state.report ? state.what : "");
     return object;
 }

@@ -1,5 +1,5 @@
 // The shim over Dear ImGui 1.86 and its Vulkan backend: its memory, its life, where panels are.
-// With ui_widgets.cpp this is everything of the viewer that is C++.
+// With ui_widgets.cpp and ui_plots.cpp this is everything of the viewer that is C++.
 #include "view/ui_inside.hpp"
 
 #include <cstdarg>
@@ -99,7 +99,7 @@ static whit_result say_failure(const struct ui *ui, const failed_call &failure)
 
 // ---- Where panels are ----
 
-enum { PANELS_MAX = 24, ITEMS_MAX = 96, AGAIN_MAX = 8 };
+enum { PANELS_MAX = 24, ITEMS_MAX = 128, AGAIN_MAX = 8 };
 
 struct panel {
     char title[32];
@@ -222,16 +222,20 @@ bool note_menu()
     return layout.closes_menu;
 }
 
-void note_item(const char *label)
+void note_place(const char *label, float x, float y)
 {
     if (item_count == ITEMS_MAX)
         return;
     const char *end = std::strstr(label, "##");
     int length = end ? (int)(end - label) : (int)std::strlen(label);
     std::snprintf(items[item_count].label, sizeof items[item_count].label, "%.*s", length, label);
+    items[item_count++].middle = ImVec2(x, y);
+}
+
+void note_item(const char *label)
+{
     ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
-    items[item_count].middle = ImVec2(0.5f * (lo.x + hi.x), 0.5f * (lo.y + hi.y));
-    ++item_count;
+    note_place(label, 0.5f * (lo.x + hi.x), 0.5f * (lo.y + hi.y));
 }
 
 static void make_fonts(void *user, void *commands)

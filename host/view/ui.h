@@ -98,6 +98,8 @@ void ui_separator(void);
 void ui_same_line(float x); /* 0: right behind; else from the panel's left, in characters */
 bool ui_button(const char *label);
 bool ui_selectable(const char *label, bool selected);
+/* A line that shows or hides what follows it, at first as `open` says. Whether it shows it. */
+bool ui_fold(const char *label, bool open);
 bool ui_checkbox(const char *label, bool *value);
 /* `preview`: what it says closed. */
 bool ui_choice(const char *label, const char *preview, const char *const *names, int count,
@@ -107,8 +109,34 @@ bool ui_color(const char *label, float rgb[3]); /* sRGB, 0..1 */
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
 /* A bar of colours with labels below, evenly from its left to its right end. */
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);
-/* A line through points of 0..1 from the lower left, as wide as a ramp, in a box. Two and more. */
-void ui_curve(const float *x, const float *y, int count);
+/* Points of 0..1 from the lower left in a box. */
+struct ui_point {
+    float x, y;
+    uint32_t color;
+    float radius;
+    bool joined;       /* by a line with the joined one before it */
+    const char *name;  /* stands beside it, and is found by ui_item; or NULL */
+    const char *about; /* what is said of it under the mouse; or NULL */
+};
+/* A line across the box, with what it stands for below or on the left. */
+struct ui_tick {
+    float at;
+    char label[16];
+};
+enum { UI_TICKS_MAX = 16 };
+struct ui_plot {
+    float width, height; /* of the box, in heights of letters */
+    uint32_t line_color;
+    const struct ui_point *points;
+    uint32_t count, tick_count[2]; /* ticks: from left to right, upwards */
+    struct ui_tick ticks[2][UI_TICKS_MAX];
+};
+void ui_plot_points(const struct ui_plot *plot);
+/* Where a value is between two others that it is in, by its logarithm, 0..1. */
+float ui_log_place(double value, double low, double high);
+/* A picture as wide as the cell of a table, with lines below, by which ui_item finds it: "a, b". */
+void ui_picture(const uint32_t *rgba, uint32_t width, uint32_t height, const char *const *lines,
+                uint32_t line_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */
 bool ui_table_begin(const char *id, int columns);
 /* Instead of a header: how wide columns are, text that is longer is wrapped by ui_cell. */

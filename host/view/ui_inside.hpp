@@ -1,4 +1,4 @@
-// What the two parts of the shim over Dear ImGui share.
+// What the parts of the shim over Dear ImGui share.
 #ifndef VIEW_UI_INSIDE_HPP
 #define VIEW_UI_INSIDE_HPP
 
@@ -11,7 +11,8 @@ float panel_width(); // at most, pixels
 // A list of choices is open. Whether it is to be closed.
 bool note_menu();
 
-// The last item is found under its label by ui_item.
+// The last item is found under its label by ui_item; or what is at this place.
 void note_item(const char *label);
+void note_place(const char *label, float x, float y);
 
 #endif

@@ -104,6 +104,11 @@ bool ui_selectable(const char *label, bool selected)
 {
     return noted(ImGui::Selectable(label, selected), label);
 }
+bool ui_fold(const char *label, bool open)
+{
+    ImGui::SetNextItemOpen(open, ImGuiCond_Once);
+    return noted(ImGui::CollapsingHeader(label), label);
+}
 bool ui_checkbox(const char *label, bool *value)
 {
     return noted(ImGui::Checkbox(label, value), label);
@@ -175,23 +180,6 @@ void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int l
         end = left + wide + 0.5f * em;
     }
     ImGui::Dummy(ImVec2(width, height + 1.25f * em));
-}
-
-void ui_curve(const float *x, const float *y, int count)
-{
-    float em = ImGui::GetFontSize(), width = 20.0f * em, height = 4.0f * em;
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    ImDrawList *list = ImGui::GetWindowDrawList();
-    list->AddRect(at, ImVec2(at.x + width, at.y + height), 0xFF808080u, 0.0f, 0, line_scale);
-    ImVec2 before = at;
-    for (int i = 0; i < count; ++i) {
-        ImVec2 point(at.x + width * x[i], at.y + height * (1.0f - y[i]));
-        if (i > 0)
-            list->AddLine(before, point, 0xFFD0E090u, 1.5f * line_scale);
-        list->AddCircleFilled(point, 2.0f * line_scale, 0xFFD0E090u);
-        before = point;
-    }
-    ImGui::Dummy(ImVec2(width, height + 0.25f * em));
 }
 
 void ui_progress(float part, const char *text)

@@ -71,7 +71,6 @@ struct view {
     struct prices *leaving[LEAVING_MAX]; /* stopped, and not at their end as yet */
     struct wish wish;
     bool prices_open;
-    int prices_drawn; /* draws of its table */
 
     struct palette palette;
     struct compare compare;

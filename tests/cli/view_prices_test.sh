@@ -3,16 +3,39 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 
+# has_item LABEL: the panel has drawn it, and inside of it.
+has_item() {
+    awk -F '\t' -v label="$1" '
+        $1 == "priced" && $2 == "panels.Prices" { split($3, panel, " ") }
+        $1 == "priced" && sub(/^items\./, "", $2) && ($2 == label || (label ~ /,$/ && index($2, label) == 1)) {
+            at = $3 }
+        END { split(at, place, " "); exit !(at != "" && panel[1] < place[1] && place[1] < panel[3] &&
+            panel[2] < place[2] && place[2] < panel[4]) }' "$OUT/values"
+}
+
 if part 0 2; then
-    play "prices" "$CUBE" --size 96x72 --spend 0.1 <<END
+    play "prices" "$CUBE" --size 160x200 --ui-scale 0.25 --spend 0.1 <<END
 before: | price_list.open = false
 priced: press P | price_list.open = true | price_list.finished = true | price_list.why = | price_list.broken = 0
     | frame.pixels as before
+took: choose 4 | words has --aa 4 | frame.samples = 4 | price_list.open = true
 moved: press 1 | frame.pixels not as priced
 stopped: press P x3 | price_list.open = false
 END
     check "there are prices ($(value priced price_list.rows))" \
         test "$(value priced price_list.rows)" -ge 8
+    # The strip says of each crop how long it takes and what FLIP sees, or that there is none.
+    for title in "1/4 the time" "usual time" "4 x the time" "16 x the time"; do
+        check "the strip has a crop of $title" has_item "$title,"
+    done
+    check "the usual one with time and FLIP" grep -q "^priced	items.usual time, [0-9.]* m\?s, FLIP [0-9]" "$OUT/values"
+    awk -F '\t' '$1 == "priced" && $2 ~ /^price_list.best[.]/ { print $3 } END { print "usual" }' "$OUT/values" |
+        sort -u >"$OUT/names"
+    check "the line joins some settings ($(tr '\n' ',' <"$OUT/names"))" test "$(wc -l <"$OUT/names")" -ge 2
+    check "and none that the reference cannot judge" test "$(grep -c "aa 16" "$OUT/names")" -eq 0
+    while read -r name; do
+        check "the line names \`$name\`" has_item "$name"
+    done <"$OUT/names"
 fi
 
 if part 1 2; then
