@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/path.h"
+
 const struct setting *choice_next(const struct setting *row)
 {
     for (row = row ? row + 1 : settings_table; row->name; ++row) {
@@ -116,34 +118,34 @@ void choice_say(const struct settings *settings, const struct setting *row, char
     char value[SETTING_VALUE_BYTES];
     int at = choice_get(settings, row);
     setting_write(row, settings, 0, value);
-    snprintf(text, bytes, "%s", at >= 0 ? title_of(row, (uint32_t)at) : value);
+    const char *said = at >= 0 ? title_of(row, (uint32_t)at) : value;
+    if (strcmp(row->name, "environment") == 0)
+        said = settings->environment[0] ? path_name(settings->environment) : "the file's";
+    snprintf(text, bytes, "%s", said);
 }
 
 /* ---- Changes ---- */
 
 static void say_scene(const struct settings *settings, char text[CHOICE_WORDS])
 {
-    const char *slash = strrchr(settings->scene, '/');
-    snprintf(text, CHOICE_WORDS, "%.70s%s", slash ? slash + 1 : settings->scene,
+    snprintf(text, CHOICE_WORDS, "%.70s%s", path_name(settings->scene),
              settings->reload ? ", read again" : "");
 }
 
 static void say_shader(const struct settings *settings, char text[CHOICE_WORDS])
 {
-    const char *slash = strrchr(settings->shader, '/');
     snprintf(text, CHOICE_WORDS, "%.60s%s",
-             !settings->shader[0] ? "none"
-             : slash              ? slash + 1
-                                  : settings->shader,
+             settings->shader[0] ? path_name(settings->shader) : "none",
              settings->shader[0] && settings->shader_reload ? ", read again"
              : settings->stages[0]                          ? ", other stages"
                                                             : "");
 }
 
-/* Effects have a panel of their own, and the shader is told above. */
+/* Effects have a panel of their own, pictures around are files, and the shader is told above. */
 static bool is_told(const struct setting *row)
 {
-    return row->title || strcmp(row->name, "effects") == 0 || strcmp(row->name, "set") == 0;
+    return row->title || strcmp(row->name, "effects") == 0 ||
+           strcmp(row->name, "environment") == 0 || strcmp(row->name, "set") == 0;
 }
 
 uint32_t choice_changes(const struct settings *a, const struct settings *b,

@@ -327,7 +327,7 @@ static void draw_help(struct view *view)
         {"middle", "drag: aside"},
         {"wheel", "nearer"},
         {"W A S D Q E", "fly; with Shift faster"},
-        {"drop", "open a file; a .view: its settings"},
+        {"drop", "open a file; a .view: its settings; .hdr, .exr: a sky"},
     };
     const int widths[2] = {SHEET_KEYS,
                            ui_characters(2) - SHEET_KEYS < 38 ? ui_characters(2) - SHEET_KEYS : 38};

@@ -165,6 +165,7 @@ static void draw_settings(struct view *view)
     double fps = view->settings.fps_goal;
     if (ui_panel_begin("Settings", 0.0f, 0.0f, UI_PANEL_HOLD)) {
         draw_choices(view, CHOICE_SCENE);
+        skies_draw(view);
         draw_choices(view, CHOICE_PICTURE);
         if (ui_slider("fps goal", &fps, FPS_MIN, FPS_MAX, true))
             set_fps_goal(view, fps);

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "view/prices.h"
+#include "view/skies.h"
 
 enum { VIEW_FREE_NAME = 32, STATES_MAX = 32 };
 
@@ -19,6 +20,7 @@ struct panels {
     char states[STATES_MAX][VIEW_FREE_NAME]; /* files of settings, the newest first */
     uint32_t state_count;
     bool states_known;
+    struct skies skies;
 };
 
 struct view;

@@ -137,6 +137,8 @@ void view_open(struct view *view, const char *path)
         panels_load(view, path);
         return;
     }
+    if (skies_drop(view, path))
+        return;
     if (strlen(path) >= sizeof view->settings.scene) {
         view_say(view, "the path is too long");
         return;
@@ -175,6 +177,7 @@ bool scenes_refuse(struct view *view)
         log_error(&view->log, "%s", view->refused);
     }
     settings->reload = back->reload;
+    memcpy(settings->environment, back->environment, sizeof settings->environment);
     view->dirty = true;
     if (view->camera_known) /* it was read again, and kept its place */
         return true;

@@ -88,6 +88,25 @@ END
     check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
 fi
 
+if part 1 2; then
+    # A picture that is dropped is the sky, before a background too; the panel turns back and forth; a broken one changes
+    # nothing.
+    run render "$SCENES/whitted.json" --size 32x16 -o sky.exr --quiet
+    echo rubbish >bad.hdr
+    EXPECTED="bad.hdr: not a PNG, EXR, PFM or HDR picture$"
+    play "pictures all around" "$CUBE" --size 320x240 --background "#ffffff" <<END
+plain: | render has --background
+sky: drop sky.exr | render has --environment sky.exr | frame.pixels not as plain | toast = environment: sky.exr
+own: press Tab, still, choose environment, still, choose the file's | frame.pixels not as sky | frame.ids as plain
+again: choose environment, still, choose sky.exr | frame.pixels as sky | render as sky | error =
+bad: drop bad.hdr, until error | frame.pixels as sky | render as sky | error has bad.hdr
+mended: press Tab, drop $CUBE | error = | frame.pixels as sky | render as sky
+END
+    same frame.ids plain sky
+    check "the background is gone" test "$(value sky render | grep -c background)" -eq 0
+    EXPECTED=
+fi
+
 if part 0 2; then
     # Read again: an error with file and line, the old picture stays; then its mend.
     cp "$CUBE" own.json

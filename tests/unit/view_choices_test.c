@@ -42,6 +42,18 @@ TEST(numbers_end_where_their_options_do)
     assert_int_equal(settings.picture.depth, (uint32_t)depth->max);
 }
 
+TEST(environments_are_told_by_their_files)
+{
+    struct choice_change changes[CHOICE_CHANGES_MAX];
+    const struct settings a = settings_usual();
+    struct settings b = a;
+    strcpy(b.environment, "some/where/sky.hdr");
+    assert_int_equal(choice_changes(&a, &b, changes), 1);
+    assert_string_equal(changes[0].name, "environment");
+    assert_string_equal(changes[0].a, "the file's");
+    assert_string_equal(changes[0].b, "sky.hdr");
+}
+
 TEST(scenes_are_told_by_their_files)
 {
     struct choice_change changes[CHOICE_CHANGES_MAX];
