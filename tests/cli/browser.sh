@@ -10,7 +10,7 @@ look() {
     timeout 50 "$browser" --headless --no-sandbox --disable-gpu --no-first-run \
         --disable-background-networking --host-resolver-rules='MAP * ~NOTFOUND' \
         --user-data-dir="$OUT/browser" --enable-logging=stderr --log-net-log="$OUT/net.json" \
-        --window-size=1100,3000 --screenshot="$OUT/page.png" "file://$1" >"$OUT/log" 2>&1 ||
+        --window-size=1280,3000 --screenshot="$OUT/page.png" "file://$1" >"$OUT/log" 2>&1 ||
         echo "FAILED  the browser: $(tail -n 1 "$OUT/log")"
     grep CONSOLE "$OUT/log" >"$OUT/console"
     jq -r '(.constants.logSourceType | to_entries | map({(.value | tostring): .key}) | add) as $kinds |
@@ -21,10 +21,31 @@ look() {
 
 # dom PAGE: what its script makes of it, into $OUT/dom.
 dom() {
-    timeout 50 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$OUT/browser" --dump-dom \
-        "file://$1" >"$OUT/dom" 2>/dev/null
+    timeout 50 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$OUT/browser" --window-size=1280,3000 \
+        --dump-dom "file://$1" >"$OUT/dom" 2>/dev/null
 }
 # count PATTERN: how often it is there.
 count() {
     grep -o "$1" "$OUT/dom" | wc -l
+}
+
+# clipped PAGE: what of it does not fit into a window 1280 pixels wide, with all that folds open, into $OUT/clipped; crops
+# are cut on purpose.
+clipped() {
+    { cat "$1" && cat; } >"$OUT/measured.html" <<'END'
+<script>
+for (const fold of document.querySelectorAll("details")) fold.open = true;
+const isOut = e => {
+  const box = e.getBoundingClientRect(), svg = e.closest("svg"), frame = (svg || document.documentElement).getBoundingClientRect();
+  return box.left < frame.left - 1 || box.right > frame.right + 1 ||
+    (svg ? box.top < frame.top - 1 || box.bottom > frame.bottom + 1
+         : e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0 && getComputedStyle(e).display !== "inline");
+};
+const out = [...document.body.querySelectorAll("*")].filter(e => !e.closest(".crop") && !e.matches("script, title") && isOut(e));
+document.body.append(Object.assign(document.createElement("p"), {id: "measured",
+  textContent: `${innerWidth}: ${out.map(e => e.outerHTML.slice(0, 60)).join(", ")}`}));
+</script>
+END
+    dom "$OUT/measured.html"
+    sed -n 's|.*<p id="measured">\(.*\)</p>.*|\1|p' "$OUT/dom" >"$OUT/clipped"
 }

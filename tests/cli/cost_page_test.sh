@@ -21,6 +21,14 @@ check "the sentence" grep -q '<p id="sentence">[A-Z0-9].*\.</p>' "$OUT/dom"
 check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
 check "no request" test "$(wc -l <"$OUT/requests")" -eq 0
 
+clipped "$page"
+check "nothing is clipped ($(cat "$OUT/clipped"))" test "$(cat "$OUT/clipped")" = "1280: "
+for wide in "table { width: 130% }" "svg text { font-size: 99px }"; do
+    sed "s|</style>|$wide</style>|" "$page" >"$OUT/wide.html"
+    clipped "$OUT/wide.html"
+    check "such is seen: $wide" test "$(wc -c <"$OUT/clipped")" -gt 6
+done
+
 # Both are seen where there is something to see: what the page forbids, and what it would fetch.
 bad='<body><img src="http://127.0.0.1:9/x.png"/>'
 sed "s|<body>|$bad|" "$page" >"$OUT/forbidden.html"
