@@ -223,7 +223,7 @@ uint32_t scene_put_sun(struct scene *scene, double x, double y, double z, float 
     double length = sqrt(x * x + y * y + z * z);
     return scene_put_light(scene,
                            (struct scene_light){.name = string_copy("sun"),
-                                                .kind = SCENE_LIGHT_DIRECTIONAL,
+                                                .kind = WHIT_LIGHT_DIRECTIONAL,
                                                 .node = SCENE_NONE,
                                                 .direction = {x / length, y / length, z / length},
                                                 .color = {strength, strength, strength}});
@@ -232,7 +232,7 @@ uint32_t scene_put_sun(struct scene *scene, double x, double y, double z, float 
 uint32_t scene_put_lamp(struct scene *scene, double x, double y, double z, float strength)
 {
     return scene_put_light(scene, (struct scene_light){.name = string_copy("lamp"),
-                                                       .kind = SCENE_LIGHT_POINT,
+                                                       .kind = WHIT_LIGHT_POINT,
                                                        .node = SCENE_NONE,
                                                        .position = {x, y, z},
                                                        .color = {strength, strength, strength},
@@ -244,7 +244,7 @@ uint32_t scene_put_camera(struct scene *scene, const double eye[3], const double
 {
     bool upright = eye[0] == target[0] && eye[2] == target[2];
     struct scene_camera camera = {.name = string_copy("camera"),
-                                  .kind = SCENE_CAMERA_PERSPECTIVE,
+                                  .kind = WHIT_CAMERA_PERSPECTIVE,
                                   .node = SCENE_NONE,
                                   .up = {0, upright ? 0 : 1, upright ? -1 : 0},
                                   .fov_y = (float)fov_y};

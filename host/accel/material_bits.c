@@ -27,7 +27,7 @@ static bool has_texture(const struct scene_material *m, enum scene_slot slot)
    bind/filter.glsl); `shadow` is then that of plain white ones, and nothing absorbed. */
 static void filter_bits(const struct scene_material *m, bool colors, struct material_bits *bits)
 {
-    bool metal_rough = m->model == SCENE_MODEL_METAL_ROUGH, filters = false;
+    bool metal_rough = m->model == WHIT_MODEL_METAL_ROUGH, filters = false;
     bool glassy = any_channel(m->transmission), blends = m->alpha == SCENE_ALPHA_BLEND;
     bool tints = metal_rough && (colors || has_texture(m, SCENE_SLOT_DIFFUSE) ||
                                  has_texture(m, SCENE_SLOT_METAL_ROUGH));
@@ -61,7 +61,7 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
                         has_texture(m, SCENE_SLOT_OPACITY) || has_texture(m, SCENE_SLOT_DIFFUSE)))
         bits.flags |= TRIANGLE_CUTOUT;
     /* Surfaces that scene_freeze makes lights of; others that glow are ordinary ones. */
-    if (area_lights && any_channel(m->emission) && m->model != SCENE_MODEL_UNLIT &&
+    if (area_lights && any_channel(m->emission) && m->model != WHIT_MODEL_UNLIT &&
         !has_texture(m, SCENE_SLOT_EMISSION))
         bits.flags |= TRIANGLE_NO_SHADOW;
     if (m->shadow_catcher) /* is not there but for shadows that fall on it */
@@ -78,7 +78,7 @@ static bool has_area_lights(const struct scene *scene)
 {
     bool area_lights = false;
     for (uint32_t i = 0; i < scene->light_count; ++i)
-        area_lights |= scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE ||
+        area_lights |= scene->lights[i].kind == WHIT_LIGHT_AREA_SAMPLE ||
                        (scene->lights[i].made_by_whit && scene_light_is_flat(&scene->lights[i]));
     return area_lights;
 }

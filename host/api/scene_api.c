@@ -98,7 +98,7 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
         .channel_count = scene->channel_count,
         .time_end_s = (double)scene->time_end_s,
         .one_tree = handle->one_tree,
-        .environment = scene->environment.kind == SCENE_ENVIRONMENT_MAP ? "map" : "gradient",
+        .environment = scene->environment.kind,
         .environment_made_by_whit = scene->environment.made_by_whit,
         .exposure_ev = scene->exposure_ev,
     };
@@ -139,7 +139,7 @@ static uint32_t count_textures(const struct scene_material *material)
 
 void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_material_info *info)
 {
-    *info = (whit_material_info){.name = "", .model = ""};
+    *info = (whit_material_info){.name = ""};
     if (index >= handle->scene->material_count)
         return;
     const struct scene_material *material = &handle->scene->materials[index];
@@ -147,7 +147,7 @@ void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_mate
         .name = or_empty(material->name),
         .file = material->origin.file,
         .line = material->origin.line,
-        .model = scene_model_names[material->model],
+        .model = material->model,
         .illum = material->illum,
         .shininess = material->shininess,
         .ior = material->ior,
@@ -165,18 +165,18 @@ void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_mate
 
 void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_info *info)
 {
-    *info = (whit_light_info){.name = "", .kind = ""};
+    *info = (whit_light_info){.name = ""};
     if (index >= handle->pose.light_count)
         return;
     const struct scene_light *light = &handle->pose.lights[index];
     *info = (whit_light_info){
         .name = or_empty(light->name),
-        .kind = scene_light_kind_names[light->kind],
+        .kind = light->kind,
         .made_by_whit = light->made_by_whit,
     };
     copy3_double(info->position, light->position);
     /* Sampling begins at a corner; scene files name the centre. */
-    for (int i = 0; i < 3 && light->kind == SCENE_LIGHT_RECTANGLE; ++i)
+    for (int i = 0; i < 3 && light->kind == WHIT_LIGHT_RECTANGLE; ++i)
         info->position[i] += 0.5 * (light->edge_u[i] + light->edge_v[i]);
     copy3_double(info->direction, light->direction);
     copy3(info->color, light->color);
@@ -184,15 +184,15 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
 
 void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
 {
-    *info = (whit_camera_info){.name = "", .kind = ""};
+    *info = (whit_camera_info){.name = ""};
     if (index >= handle->pose.camera_count)
         return;
     const struct scene_camera *camera = &handle->pose.cameras[index];
-    bool perspective = camera->kind == SCENE_CAMERA_PERSPECTIVE;
-    bool orthographic = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC;
+    bool perspective = camera->kind == WHIT_CAMERA_PERSPECTIVE;
+    bool orthographic = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
     *info = (whit_camera_info){
         .name = or_empty(camera->name),
-        .kind = scene_camera_kind_names[camera->kind],
+        .kind = camera->kind,
         .fov_y_degrees = perspective ? (double)camera->fov_y * DEGREES : 0.0,
         .height = orthographic ? (double)camera->height : 0.0,
         .lens_radius = (double)camera->lens_radius,
@@ -266,10 +266,10 @@ static whit_camera camera_of(const struct scene_camera *from)
     whit_camera camera = {
         .own = true,
         .fov_y_degrees = degrees_of(from->fov_y),
-        .height = from->kind == SCENE_CAMERA_ORTHOGRAPHIC ? (double)from->height : 0.0,
+        .height = from->kind == WHIT_CAMERA_ORTHOGRAPHIC ? (double)from->height : 0.0,
         .lens_radius = (double)from->lens_radius,
         .focus_distance = (double)from->focus_distance,
-        .panorama = from->kind == SCENE_CAMERA_PANORAMA,
+        .panorama = from->kind == WHIT_CAMERA_PANORAMA,
     };
     copy3_double(camera.eye, from->eye);
     copy3_double(camera.target, from->target);

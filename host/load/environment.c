@@ -137,7 +137,7 @@ whit_result load_environment(struct scene *scene, const char *path, const whit_l
     free(sky->rgb);
     free(sky->name);
     *sky = (struct scene_environment){
-        .kind = SCENE_ENVIRONMENT_MAP,
+        .kind = WHIT_ENVIRONMENT_MAP,
         .scale = {1, 1, 1},
         .width = picture.width,
         .height = picture.height,

@@ -205,7 +205,7 @@ static whit_result material_of(struct gltf *gltf, uint32_t index, uint32_t *mate
     if (gltf->default_material == SCENE_NONE) {
         struct scene_material plain;
         scene_material_init(&plain, "default");
-        plain.model = SCENE_MODEL_METAL_ROUGH;
+        plain.model = WHIT_MODEL_METAL_ROUGH;
         for (int i = 0; i < 3; i++)
             plain.diffuse[i] = plain.specular[i] = 1.0f;
         plain.metallic = 0.0f; /* the format's own default, a rough metal, reflects nothing here */

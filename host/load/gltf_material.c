@@ -146,7 +146,7 @@ static whit_result read_transmission(struct reading *r)
         return WHIT_ERROR_INPUT;
     if (out->ior < 1) /* 0 is the extension's word for a mirror at every angle */
         out->ior = out->ior > 0 ? 1.0f : 1e3f;
-    if (!object || factor <= 0 || out->model == SCENE_MODEL_UNLIT)
+    if (!object || factor <= 0 || out->model == WHIT_MODEL_UNLIT)
         return WHIT_OK;
     for (int i = 0; i < 3; i++)
         out->transmission[i] = factor;
@@ -170,7 +170,7 @@ static whit_result read_specular_glossiness(struct reading *r, const json_t *obj
         !number(r, object, "glossinessFactor", 0, 1, &glossiness))
         return WHIT_ERROR_INPUT;
     float alpha = (1 - glossiness) * (1 - glossiness);
-    out->model = SCENE_MODEL_PHONG;
+    out->model = WHIT_MODEL_PHONG;
     out->shininess = fminf(2 / fmaxf(alpha * alpha, 1e-6f) - 2, 1e4f);
     for (int i = 0; i < 3; i++) {
         out->diffuse[i] = fmaxf(diffuse[i], 0);
@@ -194,7 +194,7 @@ static whit_result read_other_models(struct reading *r)
         return WHIT_ERROR_INPUT;
     whit_result result = glossy ? read_specular_glossiness(r, glossy) : WHIT_OK;
     if (unlit) { /* the base colour is all there is */
-        r->out->model = SCENE_MODEL_UNLIT;
+        r->out->model = WHIT_MODEL_UNLIT;
         memset(r->out->emission, 0, sizeof r->out->emission);
         scene_texture_use_init(&r->out->textures[SCENE_SLOT_EMISSION]);
     }
@@ -265,7 +265,7 @@ static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene
     out->origin.file = string_copy(gltf->request->path);
     if (!out->name || !out->origin.file)
         return WHIT_ERROR_MEMORY;
-    out->model = SCENE_MODEL_METAL_ROUGH;
+    out->model = WHIT_MODEL_METAL_ROUGH;
     for (int i = 0; i < 3; i++)
         out->specular[i] = 1;
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {

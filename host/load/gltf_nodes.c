@@ -246,7 +246,7 @@ static bool read_lens(const struct gltf *gltf, const json_t *object, const struc
         return gltf_fail(gltf, at, "yfov should be between 0 and pi and is %g", yfov);
     if (!perspective && !(fabs(xmag) > 0 && fabs(ymag) > 0))
         return gltf_fail(gltf, at, "xmag and ymag should not be 0");
-    out->kind = perspective ? SCENE_CAMERA_PERSPECTIVE : SCENE_CAMERA_ORTHOGRAPHIC;
+    out->kind = perspective ? WHIT_CAMERA_PERSPECTIVE : WHIT_CAMERA_ORTHOGRAPHIC;
     out->fov_y = (float)yfov;
     out->height = (float)(2 * fabs(ymag));
     out->aspect = (float)(perspective ? fmax(aspect, 0) : fabs(xmag / ymag));
@@ -310,18 +310,18 @@ static bool read_light(const struct gltf *gltf, const json_t *object, const stru
     out->range = (float)fmax(range, 0);
     out->falloff = true;
     if (type && strcmp(type, "directional") == 0) {
-        out->kind = SCENE_LIGHT_DIRECTIONAL;
+        out->kind = WHIT_LIGHT_DIRECTIONAL;
         out->falloff = false;
         out->range = 0;
         return true;
     }
     if (type && strcmp(type, "point") == 0) {
-        out->kind = SCENE_LIGHT_POINT;
+        out->kind = WHIT_LIGHT_POINT;
         return true;
     }
     if (!type || strcmp(type, "spot") != 0)
         return gltf_fail(gltf, at, "its type is not directional, point or spot");
-    out->kind = SCENE_LIGHT_SPOT;
+    out->kind = WHIT_LIGHT_SPOT;
     return read_spot(gltf, object, at, out);
 }
 

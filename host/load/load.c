@@ -73,7 +73,7 @@ static whit_result replace_sky(struct scene *scene, const whit_load_params *para
         return WHIT_OK;
     free(sky->rgb);
     free(sky->name);
-    *sky = (struct scene_environment){.kind = SCENE_ENVIRONMENT_GRADIENT, .scale = {1, 1, 1}};
+    *sky = (struct scene_environment){.kind = WHIT_ENVIRONMENT_GRADIENT, .scale = {1, 1, 1}};
     for (int i = 0; i < 3; ++i)
         sky->zenith[i] = sky->horizon[i] = sky->ground[i] =
             (float)linear_from_srgb(params->background[i] / 255.0);

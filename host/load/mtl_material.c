@@ -320,7 +320,7 @@ static void set_opacity(const struct mtl_entry *entry, struct scene_material *ou
 static void drop_flat_highlight(struct scene *scene, const struct mtl_entry *entry,
                                 struct scene_material *out)
 {
-    if (out->model != SCENE_MODEL_PHONG || out->shininess > 0 || !(largest(out->specular) > 0))
+    if (out->model != WHIT_MODEL_PHONG || out->shininess > 0 || !(largest(out->specular) > 0))
         return;
     scene_note(scene, SCENE_NOTE_INFO, "%s:%u: material `%s`: Ns 0 makes no highlight of Ks",
                path_name(entry->file), entry->line, text_token(entry->name).text);
@@ -333,7 +333,7 @@ static void set_class(struct scene *scene, const struct mtl_entry *entry,
     bool glass = out->illum == 4 || out->illum == 6 || out->illum == 7;
     bool mirror = glass || out->illum == 3 || out->illum == 5;
     if (out->illum == 0)
-        out->model = SCENE_MODEL_UNLIT;
+        out->model = WHIT_MODEL_UNLIT;
     if (out->illum < 2)
         memset(out->specular, 0, sizeof out->specular);
     if (mirror)
@@ -357,7 +357,7 @@ static void set_metal_rough(const struct mtl_entry *entry, struct scene_material
     bool plain = out->illum == 1 || out->illum == 2 || out->illum == 8;
     if (!plain || (!entry->has_number[MTL_PR] && !entry->has_number[MTL_PM]))
         return;
-    out->model = SCENE_MODEL_METAL_ROUGH;
+    out->model = WHIT_MODEL_METAL_ROUGH;
     out->metallic = entry->has_number[MTL_PM] ? fminf(fmaxf(entry->numbers[MTL_PM], 0), 1) : 0;
     out->roughness = entry->has_number[MTL_PR] ? fminf(fmaxf(entry->numbers[MTL_PR], 0), 1) : 1;
     for (int i = 0; i < 3; i++)
@@ -398,7 +398,7 @@ whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
     set_metal_rough(entry, out);
     drop_flat_highlight(scene, entry, out);
     for (size_t i = 0; i < sizeof slots / sizeof *slots; i++) {
-        if (slots[i].map == MTL_MAP_NS && out->model != SCENE_MODEL_PHONG)
+        if (slots[i].map == MTL_MAP_NS && out->model != WHIT_MODEL_PHONG)
             continue; /* no exponent */
         whit_result result = add_map(scene, entry, slots[i].map, slots[i].slot, params, out);
         if (result != WHIT_OK)

@@ -32,9 +32,9 @@ static bool read_camera_kind(struct reader *reader, const struct place *place, c
         return reader_fail(reader, &at_lens, "a parallel view (`height`) has no lens");
     if (json_object_get(object, "focus") && !json_object_get(object, "lens"))
         return reader_fail(reader, &at_focus, "`focus` is of a camera with a `lens`");
-    out->kind = panorama   ? SCENE_CAMERA_PANORAMA
-                : parallel ? SCENE_CAMERA_ORTHOGRAPHIC
-                           : SCENE_CAMERA_PERSPECTIVE;
+    out->kind = panorama   ? WHIT_CAMERA_PANORAMA
+                : parallel ? WHIT_CAMERA_ORTHOGRAPHIC
+                           : WHIT_CAMERA_PERSPECTIVE;
     return true;
 }
 

@@ -57,7 +57,7 @@ static bool read_triangle(struct reader *reader, const struct place *place, cons
 static bool read_emitter(struct reader *reader, const struct place *place, const json_t *object,
                          struct scene_light *out)
 {
-    bool rectangle = out->kind == SCENE_LIGHT_RECTANGLE;
+    bool rectangle = out->kind == WHIT_LIGHT_RECTANGLE;
     if (!(rectangle ? read_rectangle : read_triangle)(reader, place, object, out) ||
         !reader_bool(reader, place, object, "two_sided", &out->two_sided))
         return false;
@@ -76,8 +76,8 @@ static bool read_light_place(struct reader *reader, const struct place *place, c
         return read_emitter(reader, place, object, out);
     double target[3];
     struct place here = {place, "target", 0};
-    bool points = out->kind == SCENE_LIGHT_POINT;
-    if (out->kind != SCENE_LIGHT_DIRECTIONAL && !json_object_get(object, "position"))
+    bool points = out->kind == WHIT_LIGHT_POINT;
+    if (out->kind != WHIT_LIGHT_DIRECTIONAL && !json_object_get(object, "position"))
         return reader_fail(reader, place, "a point or spot light needs a `position`");
     if (!points && !json_object_get(object, "direction") && !json_object_get(object, "target"))
         return reader_fail(reader, place, "this light needs a `direction` or a `target`");
@@ -125,7 +125,7 @@ static bool read_light_values(struct reader *reader, const struct place *place,
 
 /* The keys that a light of this kind may have in a file, beside those that all lights have; NULL:
    files have no lights of this kind. */
-static const char *const *light_keys(enum scene_light_kind kind)
+static const char *const *light_keys(whit_light_kind kind)
 {
     static const char *const point[] = {"position", "falloff", "range", NULL};
     static const char *const directional[] = {"direction", "target", NULL};
@@ -134,18 +134,18 @@ static const char *const *light_keys(enum scene_light_kind kind)
     static const char *const rectangle[] = {"position", "u", "v", "two_sided", NULL};
     static const char *const triangle[] = {"points", "two_sided", NULL};
     switch (kind) {
-    case SCENE_LIGHT_POINT:
+    case WHIT_LIGHT_POINT:
         return point;
-    case SCENE_LIGHT_DIRECTIONAL:
+    case WHIT_LIGHT_DIRECTIONAL:
         return directional;
-    case SCENE_LIGHT_SPOT:
+    case WHIT_LIGHT_SPOT:
         return spot;
-    case SCENE_LIGHT_RECTANGLE:
+    case WHIT_LIGHT_RECTANGLE:
         return rectangle;
-    case SCENE_LIGHT_TRIANGLE:
+    case WHIT_LIGHT_TRIANGLE:
         return triangle;
-    case SCENE_LIGHT_AREA_SAMPLE:
-    case SCENE_LIGHT_KINDS:
+    case WHIT_LIGHT_AREA_SAMPLE:
+    case WHIT_LIGHT_KINDS:
         break;
     }
     return NULL;
@@ -154,17 +154,16 @@ static const char *const *light_keys(enum scene_light_kind kind)
 static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
 {
     static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
-    enum scene_light_kind
-        kinds[SCENE_LIGHT_KINDS]; /* that files may name; the first is the default */
-    const char *names[SCENE_LIGHT_KINDS + 1];
-    const char *const *own[SCENE_LIGHT_KINDS];
+    whit_light_kind kinds[WHIT_LIGHT_KINDS]; /* that files may name; the first is the default */
+    const char *names[WHIT_LIGHT_KINDS + 1];
+    const char *const *own[WHIT_LIGHT_KINDS];
     uint32_t count = 0, kind = 0;
     const char *name = "light";
     struct scene_light light = {.direction = {0, -1, 0}, .color = {1, 1, 1}, .node = SCENE_NONE};
     if (!json_is_object(object))
         return reader_fail(reader, place, "a light in { } is expected");
-    for (int i = 0; i < SCENE_LIGHT_KINDS; ++i) {
-        kinds[count] = (enum scene_light_kind)i;
+    for (int i = 0; i < WHIT_LIGHT_KINDS; ++i) {
+        kinds[count] = (whit_light_kind)i;
         names[count] = scene_light_kind_names[i];
         own[count] = light_keys(kinds[count]);
         count += own[count] != NULL;
@@ -178,7 +177,7 @@ static bool read_light(struct reader *reader, const struct place *place, const j
     if (foreign)
         return reader_fail(reader, &at_foreign, "a %s light has no `%s`", names[kind], foreign);
     light.kind = kinds[kind];
-    light.falloff = light.kind != SCENE_LIGHT_DIRECTIONAL;
+    light.falloff = light.kind != WHIT_LIGHT_DIRECTIONAL;
     if (!reader_object_lists(reader, place, object, lists, 2) ||
         !reader_string(reader, place, object, "name", &name) ||
         !read_light_place(reader, place, object, &light) ||
@@ -237,7 +236,7 @@ static bool read_map(struct reader *reader, const struct place *place, const jso
 static bool read_environment(struct reader *reader, const struct place *place, const json_t *value)
 {
     static const char *const keys[] = {"zenith", "horizon", "ground", "scale", NULL};
-    struct scene_environment sky = {.kind = SCENE_ENVIRONMENT_GRADIENT,
+    struct scene_environment sky = {.kind = WHIT_ENVIRONMENT_GRADIENT,
                                     .zenith = {0.22f, 0.40f, 0.72f},
                                     .horizon = {0.72f, 0.77f, 0.82f},
                                     .ground = {0.52f, 0.52f, 0.52f},

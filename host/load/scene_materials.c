@@ -277,7 +277,7 @@ static bool read_phong(struct reader *reader, const struct place *place, const j
 static bool read_metal_rough(struct reader *reader, const struct place *place, const json_t *value,
                              struct scene_material *out)
 {
-    out->model = SCENE_MODEL_METAL_ROUGH;
+    out->model = WHIT_MODEL_METAL_ROUGH;
     out->fresnel = true;
     out->roughness = 0.5f;
     set_grey(out->diffuse, has(value, "texture") ? 1.0f : 0.8f);
@@ -297,7 +297,7 @@ static bool read_unlit(struct reader *reader, const struct place *place, const j
         return false;
     if (!unlit)
         return reader_fail(reader, &here, "leave `unlit` out for a material that is lit");
-    out->model = SCENE_MODEL_UNLIT;
+    out->model = WHIT_MODEL_UNLIT;
     set_grey(out->diffuse, 1.0f);
     return reader_color(reader, place, value, "color", out->diffuse);
 }

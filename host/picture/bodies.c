@@ -16,7 +16,7 @@ enum { PAIRS_MAX = 1 << 23 };
 
 bool bodies_bounded_by(const struct scene_material *m)
 {
-    return !m->thin_walled && m->model != SCENE_MODEL_UNLIT &&
+    return !m->thin_walled && m->model != WHIT_MODEL_UNLIT &&
            (m->transmission[0] > 0 || m->transmission[1] > 0 || m->transmission[2] > 0);
 }
 

@@ -40,9 +40,9 @@ static whit_result find_camera(const whit_log *log, const struct scene_pose *pos
 {
     uint32_t index = 0;
     if (wanted->own) {
-        *out = (struct scene_camera){.kind = wanted->panorama       ? SCENE_CAMERA_PANORAMA
-                                             : wanted->height > 0.0 ? SCENE_CAMERA_ORTHOGRAPHIC
-                                                                    : SCENE_CAMERA_PERSPECTIVE,
+        *out = (struct scene_camera){.kind = wanted->panorama       ? WHIT_CAMERA_PANORAMA
+                                             : wanted->height > 0.0 ? WHIT_CAMERA_ORTHOGRAPHIC
+                                                                    : WHIT_CAMERA_PERSPECTIVE,
                                      .node = SCENE_NONE,
                                      .fov_y = (float)(wanted->fov_y_degrees * PI / 180.0),
                                      .height = (float)wanted->height,
@@ -116,11 +116,11 @@ static whit_result refuse(const whit_log *log, const struct scene_camera *camera
 static double half_height(const struct scene_camera *camera)
 {
     switch (camera->kind) {
-    case SCENE_CAMERA_PERSPECTIVE:
+    case WHIT_CAMERA_PERSPECTIVE:
         return (double)camera->fov_y < PI ? same_tan(0.5 * (double)camera->fov_y) : 0.0;
-    case SCENE_CAMERA_ORTHOGRAPHIC:
+    case WHIT_CAMERA_ORTHOGRAPHIC:
         return 0.5 * (double)camera->height;
-    case SCENE_CAMERA_PANORAMA:
+    case WHIT_CAMERA_PANORAMA:
         break;
     }
     return 1.0;
@@ -129,11 +129,11 @@ static double half_height(const struct scene_camera *camera)
 static uint32_t kind_code(const struct scene_camera *camera)
 {
     switch (camera->kind) {
-    case SCENE_CAMERA_PERSPECTIVE:
+    case WHIT_CAMERA_PERSPECTIVE:
         return camera->lens_radius > 0.0f ? CAMERA_LENS : CAMERA_PERSPECTIVE;
-    case SCENE_CAMERA_ORTHOGRAPHIC:
+    case WHIT_CAMERA_ORTHOGRAPHIC:
         return CAMERA_ORTHOGRAPHIC;
-    case SCENE_CAMERA_PANORAMA:
+    case WHIT_CAMERA_PANORAMA:
         break;
     }
     return CAMERA_PANORAMA;

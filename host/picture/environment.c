@@ -73,7 +73,7 @@ bool environment_resample(const struct scene_environment *environment, uint32_t 
 {
     *size = 0;
     *texels = NULL;
-    if (environment->kind != SCENE_ENVIRONMENT_MAP || !environment->rgb)
+    if (environment->kind != WHIT_ENVIRONMENT_MAP || !environment->rgb)
         return true;
     /* As many texels as the map has. */
     double count = (double)environment->width * (double)environment->height;

@@ -30,7 +30,7 @@ uint64_t mipmap_first(uint32_t width, uint32_t height, uint32_t level)
 enum mipmap_kind mipmap_kind_of(const struct scene_material *m, enum scene_slot slot)
 {
     bool light = slot == SCENE_SLOT_DIFFUSE || slot == SCENE_SLOT_EMISSION ||
-                 (slot == SCENE_SLOT_SPECULAR && m->model == SCENE_MODEL_METAL_ROUGH);
+                 (slot == SCENE_SLOT_SPECULAR && m->model == WHIT_MODEL_METAL_ROUGH);
     if (slot == SCENE_SLOT_OPACITY && m->alpha == SCENE_ALPHA_MASK)
         return MIPMAP_NONE;
     /* Without an opacity map it is this one's alpha that covers. */

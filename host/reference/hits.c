@@ -95,7 +95,7 @@ static struct dvec3 kept_by(const struct reference *reference, const struct surf
     const struct scene_material *m = place->material;
     struct dvec3 passes = d3_scale(d3_load(m->transmission),
                                    texture_sample(reference, place, SCENE_SLOT_TRANSMISSION).rgb.x);
-    if (m->model == SCENE_MODEL_METAL_ROUGH) {
+    if (m->model == WHIT_MODEL_METAL_ROUGH) {
         double metallic =
             (double)m->metallic * texture_sample(reference, place, SCENE_SLOT_METAL_ROUGH).rgb.z;
         struct dvec3 base = d3_times(d3_load(m->diffuse), place->color);

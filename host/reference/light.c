@@ -18,7 +18,7 @@ static struct dvec3 emitter_point(const struct tracer *tracer, const struct scen
     uint32_t before = sequence_light(tracer->sample) * tracer->reference->light_samples, at[2];
     sequence_point(before + index, at);
     double u = (at[0] >> 8) * 0x1p-24, v = (at[1] >> 8) * 0x1p-24;
-    if (light->kind == SCENE_LIGHT_TRIANGLE) { /* keeps areas (Turk 1990) */
+    if (light->kind == WHIT_LIGHT_TRIANGLE) { /* keeps areas (Turk 1990) */
         double root = sqrt(u);
         u = root * (1.0 - v);
         v = root * v;
@@ -30,7 +30,7 @@ static struct dvec3 emitter_point(const struct tracer *tracer, const struct scen
 double light_area_share(const struct reference *reference, const struct scene_light *light)
 {
     double area = d3_length(dvec3_cross(three(light->edge_u), three(light->edge_v)));
-    if (light->kind == SCENE_LIGHT_TRIANGLE)
+    if (light->kind == WHIT_LIGHT_TRIANGLE)
         area *= 0.5;
     return area / (PI * reference->light_samples);
 }
@@ -53,7 +53,7 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     bool flat = scene_light_is_flat(light);
     *sample = (struct light_sample_info){.arriving = d3_load(light->color)};
     struct dvec3 direction = d3_unit_or(three(light->direction), d3_all(0.0));
-    if (light->kind == SCENE_LIGHT_DIRECTIONAL) {
+    if (light->kind == WHIT_LIGHT_DIRECTIONAL) {
         sample->to_light = d3_scale(direction, -1.0);
         sample->distance = INFINITY;
         return true;
@@ -67,11 +67,11 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     double square = fmax(sample->distance * sample->distance, (double)FLT_MIN);
     double cos_away = -dvec3_dot(sample->to_light, direction), share = 1.0;
     double cos_emitter = light->two_sided ? fabs(cos_away) : fmax(cos_away, 0.0);
-    if (light->falloff || flat || light->kind == SCENE_LIGHT_AREA_SAMPLE)
+    if (light->falloff || flat || light->kind == WHIT_LIGHT_AREA_SAMPLE)
         share /= square;
-    if (light->kind == SCENE_LIGHT_SPOT)
+    if (light->kind == WHIT_LIGHT_SPOT)
         share *= spot_share(light, cos_away);
-    if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
+    if (light->kind == WHIT_LIGHT_AREA_SAMPLE)
         share *= cos_emitter;
     if (flat) {
         sample->strength = fmin(cos_emitter / square, LIGHT_MAX);
@@ -116,7 +116,7 @@ double light_form_factor(const struct scene_light *light, struct dvec3 p, struct
 {
     struct dvec3 u = three(light->edge_u), v = three(light->edge_v), clipped[8];
     struct dvec3 c0 = dvec3_sub(three(light->position), p), direction = three(light->direction);
-    bool triangle = light->kind == SCENE_LIGHT_TRIANGLE;
+    bool triangle = light->kind == WHIT_LIGHT_TRIANGLE;
     const struct dvec3 corners[4] = {
         c0, d3_add(c0, u), triangle ? d3_add(c0, v) : d3_add(d3_add(c0, u), v), d3_add(c0, v)};
     double height = -dvec3_dot(c0, direction), sum = 0.0;

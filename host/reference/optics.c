@@ -160,8 +160,8 @@ struct optics optics_at(const struct reference *reference, struct surface *s, st
                         double eta)
 {
     const struct scene_material *m = s->material;
-    struct optics o = {.unlit = m->model == SCENE_MODEL_UNLIT,
-                       .metal_rough = m->model == SCENE_MODEL_METAL_ROUGH,
+    struct optics o = {.unlit = m->model == WHIT_MODEL_UNLIT,
+                       .metal_rough = m->model == WHIT_MODEL_METAL_ROUGH,
                        .thin = m->thin_walled,
                        .alpha = 1.0,
                        .eta = eta};

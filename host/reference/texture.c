@@ -95,7 +95,7 @@ static void place_uv(const struct surface *s, const struct scene_texture_use *us
 static bool is_srgb(const struct scene_material *m, enum scene_slot slot)
 {
     return slot == SCENE_SLOT_DIFFUSE || slot == SCENE_SLOT_EMISSION ||
-           (slot == SCENE_SLOT_SPECULAR && m->model == SCENE_MODEL_METAL_ROUGH);
+           (slot == SCENE_SLOT_SPECULAR && m->model == WHIT_MODEL_METAL_ROUGH);
 }
 
 /* What the ray stands for, in texels of level 0: the mean of the squares of its two sides. */

@@ -22,9 +22,9 @@ static double arriving_max(const struct renderer *renderer, bool highlights)
     for (uint32_t i = 0; i < renderer->pose.light_count; ++i) {
         const struct scene_light *light = &renderer->pose.lights[i];
         double color = largest(light->color);
-        if (light->kind == SCENE_LIGHT_AREA_SAMPLE || (scene_light_is_flat(light) && highlights))
+        if (light->kind == WHIT_LIGHT_AREA_SAMPLE || (scene_light_is_flat(light) && highlights))
             return -1.0;
-        if (light->falloff && light->kind != SCENE_LIGHT_DIRECTIONAL &&
+        if (light->falloff && light->kind != WHIT_LIGHT_DIRECTIONAL &&
             !scene_light_is_flat(light)) {
             /* Hits are off by roundings. */
             double away = 0.999 * accel_distance(renderer->accel, &renderer->pose, light->position);
@@ -60,22 +60,22 @@ static double ggx_max(const struct scene_material *m)
 static double weights_max(const struct scene_material *m, double base)
 {
     double through = largest(m->transmission), mirror = largest(m->reflection), weights = mirror;
-    if (m->model == SCENE_MODEL_METAL_ROUGH) {
+    if (m->model == WHIT_MODEL_METAL_ROUGH) {
         weights = fmax(fmax(1.0, base), through * fmax(1.0, base));
     } else if (through > 0.0) {
         weights = fmax(1.0, m->fresnel ? through : through + mirror);
     } else if (m->fresnel && mirror > 0.0) {
         weights = fmax(1.0, mirror);
     }
-    if (m->model == SCENE_MODEL_UNLIT)
+    if (m->model == WHIT_MODEL_UNLIT)
         weights = 0.0;
     return m->alpha == SCENE_ALPHA_BLEND || m->shadow_catcher ? fmax(1.0, weights) : weights;
 }
 
 static bool has_highlight(const struct scene_material *m)
 {
-    return m->model == SCENE_MODEL_METAL_ROUGH ||
-           (m->model == SCENE_MODEL_PHONG && largest(m->specular) > 0.0);
+    return m->model == WHIT_MODEL_METAL_ROUGH ||
+           (m->model == WHIT_MODEL_PHONG && largest(m->specular) > 0.0);
 }
 
 static struct max material_max(const struct renderer *renderer, const struct scene_material *m,
@@ -83,13 +83,13 @@ static struct max material_max(const struct renderer *renderer, const struct sce
 {
     double base = largest(m->diffuse), ambient = largest(m->ambient);
     double highlight = largest(m->specular);
-    if (m->model == SCENE_MODEL_METAL_ROUGH) {
+    if (m->model == WHIT_MODEL_METAL_ROUGH) {
         highlight = fmax(1.0, base); /* of F0 */
         ambient = base + highlight;
         highlight *= ggx_max(m);
     }
     struct max max = {.own = base + largest(m->emission), .weights = weights_max(m, base)};
-    if (m->model != SCENE_MODEL_UNLIT)
+    if (m->model != WHIT_MODEL_UNLIT)
         max.own = largest(m->emission) + ambient * largest(renderer->frame.ambient) +
                   (base + (has_highlight(m) ? highlight : 0.0)) * arriving;
     return max;
@@ -101,7 +101,7 @@ static double sky_max(const struct renderer *renderer)
     const struct gpu_frame *frame = &renderer->frame;
     double max =
         fmax(largest(frame->zenith), fmax(largest(frame->horizon), largest(frame->ground)));
-    if (sky->kind != SCENE_ENVIRONMENT_MAP || frame->environment_size == 0)
+    if (sky->kind != WHIT_ENVIRONMENT_MAP || frame->environment_size == 0)
         return max;
     if (!sky->rgb)
         return -1.0;

@@ -10,22 +10,22 @@
 
 enum { ROW_BYTES = 16, SAMPLES_DEFAULT = 16 };
 
-static uint32_t light_code(enum scene_light_kind kind)
+static uint32_t light_code(whit_light_kind kind)
 {
     switch (kind) {
-    case SCENE_LIGHT_POINT:
+    case WHIT_LIGHT_POINT:
         return LIGHT_POINT;
-    case SCENE_LIGHT_DIRECTIONAL:
+    case WHIT_LIGHT_DIRECTIONAL:
         return LIGHT_DIRECTIONAL;
-    case SCENE_LIGHT_SPOT:
+    case WHIT_LIGHT_SPOT:
         return LIGHT_SPOT;
-    case SCENE_LIGHT_AREA_SAMPLE:
+    case WHIT_LIGHT_AREA_SAMPLE:
         return LIGHT_AREA_SAMPLE;
-    case SCENE_LIGHT_RECTANGLE:
+    case WHIT_LIGHT_RECTANGLE:
         return LIGHT_RECTANGLE;
-    case SCENE_LIGHT_TRIANGLE:
+    case WHIT_LIGHT_TRIANGLE:
         return LIGHT_TRIANGLE;
-    case SCENE_LIGHT_KINDS:
+    case WHIT_LIGHT_KINDS:
         break;
     }
     return LIGHT_POINT;
@@ -33,7 +33,7 @@ static uint32_t light_code(enum scene_light_kind kind)
 
 static bool is_flat(const struct scene_light *light)
 {
-    return light->kind == SCENE_LIGHT_RECTANGLE || light->kind == SCENE_LIGHT_TRIANGLE;
+    return light->kind == WHIT_LIGHT_RECTANGLE || light->kind == WHIT_LIGHT_TRIANGLE;
 }
 
 static double emitter_area(const struct scene_light *light)
@@ -42,7 +42,7 @@ static double emitter_area(const struct scene_light *light)
     double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
            z = u[0] * v[1] - u[1] * v[0];
     double parallelogram = sqrt(x * x + y * y + z * z);
-    return light->kind == SCENE_LIGHT_TRIANGLE ? 0.5 * parallelogram : parallelogram;
+    return light->kind == WHIT_LIGHT_TRIANGLE ? 0.5 * parallelogram : parallelogram;
 }
 
 static struct gpu_light make_light(const struct scene_light *light, uint32_t samples)
@@ -50,7 +50,7 @@ static struct gpu_light make_light(const struct scene_light *light, uint32_t sam
     struct gpu_light out = {
         .kind = light_code(light->kind),
         .range = light->range > 0.0f ? light->range : INFINITY,
-        .falloff = light->falloff || light->kind == SCENE_LIGHT_AREA_SAMPLE,
+        .falloff = light->falloff || light->kind == WHIT_LIGHT_AREA_SAMPLE,
         .cos_inner = light->cos_inner,
         .cos_outer = light->cos_outer,
         .two_sided = light->two_sided,

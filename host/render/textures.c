@@ -96,11 +96,11 @@ static bool has_alpha(const struct scene *scene, uint32_t texture)
     return false;
 }
 
-static uint32_t model_code(enum scene_model model)
+static uint32_t model_code(whit_material_model model)
 {
-    return model == SCENE_MODEL_METAL_ROUGH ? MATERIAL_MODEL_METAL_ROUGH
-           : model == SCENE_MODEL_UNLIT     ? MATERIAL_MODEL_UNLIT
-                                            : MATERIAL_MODEL_PHONG;
+    return model == WHIT_MODEL_METAL_ROUGH ? MATERIAL_MODEL_METAL_ROUGH
+           : model == WHIT_MODEL_UNLIT     ? MATERIAL_MODEL_UNLIT
+                                           : MATERIAL_MODEL_PHONG;
 }
 
 static uint32_t material_flags(const struct scene_material *m)
@@ -146,7 +146,7 @@ static void make_solid(struct scene_material *m)
 {
     float root = (m->ior - 1.0f) / (m->ior + 1.0f);
     float mirror = m->fresnel ? root * root : 0.0f;
-    for (int c = 0; m->model == SCENE_MODEL_PHONG && c < 3; ++c) {
+    for (int c = 0; m->model == WHIT_MODEL_PHONG && c < 3; ++c) {
         m->diffuse[c] += (1.0f - mirror) * m->transmission[c];
         m->ambient[c] += (1.0f - mirror) * m->transmission[c];
         m->reflection[c] = m->fresnel ? mirror : m->reflection[c];
@@ -157,7 +157,7 @@ struct scene_material material_drawn(const struct renderer *renderer, uint32_t i
 {
     struct scene_material m = renderer->scene->materials[index];
     bool glass = m.transmission[0] > 0.0f || m.transmission[1] > 0.0f || m.transmission[2] > 0.0f;
-    if (glass && m.model != SCENE_MODEL_UNLIT && !renderer->effects.called[SCENE_EFFECT_REFRACTION])
+    if (glass && m.model != WHIT_MODEL_UNLIT && !renderer->effects.called[SCENE_EFFECT_REFRACTION])
         make_solid(&m);
     return m;
 }
@@ -206,7 +206,7 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
         uint32_t *use;
     } slots[] = {
         {SCENE_SLOT_DIFFUSE, true, &out->tex_diffuse},
-        {SCENE_SLOT_SPECULAR, m->model == SCENE_MODEL_METAL_ROUGH, &out->tex_specular},
+        {SCENE_SLOT_SPECULAR, m->model == WHIT_MODEL_METAL_ROUGH, &out->tex_specular},
         {SCENE_SLOT_EMISSION, true, &out->tex_emission},
         {SCENE_SLOT_NORMAL, false, &out->tex_normal},
         {SCENE_SLOT_BUMP, false, &out->tex_bump},

@@ -52,7 +52,7 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
         return result;
     struct scene_camera camera = {
         .name = scene_text(scene, "default"),
-        .kind = SCENE_CAMERA_PERSPECTIVE,
+        .kind = WHIT_CAMERA_PERSPECTIVE,
         .node = SCENE_NONE,
         .up = {0, 1, 0},
         .fov_y = (float)viewpoint->fov_y,
@@ -80,7 +80,7 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
     for (size_t k = 0; k < sizeof lamps / sizeof *lamps; ++k) {
         struct scene_light light = {
             .name = scene_text(scene, lamps[k].name),
-            .kind = SCENE_LIGHT_POINT,
+            .kind = WHIT_LIGHT_POINT,
             .node = SCENE_NONE,
             .direction = {0, -1, 0},
             .made_by_whit = true,
@@ -103,7 +103,7 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
     const double aside = kind == VIEWPOINT_STRAIGHT ? 0.3 : 1.0;
     struct scene_light light = {
         .name = scene_text(scene, "default key light"),
-        .kind = SCENE_LIGHT_DIRECTIONAL,
+        .kind = WHIT_LIGHT_DIRECTIONAL,
         .node = SCENE_NONE,
         .color = {0.95f, 0.93f, 0.9f},
         .made_by_whit = true,
@@ -124,7 +124,7 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
 static void add_sky(struct scene *scene)
 {
     struct scene_environment *sky = &scene->environment;
-    sky->kind = SCENE_ENVIRONMENT_GRADIENT;
+    sky->kind = WHIT_ENVIRONMENT_GRADIENT;
     set_color(sky->zenith, 0.22f, 0.40f, 0.72f);
     set_color(sky->horizon, 0.72f, 0.77f, 0.82f);
     set_color(sky->ground, 0.52f, 0.52f, 0.52f);
@@ -135,7 +135,7 @@ static void add_sky(struct scene *scene)
 static void add_darkness(struct scene *scene)
 {
     struct scene_environment *sky = &scene->environment;
-    sky->kind = SCENE_ENVIRONMENT_GRADIENT;
+    sky->kind = WHIT_ENVIRONMENT_GRADIENT;
     set_color(sky->zenith, 0.0f, 0.0f, 0.0f);
     set_color(sky->horizon, 0.0f, 0.0f, 0.0f);
     set_color(sky->ground, 0.0f, 0.0f, 0.0f);
@@ -195,7 +195,7 @@ static whit_result add_lamp_at_eye(struct scene *scene, const struct scene_pose 
     const struct scene_camera *camera = pose->camera_count ? pose->cameras : scene->cameras;
     struct scene_light light = {
         .name = scene_text(scene, "default lamp"),
-        .kind = SCENE_LIGHT_POINT,
+        .kind = WHIT_LIGHT_POINT,
         .node = SCENE_NONE,
         .direction = {0, -1, 0},
         .color = {0.6f, 0.59f, 0.56f},

@@ -98,7 +98,7 @@ static bool has(const struct scene_material *material, enum scene_slot slot)
 
 static bool is_glossy_metal_rough(const struct scene_material *m)
 {
-    return m->model == SCENE_MODEL_METAL_ROUGH && (m->specular_level > 0.0f || m->metallic > 0.0f);
+    return m->model == WHIT_MODEL_METAL_ROUGH && (m->specular_level > 0.0f || m->metallic > 0.0f);
 }
 
 /* What glass calls for. Light that leaves a dense medium at a grazing angle is reflected as a
@@ -125,9 +125,9 @@ static void scan_optics(struct scene_effects *out, const struct scene_material *
         call_by_material(out, SCENE_EFFECT_CATCHERS, m, "");
     if (m->one_sided)
         call_by_material(out, SCENE_EFFECT_CULLING, m, "one-sided");
-    out->lit |= m->model == SCENE_MODEL_METAL_ROUGH || m->shadow_catcher ||
-                (m->model == SCENE_MODEL_PHONG && (any(m->diffuse) || any(m->specular)));
-    if (m->model == SCENE_MODEL_UNLIT)
+    out->lit |= m->model == WHIT_MODEL_METAL_ROUGH || m->shadow_catcher ||
+                (m->model == WHIT_MODEL_PHONG && (any(m->diffuse) || any(m->specular)));
+    if (m->model == WHIT_MODEL_UNLIT)
         return;
     if (any(m->reflection) || mirrors || (any(m->transmission) && m->fresnel))
         call_by_material(out, SCENE_EFFECT_REFLECTION, m,
@@ -138,9 +138,9 @@ static void scan_optics(struct scene_effects *out, const struct scene_material *
         scan_glass(out, m);
     if (mirrors || (m->fresnel && (any(m->reflection) || any(m->transmission))))
         call_by_material(out, SCENE_EFFECT_FRESNEL, m, mirrors ? "metal-rough" : "");
-    if (metal_rough || (m->model == SCENE_MODEL_PHONG && any(m->specular)))
+    if (metal_rough || (m->model == WHIT_MODEL_PHONG && any(m->specular)))
         call_by_material(out, SCENE_EFFECT_HIGHLIGHTS, m, "");
-    if (m->model == SCENE_MODEL_METAL_ROUGH)
+    if (m->model == WHIT_MODEL_METAL_ROUGH)
         call_by_material(out, SCENE_EFFECT_METAL_ROUGH, m, "");
 }
 
@@ -184,9 +184,9 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
     if (has(m, SCENE_SLOT_DIFFUSE) && m->alpha != SCENE_ALPHA_OPAQUE)
         out->texture_slots |= 1u << SCENE_SLOT_OPACITY;
     if (has(m, SCENE_SLOT_DIFFUSE) || has(m, SCENE_SLOT_EMISSION) ||
-        (has(m, SCENE_SLOT_SPECULAR) && m->model == SCENE_MODEL_METAL_ROUGH))
+        (has(m, SCENE_SLOT_SPECULAR) && m->model == WHIT_MODEL_METAL_ROUGH))
         out->sampling |= SCENE_SAMPLING_SRGB;
-    if (m->model != SCENE_MODEL_UNLIT && (has(m, SCENE_SLOT_NORMAL) || has(m, SCENE_SLOT_BUMP)))
+    if (m->model != WHIT_MODEL_UNLIT && (has(m, SCENE_SLOT_NORMAL) || has(m, SCENE_SLOT_BUMP)))
         call_by_material(out, SCENE_EFFECT_NORMAL_MAPS, m,
                          has(m, SCENE_SLOT_NORMAL) ? "normal map" : "bump map");
     if (lets_through(scene, m))
@@ -198,19 +198,19 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
 }
 
 /* A switch, so that a kind without an effect does not compile. */
-static enum scene_effect effect_of_light(enum scene_light_kind kind)
+static enum scene_effect effect_of_light(whit_light_kind kind)
 {
     switch (kind) {
-    case SCENE_LIGHT_POINT:
+    case WHIT_LIGHT_POINT:
         return SCENE_EFFECT_POINT_LIGHTS;
-    case SCENE_LIGHT_DIRECTIONAL:
+    case WHIT_LIGHT_DIRECTIONAL:
         return SCENE_EFFECT_DIRECTIONAL_LIGHTS;
-    case SCENE_LIGHT_SPOT:
+    case WHIT_LIGHT_SPOT:
         return SCENE_EFFECT_SPOT_LIGHTS;
-    case SCENE_LIGHT_AREA_SAMPLE:
-    case SCENE_LIGHT_RECTANGLE:
-    case SCENE_LIGHT_TRIANGLE:
-    case SCENE_LIGHT_KINDS:
+    case WHIT_LIGHT_AREA_SAMPLE:
+    case WHIT_LIGHT_RECTANGLE:
+    case WHIT_LIGHT_TRIANGLE:
+    case WHIT_LIGHT_KINDS:
         return SCENE_EFFECT_AREA_LIGHTS;
     }
     return SCENE_EFFECT_AREA_LIGHTS;
@@ -256,9 +256,9 @@ static void scan_geometry(const struct scene *scene, struct scene_effects *out)
 static void scan_camera(struct scene_effects *out, const struct scene_camera *camera)
 {
     const struct text_token name = text_token(camera->name);
-    if (camera->kind == SCENE_CAMERA_ORTHOGRAPHIC)
+    if (camera->kind == WHIT_CAMERA_ORTHOGRAPHIC)
         call(out, SCENE_EFFECT_ORTHOGRAPHIC, "camera `%s`", name.text);
-    else if (camera->kind == SCENE_CAMERA_PANORAMA)
+    else if (camera->kind == WHIT_CAMERA_PANORAMA)
         call(out, SCENE_EFFECT_PANORAMA, "camera `%s`", name.text);
     else if (camera->lens_radius > 0.0f)
         call(out, SCENE_EFFECT_LENS, "camera `%s`, radius %g", name.text,
@@ -320,7 +320,7 @@ void scene_effects_scan(const struct scene *scene, struct scene_effects *out)
     scene_effects_scan_materials(scene, SCENE_MATERIALS_ALL, out);
     scan_geometry(scene, out);
     const struct scene_environment *sky = &scene->environment;
-    if (sky->kind == SCENE_ENVIRONMENT_MAP && sky->rgb)
+    if (sky->kind == WHIT_ENVIRONMENT_MAP && sky->rgb)
         call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%s`",
              text_token(sky->name ? file_name(sky->name) : "").text);
     for (uint32_t i = 0; i < scene->camera_count; ++i)

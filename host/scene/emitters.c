@@ -40,7 +40,7 @@ static double luminance(const float rgb[3])
 /* Textured emission is left out: signs and screens glow, but their average is no lamp. */
 static bool lights_up(const struct scene_material *material)
 {
-    return material->model != SCENE_MODEL_UNLIT && luminance(material->emission) > 0.0 &&
+    return material->model != WHIT_MODEL_UNLIT && luminance(material->emission) > 0.0 &&
            material->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE;
 }
 
@@ -131,7 +131,7 @@ static struct scene_light light_of(struct scene *scene, const struct emitter *em
         .cos_inner = 1.0f,
         .cos_outer = 0.0f,
         /* OBJ files wind their lamps either way, so only glTF's are taken at their word. */
-        .two_sided = material->two_sided || material->model != SCENE_MODEL_METAL_ROUGH,
+        .two_sided = material->two_sided || material->model != WHIT_MODEL_METAL_ROUGH,
         .made_by_whit = true,
     };
 }
@@ -148,7 +148,7 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     const struct scene_material *material = &scene->materials[emitter->material];
     struct affine local = local_of(instance);
     struct scene_light light = light_of(scene, emitter);
-    light.kind = SCENE_LIGHT_AREA_SAMPLE;
+    light.kind = WHIT_LIGHT_AREA_SAMPLE;
     double corners[3][3], normal[3];
     triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     double twice_area = normal_of(corners, normal);
@@ -315,7 +315,7 @@ static bool add_flats(struct scene *scene, const struct flat *flats, uint32_t co
 {
     for (uint32_t i = 0; i < count; ++i) {
         struct scene_light light = light_of(scene, flats[i].emitter);
-        light.kind = flats[i].rectangle ? SCENE_LIGHT_RECTANGLE : SCENE_LIGHT_TRIANGLE;
+        light.kind = flats[i].rectangle ? WHIT_LIGHT_RECTANGLE : WHIT_LIGHT_TRIANGLE;
         double corners[3][3] = {{0}}, normal[3];
         memcpy(light.position, flats[i].corner, sizeof light.position);
         memcpy(light.edge_u, flats[i].sides[0], sizeof light.edge_u);

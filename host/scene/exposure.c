@@ -70,13 +70,13 @@ static double receiver(const struct scene *scene, const struct scene_pose *pose,
 static double arriving(const struct scene_light *light, const double way[3], double distance)
 {
     double value = luminance(light->color), along = double3_dot(way, light->direction);
-    if (light->kind == SCENE_LIGHT_DIRECTIONAL)
+    if (light->kind == WHIT_LIGHT_DIRECTIONAL)
         return value;
     if (light->falloff)
         value /= distance * distance;
-    if (light->kind == SCENE_LIGHT_AREA_SAMPLE)
+    if (light->kind == WHIT_LIGHT_AREA_SAMPLE)
         value *= light->two_sided ? fabs(along) : fmax(along, 0.0);
-    if (light->kind == SCENE_LIGHT_SPOT && along < (double)light->cos_outer)
+    if (light->kind == WHIT_LIGHT_SPOT && along < (double)light->cos_outer)
         value = 0.0;
     return light->range > 0.0f && distance > (double)light->range ? 0.0 : value;
 }
@@ -87,7 +87,7 @@ static double brightness_of_emitter(const struct scene_light *light, const doubl
                                     const double normal[3])
 {
     enum { GRID = 4 };
-    bool triangle = light->kind == SCENE_LIGHT_TRIANGLE;
+    bool triangle = light->kind == WHIT_LIGHT_TRIANGLE;
     double product[3], sum = 0.0;
     const double *u = light->edge_u, *v = light->edge_v;
     for (int i = 0; i < 3; ++i) {
@@ -116,8 +116,8 @@ double freeze_brightness(const struct scene_light *light, const double point[3],
     if (scene_light_is_flat(light))
         return brightness_of_emitter(light, point, normal);
     for (int k = 0; k < 3; ++k)
-        way[k] = light->kind == SCENE_LIGHT_DIRECTIONAL ? light->direction[k]
-                                                        : point[k] - light->position[k];
+        way[k] = light->kind == WHIT_LIGHT_DIRECTIONAL ? light->direction[k]
+                                                       : point[k] - light->position[k];
     double distance = double3_length(way);
     double3_unit(way);
     return distance > 0.0 ? arriving(light, way, distance) * fabs(double3_dot(way, normal)) : 0.0;
@@ -264,7 +264,7 @@ static bool has_own_light(const struct scene *scene)
     bool own = false;
     for (uint32_t i = 0; i < scene->light_count; ++i)
         own = own || !scene->lights[i].made_by_whit || scene_light_is_flat(&scene->lights[i]) ||
-              scene->lights[i].kind == SCENE_LIGHT_AREA_SAMPLE;
+              scene->lights[i].kind == WHIT_LIGHT_AREA_SAMPLE;
     return own;
 }
 

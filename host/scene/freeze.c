@@ -382,7 +382,7 @@ static bool usable_camera(const struct scene_camera *camera)
         if (!isfinite(camera->up[i]))
             return false;
     }
-    if (camera->kind == SCENE_CAMERA_ORTHOGRAPHIC &&
+    if (camera->kind == WHIT_CAMERA_ORTHOGRAPHIC &&
         !(camera->height > 0.0f && isfinite(camera->height)))
         return false;
     return isfinite(distance2) && distance2 > 0.0;
@@ -409,7 +409,7 @@ static void mend_camera(struct scene_camera *camera)
     }
     if (!(camera->fov_y > 0.0f && camera->fov_y < 3.1415f))
         camera->fov_y = 0.6981317f;
-    if (camera->kind != SCENE_CAMERA_PERSPECTIVE ||
+    if (camera->kind != WHIT_CAMERA_PERSPECTIVE ||
         !(camera->lens_radius > 0.0f && isfinite(camera->lens_radius)))
         camera->lens_radius = 0.0f;
     if (!(camera->focus_distance > 0.0f && isfinite(camera->focus_distance)))
@@ -447,8 +447,8 @@ static void check_environment(struct scene *scene)
     uint32_t count = mend_rgb(sky->zenith, huge, 0.0f) + mend_rgb(sky->horizon, huge, 0.0f) +
                      mend_rgb(sky->ground, huge, 0.0f) + mend_rgb(sky->scale, huge, 1.0f) +
                      mend_rgb(scene->ambient, huge, 0.0f);
-    if (sky->kind == SCENE_ENVIRONMENT_MAP && (!sky->rgb || !sky->width || !sky->height))
-        sky->kind = SCENE_ENVIRONMENT_GRADIENT;
+    if (sky->kind == WHIT_ENVIRONMENT_MAP && (!sky->rgb || !sky->width || !sky->height))
+        sky->kind = WHIT_ENVIRONMENT_GRADIENT;
     if (!(scene->contact >= 0.0f && isfinite(scene->contact)))
         scene->contact = 0.0f;
     size_t floats = sky->rgb ? (size_t)sky->width * sky->height * 3 : 0;

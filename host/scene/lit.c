@@ -122,7 +122,7 @@ static void place_on(const struct scene_light *light, uint32_t index, double out
 {
     double u = fmod(0.5 + index * 0.7548776662466927, 1.0);
     double v = fmod(0.5 + index * 0.5698402909980532, 1.0);
-    if (light->kind == SCENE_LIGHT_TRIANGLE && u + v > 1.0) {
+    if (light->kind == WHIT_LIGHT_TRIANGLE && u + v > 1.0) {
         u = 1.0 - u;
         v = 1.0 - v;
     }
@@ -135,7 +135,7 @@ static bool reaches(const struct scene *scene, const struct scene_pose *pose,
                     const struct affine *inverses, const struct scene_light *light,
                     const double point[3], uint32_t index)
 {
-    bool parallel = light->kind == SCENE_LIGHT_DIRECTIONAL;
+    bool parallel = light->kind == WHIT_LIGHT_DIRECTIONAL;
     struct ray ray = {.t_max = parallel ? INFINITY : 1.0 - OFFSET};
     struct hit hit;
     double at[3];
@@ -167,7 +167,7 @@ static struct ray look(const struct scene_camera *camera, uint32_t index, uint32
     double x = 2.0 * fmod((index + 0.5) * 0.6180339887498949, 1.0) - 1.0;
     double y = 1.0 - 2.0 * (index + 0.5) / count;
     double forward[3], right[3], up[3], tall;
-    bool parallel = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC;
+    bool parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
     struct ray ray = {.t_max = INFINITY};
     for (int k = 0; k < 3; ++k)
         forward[k] = camera->target[k] - camera->eye[k];
@@ -269,7 +269,7 @@ static bool is_mirror(const struct scene *scene, const struct hit *hit)
     const struct scene_material *m = hit->material;
     uint8_t texel[4];
     pick_texel(scene, hit, SCENE_SLOT_METAL_ROUGH, texel);
-    return (m->model == SCENE_MODEL_METAL_ROUGH && (double)m->metallic * texel[2] > 127.0) ||
+    return (m->model == WHIT_MODEL_METAL_ROUGH && (double)m->metallic * texel[2] > 127.0) ||
            m->reflection[0] > 0.5f || m->reflection[1] > 0.5f || m->reflection[2] > 0.5f;
 }
 
@@ -305,7 +305,7 @@ static void measure_seen(const struct scene *scene, const struct scene_pose *pos
         if (!see(scene, pose, inverses, i, count, &hit, point) || is_mirror(scene, &hit))
             continue;
         double own = shine(scene, &hit, hit.material->emission, SCENE_SLOT_EMISSION);
-        double light = hit.material->model == SCENE_MODEL_UNLIT
+        double light = hit.material->model == WHIT_MODEL_UNLIT
                            ? 1.0
                            : light_at(scene, pose, inverses, point, &hit, i, shadows) + ambient;
         double color = shine(scene, &hit, hit.material->diffuse, SCENE_SLOT_DIFFUSE);
@@ -329,7 +329,7 @@ static whit_result begin(const struct scene *scene, struct scene_pose *pose,
         scene_pose_finish(pose);
         return WHIT_ERROR_MEMORY;
     }
-    bool all = pose->camera_count && pose->cameras[0].kind != SCENE_CAMERA_PANORAMA;
+    bool all = pose->camera_count && pose->cameras[0].kind != WHIT_CAMERA_PANORAMA;
     for (uint32_t i = 0; all && i < pose->instance_count; ++i)
         all = affine_invert(&pose->instances[i], &(*inverses)[i]);
     if (!all) {

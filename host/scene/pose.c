@@ -220,7 +220,7 @@ static struct scene_light pose_light(const struct scene_light *light, const stru
     if (light->node != SCENE_NONE) {
         const struct affine *world = &nodes[light->node];
         affine_point(world, light->position, out.position);
-        if (light->kind == SCENE_LIGHT_AREA_SAMPLE || scene_light_is_flat(light))
+        if (light->kind == WHIT_LIGHT_AREA_SAMPLE || scene_light_is_flat(light))
             move_normal(world, light->direction, out.direction);
         else
             affine_vector(world, light->direction, out.direction);

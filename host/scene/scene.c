@@ -170,7 +170,7 @@ void scene_material_init(struct scene_material *out, const char *name)
 {
     *out = (struct scene_material){
         .name = string_copy(name ? name : ""),
-        .model = SCENE_MODEL_PHONG,
+        .model = WHIT_MODEL_PHONG,
         .illum = -1,
         .ambient = {0.7f, 0.7f, 0.7f},
         .diffuse = {0.7f, 0.7f, 0.7f},

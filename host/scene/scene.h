@@ -54,12 +54,6 @@ enum scene_slot {
     SCENE_SLOT_COUNT
 };
 
-enum scene_model {
-    SCENE_MODEL_PHONG,       /* MTL: ambient, diffuse, highlight, mirror, glass */
-    SCENE_MODEL_METAL_ROUGH, /* glTF: mapped to the Whitted model, see docs/effects.md */
-    SCENE_MODEL_UNLIT,       /* diffuse colour as it is */
-};
-
 enum scene_alpha {
     SCENE_ALPHA_OPAQUE, /* opacity is ignored */
     SCENE_ALPHA_MASK,   /* hit where opacity >= alpha_cutoff */
@@ -69,7 +63,7 @@ enum scene_alpha {
 struct scene_material {
     char *name;
     struct scene_origin origin;
-    enum scene_model model;
+    whit_material_model model;
     int32_t illum;         /* MTL class 0..10; -1: not from an MTL */
     float ambient[3];      /* times the scene's ambient light */
     float diffuse[3];      /* albedo (PHONG), base colour (METAL_ROUGH), colour (UNLIT) */
@@ -163,27 +157,12 @@ struct scene_instance {
     struct affine local;
 };
 
-enum scene_light_kind {
-    SCENE_LIGHT_POINT,
-    SCENE_LIGHT_DIRECTIONAL,
-    SCENE_LIGHT_SPOT,
-    /* One sample of an emissive surface, made by scene_freeze: a point whose intensity along
-       `direction` (the surface's normal) is `color`, falling with the cosine to it; inverse-square.
-       A Lambertian surface below leaves albedo * color * cos * cos / distance^2. */
-    SCENE_LIGHT_AREA_SAMPLE,
-    /* Flat emitters of radiance `color`: corner `position`, edges `edge_u` and `edge_v`; light goes
-       out to the side of edge_u x edge_v, or to both. */
-    SCENE_LIGHT_RECTANGLE,
-    SCENE_LIGHT_TRIANGLE,
-    SCENE_LIGHT_KINDS, /* how many there are */
-};
-
 /* `position` and `direction` are in the space of `node`. Of flat emitters scene_freeze sets
    `direction`: the normal edge_u x edge_v. */
 struct scene_light {
     char *name;
     struct scene_origin origin;
-    enum scene_light_kind kind;
+    whit_light_kind kind;
     uint32_t node; /* or SCENE_NONE: world */
     double position[3];
     double direction[3]; /* the way the light travels; unit */
@@ -191,29 +170,24 @@ struct scene_light {
     float stated[3];     /* the same before scene_freeze made it suit the picture; set there */
     bool falloff;        /* 1 / distance^2 */
     float range;         /* 0: without limit */
-    float cos_inner, cos_outer;  /* SPOT: full inside inner, none outside outer */
-    double edge_u[3], edge_v[3]; /* RECTANGLE, TRIANGLE; in the space of `node` */
-    bool two_sided;              /* flat emitters: |cosine|, else nothing behind the surface */
+    float cos_inner, cos_outer; /* SPOT: full inside inner, none outside outer */
+    /* RECTANGLE, TRIANGLE: from the corner `position`, in the space of `node`. Light goes out to
+       the side of edge_u x edge_v. */
+    double edge_u[3], edge_v[3];
+    bool two_sided; /* flat emitters: to the other side too */
     bool made_by_whit;
 };
 
 /* RECTANGLE or TRIANGLE. */
 static inline bool scene_light_is_flat(const struct scene_light *light)
 {
-    return light->kind == SCENE_LIGHT_RECTANGLE || light->kind == SCENE_LIGHT_TRIANGLE;
+    return light->kind == WHIT_LIGHT_RECTANGLE || light->kind == WHIT_LIGHT_TRIANGLE;
 }
-
-enum scene_camera_kind {
-    SCENE_CAMERA_PERSPECTIVE,
-    SCENE_CAMERA_ORTHOGRAPHIC,
-    SCENE_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the width is 360
-                              degrees, the height 180 */
-};
 
 /* eye, target and up are in the space of `node`. */
 struct scene_camera {
     char *name;
-    enum scene_camera_kind kind;
+    whit_camera_kind kind;
     uint32_t node;
     double eye[3], target[3], up[3];
     float fov_y;          /* PERSPECTIVE: full vertical angle */
@@ -224,13 +198,11 @@ struct scene_camera {
     bool made_by_whit;
 };
 
-enum scene_environment_kind { SCENE_ENVIRONMENT_GRADIENT, SCENE_ENVIRONMENT_MAP };
-
 /* What rays that miss see. GRADIENT runs from horizon to zenith above and to ground below (+y is
    up); all three equal is a constant colour. MAP is equirectangular, row 0 up, its middle towards
    -z. */
 struct scene_environment {
-    enum scene_environment_kind kind;
+    whit_environment_kind kind;
     float zenith[3], horizon[3], ground[3];
     float scale[3]; /* times map or gradient */
     uint32_t width, height;
@@ -239,7 +211,8 @@ struct scene_environment {
     bool made_by_whit;
 };
 
-/* names.c: by the enumerations above; NULL behind those of alpha, wrap and interpolation. */
+/* names.c: by the enumerations here and in whit_scene.h; NULL behind those of alpha, wrap and
+   interpolation. */
 extern const char *const scene_model_names[],
     *const scene_alpha_names[], *const scene_wrap_names[],
                                     *const scene_interpolation_names[],

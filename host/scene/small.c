@@ -73,12 +73,12 @@ struct scene *scene_small(const whit_log *log)
     if (!scene)
         return NULL;
     const struct scene_light light = {.name = string_copy("small"),
-                                      .kind = SCENE_LIGHT_POINT,
+                                      .kind = WHIT_LIGHT_POINT,
                                       .node = SCENE_NONE,
                                       .position = {-3.0, 5.0, 3.0},
                                       .color = {1.0f, 1.0f, 1.0f}};
     const struct scene_camera camera = {.name = string_copy("small"),
-                                        .kind = SCENE_CAMERA_PERSPECTIVE,
+                                        .kind = WHIT_CAMERA_PERSPECTIVE,
                                         .node = SCENE_NONE,
                                         .eye = {0.0, 2.0, 4.5},
                                         .target = {0.0, 0.6, 0.0},

@@ -14,7 +14,7 @@ bool overlay_is_possible(const struct view *view)
         return false;
     if (view->file_camera >= 0 && view->scene)
         whit_scene_get_camera(view->scene->scene, (uint32_t)view->file_camera, &info);
-    return view->file_camera < 0 || strcmp(info.kind, "perspective") == 0;
+    return view->file_camera < 0 || info.kind == WHIT_CAMERA_PERSPECTIVE;
 }
 
 void overlay_line(const struct view *view, const double a[3], const double b[3], uint32_t color,

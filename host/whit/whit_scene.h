@@ -66,6 +66,14 @@ void whit_scene_destroy(whit_scene *scene);
    from it: making one is WHIT_ERROR_USAGE afterwards. Renderers made before are not touched. */
 void whit_scene_drop_pictures(whit_scene *scene);
 
+/* What rays see that meet nothing. */
+typedef enum whit_environment_kind {
+    WHIT_ENVIRONMENT_GRADIENT = 0,
+    WHIT_ENVIRONMENT_MAP, /* a picture all around */
+} whit_environment_kind;
+/* "gradient", "map" */
+const char *whit_environment_kind_name(whit_environment_kind kind);
+
 typedef struct whit_scene_info {
     uint32_t mesh_count, instance_count, node_count, material_count, texture_count, light_count,
         camera_count, note_count, effect_count;
@@ -83,7 +91,7 @@ typedef struct whit_scene_info {
     double lo[3], hi[3];                 /* world bounds at time 0; lo > hi when empty */
     double objects_lo[3], objects_hi[3]; /* the same, without a floor that is much wider than what
                                             stands on it */
-    const char *environment;             /* "gradient" or "map": what rays that miss see */
+    whit_environment_kind environment;
     bool environment_made_by_whit;
     double exposure_ev; /* half stops that suit what the first camera sees of a model; 0 where much
                            of it is neither burnt out nor black, and of scene files */
@@ -98,26 +106,55 @@ typedef struct whit_mesh_info {
     bool has_normals, has_uvs, has_colors;
     float lo[3], hi[3]; /* bounds, object space; lo > hi: it is empty */
 } whit_mesh_info;
+typedef enum whit_material_model {
+    WHIT_MODEL_PHONG = 0,   /* MTL: ambient, diffuse, highlight, mirror, glass */
+    WHIT_MODEL_METAL_ROUGH, /* glTF: mapped to the Whitted model, see docs/effects.md */
+    WHIT_MODEL_UNLIT,       /* diffuse colour as it is */
+} whit_material_model;
+/* "phong", "metal-rough", "unlit" */
+const char *whit_material_model_name(whit_material_model model);
 typedef struct whit_material_info {
     const char *name, *file; /* file: NULL when made by whit */
     uint32_t line;
-    const char *model; /* "phong", "metal-rough", "unlit" */
-    int32_t illum;     /* -1: none */
+    whit_material_model model;
+    int32_t illum; /* -1: none */
     float diffuse[3], specular[3], emission[3], reflection[3], transmission[3];
     float shininess, ior, opacity, metallic, roughness;
     uint32_t texture_count;
 } whit_material_info;
+typedef enum whit_light_kind {
+    WHIT_LIGHT_POINT = 0,
+    WHIT_LIGHT_DIRECTIONAL,
+    WHIT_LIGHT_SPOT,
+    /* One sample of an emissive surface, made when a scene is loaded: a point whose intensity along
+       `direction` (the surface's normal) is `color`, falling with the cosine to it; inverse-square.
+       A Lambertian surface below leaves albedo * color * cos * cos / distance^2. */
+    WHIT_LIGHT_AREA_SAMPLE,
+    WHIT_LIGHT_RECTANGLE, /* flat emitters of radiance `color` */
+    WHIT_LIGHT_TRIANGLE,
+    WHIT_LIGHT_KINDS, /* how many there are */
+} whit_light_kind;
+/* "point", "directional", "spot", "area-sample", "rectangle", "triangle" */
+const char *whit_light_kind_name(whit_light_kind kind);
 typedef struct whit_light_info {
     const char *name;
-    const char *kind; /* "point", "directional", "spot", "area-sample", "rectangle", "triangle" */
+    whit_light_kind kind;
     /* World, at time 0. Of a rectangle the centre, of a triangle a corner. */
     double position[3], direction[3];
     float color[3];
     bool made_by_whit;
 } whit_light_info;
+typedef enum whit_camera_kind {
+    WHIT_CAMERA_PERSPECTIVE = 0,
+    WHIT_CAMERA_ORTHOGRAPHIC,
+    WHIT_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the width is 360
+                             degrees, the height 180 */
+} whit_camera_kind;
+/* "perspective", "orthographic", "panorama" */
+const char *whit_camera_kind_name(whit_camera_kind kind);
 typedef struct whit_camera_info {
     const char *name;
-    const char *kind;                /* "perspective", "orthographic", "panorama" */
+    whit_camera_kind kind;
     double eye[3], target[3], up[3]; /* world, at time 0 */
     double fov_y_degrees, height;
     double lens_radius, focus_distance; /* world units; 0: a pinhole; 0: the target's distance */

@@ -68,7 +68,7 @@ change(host/device/pipeline.c make_pipeline [[[^ ]+spec_count > 0 && [^ ]+specia
 mutation(scan_misses_highlights scene_cube RED "--effects all gives the same picture"
   TARGET picture_check)
 change(host/scene/effects.c scan_optics
-  [[\([^()]*SCENE_MODEL_PHONG && any\([^()]*specular\)\)]] [[false]])
+  [[\([^()]*WHIT_MODEL_PHONG && any\([^()]*specular\)\)]] [[false]])
 
 mutation(effects_not_left_out cli_effects RED "less is another picture" TARGET whit_changed)
 change(host/settings/effects.c switch_effect [[: ([^ ;]+)effects_removed\) \|=]] [[: \1effects_added) |=]])

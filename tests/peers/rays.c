@@ -77,7 +77,7 @@ static void scale_to(double v[3], double length)
 
 static struct view view_of(const struct scene_camera *camera)
 {
-    struct view view = {.parallel = camera->kind == SCENE_CAMERA_ORTHOGRAPHIC};
+    struct view view = {.parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC};
     for (int k = 0; k < 3; ++k) {
         view.eye[k] = camera->eye[k];
         view.forward[k] = camera->target[k] - camera->eye[k];

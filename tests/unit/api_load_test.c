@@ -1,5 +1,5 @@
-/* The library in a program of somebody else: what it does to foreign files is done to its children.
- */
+/* The library in a program of somebody else: what it does to foreign files is done to its children,
+   and kinds are enumerations with words. */
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>
@@ -109,4 +109,24 @@ TEST_IN(limits_are_those_that_were_asked_for, folder_begin, folder_end)
     const uint64_t bytes[] = {0, 10000000, 1000000000};
     for (int i = 0; i < 3; ++i)
         assert_true(foreign_limits(NULL, "importer", bytes[i], 1).cpu_s == seconds[i]);
+}
+
+/* The words that programs print for `count` kinds: each its own, and none past the last. */
+#define CHECK_WORDS(name_of, count)                                                                \
+    for (unsigned i = 0; i < (count); ++i) {                                                       \
+        assert_true(name_of(i)[0] != '\0');                                                        \
+        for (unsigned k = 0; k < i; ++k)                                                           \
+            assert_string_not_equal(name_of(i), name_of(k));                                       \
+    }                                                                                              \
+    assert_string_equal(name_of(count), "")
+
+TEST(every_kind_has_a_word)
+{
+    CHECK_WORDS(whit_material_model_name, WHIT_MODEL_UNLIT + 1);
+    CHECK_WORDS(whit_light_kind_name, WHIT_LIGHT_KINDS);
+    CHECK_WORDS(whit_camera_kind_name, WHIT_CAMERA_PANORAMA + 1);
+    CHECK_WORDS(whit_environment_kind_name, WHIT_ENVIRONMENT_MAP + 1);
+    CHECK_WORDS(whit_part_kind_name, WHIT_PART_KINDS);
+    CHECK_WORDS(whit_fault_kind_name, WHIT_FAULT_KINDS);
+    CHECK_WORDS(whit_probe_end_name, WHIT_PROBE_ENDS);
 }

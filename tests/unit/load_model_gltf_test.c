@@ -202,7 +202,7 @@ TEST_IN(camera_angles_are_exact, fixture_begin, fixture_end)
     assert_float_equal(camera->eye[2], 0, 0);
     assert_float_equal(camera->target[2], -1, 0);
     assert_int_equal(camera->node, 0);
-    assert_int_equal(scene->cameras[1].kind, SCENE_CAMERA_ORTHOGRAPHIC);
+    assert_int_equal(scene->cameras[1].kind, WHIT_CAMERA_ORTHOGRAPHIC);
     assert_float_equal(scene->cameras[1].height, 4, 0);
 }
 
@@ -216,7 +216,7 @@ TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
                     "{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}}]}}");
     assert_int_equal(scene->light_count, 1);
     const struct scene_light *light = &scene->lights[0];
-    assert_int_equal(light->kind, SCENE_LIGHT_SPOT);
+    assert_int_equal(light->kind, WHIT_LIGHT_SPOT);
     assert_float_equal(light->color[1], 20.0f / 3.14159274f, 1e-5);
     assert_float_equal(light->range, 7, 0);
     assert_true(light->falloff);
@@ -244,7 +244,7 @@ TEST_IN(materials_and_extensions, fixture_begin, fixture_end)
              "\"KHR_materials_ior\":{\"ior\":1.25},\"KHR_materials_clearcoat\":{}}}]");
     const struct scene_material *m = &scene->materials[scene->meshes[0].materials[0]];
     assert_string_equal(m->name, "m");
-    assert_int_equal(m->model, SCENE_MODEL_METAL_ROUGH);
+    assert_int_equal(m->model, WHIT_MODEL_METAL_ROUGH);
     assert_float_equal(m->emission[0], 4, 0);
     assert_float_equal(m->emission[1], 8, 0);
     assert_float_equal(m->diffuse[2], 0.3, 1e-7);
@@ -283,7 +283,7 @@ TEST_IN(unlit_is_the_base_color_alone, fixture_begin, fixture_end)
                              "\"extensions\":{\"KHR_materials_unlit\":{},"
                              "\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}]");
     const struct scene_material *m = &scene->materials[0];
-    assert_int_equal(m->model, SCENE_MODEL_UNLIT);
+    assert_int_equal(m->model, WHIT_MODEL_UNLIT);
     assert_float_equal(m->diffuse[1], 0.25, 0);
     assert_float_equal(m->emission[0], 0, 0);
     assert_float_equal(m->transmission[0], 0, 0);

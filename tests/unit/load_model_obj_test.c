@@ -260,7 +260,7 @@ TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 {
     const struct scene_material *m = load_material(*state, "newmtl m\nKs 1 1 1\nillum 1\n");
     assert_float_equal(m->specular[0], 0, 0);
-    assert_int_equal(m->model, SCENE_MODEL_PHONG);
+    assert_int_equal(m->model, WHIT_MODEL_PHONG);
 }
 
 /* --- maps ----------------------------------------------------------------------------------- */

@@ -168,12 +168,12 @@ TEST_IN(camera_kinds_are_read, folder_begin, folder_end)
         load_fine("{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
                   "{\"panorama\":true},{\"panorama\":false,\"fov\":0.001}]}");
     const struct scene_camera *c = scene->cameras;
-    assert_int_equal(c[0].kind, SCENE_CAMERA_PERSPECTIVE);
+    assert_int_equal(c[0].kind, WHIT_CAMERA_PERSPECTIVE);
     assert_true(c[0].lens_radius == 0.25f && c[0].focus_distance == 7.0f);
     assert_true(fabs((double)c[0].fov_y - 3.1398473) < 1e-6);
     assert_true(c[1].lens_radius == 0.5f && c[1].focus_distance == 0.0f);
-    assert_int_equal(c[2].kind, SCENE_CAMERA_PANORAMA);
-    assert_int_equal(c[3].kind, SCENE_CAMERA_PERSPECTIVE);
+    assert_int_equal(c[2].kind, WHIT_CAMERA_PANORAMA);
+    assert_int_equal(c[3].kind, WHIT_CAMERA_PERSPECTIVE);
     assert_true(fabs((double)c[3].fov_y - 1.7453293e-5) < 1e-11 && c[3].lens_radius == 0.0f);
     scene_destroy(scene);
 }
@@ -347,11 +347,11 @@ TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)
     m = material_named(scene, "mirror");
     assert_true(!m->fresnel && m->reflection[2] == 0.7f && m->diffuse[0] < 0.08f);
     m = material_named(scene, "metal");
-    assert_int_equal(m->model, SCENE_MODEL_METAL_ROUGH);
+    assert_int_equal(m->model, WHIT_MODEL_METAL_ROUGH);
     assert_true(m->metallic == 1.0f && m->roughness == 0.25f && m->diffuse[1] == 0.5f);
     assert_int_equal(material_named(scene, "veil")->alpha, SCENE_ALPHA_BLEND);
     assert_int_equal(material_named(scene, "grid")->alpha, SCENE_ALPHA_MASK);
-    assert_int_equal(material_named(scene, "sign")->model, SCENE_MODEL_UNLIT);
+    assert_int_equal(material_named(scene, "sign")->model, WHIT_MODEL_UNLIT);
     assert_int_equal(material_named(scene, "wine")->priority, 3);
     assert_true(material_named(scene, "wine")->one_sided);
     assert_true(material_named(scene, "stage")->shadow_catcher);
@@ -387,13 +387,13 @@ static void lights_cameras_and_sky(void)
         "\"lights\":[{\"kind\":\"spot\",\"position\":[0,4,0],\"target\":[0,0,0],\"outer\":60,"
         "\"inner\":30,\"color\":[1,0.5,0],\"intensity\":8},"
         "{\"kind\":\"directional\",\"direction\":[0,-3,4]}]}");
-    assert_int_equal(scene->environment.kind, SCENE_ENVIRONMENT_MAP);
+    assert_int_equal(scene->environment.kind, WHIT_ENVIRONMENT_MAP);
     assert_int_equal(scene->environment.width, 2);
     assert_true(scene->environment.rgb[0] == 4.0f); /* PFM starts at the bottom row */
     assert_true(scene->environment.scale[1] == 2.0f);
     assert_true(scene->ambient[2] == 0.3f);
     assert_true(fabsf(scene->cameras[0].fov_y - 1.5707964f) < 1e-6f);
-    assert_int_equal(scene->cameras[1].kind, SCENE_CAMERA_ORTHOGRAPHIC);
+    assert_int_equal(scene->cameras[1].kind, WHIT_CAMERA_ORTHOGRAPHIC);
     const struct scene_light *spot = &scene->lights[0], *sun = &scene->lights[1];
     assert_true(spot->direction[1] == -1.0 && spot->falloff && spot->color[1] == 4.0f);
     assert_true(fabsf(spot->cos_outer - 0.5f) < 1e-6f && spot->cos_inner > 0.86f);
@@ -408,10 +408,10 @@ TEST_IN(flat_emitters, folder_begin, folder_end)
         "\"v\":[0,0,6],\"intensity\":8,\"two_sided\":true},"
         "{\"kind\":\"triangle\",\"points\":[[1,1,1],[3,1,1],[1,2,1]],\"color\":[1,2,3]}]}");
     const struct scene_light *panel = &scene->lights[0], *corner = &scene->lights[1];
-    assert_int_equal(panel->kind, SCENE_LIGHT_RECTANGLE);
+    assert_int_equal(panel->kind, WHIT_LIGHT_RECTANGLE);
     assert_true(panel->position[0] == 0.0 && panel->position[2] == -1.0 && panel->two_sided);
     assert_true(panel->edge_u[0] == 2.0 && panel->edge_v[2] == 6.0 && panel->color[0] == 8.0f);
-    assert_int_equal(corner->kind, SCENE_LIGHT_TRIANGLE);
+    assert_int_equal(corner->kind, WHIT_LIGHT_TRIANGLE);
     assert_true(corner->position[1] == 1.0 && !corner->two_sided && corner->color[2] == 3.0f);
     assert_true(corner->edge_u[0] == 2.0 && corner->edge_v[1] == 1.0);
     scene_destroy(scene);

@@ -37,7 +37,7 @@ static inline struct scene_material matte(float r, float g, float b)
 static inline struct scene_material unlit(float r, float g, float b)
 {
     struct scene_material m = matte(r, g, b);
-    m.model = SCENE_MODEL_UNLIT;
+    m.model = WHIT_MODEL_UNLIT;
     return m;
 }
 
@@ -55,7 +55,7 @@ static inline struct scene *dark_scene(const double eye[3], const double target[
 {
     struct scene *scene = scene_begin(&fixture_log, "picture");
     scene->has_environment = true;
-    scene->environment.kind = SCENE_ENVIRONMENT_GRADIENT;
+    scene->environment.kind = WHIT_ENVIRONMENT_GRADIENT;
     set_rgb(scene->environment.scale, 1.0f, 1.0f, 1.0f);
     scene->has_ambient = true;
     scene_put_camera(scene, eye, target, 0.6);
@@ -83,7 +83,7 @@ static inline struct scene *glowing_panel(double height)
 {
     struct scene *scene = dark_scene((double[]){0, height + 3, 0}, (double[]){0, height, 0});
     add_object(scene, mesh_plane(4), matte(1, 1, 1), 0, height, 0);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
                                                 .node = SCENE_NONE,
                                                 .two_sided = true,
                                                 .position = {-2, height, -2},

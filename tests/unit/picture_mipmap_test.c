@@ -163,7 +163,7 @@ TEST(slots_are_averaged_as_what_they_are)
     assert_int_equal(mipmap_kind_of(&m, SCENE_SLOT_EMISSION), MIPMAP_SRGB);
     assert_int_equal(mipmap_kind_of(&m, SCENE_SLOT_SPECULAR), MIPMAP_LINEAR);
     assert_int_equal(mipmap_kind_of(&m, SCENE_SLOT_NORMAL), MIPMAP_LINEAR);
-    m.model = SCENE_MODEL_METAL_ROUGH;
+    m.model = WHIT_MODEL_METAL_ROUGH;
     assert_int_equal(mipmap_kind_of(&m, SCENE_SLOT_SPECULAR), MIPMAP_SRGB);
     m.alpha = SCENE_ALPHA_BLEND;
     assert_int_equal(mipmap_kind_of(&m, SCENE_SLOT_DIFFUSE), MIPMAP_COVER);

@@ -82,7 +82,7 @@ static void add_bodies(struct scene *scene)
 {
     struct scene_material metal = matte(0.9f, 0.7f, 0.3f), sheet = matte(0.2f, 0.5f, 0.9f),
                           leaf = matte(0.3f, 0.8f, 0.2f), paint = matte(0.9f, 0.9f, 0.9f);
-    metal.model = SCENE_MODEL_METAL_ROUGH;
+    metal.model = WHIT_MODEL_METAL_ROUGH;
     set_rgb(metal.specular, 1, 1, 1);
     metal.metallic = 0.9f;
     metal.roughness = 0.6f;
@@ -115,7 +115,7 @@ static void add_glass(struct scene *scene)
 
 static void add_lights(struct scene *scene)
 {
-    const struct scene_light lights[] = {{.kind = SCENE_LIGHT_SPOT,
+    const struct scene_light lights[] = {{.kind = WHIT_LIGHT_SPOT,
                                           .node = SCENE_NONE,
                                           .position = {3, 5, 3},
                                           .direction = {-0.5, -0.75, -0.4330127},
@@ -124,13 +124,13 @@ static void add_lights(struct scene *scene)
                                           .range = 30,
                                           .cos_inner = 0.97f,
                                           .cos_outer = 0.8f},
-                                         {.kind = SCENE_LIGHT_RECTANGLE,
+                                         {.kind = WHIT_LIGHT_RECTANGLE,
                                           .node = SCENE_NONE,
                                           .position = {-3, 3, -2},
                                           .color = {2, 2, 3},
                                           .edge_u = {1.5, 0, 0.2},
                                           .edge_v = {0, 0.5, 1.5}},
-                                         {.kind = SCENE_LIGHT_TRIANGLE,
+                                         {.kind = WHIT_LIGHT_TRIANGLE,
                                           .node = SCENE_NONE,
                                           .position = {-3, 0.5, 3},
                                           .color = {1, 0.5f, 0.5f},
@@ -147,7 +147,7 @@ static void add_lights(struct scene *scene)
 static void add_sky(struct scene *scene)
 {
     uint64_t random = 3;
-    scene->environment.kind = SCENE_ENVIRONMENT_MAP;
+    scene->environment.kind = WHIT_ENVIRONMENT_MAP;
     scene->environment.width = 16;
     scene->environment.height = 8;
     scene->environment.rgb = array_alloc(16 * 8, 3 * sizeof(float));

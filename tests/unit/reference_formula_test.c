@@ -235,7 +235,7 @@ TEST(highlights_follow_their_formulas)
     scene_put_sun(scene, -sin(0.4), -cos(0.4), 0, 1);
     assert_close(pixel_light(scene, &of_one_pixel), 0.7 * pow(cos(0.2), 30), 1e-7);
     m = matte(0.6f, 0.6f, 0.6f);
-    m.model = SCENE_MODEL_METAL_ROUGH;
+    m.model = WHIT_MODEL_METAL_ROUGH;
     set_rgb(m.specular, 1, 1, 1);
     m.metallic = 1;
     m.roughness = 0.5f;
@@ -248,7 +248,7 @@ TEST(highlights_follow_their_formulas)
 TEST(emitters_follow_their_form_factor)
 {
     struct scene *scene = floor_scene(8);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
                                                 .node = SCENE_NONE,
                                                 .position = {-1, 2, -1.5},
                                                 .edge_u = {2, 0, 0},
@@ -361,12 +361,12 @@ TEST(ray_trees_add_up_to_pixels)
 TEST(cameras_are_those_of_kernels)
 {
     static const struct {
-        enum scene_camera_kind kind;
+        whit_camera_kind kind;
         float lens;
-    } cameras[] = {{SCENE_CAMERA_PERSPECTIVE, 0.0f},
-                   {SCENE_CAMERA_ORTHOGRAPHIC, 0.0f},
-                   {SCENE_CAMERA_PANORAMA, 0.0f},
-                   {SCENE_CAMERA_PERSPECTIVE, 0.2f}};
+    } cameras[] = {{WHIT_CAMERA_PERSPECTIVE, 0.0f},
+                   {WHIT_CAMERA_ORTHOGRAPHIC, 0.0f},
+                   {WHIT_CAMERA_PANORAMA, 0.0f},
+                   {WHIT_CAMERA_PERSPECTIVE, 0.2f}};
     for (size_t i = 0; i < 4; ++i) {
         struct scene *scene = dark_scene((double[]){1, 2, 3}, (double[]){0, 0.5, -1});
         scene->cameras[0].kind = cameras[i].kind;

@@ -55,7 +55,7 @@ static struct scene *far_textures(void)
     glass.ior = 1.5f;
     glass.fresnel = true;
     add_object(scene, mesh_balls((double[]){0, 0, 0, 0.5}, 1), glass, 0.1, 0.6, 2.5);
-    metal.model = SCENE_MODEL_METAL_ROUGH;
+    metal.model = WHIT_MODEL_METAL_ROUGH;
     metal.metallic = 1.0f;
     metal.roughness = 0.5f;
     set_rgb(metal.specular, 1, 1, 1);
@@ -117,13 +117,13 @@ static void check(const char *what, const struct accel_params *trees,
 
 static void make_orthographic(struct scene *scene)
 {
-    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    scene->cameras[0].kind = WHIT_CAMERA_ORTHOGRAPHIC;
     scene->cameras[0].height = 5.0f;
 }
 
 static void make_panorama(struct scene *scene)
 {
-    scene->cameras[0].kind = SCENE_CAMERA_PANORAMA;
+    scene->cameras[0].kind = WHIT_CAMERA_PANORAMA;
 }
 
 static void make_lens(struct scene *scene)

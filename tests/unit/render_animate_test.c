@@ -46,7 +46,7 @@ static struct scene *everything_moves(void)
                       (float[]){0, 0, 0, 0.3f, 0.2f, 0, 0.6f, 0, 0.4f});
     scene_put_light(
         scene, (struct scene_light){
-                   .kind = SCENE_LIGHT_POINT, .node = point, .color = {2, 2, 1}, .falloff = true});
+                   .kind = WHIT_LIGHT_POINT, .node = point, .color = {2, 2, 1}, .falloff = true});
     scene_put_camera(scene, (double[]){0, 2.2, 6}, (double[]){0, 0.8, 0}, 0.7);
     scene->cameras[0].node = eye;
     return scene;

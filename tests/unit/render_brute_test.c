@@ -193,7 +193,7 @@ TEST(many_shadows_are_refused)
 {
     struct scene *scene = scene_begin(&fixture_log, "ground");
     scene_put(scene, mesh_terrain(8.0, 0.6, 120, 1), NULL);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
                                                 .node = SCENE_NONE,
                                                 .color = {1, 1, 1},
                                                 .position = {0, 5, 0},

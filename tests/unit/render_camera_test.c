@@ -162,7 +162,7 @@ TEST(lens_rays_meet_in_focus)
 static struct scene *panorama_scene(const double eye[3], const double target[3])
 {
     struct scene *scene = dark_scene(eye, target);
-    scene->cameras[0].kind = SCENE_CAMERA_PANORAMA;
+    scene->cameras[0].kind = WHIT_CAMERA_PANORAMA;
     scene->cameras[0].up[0] = 0.2;
     return scene;
 }
@@ -314,7 +314,7 @@ TEST(rays_along_edges_hit)
 {
     enum { SIDE = 64 };
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
-    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    scene->cameras[0].kind = WHIT_CAMERA_ORTHOGRAPHIC;
     scene->cameras[0].height = 2.0f;
     /* Its diagonals go through pixel middles. */
     add_object(scene, mesh_box(4, 4, 1), unlit(1, 1, 1), 0, 0, 0);

@@ -339,14 +339,14 @@ TEST(camera_rays_are_those_of_c)
 {
     static const struct scene_camera cameras[] = {
         [CAMERA_PERSPECTIVE] = {.eye = {30011, 70003, 50021}, .fov_y = 1.1e-4f},
-        [CAMERA_ORTHOGRAPHIC] = {.kind = SCENE_CAMERA_ORTHOGRAPHIC,
+        [CAMERA_ORTHOGRAPHIC] = {.kind = WHIT_CAMERA_ORTHOGRAPHIC,
                                  .eye = {30011, 70003, 50021},
                                  .height = 10.0f},
         [CAMERA_LENS] = {.eye = {30011, 70003, 50021},
                          .fov_y = 1.1e-4f,
                          .lens_radius = 1.0f,
                          .focus_distance = 60000.0f},
-        [CAMERA_PANORAMA] = {.kind = SCENE_CAMERA_PANORAMA,
+        [CAMERA_PANORAMA] = {.kind = WHIT_CAMERA_PANORAMA,
                              .eye = {0.1, 2.1, 0.2},
                              .target = {3, 1, 2}},
     };

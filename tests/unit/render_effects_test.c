@@ -69,7 +69,7 @@ static void add_glass(struct scene *scene, double x, double y, double z)
 
 static void add_spot(struct scene *scene)
 {
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_SPOT,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_SPOT,
                                                 .node = SCENE_NONE,
                                                 .position = {-3, 4, 2},
                                                 .direction = {0.6, -0.8, 0},
@@ -83,7 +83,7 @@ static void add_lights(struct scene *scene)
     scene_put_lamp(scene, 2, 4, 1, 6.0f);
     scene_put_sun(scene, 0.3, -1, -0.4, 0.4f);
     add_spot(scene);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_AREA_SAMPLE,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_AREA_SAMPLE,
                                                 .node = SCENE_NONE,
                                                 .position = {0, 6, 0},
                                                 .direction = {0, -1, 0},
@@ -94,7 +94,7 @@ static void add_lights(struct scene *scene)
 /* Flat emitters of both shapes. */
 static void add_emitters(struct scene *scene)
 {
-    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE,
+    struct scene_light light = {.kind = WHIT_LIGHT_RECTANGLE,
                                 .node = SCENE_NONE,
                                 .two_sided = true,
                                 .position = {-0.3, 2.4, -0.3},
@@ -102,7 +102,7 @@ static void add_emitters(struct scene *scene)
                                 .edge_v = {0, 0, 0.6},
                                 .color = {6, 6, 6}};
     scene_put_light(scene, light);
-    light.kind = SCENE_LIGHT_TRIANGLE;
+    light.kind = WHIT_LIGHT_TRIANGLE;
     light.position[0] = -1.9;
     scene_put_light(scene, light);
 }
@@ -110,7 +110,7 @@ static void add_emitters(struct scene *scene)
 static void add_sky(struct scene *scene)
 {
     struct scene_environment *sky = &scene->environment;
-    sky->kind = SCENE_ENVIRONMENT_MAP;
+    sky->kind = WHIT_ENVIRONMENT_MAP;
     sky->width = 4;
     sky->height = 2;
     sky->rgb = malloc(24 * sizeof *sky->rgb);
@@ -141,7 +141,7 @@ static struct scene *rich_scene(void)
     m.alpha_cutoff = 0.5f;
     add_object(scene, mesh_box(0.8, 0.8, 0.1), m, -0.9, 0.5, 1.8);
     m = material_plain("metal");
-    m.model = SCENE_MODEL_METAL_ROUGH;
+    m.model = WHIT_MODEL_METAL_ROUGH;
     set_rgb(m.diffuse, 0.9f, 0.7f, 0.4f);
     set_rgb(m.specular, 1, 1, 1);
     m.metallic = 0.8f;
@@ -273,7 +273,7 @@ static struct scene_material alone_material(struct scene *scene)
     m.one_sided = alone == SCENE_EFFECT_CULLING;
     m.shadow_catcher = alone == SCENE_EFFECT_CATCHERS;
     if (alone == SCENE_EFFECT_METAL_ROUGH) {
-        m.model = SCENE_MODEL_METAL_ROUGH;
+        m.model = WHIT_MODEL_METAL_ROUGH;
         m.roughness = 0.4f;
     }
     return m;
@@ -357,7 +357,7 @@ static struct scene *glass_or_body_scene(void)
     struct scene *scene = plain_scene();
     struct scene_material m = material_plain("glass");
     const float color[] = {0.9f, 0.6f, 0.3f};
-    m.model = is_metal_rough ? SCENE_MODEL_METAL_ROUGH : SCENE_MODEL_PHONG;
+    m.model = is_metal_rough ? WHIT_MODEL_METAL_ROUGH : WHIT_MODEL_PHONG;
     m.ior = 3.0f; /* of which a quarter is reflected head-on */
     m.fresnel = true;
     for (int c = 0; c < 3; ++c) {

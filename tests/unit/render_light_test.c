@@ -18,8 +18,8 @@ static void floor_point(uint32_t x, uint32_t y, uint32_t side, double out[3])
     out[2] = ((y + 0.5) / side * 2.0 - 1.0) * reach;
 }
 
-static struct scene_light emitter(enum scene_light_kind kind, const double corner[3],
-                                  const double u[3], const double v[3], float radiance)
+static struct scene_light emitter(whit_light_kind kind, const double corner[3], const double u[3],
+                                  const double v[3], float radiance)
 {
     struct scene_light light = {
         .name = string_copy("emitter"), .kind = kind, .node = SCENE_NONE, .two_sided = true};
@@ -34,7 +34,7 @@ static struct scene_light emitter(enum scene_light_kind kind, const double corne
 static double form_factor(const struct scene_light *light, const double p[3])
 {
     enum { GRID = 1200 };
-    bool triangle = light->kind == SCENE_LIGHT_TRIANGLE;
+    bool triangle = light->kind == WHIT_LIGHT_TRIANGLE;
     const double *u = light->edge_u, *v = light->edge_v;
     double n[3], sum = 0.0;
     for (int i = 0; i < 3; ++i)
@@ -91,7 +91,7 @@ TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
                 {{-4.5, 0.5, -2.5}, {1, 0.3, 6}, {0.5, 2, -0.3}, 4, 5e-6},
                 {{-4.5, -1.0, -2.0}, {1, 0.3, 6}, {0.5, 4, -0.3}, 64, 1e-3}};
     for (int i = 0; i < 6; ++i) {
-        enum scene_light_kind kind = i % 2 ? SCENE_LIGHT_TRIANGLE : SCENE_LIGHT_RECTANGLE;
+        whit_light_kind kind = i % 2 ? WHIT_LIGHT_TRIANGLE : WHIT_LIGHT_RECTANGLE;
         check_form_factor(emitter(kind, rows[i / 2].corner, rows[i / 2].u, rows[i / 2].v, 3.0f),
                           rows[i / 2].samples, rows[i / 2].tolerance);
     }
@@ -105,9 +105,9 @@ TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
     for (int i = 0; i < 6; ++i) {
         /* The triangle's line of symmetry is x = 0. */
         struct scene_light light =
-            i % 2 ? emitter(SCENE_LIGHT_TRIANGLE, (double[]){0, 2, 0.2}, (double[]){-0.2, 0, -0.3},
+            i % 2 ? emitter(WHIT_LIGHT_TRIANGLE, (double[]){0, 2, 0.2}, (double[]){-0.2, 0, -0.3},
                             (double[]){0.2, 0, -0.3}, 3.0f)
-                  : emitter(SCENE_LIGHT_RECTANGLE, (double[]){-0.2, 2, -0.2}, (double[]){0.4, 0, 0},
+                  : emitter(WHIT_LIGHT_RECTANGLE, (double[]){-0.2, 2, -0.2}, (double[]){0.4, 0, 0},
                             (double[]){0, 0, 0.4}, 3.0f);
         const whit_renderer_params params = {.width = 1,
                                              .height = 1,
@@ -134,7 +134,7 @@ TEST_BY_TURNS(pixel_samples_smooth_shadows, 2, 4)
     for (int i = 0; i < 2; ++i) {
         struct scene *scene = floor_scene(eye_height);
         add_object(scene, mesh_plane(6), material_plain("plate"), 3.0, 1.5, 0);
-        scene_put_light(scene, emitter(SCENE_LIGHT_RECTANGLE, (double[]){-1, 3, -1},
+        scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){-1, 3, -1},
                                        (double[]){2, 0, 0}, (double[]){0, 0, 2}, 3.0f));
         whit_renderer_params params = {.width = 200,
                                        .height = 1,
@@ -158,7 +158,7 @@ TEST_BY_TURNS(spots_fall_off_between_their_cones, 3, 4)
 {
     const double height = 3.0, inner = 0.15, outer = 0.4;
     struct scene *scene = floor_scene(eye_height);
-    struct scene_light light = {.kind = SCENE_LIGHT_SPOT,
+    struct scene_light light = {.kind = WHIT_LIGHT_SPOT,
                                 .node = SCENE_NONE,
                                 .position = {0, height, 0},
                                 .direction = {0, -1, 0},
@@ -221,10 +221,10 @@ TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 4)
         struct scene *scene = floor_scene(eye_height);
         float strength = i == 2 ? 0.0f : i == 3 ? 3e38f : 1.0f;
         if (i == 5)
-            scene_put_light(scene, emitter(SCENE_LIGHT_RECTANGLE, (double[]){-1, 0, -1},
+            scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){-1, 0, -1},
                                            (double[]){2, 0, 0}, (double[]){0, 0, 2}, 3e38f));
         else if (i == 4)
-            scene_put_light(scene, emitter(SCENE_LIGHT_TRIANGLE, (double[]){-1, 1, -1},
+            scene_put_light(scene, emitter(WHIT_LIGHT_TRIANGLE, (double[]){-1, 1, -1},
                                            (double[]){2, 0, 0}, (double[]){1, 0, 0}, 1.0f));
         else if (i > 0)
             scene_put_lamp(scene, 0, i == 1 ? 0.0 : 1e-6, 0, strength);
@@ -331,13 +331,13 @@ TEST(packets_to_a_light_shade_as_rays_do)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         struct scene_light light = {.name = string_copy("light"),
-                                    .kind = SCENE_LIGHT_POINT,
+                                    .kind = WHIT_LIGHT_POINT,
                                     .node = SCENE_NONE,
                                     .color = {1, 1, 1}};
         memcpy(light.position, cases[i].at, sizeof light.position);
         if (cases[i].flat) {
             free(light.name);
-            light = emitter(SCENE_LIGHT_RECTANGLE, cases[i].at, (double[]){0.3, 0, 0},
+            light = emitter(WHIT_LIGHT_RECTANGLE, cases[i].at, (double[]){0.3, 0, 0},
                             (double[]){0, 0, 0.3}, 1);
         }
         const struct accel_params accel = {.mesh.builder = cases[i].clipped ? WHIT_BUILD_SPATIAL

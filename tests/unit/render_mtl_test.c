@@ -139,7 +139,7 @@ static struct image render_strips(const whit_renderer_params *params)
 {
     struct scene *scene = load_strips();
     scene->has_environment = true;
-    scene->environment.kind = SCENE_ENVIRONMENT_GRADIENT;
+    scene->environment.kind = WHIT_ENVIRONMENT_GRADIENT;
     set_rgb(scene->environment.scale, 1, 1, 1);
     set_floats(scene->environment.zenith, zenith);
     set_floats(scene->environment.horizon, horizon);
@@ -151,7 +151,7 @@ static struct image render_strips(const whit_renderer_params *params)
     /* One pixel a strip, through its middle. */
     scene_put_camera(scene, (double[]){0.5 * STRIPS, 5 * COS_VIEW, 5 * COS_LIGHT},
                      (double[]){0.5 * STRIPS, 0, 0}, 0);
-    scene->cameras[0].kind = SCENE_CAMERA_ORTHOGRAPHIC;
+    scene->cameras[0].kind = WHIT_CAMERA_ORTHOGRAPHIC;
     scene->cameras[0].height = 1;
     return color_of(scene, NULL, params);
 }

@@ -42,7 +42,7 @@ static struct image transmitting_box(float transmission, int texel)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     struct scene_material m = matte(0.8f, 0.6f, 0.4f);
-    m.model = SCENE_MODEL_METAL_ROUGH;
+    m.model = WHIT_MODEL_METAL_ROUGH;
     set_rgb(m.specular, 1, 1, 1);
     set_rgb(m.transmission, transmission, transmission, transmission);
     m.roughness = 1.0f;
@@ -75,7 +75,7 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
     set_sky(scene, 1, 1, 1);
     struct scene_material m = matte(0, 0, 0);
-    m.model = SCENE_MODEL_METAL_ROUGH;
+    m.model = WHIT_MODEL_METAL_ROUGH;
     set_rgb(m.specular, tint, tint, tint);
     m.specular_level = level;
     m.roughness = 0.0f;

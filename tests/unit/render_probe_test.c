@@ -265,7 +265,7 @@ static struct scene *sieve_scene(void)
     set_rgb(m.reflection, 0.8f, 0.8f, 0.8f);
     add_object(scene, mesh_box(3, 2.5, 0.2), m, 0, 1.2, -1.5);
     scene_put_lamp(scene, 2, 3.5, 4, 6.0f);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
                                                 .node = SCENE_NONE,
                                                 .position = {-1, 5, 0},
                                                 .direction = {0, -1, 0},

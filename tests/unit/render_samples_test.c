@@ -23,7 +23,7 @@ static int open_scene(void **state)
     set_rgb(ball.reflection, 0.2f, 0.3f, 0.4f);
     add_object(scene, mesh_plane(3), floor, 0, 0, 0);
     add_object(scene, mesh_sphere(0.5, 12, 8), ball, 0, 0.5, 0);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_RECTANGLE,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
                                                 .node = SCENE_NONE,
                                                 .position = {-1.1, 2.7, -0.8},
                                                 .direction = {0, -1, 0},

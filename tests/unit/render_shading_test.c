@@ -129,7 +129,7 @@ TEST_BY_TURNS(averted_normals_give_way, 1, 2)
             set_rgb(m.transmission, 0.5f, 0.5f, 0.5f);
         m.fresnel = kind == 1;
         if (kind == 2) {
-            m.model = SCENE_MODEL_METAL_ROUGH;
+            m.model = WHIT_MODEL_METAL_ROUGH;
             set_rgb(m.specular, 1, 1, 1);
             m.roughness = 0.5f;
             m.metallic = 0.5f;

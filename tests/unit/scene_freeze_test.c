@@ -231,7 +231,7 @@ TEST(missing_camera_and_light_are_made)
 TEST(own_light_gets_no_company)
 {
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
-    struct scene_light light = {.kind = SCENE_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
+    struct scene_light light = {.kind = WHIT_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
     scene_put_light(scene, light);
     scene_ready(scene);
     assert_int_equal(scene->light_count, 1);
@@ -269,7 +269,7 @@ TEST(tessellated_lamps_become_points)
     double sum = 0.0, mean_x = 0.0;
     for (uint32_t i = 0; i < pose.light_count; ++i) {
         const struct scene_light *light = &pose.lights[i];
-        assert_int_equal(light->kind, SCENE_LIGHT_AREA_SAMPLE);
+        assert_int_equal(light->kind, WHIT_LIGHT_AREA_SAMPLE);
         assert_true(fabs(light->position[1] - 5.0) < 1e-9 && fabs(light->position[0]) <= 3.0);
         assert_true(fabs(light->position[2]) <= 0.5);
         assert_true(fabs(light->direction[1] - 1.0) < 1e-12);
@@ -290,7 +290,7 @@ TEST(flat_lamps_become_rectangles)
     assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 1);
     const struct scene_light *light = &pose.lights[0];
-    assert_int_equal(light->kind, SCENE_LIGHT_RECTANGLE);
+    assert_int_equal(light->kind, WHIT_LIGHT_RECTANGLE);
     assert_true(light->made_by_whit && light->color[0] == 10.0f);
     assert_true(fabs(light->direction[1] - 1.0) < 1e-12);
     /* From one corner of the panel, -3..3 by -0.5..0.5, to the opposite one. */
@@ -315,7 +315,7 @@ TEST(single_triangles_become_lights)
     for (uint32_t i = 0; i < 2; ++i) {
         const struct scene_light *light = &pose.lights[i];
         const double *u = light->edge_u, *v = light->edge_v;
-        assert_int_equal(light->kind, SCENE_LIGHT_TRIANGLE);
+        assert_int_equal(light->kind, WHIT_LIGHT_TRIANGLE);
         assert_true(light->direction[1] > 0.999);
         assert_true(u[2] * v[0] - u[0] * v[2] > 2.0);
     }
@@ -327,7 +327,7 @@ TEST(faint_glow_lights_nothing)
 {
     struct scene *scene = scene_ready(panel_scene(0.001f, 1));
     assert_int_equal(scene->light_count, 1);
-    assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
+    assert_int_equal(scene->lights[0].kind, WHIT_LIGHT_DIRECTIONAL);
     scene_destroy(scene);
 }
 

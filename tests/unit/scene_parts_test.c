@@ -55,7 +55,7 @@ static struct scene *small_scene(const struct wish *wish)
     rgba[5] = wish->texel;
     if (wish->hidden) {
         wood.alpha = SCENE_ALPHA_MASK;
-        wood.model = SCENE_MODEL_UNLIT;
+        wood.model = WHIT_MODEL_UNLIT;
         wood.two_sided = true;
         wood.opacity = 0.5f;
         wood.priority = 3;
@@ -143,13 +143,13 @@ static void check_fields(whit_part_kind kind, const void *whole, void *record,
 TEST(plain_values_are_in_the_hash)
 {
     struct scene_material material = material_grey("glass");
-    struct scene_light light = {.kind = SCENE_LIGHT_RECTANGLE};
+    struct scene_light light = {.kind = WHIT_LIGHT_RECTANGLE};
     struct scene_camera camera = {.node = SCENE_NONE};
     check_fields(WHIT_PART_MATERIAL, &material, &material, scene_material_fields);
     check_fields(WHIT_PART_MATERIAL, &material, &material.textures[SCENE_SLOT_BUMP],
                  scene_texture_use_fields);
     check_fields(WHIT_PART_LIGHT, &light, &light, scene_light_fields);
-    struct scene_environment sky = {.kind = SCENE_ENVIRONMENT_GRADIENT};
+    struct scene_environment sky = {.kind = WHIT_ENVIRONMENT_GRADIENT};
     check_fields(WHIT_PART_CAMERA, &camera, &camera, scene_camera_fields);
     check_fields(WHIT_PART_ENVIRONMENT, &sky, &sky, scene_environment_fields);
 }

@@ -159,7 +159,7 @@ TEST(lights_cameras_and_bounds_follow_their_nodes)
     const float times[] = {0, 1}, values[] = {0, 0, 0, 0, 4, 0};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
     scene->frozen = false; /* add to it after all */
-    scene_add_light(scene, (struct scene_light){.kind = SCENE_LIGHT_POINT,
+    scene_add_light(scene, (struct scene_light){.kind = WHIT_LIGHT_POINT,
                                                 .node = 1,
                                                 .position = {1, 0, 0},
                                                 .direction = {0, -1, 0}});

@@ -159,7 +159,7 @@ TEST(rooms_are_seen_from_inside)
         assert_true(camera->eye[0] * forward[0] < -3.0);
         assert_int_equal(scene->light_count, 2);
         for (uint32_t i = 0; i < 2; ++i) {
-            assert_int_equal(scene->lights[i].kind, SCENE_LIGHT_POINT);
+            assert_int_equal(scene->lights[i].kind, WHIT_LIGHT_POINT);
             assert_true(fabs(scene->lights[i].position[0]) < 6.0);
         }
         /* Ahead, half way to the wall on the left and to the ceiling. */
@@ -175,7 +175,7 @@ TEST(rooms_are_seen_from_inside)
     double forward[3];
     camera_of(scene, forward);
     assert_false(scene_noted(scene, "room"));
-    assert_int_equal(scene->lights[0].kind, SCENE_LIGHT_DIRECTIONAL);
+    assert_int_equal(scene->lights[0].kind, WHIT_LIGHT_DIRECTIONAL);
     scene_destroy(scene);
 }
 
@@ -275,9 +275,9 @@ static double light_total(const struct scene *scene)
             double side = u[l] * v[m] - u[m] * v[l];
             area2 += side * side;
         }
-        double share = light->kind == SCENE_LIGHT_RECTANGLE  ? sqrt(area2) / 3.14159265358979
-                       : light->kind == SCENE_LIGHT_TRIANGLE ? sqrt(area2) / 6.28318530717959
-                                                             : 1.0;
+        double share = light->kind == WHIT_LIGHT_RECTANGLE  ? sqrt(area2) / 3.14159265358979
+                       : light->kind == WHIT_LIGHT_TRIANGLE ? sqrt(area2) / 6.28318530717959
+                                                            : 1.0;
         total += share * (double)light->color[1];
     }
     return total;
@@ -303,7 +303,7 @@ TEST(lamps_of_models_light_their_scene)
 static struct scene *lit_scene(float level, const char *file)
 {
     struct scene *scene = empty_scene();
-    struct scene_light light = {.kind = SCENE_LIGHT_POINT,
+    struct scene_light light = {.kind = WHIT_LIGHT_POINT,
                                 .node = SCENE_NONE,
                                 .position = {0, 2, 0},
                                 .color = {level, level, level},
@@ -340,7 +340,7 @@ static struct scene *lamp_over_floor(float level, float albedo, bool is_model, w
 {
     struct scene *scene = empty_scene();
     struct scene_material floor = material_plain("floor");
-    struct scene_light light = {.kind = SCENE_LIGHT_SPOT,
+    struct scene_light light = {.kind = WHIT_LIGHT_SPOT,
                                 .node = SCENE_NONE,
                                 .position = {0, 2, 0},
                                 .direction = {0, -1, 0},
@@ -386,7 +386,7 @@ TEST(metal_is_not_taken_for_its_colour)
     for (int plastic = 0; plastic < 2; ++plastic) {
         struct scene *scene = empty_scene();
         struct scene_material m = material_plain("shiny");
-        m.model = SCENE_MODEL_METAL_ROUGH;
+        m.model = WHIT_MODEL_METAL_ROUGH;
         m.metallic = 1.0f;
         for (int i = 0; i < 3; ++i)
             m.diffuse[i] = 1.0f;
@@ -407,7 +407,7 @@ TEST(light_that_does_not_arrive_burns_nothing_out)
     struct scene *scene = empty_scene();
     scene_put(scene, mesh_plane(100.0), NULL);
     scene_put(scene, mesh_plane(100.0), &(struct put){.at = {0, 4, 0}});
-    struct scene_light light = {.kind = SCENE_LIGHT_DIRECTIONAL,
+    struct scene_light light = {.kind = WHIT_LIGHT_DIRECTIONAL,
                                 .node = SCENE_NONE,
                                 .direction = {0, -1, 0},
                                 .color = {1.9f, 1.9f, 1.9f}};
@@ -422,7 +422,7 @@ TEST(light_that_does_not_arrive_burns_nothing_out)
 
 /* ---- Lights that light nothing of what is seen ---- */
 
-static uint32_t lights_by_whit(const struct scene *scene, enum scene_light_kind kind)
+static uint32_t lights_by_whit(const struct scene *scene, whit_light_kind kind)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < scene->light_count; ++i)
@@ -448,20 +448,20 @@ static struct scene *block_with_lamp(bool is_model, bool in_front)
 TEST(lamps_that_nobody_sees_get_help)
 {
     struct scene *scene = block_with_lamp(true, false);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 1);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
     assert_true(scene_noted(scene, "the file's light reaches 0 % of what is seen: a directional "
                                    "one was added, over the camera's left shoulder"));
     assert_true(scene_noted(scene, "no environment in the file: a sky was added"));
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_POINT), 0);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_POINT), 0);
     scene_destroy(scene);
 
     scene = block_with_lamp(true, true);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 0);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
     scene_destroy(scene);
 
     /* Whit's own scene files mean what they say. */
     scene = block_with_lamp(false, false);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 0);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
     scene_destroy(scene);
 }
 
@@ -471,7 +471,7 @@ static struct scene *wall_with_spot(double radius)
     struct scene *scene = empty_scene();
     float edge = (float)cos(atan(radius / 5.0));
     scene_put(scene, mesh_box(100, 100, 0.1), NULL);
-    scene_put_light(scene, (struct scene_light){.kind = SCENE_LIGHT_SPOT,
+    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_SPOT,
                                                 .node = SCENE_NONE,
                                                 .position = {0, 0, 5.05},
                                                 .direction = {0, 0, -1},
@@ -486,10 +486,10 @@ static struct scene *wall_with_spot(double radius)
 TEST(lamps_that_light_less_than_half_get_help)
 {
     struct scene *scene = wall_with_spot(2.1);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 1);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
     scene_destroy(scene);
     scene = wall_with_spot(2.55);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 0);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
     scene_destroy(scene);
 }
 
@@ -512,7 +512,7 @@ static struct scene *box_under_sun(unsigned open, bool glass)
 TEST(boxes_that_shut_the_sun_out_get_a_lamp)
 {
     struct scene *scene = box_under_sun(0, false);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_POINT), 1);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_POINT), 1);
     assert_true(scene_noted(scene, "light from outside reaches 0 % of what is seen: a lamp was "
                                    "added at the camera"));
     scene_destroy(scene);
@@ -529,7 +529,7 @@ TEST(boxes_that_shut_the_sun_out_get_a_lamp)
     scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.5, 0}, 1.2);
     scene->is_model = true;
     scene = scene_ready(scene);
-    assert_int_equal(lights_by_whit(scene, SCENE_LIGHT_DIRECTIONAL), 1);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
     assert_int_equal(scene->light_count, 1);
     scene_destroy(scene);
 }

@@ -32,7 +32,7 @@ static whit_ray ray_of(const struct frame *frame, const whit_probe_ray *from)
         whit_scene_get_light(frame->loaded.scene, from->light, &light);
         const double *p = light.position;
         const float *o = from->ray.origin;
-        length = light.kind[0] == 'd'
+        length = light.kind == WHIT_LIGHT_DIRECTIONAL
                      ? 2.0 * size
                      : hypot(hypot(p[0] - (double)o[0], p[1] - (double)o[1]), p[2] - (double)o[2]);
     }

@@ -42,6 +42,8 @@ Result = _enumeration("whit_result", "OK ERROR_FAILED ERROR_USAGE ERROR_INPUT ER
 LogLevel = _enumeration("whit_log_level", "ERROR WARNING INFO DEBUG")
 Up = _enumeration("whit_up", "Y X Z MINUS_X MINUS_Y MINUS_Z AUTO")
 Lights = _enumeration("whit_lights", "AUTO FILE NONE KEY")
+EnvironmentKind = _enumeration("whit_environment_kind", "GRADIENT MAP")
+CameraKind = _enumeration("whit_camera_kind", "PERSPECTIVE ORTHOGRAPHIC PANORAMA")
 Traversal = _enumeration("whit_traversal", "DISTANCE SIGN BASIC")
 Numerics = _enumeration("whit_numerics", "WATERTIGHT FAST EXACT")
 Shadows = _enumeration("whit_shadows", "TINTED OPAQUE NONE")
@@ -53,8 +55,8 @@ Classes = _enumeration("whit_classes", "AUTO ONE MANY")
 TraceOn = _enumeration("whit_trace_on", "DEVICE CPU_FLOAT CPU_BRUTE")
 Aov = _enumeration("whit_aov", "COLOR IDS CUTS DISTANCES")
 # What their enumerators begin with, where that is not the type's name.
-PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD",
-            TraceOn: "WHIT_TRACE"}
+PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", EnvironmentKind: "WHIT_ENVIRONMENT", CameraKind: "WHIT_CAMERA",
+            SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD", TraceOn: "WHIT_TRACE"}
 
 _LogFn = ctypes.CFUNCTYPE(None, c_void_p, c_uint, c_char_p)
 _ProgressFn = ctypes.CFUNCTYPE(None, c_void_p, c_double)
@@ -82,10 +84,10 @@ SceneInfo = _struct(
      " effect_count", c_uint32),
     ("mesh_triangle_count triangle_count sphere_count file_bytes hash", c_uint64), ("channel_count", c_uint32),
     ("time_end_s", c_double), ("one_tree", c_bool), ("lo hi objects_lo objects_hi", c_double * 3),
-    ("environment", c_char_p), ("environment_made_by_whit", c_bool), ("exposure_ev", c_double))
+    ("environment", EnvironmentKind), ("environment_made_by_whit", c_bool), ("exposure_ev", c_double))
 InstanceInfo = _struct("whit_instance_info", ("name", c_char_p), ("mesh", c_uint32),
                        ("object_to_world", c_double * 12))
-CameraInfo = _struct("whit_camera_info", ("name kind", c_char_p), ("eye target up", c_double * 3),
+CameraInfo = _struct("whit_camera_info", ("name", c_char_p), ("kind", CameraKind), ("eye target up", c_double * 3),
                      ("fov_y_degrees height lens_radius focus_distance", c_double), ("made_by_whit", c_bool))
 DeviceParams = _struct("whit_device_params", ("selector", c_char_p), ("validation", c_bool))
 DeviceInfo = _struct(

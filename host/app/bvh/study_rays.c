@@ -40,8 +40,8 @@ static struct view camera_view(const whit_camera_info *camera, double aspect)
     view.ahead = dvec3_unit(dvec3_along(dvec3_load(camera->target), view.eye, -1.0));
     view.right = dvec3_unit(dvec3_cross(view.ahead, dvec3_load(camera->up)));
     view.up = dvec3_cross(view.right, view.ahead);
-    view.parallel = strcmp(camera->kind, "orthographic") == 0;
-    view.panorama = strcmp(camera->kind, "panorama") == 0;
+    view.parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
+    view.panorama = camera->kind == WHIT_CAMERA_PANORAMA;
     if (view.panorama)
         return view;
     double half = view.parallel ? 0.5 * camera->height : tan(camera->fov_y_degrees * PI / 360.0);
@@ -134,7 +134,7 @@ static whit_ray shadow_ray(const whit_scene *scene, const struct surface *surfac
 {
     whit_light_info info;
     whit_scene_get_light(scene, light, &info);
-    if (info.kind[0] == 'd') {
+    if (info.kind == WHIT_LIGHT_DIRECTIONAL) {
         struct dvec3 dir = dvec3_unit(dvec3_load(info.direction));
         return make_ray(surface->point, dvec3_along((struct dvec3){0, 0, 0}, dir, -size), LEAVE,
                         INFINITY);

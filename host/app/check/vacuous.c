@@ -44,7 +44,7 @@ static bool find_camera(const struct drawing *drawing, double eye[3], double tar
 {
     const whit_camera *camera = &drawing->params.camera;
     whit_scene_info scene;
-    whit_camera_info info = {.kind = ""};
+    whit_camera_info info;
     whit_scene_get_info(drawing->job.scene, &scene);
     if (camera->own) {
         memcpy(eye, camera->eye, sizeof info.eye);
@@ -64,7 +64,7 @@ static bool find_camera(const struct drawing *drawing, double eye[3], double tar
     whit_scene_get_camera(drawing->job.scene, index, &info);
     memcpy(eye, info.eye, sizeof info.eye);
     memcpy(target, info.target, sizeof info.target);
-    return info.kind && strcmp(info.kind, "panorama") != 0;
+    return info.kind != WHIT_CAMERA_PANORAMA;
 }
 
 /* Whether all that stands on the floor, where there is one, lies behind the camera's plane. At

@@ -47,9 +47,9 @@ static void print_material(const whit_scene *scene, uint32_t index)
 {
     whit_material_info material;
     whit_scene_get_material(scene, index, &material);
-    bool metal_rough = strcmp(material.model, "metal-rough") == 0;
+    bool metal_rough = material.model == WHIT_MODEL_METAL_ROUGH;
     print_name(index, material.name);
-    fputs(material.model, stdout);
+    fputs(whit_material_model_name(material.model), stdout);
     if (material.illum >= 0)
         printf(", illum %d", material.illum);
     print_color(metal_rough ? "base" : "diffuse", material.diffuse);
@@ -79,10 +79,10 @@ static void print_light(const whit_scene *scene, uint32_t index)
     whit_light_info light;
     whit_scene_get_light(scene, index, &light);
     print_name(index, light.name);
-    fputs(light.kind, stdout);
-    if (strcmp(light.kind, "directional") != 0)
+    fputs(whit_light_kind_name(light.kind), stdout);
+    if (light.kind != WHIT_LIGHT_DIRECTIONAL)
         printf(" at %.6g %.6g %.6g", light.position[0], light.position[1], light.position[2]);
-    if (strcmp(light.kind, "point") != 0)
+    if (light.kind != WHIT_LIGHT_POINT)
         printf(" towards %.3g %.3g %.3g", light.direction[0], light.direction[1],
                light.direction[2]);
     print_color("colour", light.color);
@@ -94,8 +94,9 @@ static void print_camera(const whit_scene *scene, uint32_t index)
     whit_camera_info camera;
     whit_scene_get_camera(scene, index, &camera);
     print_name(index, camera.name);
-    printf("%s from %.6g %.6g %.6g to %.6g %.6g %.6g", camera.kind, camera.eye[0], camera.eye[1],
-           camera.eye[2], camera.target[0], camera.target[1], camera.target[2]);
+    printf("%s from %.6g %.6g %.6g to %.6g %.6g %.6g", whit_camera_kind_name(camera.kind),
+           camera.eye[0], camera.eye[1], camera.eye[2], camera.target[0], camera.target[1],
+           camera.target[2]);
     if (camera.height > 0.0)
         printf(", height %.6g", camera.height);
     else if (camera.fov_y_degrees > 0.0)
@@ -166,7 +167,7 @@ static void print_summary(const struct job *job, const whit_scene_info *info)
         printf("  animation    %u channels, to %.4g s\n", info->channel_count, info->time_end_s);
     if (info->one_tree)
         puts("  trees        one, in world space (--instances)");
-    printf("  environment  %s%s\n", info->environment,
+    printf("  environment  %s%s\n", whit_environment_kind_name(info->environment),
            info->environment_made_by_whit ? "  (made by whit)" : "");
     printf("  files        %.1f kB, hash %016llx\n", (double)info->file_bytes * 1e-3,
            (unsigned long long)info->hash);

@@ -36,7 +36,7 @@ static json_t *material_document(const whit_scene *scene, uint32_t index)
     document_text(object, "name", material.name);
     document_text(object, "file", material.file);
     document_count(object, "line", material.line);
-    document_text(object, "model", material.model);
+    document_text(object, "model", whit_material_model_name(material.model));
     if (material.illum >= 0)
         document_count(object, "illum", (uint64_t)material.illum);
     else
@@ -61,7 +61,7 @@ static json_t *light_document(const whit_scene *scene, uint32_t index)
     whit_scene_get_light(scene, index, &light);
     json_t *object = document_object();
     document_text(object, "name", light.name);
-    document_text(object, "kind", light.kind);
+    document_text(object, "kind", whit_light_kind_name(light.kind));
     document_numbers(object, "position", light.position, 3);
     document_numbers(object, "direction", light.direction, 3);
     document_floats(object, "color", light.color, 3);
@@ -75,7 +75,7 @@ static json_t *camera_document(const whit_scene *scene, uint32_t index)
     whit_scene_get_camera(scene, index, &camera);
     json_t *object = document_object();
     document_text(object, "name", camera.name);
-    document_text(object, "kind", camera.kind);
+    document_text(object, "kind", whit_camera_kind_name(camera.kind));
     document_numbers(object, "eye", camera.eye, 3);
     document_numbers(object, "target", camera.target, 3);
     document_numbers(object, "up", camera.up, 3);
@@ -143,7 +143,7 @@ int listing_print_json(const struct job *job, const whit_scene_info *info)
     document_flag(root, "one_tree", info->one_tree);
     document_put(root, "bounds", bounds_document(info));
     json_t *environment = document_object();
-    document_text(environment, "kind", info->environment);
+    document_text(environment, "kind", whit_environment_kind_name(info->environment));
     document_flag(environment, "made_by_whit", info->environment_made_by_whit);
     document_put(root, "environment", environment);
     put_list(root, "meshes", job->scene, info->mesh_count, mesh_document);
