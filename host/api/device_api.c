@@ -1,5 +1,3 @@
-#include <ctype.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,61 +6,9 @@
 #include "render/portable.h"
 #include "whit/whit_program.h"
 
-static void describe(const struct device_info *from, whit_device_info *to)
-{
-    *to = (whit_device_info){
-        .index = from->index,
-        .memory_bytes = from->memory_bytes,
-        .max_storage_range_bytes = from->max_storage_range_bytes,
-        .subgroup_size = from->subgroup_size,
-        .float64 = from->float64,
-        .int64 = from->int64,
-        .timestamps = from->timestamps,
-        .usable = from->usable,
-    };
-    snprintf(to->name, sizeof to->name, "%s", from->name);
-    snprintf(to->driver, sizeof to->driver, "%s", from->driver);
-    snprintf(to->api_version, sizeof to->api_version, "%s", from->api_version);
-    const char *kind = device_kind_name(from->kind);
-    for (size_t i = 0; kind[i] && i + 1 < sizeof to->kind; ++i)
-        to->kind[i] = (char)tolower((unsigned char)kind[i]);
-    snprintf(to->why_not, sizeof to->why_not, "%s", from->why_not);
-}
-
-/* The rule of "auto": the first usable device of the best kind, and kinds are listed best first. */
-static void mark_automatic(const struct device_info *from, whit_device_info *to, uint32_t count)
-{
-    uint32_t best = count;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (from[i].usable && (best == count || from[i].kind < from[best].kind))
-            best = i;
-    }
-    if (best < count)
-        to[best].automatic = true;
-}
-
 whit_result whit_device_list(const whit_log *log, whit_device_info **infos, uint32_t *count)
 {
-    struct device_info *found = NULL;
-    *infos = NULL;
-    *count = 0;
-    uint32_t found_count = 0;
-    whit_result result = device_list(log, &found, &found_count);
-    if (result != WHIT_OK)
-        return result;
-    whit_device_info *described = calloc(found_count ? found_count : 1, sizeof *described);
-    if (!described) {
-        log_error(log, "out of memory");
-        free(found);
-        return WHIT_ERROR_MEMORY;
-    }
-    for (uint32_t i = 0; i < found_count; ++i)
-        describe(&found[i], &described[i]);
-    mark_automatic(found, described, found_count);
-    free(found);
-    *infos = described;
-    *count = found_count;
-    return WHIT_OK;
+    return device_list(log, infos, count);
 }
 
 static whit_result open_device(const whit_device_params *params, const whit_log *log,
@@ -234,7 +180,7 @@ uint64_t whit_device_kernels_made(const whit_device *device)
 
 bool whit_device_takes_peers(const whit_device *device)
 {
-    return device_get_info(device->device)->kind == DEVICE_CPU &&
+    return device_get_info(device->device)->kind == WHIT_DEVICE_CPU &&
            device_compile_threads(device->device) != 1;
 }
 
@@ -249,16 +195,12 @@ void whit_device_destroy(whit_device *device)
 
 void whit_device_get_info(const whit_device *device, whit_device_info *info)
 {
-    describe(device_get_info(device->device), info);
+    *info = *device_get_info(device->device);
 }
 
 whit_result whit_device_find_floats(whit_device *device, whit_device_floats *floats)
 {
-    struct portable_device found = {0};
-    whit_result result = portable_find(&device->log, device->device, &found);
-    *floats = (whit_device_floats){found.own_division, found.keeps_denormals, found.rounds_nearest,
-                                   found.own_comparison};
-    return result;
+    return portable_find(&device->log, device->device, floats);
 }
 
 uint32_t whit_device_validation_messages(const whit_device *device)

@@ -308,7 +308,8 @@ whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, wh
 
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
 {
-    *stats = (whit_stats){.render_device_ms = -1.0, .bailout_bound = -1.0, .load_path = "storage"};
+    *stats = (whit_stats){
+        .render_device_ms = -1.0, .bailout_bound = -1.0, .load_path = WHIT_LOAD_STORAGE};
     if (renderer->renderer)
         renderer_get_stats(renderer->renderer, stats);
 }

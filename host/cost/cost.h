@@ -103,7 +103,9 @@ struct cost_report {
     enum cost_clock clock;
     bool complete; /* else it was stopped: rows that are not measured are left out */
     double spent_ms;
-    char device[256], driver[256], kind[16], load_path[16];
+    char device[256], driver[256];
+    whit_device_kind kind;
+    whit_load_path load_path;
     uint64_t scene_hash;
     uint32_t row_count; /* row 0: the usual settings */
     struct cost_row rows[COST_ROWS_MAX];

@@ -155,7 +155,7 @@ static bool calls_for(const whit_scene *scene, const char *wanted)
 }
 
 const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_scene *scene,
-                         const char *usual_path)
+                         whit_load_path usual_path)
 {
     const struct knob_setting *wanted = &knob->settings[setting];
     whit_scene_info info;
@@ -172,8 +172,7 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
         return "the scene has spheres";
     if (knob_level(knob) == KNOB_TREE && info.triangle_count == 0)
         return "the scene has no triangles";
-    if (strcmp(knob->name, "load-path") == 0 && usual_path &&
-        strcmp(knob_setting_name(knob, setting), usual_path) == 0)
+    if (strcmp(knob->name, "load-path") == 0 && wanted->value == (int)usual_path)
         return "it is what the device takes by itself";
     return NULL;
 }

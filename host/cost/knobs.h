@@ -42,9 +42,10 @@ enum knob_level knob_level(const struct knob *knob);
 uint64_t knobs_of_light(void);
 
 /* Why a setting means nothing here, in few words, or NULL where it does. `setting` is not the usual
-   one. `usual_path`: how the renderer at hand reads trees (whit_stats.load_path). */
+   one. `usual_path`: how the renderer at hand reads trees (whit_stats.load_path); WHIT_LOAD_AUTO:
+   not known. */
 const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_scene *scene,
-                         const char *usual_path);
+                         whit_load_path usual_path);
 
 /* Puts what the knob's setting says into `settings`; effects left out come behind those that are.
  */

@@ -60,7 +60,7 @@ static void describe(const struct cost_request *request, struct cost_report *rep
     report->scene_hash = scene.hash;
     snprintf(report->device, sizeof report->device, "%s", device.name);
     snprintf(report->driver, sizeof report->driver, "%s", device.driver);
-    snprintf(report->kind, sizeof report->kind, "%s", device.kind);
+    report->kind = device.kind;
 }
 
 void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height)
@@ -94,7 +94,7 @@ static whit_result open_renderer(struct measure *measure)
         return result;
     report->small_ms = times.ms[COST_WALL].median;
     measure->usual_pixel_ms = times.ms[COST_WALL].median / ((double)width * height);
-    snprintf(report->load_path, sizeof report->load_path, "%s", stats.load_path);
+    report->load_path = stats.load_path;
     return WHIT_OK;
 }
 

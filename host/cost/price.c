@@ -15,7 +15,7 @@ enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *re
     whit_stats stats;
     whit_device_get_info(device, &info);
     whit_renderer_get_stats(renderer, &stats);
-    if (strcmp(info.kind, "cpu") == 0)
+    if (info.kind == WHIT_DEVICE_CPU)
         return COST_CPU; /* what other programs do moves the wall clock, and this one less */
     return stats.render_device_ms >= 0.0 ? COST_DEVICE : COST_WALL;
 }

@@ -62,7 +62,8 @@ static bool find_memory_type(const struct device *device, uint32_t type_bits,
    nothing there, and what the host reads or writes is copied by way of the staging buffer. */
 static enum placement placement_for(const struct device *device, uint32_t uses)
 {
-    bool one_memory = device->info.kind == DEVICE_CPU || device->info.kind == DEVICE_INTEGRATED;
+    bool one_memory =
+        device->info.kind == WHIT_DEVICE_CPU || device->info.kind == WHIT_DEVICE_INTEGRATED;
     bool in_kernels = uses & (BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT);
     if (in_kernels && (!one_memory || device->staged))
         return PLACE_DEVICE;
@@ -93,15 +94,16 @@ static whit_result check_limit(const struct buffer *buffer, uint64_t size_bytes,
 
 static whit_result check_limits(const struct buffer *buffer, uint64_t size_bytes)
 {
-    const struct device_info *info = &buffer->device->info;
+    const struct device_limits *limits = &buffer->device->limits;
+    uint64_t max_storage = buffer->device->info.max_storage_range_bytes;
     whit_result result = WHIT_OK;
     if (buffer->uses & BUFFER_STORAGE)
-        result = check_limit(buffer, size_bytes, info->max_storage_range_bytes, "a storage buffer");
+        result = check_limit(buffer, size_bytes, max_storage, "a storage buffer");
     if (result == WHIT_OK && (buffer->uses & BUFFER_TEXELS))
-        result = check_limit(buffer, size_bytes, info->max_texel_elements * TEXEL_BYTES,
+        result = check_limit(buffer, size_bytes, limits->max_texel_elements * TEXEL_BYTES,
                              "a texel buffer");
     if (result == WHIT_OK)
-        result = check_limit(buffer, size_bytes, info->max_allocation_bytes, "one allocation");
+        result = check_limit(buffer, size_bytes, limits->max_allocation_bytes, "one allocation");
     return result;
 }
 
@@ -111,15 +113,16 @@ static whit_result check_limits(const struct buffer *buffer, uint64_t size_bytes
    bytes make them one. */
 static uint64_t vulkan_bytes(const struct buffer *buffer)
 {
-    const struct device_info *info = &buffer->device->info;
+    const struct device_limits *limits = &buffer->device->limits;
     uint64_t bytes = buffer->size_bytes;
-    if (!(buffer->uses & BUFFER_TEXELS) || info->kind != DEVICE_CPU)
+    if (!(buffer->uses & BUFFER_TEXELS) || buffer->device->info.kind != WHIT_DEVICE_CPU)
         return bytes;
     if ((bytes >> 8 & 0xff) == 0)
         bytes += 256;
     if ((bytes & (bytes - 1)) == 0)
         bytes += TEXEL_BYTES;
-    return bytes <= info->max_texel_elements * TEXEL_BYTES && bytes <= info->max_allocation_bytes
+    return bytes <= limits->max_texel_elements * TEXEL_BYTES &&
+                   bytes <= limits->max_allocation_bytes
                ? bytes
                : buffer->size_bytes;
 }
@@ -129,9 +132,9 @@ static uint64_t vulkan_bytes(const struct buffer *buffer)
    and ends with a large page. */
 static bool is_large(const struct device *device, enum placement placement, uint64_t size_bytes)
 {
-    return device->info.kind == DEVICE_CPU && placement != PLACE_DEVICE &&
+    return device->info.kind == WHIT_DEVICE_CPU && placement != PLACE_DEVICE &&
            size_bytes >= LARGE_PAGE_BYTES / 2 &&
-           size_bytes <= device->info.max_allocation_bytes - 2 * LARGE_PAGE_BYTES;
+           size_bytes <= device->limits.max_allocation_bytes - 2 * LARGE_PAGE_BYTES;
 }
 
 static uint64_t round_to_large(uint64_t bytes)
@@ -227,7 +230,7 @@ static whit_result fill(struct buffer *buffer, uint8_t byte)
 {
     struct device *device = buffer->device;
     if (buffer->mapped) {
-        if (byte == 0 && device->info.kind == DEVICE_CPU)
+        if (byte == 0 && device->info.kind == WHIT_DEVICE_CPU)
             platform_zero(buffer->mapped, buffer->size_bytes);
         else
             memset(buffer->mapped, byte, buffer->size_bytes);

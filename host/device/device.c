@@ -13,23 +13,6 @@
 #include "device/instance.h"
 #include "device/kept.h"
 
-const char *device_kind_name(enum device_kind kind)
-{
-    switch (kind) {
-    case DEVICE_DISCRETE:
-        return "discrete GPU";
-    case DEVICE_INTEGRATED:
-        return "integrated GPU";
-    case DEVICE_VIRTUAL:
-        return "virtual GPU";
-    case DEVICE_CPU:
-        return "CPU";
-    case DEVICE_OTHER:
-        break;
-    }
-    return "other";
-}
-
 uint32_t device_compile_threads(const struct device *device)
 {
     return device->validation || device->fault.call[0] ? 1 : 0;
@@ -61,7 +44,8 @@ static bool has_extension(struct device *device, const char *name)
 static whit_result check_room(const struct device *device)
 {
     enum { OTHER_THREADS = 4 };
-    if (device->info.kind != DEVICE_CPU || threads_have_room(threads_available() + OTHER_THREADS))
+    if (device->info.kind != WHIT_DEVICE_CPU ||
+        threads_have_room(threads_available() + OTHER_THREADS))
         return WHIT_OK;
     log_error(&device->log, "%s: out of memory for its threads", device->info.name);
     return WHIT_ERROR_MEMORY;
@@ -205,9 +189,14 @@ void device_destroy(struct device *device)
     free(device);
 }
 
-const struct device_info *device_get_info(const struct device *device)
+const whit_device_info *device_get_info(const struct device *device)
 {
     return &device->info;
+}
+
+const struct device_limits *device_get_limits(const struct device *device)
+{
+    return &device->limits;
 }
 
 uint32_t device_validation_messages(const struct device *device)

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "base/log.h"
+#include "whit/whit_device.h"
 
 struct device;
 struct buffer;
@@ -17,40 +18,20 @@ struct pipeline;
 struct binding_set;
 struct commands;
 
-enum device_kind {
-    DEVICE_DISCRETE,
-    DEVICE_INTEGRATED,
-    DEVICE_VIRTUAL,
-    DEVICE_CPU,
-    DEVICE_OTHER,
-};
-
-struct device_info {
-    uint32_t index; /* in the order Vulkan lists them; what `--device N` takes */
-    char name[256];
-    char driver[256]; /* name and version text */
-    char api_version[32];
-    enum device_kind kind;
-    uint64_t memory_bytes;            /* of the largest device-local heap */
-    uint64_t max_storage_range_bytes; /* of one storage buffer descriptor */
-    uint64_t max_texel_elements;      /* of one texel buffer view */
+/* What only makers of kernels and buffers ask of a device. */
+struct device_limits {
+    uint64_t max_texel_elements; /* of one texel buffer view */
     uint64_t max_allocation_bytes;
-    uint32_t max_push_bytes, max_group_count_x, max_group_invocations;
-    uint32_t subgroup_size;
-    bool float64, int64, timestamps;
+    uint32_t max_group_count_x;
     /* What kernels may ask of floats of 32 bits: sums rounded to nearest; NaN, infinity and the
        sign of 0 kept; denormals kept. */
     bool asked_nearest, asked_special, asked_denormals;
     bool loop_limited; /* a driver that may end shaders after 65535 iterations (old lavapipe) */
-    bool usable;       /* has what whit needs */
-    char why_not[128]; /* when not usable */
 };
 
 /* All physical devices, usable or not; *infos is one block, free() it. No loader or driver at all
    is WHIT_ERROR_NO_DEVICE, logged with what to install. */
-WHIT_CHECK whit_result device_list(const whit_log *log, struct device_info **infos,
-                                   uint32_t *count);
-const char *device_kind_name(enum device_kind kind);
+WHIT_CHECK whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t *count);
 
 /* A window that a device shows pictures in, for device_params. Who makes windows knows which
    instance extensions that takes, and makes the surface: `create` gets a VkInstance and the address
@@ -63,8 +44,7 @@ struct device_surface {
 };
 
 struct device_params {
-    const char *selector; /* NULL or "auto": discrete, else integrated, else virtual, else CPU; a
-                             number: that index; else part of a name, any case */
+    const char *selector; /* as of whit_device_params */
     bool validation;      /* Khronos layer with GPU-assisted and synchronization checks; its
                              absence is an error. WHIT_VALIDATION=1 in the environment turns it on
                              for every device; WHIT_VALIDATION=sync without the GPU-assisted
@@ -79,7 +59,8 @@ struct device_params {
 WHIT_CHECK whit_result device_create(const whit_log *log, const struct device_params *params,
                                      struct device **out);
 void device_destroy(struct device *device);
-const struct device_info *device_get_info(const struct device *device);
+const whit_device_info *device_get_info(const struct device *device);
+const struct device_limits *device_get_limits(const struct device *device);
 /* How many threads may make pipelines of the device at once, as threads_for takes it: 0 is as many
    as there are cores. 1 while validation layers check, since those of Debian 12 crash where threads
    make devices at once and were not tried with pipelines; and while WHIT_FAULT counts calls. */

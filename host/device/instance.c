@@ -267,19 +267,29 @@ bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint
     return found;
 }
 
-static enum device_kind kind_of(VkPhysicalDeviceType type)
+const char *whit_device_kind_name(whit_device_kind kind)
+{
+    static const char *const names[] = {
+        [WHIT_DEVICE_DISCRETE] = "discrete gpu", [WHIT_DEVICE_INTEGRATED] = "integrated gpu",
+        [WHIT_DEVICE_VIRTUAL] = "virtual gpu",   [WHIT_DEVICE_CPU] = "cpu",
+        [WHIT_DEVICE_OTHER] = "other",
+    };
+    return (size_t)kind < sizeof names / sizeof *names ? names[kind] : "";
+}
+
+static whit_device_kind kind_of(VkPhysicalDeviceType type)
 {
     switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-        return DEVICE_DISCRETE;
+        return WHIT_DEVICE_DISCRETE;
     case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-        return DEVICE_INTEGRATED;
+        return WHIT_DEVICE_INTEGRATED;
     case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-        return DEVICE_VIRTUAL;
+        return WHIT_DEVICE_VIRTUAL;
     case VK_PHYSICAL_DEVICE_TYPE_CPU:
-        return DEVICE_CPU;
+        return WHIT_DEVICE_CPU;
     default:
-        return DEVICE_OTHER;
+        return WHIT_DEVICE_OTHER;
     }
 }
 
@@ -303,8 +313,9 @@ static bool lavapipe_ends_loops(const char *driver_info)
     return !mesa || strtoul(mesa + 5, NULL, 10) < 25;
 }
 
-/* What only a 1.2 device can be asked. */
-static void fill_details(VkPhysicalDevice physical, struct device_info *info)
+/* What only a 1.2 device can be asked; `limits` may be NULL. */
+static void fill_details(VkPhysicalDevice physical, whit_device_info *info,
+                         struct device_limits *limits)
 {
     VkPhysicalDeviceVulkan12Properties v12 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
@@ -314,22 +325,27 @@ static void fill_details(VkPhysicalDevice physical, struct device_info *info)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &v11};
     vkGetPhysicalDeviceProperties2(physical, &properties);
     snprintf(info->driver, sizeof info->driver, "%.127s %.127s", v12.driverName, v12.driverInfo);
-    info->max_allocation_bytes = v11.maxMemoryAllocationSize;
     info->subgroup_size = v11.subgroupSize;
-    info->asked_nearest = v12.shaderRoundingModeRTEFloat32;
-    info->asked_special = v12.shaderSignedZeroInfNanPreserveFloat32;
-    info->asked_denormals = v12.shaderDenormPreserveFloat32;
-    info->loop_limited =
-        v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE && lavapipe_ends_loops(v12.driverInfo);
 
     VkPhysicalDeviceFeatures features;
     vkGetPhysicalDeviceFeatures(physical, &features);
     info->float64 = features.shaderFloat64;
     info->int64 = features.shaderInt64;
+    if (limits)
+        *limits = (struct device_limits){
+            .max_texel_elements = properties.properties.limits.maxTexelBufferElements,
+            .max_allocation_bytes = v11.maxMemoryAllocationSize,
+            .max_group_count_x = properties.properties.limits.maxComputeWorkGroupCount[0],
+            .asked_nearest = v12.shaderRoundingModeRTEFloat32,
+            .asked_special = v12.shaderSignedZeroInfNanPreserveFloat32,
+            .asked_denormals = v12.shaderDenormPreserveFloat32,
+            .loop_limited =
+                v12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE && lavapipe_ends_loops(v12.driverInfo),
+        };
 }
 
 static void fill_info(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t index,
-                      struct device_info *info)
+                      whit_device_info *info)
 {
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical, &properties);
@@ -338,15 +354,11 @@ static void fill_info(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t 
     uint32_t family, timestamp_bits;
     bool computes = instance_queue_family(physical, surface, &family, &timestamp_bits);
 
-    *info = (struct device_info){
+    *info = (whit_device_info){
         .index = index,
         .kind = kind_of(properties.deviceType),
         .memory_bytes = device_memory(physical),
         .max_storage_range_bytes = limits->maxStorageBufferRange,
-        .max_texel_elements = limits->maxTexelBufferElements,
-        .max_push_bytes = limits->maxPushConstantsSize,
-        .max_group_count_x = limits->maxComputeWorkGroupCount[0],
-        .max_group_invocations = limits->maxComputeWorkGroupInvocations,
         .timestamps = timestamp_bits > 0 && limits->timestampPeriod > 0.0f,
         .usable = true,
     };
@@ -359,7 +371,7 @@ static void fill_info(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t 
                  info->api_version);
         return;
     }
-    fill_details(physical, info);
+    fill_details(physical, info, NULL);
     if (!computes) {
         info->usable = false;
         snprintf(info->why_not, sizeof info->why_not,
@@ -368,9 +380,49 @@ static void fill_info(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t 
     }
 }
 
+static bool contains_any_case(const char *text, const char *part)
+{
+    for (; *text; ++text) {
+        size_t i = 0;
+        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            ++i;
+        if (!part[i])
+            return true;
+    }
+    return false;
+}
+
+/* How well a device answers the selector; lower is better, negative not at all. */
+static int rank(const whit_device_info *info, const char *selector)
+{
+    bool numeric = selector[strspn(selector, "0123456789")] == '\0';
+    if (strcmp(selector, "auto") == 0)
+        return info->usable ? (int)info->kind : -1;
+    if (numeric)
+        return strtoull(selector, NULL, 10) == info->index ? 0 : -1;
+    if (!contains_any_case(info->name, selector))
+        return -1;
+    return info->usable ? 0 : 1;
+}
+
+/* The first of those that answer best; WHIT_NONE: none does. */
+static uint32_t best_of(const whit_device_info *infos, uint32_t count, const char *selector)
+{
+    uint32_t best = WHIT_NONE;
+    int best_rank = -1;
+    for (uint32_t i = 0; i < count; ++i) {
+        int this_rank = rank(&infos[i], selector);
+        if (this_rank >= 0 && (best_rank < 0 || this_rank < best_rank)) {
+            best_rank = this_rank;
+            best = i;
+        }
+    }
+    return best;
+}
+
 /* Two blocks to free(): the handles and what is known of them. */
 static whit_result list_physical(struct device *device, VkPhysicalDevice **handles,
-                                 struct device_info **infos, uint32_t *count)
+                                 whit_device_info **infos, uint32_t *count)
 {
     whit_result result = WHIT_OK;
     *handles = NULL;
@@ -393,6 +445,9 @@ static whit_result list_physical(struct device *device, VkPhysicalDevice **handl
     }
     for (uint32_t i = 0; i < *count; ++i)
         fill_info((*handles)[i], device->surface, i, &(*infos)[i]);
+    uint32_t automatic = best_of(*infos, *count, "auto");
+    if (automatic != WHIT_NONE)
+        (*infos)[automatic].automatic = true;
     return WHIT_OK;
 fail:
     free(*handles);
@@ -403,7 +458,7 @@ fail:
     return result;
 }
 
-whit_result device_list(const whit_log *log, struct device_info **infos, uint32_t *count)
+whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t *count)
 {
     struct device device = {0};
     if (log)
@@ -420,37 +475,12 @@ whit_result device_list(const whit_log *log, struct device_info **infos, uint32_
     return result;
 }
 
-static bool contains_any_case(const char *text, const char *part)
-{
-    for (; *text; ++text) {
-        size_t i = 0;
-        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
-            ++i;
-        if (!part[i])
-            return true;
-    }
-    return false;
-}
-
-/* How well a device answers the selector; lower is better, negative not at all. */
-static int rank(const struct device_info *info, const char *selector)
-{
-    bool numeric = selector[strspn(selector, "0123456789")] == '\0';
-    if (strcmp(selector, "auto") == 0)
-        return info->usable ? (int)info->kind : -1;
-    if (numeric)
-        return strtoull(selector, NULL, 10) == info->index ? 0 : -1;
-    if (!contains_any_case(info->name, selector))
-        return -1;
-    return info->usable ? 0 : 1;
-}
-
-static void describe_all(const struct device_info *infos, uint32_t count, char *text, size_t bytes)
+static void describe_all(const whit_device_info *infos, uint32_t count, char *text, size_t bytes)
 {
     size_t used = 0;
     for (uint32_t i = 0; i < count && used < bytes; ++i) {
         int more = snprintf(text + used, bytes - used, "%s%u: %s (%s%s%s)", i ? ", " : "", i,
-                            infos[i].name, device_kind_name(infos[i].kind),
+                            infos[i].name, whit_device_kind_name(infos[i].kind),
                             infos[i].usable ? "" : "; not usable: ", infos[i].why_not);
         used += more > 0 ? (size_t)more : 0;
     }
@@ -461,25 +491,17 @@ whit_result instance_select(struct device *device, const char *selector)
     if (!selector || !*selector)
         selector = "auto";
     VkPhysicalDevice *handles;
-    struct device_info *infos;
+    whit_device_info *infos;
     uint32_t count;
     whit_result result = list_physical(device, &handles, &infos, &count);
     if (result != WHIT_OK)
         return result;
 
-    int best_rank = -1;
-    uint32_t best = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        int this_rank = rank(&infos[i], selector);
-        if (this_rank >= 0 && (best_rank < 0 || this_rank < best_rank)) {
-            best_rank = this_rank;
-            best = i;
-        }
-    }
-    if (best_rank < 0 || !infos[best].usable) {
+    uint32_t best = best_of(infos, count, selector);
+    if (best == WHIT_NONE || !infos[best].usable) {
         char all[1024] = "";
         describe_all(infos, count, all, sizeof all);
-        if (best_rank >= 0)
+        if (best != WHIT_NONE)
             log_error(&device->log, "device %u (%s) is not usable: %s", best, infos[best].name,
                       infos[best].why_not);
         else if (strcmp(selector, "auto") == 0)
@@ -490,6 +512,7 @@ whit_result instance_select(struct device *device, const char *selector)
     } else {
         device->physical = handles[best];
         device->info = infos[best];
+        fill_details(device->physical, &device->info, &device->limits);
         vkGetPhysicalDeviceProperties(device->physical, &device->properties);
         vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
     }

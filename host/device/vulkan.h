@@ -51,7 +51,8 @@ struct device {
     VkPhysicalDevice physical;
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
-    struct device_info info;
+    whit_device_info info;
+    struct device_limits limits;
 
     VkDevice vk;
     VkQueue queue;

@@ -24,8 +24,8 @@ uint32_t pixels_slot_shift(uint32_t depth)
 
 static uint32_t usual_tile(const struct device *device)
 {
-    const struct device_info *info = device_get_info(device);
-    if (info->kind == DEVICE_CPU)
+    const whit_device_info *info = device_get_info(device);
+    if (info->kind == WHIT_DEVICE_CPU)
         return TILE_CPU;
     uint32_t tile = TILE_OTHER;
     while (tile > TILE_CPU &&

@@ -143,7 +143,7 @@ static uint32_t right_answer(uint32_t function, float x, float y)
 
 /* Sums, products, relations or absolute values of a few floats. */
 static whit_result compare_plain(struct device *device, const struct portable_params *asks,
-                                 uint32_t function, struct portable_device *out)
+                                 uint32_t function, whit_device_floats *out)
 {
     static const uint32_t values[VALUES] = {1,          0x80000003, 0x00400000, 0x007fffff,
                                             0x00800000, 0x80800001, 0x3f800000, 0x3f000000,
@@ -175,27 +175,27 @@ static whit_result compare_plain(struct device *device, const struct portable_pa
 
 static struct portable_params asks_of(const struct device *device)
 {
-    const struct device_info *info = device_get_info(device);
+    const struct device_limits *limits = device_get_limits(device);
     return (struct portable_params){.own_division = true,
                                     .own_comparison = true,
-                                    .asks_nearest = info->asked_nearest,
-                                    .asks_special = info->asked_special,
-                                    .asks_denormals = info->asked_denormals};
+                                    .asks_nearest = limits->asked_nearest,
+                                    .asks_special = limits->asked_special,
+                                    .asks_denormals = limits->asked_denormals};
 }
 
-static whit_result find_out(struct device *device, struct portable_device *out)
+static whit_result find_out(struct device *device, whit_device_floats *out)
 {
     const struct portable_params asks = asks_of(device);
     static const uint32_t plain[] = {PORTABLE_SUM, PORTABLE_PRODUCT, PORTABLE_RELATIONS,
                                      PORTABLE_ABS};
-    *out = (struct portable_device){false, true, true, true};
+    *out = (whit_device_floats){false, true, true, true};
     whit_result result = compare_division(device, &asks, &out->own_division);
     for (size_t i = 0; result == WHIT_OK && i < sizeof plain / sizeof *plain; ++i)
         result = compare_plain(device, &asks, plain[i], out);
     return result;
 }
 
-whit_result portable_find(const whit_log *log, struct device *device, struct portable_device *out)
+whit_result portable_find(const whit_log *log, struct device *device, whit_device_floats *out)
 {
     uint8_t *kept = NULL;
     size_t bytes = 0;
@@ -206,7 +206,7 @@ whit_result portable_find(const whit_log *log, struct device *device, struct por
     snprintf(what, sizeof what, "floats-%016llx", (unsigned long long)hash);
     name = device_kept_name(device, what);
     if (name && store_read(log, name, &kept, &bytes) && bytes == 4) {
-        *out = (struct portable_device){kept[0] == 1, kept[1] == 1, kept[2] == 1, kept[3] == 1};
+        *out = (whit_device_floats){kept[0] == 1, kept[1] == 1, kept[2] == 1, kept[3] == 1};
     } else {
         result = find_out(device, out);
         const uint8_t found[] = {out->own_division, out->keeps_denormals, out->rounds_nearest,
@@ -227,7 +227,7 @@ static bool is_off(const char *variable)
 
 whit_result portable_choose(const whit_log *log, struct device *device, struct portable_params *out)
 {
-    struct portable_device found = {true, true, true, true};
+    whit_device_floats found = {true, true, true, true};
     *out = (struct portable_params){.own_division = true, .own_comparison = true};
     whit_result result = device ? portable_find(log, device, &found) : WHIT_OK;
     if (result != WHIT_OK)

@@ -6,16 +6,9 @@
 #include "device/pipeline.h"
 #include "shader/portable.h"
 
-struct portable_device {
-    bool own_division;    /* its own division and square root are rounded correctly */
-    bool keeps_denormals; /* in sums and products, where kernels ask for it */
-    bool rounds_nearest;  /* the same of what is no denormal */
-    bool own_comparison;  /* its comparisons and absolute values tell denormals from 0 */
-};
-
 /* Found out once for a device and its driver, in about a second, and kept (base/store.h). */
 WHIT_CHECK whit_result portable_find(const whit_log *log, struct device *device,
-                                     struct portable_device *out);
+                                     whit_device_floats *out);
 
 /* What kernels are made with for a device; WHIT_ERROR_DEVICE, logged, where it cannot be: it
    flushes denormals, or rounds sums otherwise. WHIT_OWN_DIVISION=0 in the environment: with the

@@ -48,7 +48,8 @@ static whit_result create_parts(struct renderer *renderer)
     renderer->picture.stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);
-    renderer->picture.stats.load_path = renderer->scene_buffers.texel_loads ? "texel" : "storage";
+    renderer->picture.stats.load_path =
+        renderer->scene_buffers.texel_loads ? WHIT_LOAD_TEXEL : WHIT_LOAD_STORAGE;
     renderer->picture.stats.device_bytes = renderer->scene_buffers.bytes;
     return result;
 }

@@ -369,11 +369,11 @@ static whit_result upload_texels(struct material_upload *up)
 {
     struct renderer *renderer = up->renderer;
     struct scene_buffers *buffers = &renderer->scene_buffers;
-    const struct device_info *info = device_get_info(renderer->device);
     if (up->image_count == 0)
         return WHIT_OK;
-    uint64_t limit =
-        buffers->texel_loads ? info->max_texel_elements * 4 : info->max_storage_range_bytes / 4;
+    uint64_t limit = buffers->texel_loads
+                         ? device_get_limits(renderer->device)->max_texel_elements * 4
+                         : device_get_info(renderer->device)->max_storage_range_bytes / 4;
     if (limit > UINT32_MAX) /* words are counted in 32 bits */
         limit = UINT32_MAX;
     fit_images(up, limit - TEXEL_TABLE_WORDS);

@@ -358,7 +358,7 @@ struct progress render_progress(const struct renderer *renderer)
 {
     uint32_t asked = renderer->params.tile_size;
     uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
-    bool cpu = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    bool cpu = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
     uint32_t first = cpu ? TILE_FIRST_CPU : TILE_FIRST;
     return (struct progress){
         .lattice = lattice_whole(renderer),
@@ -430,7 +430,7 @@ whit_result params_check_loops(const struct renderer *renderer)
     const struct scene *scene = renderer->scene;
     bool shadows = renderer->effects.called[SCENE_EFFECT_SHADOWS];
     uint64_t rays = shadows ? lights_samples(renderer) : 1;
-    if (!accel->no_trees || !device_get_info(renderer->device)->loop_limited ||
+    if (!accel->no_trees || !device_get_limits(renderer->device)->loop_limited ||
         rays * accel->iterations <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
     log_error(&renderer->log,

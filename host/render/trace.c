@@ -38,7 +38,7 @@ void trace_finish(struct trace_state *trace)
 /* Pieces grow fourfold, up to the capacity. */
 static uint32_t first_piece(const struct renderer *renderer)
 {
-    bool cpu = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    bool cpu = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
     uint32_t first = renderer->accel->no_trees ? TRACE_FIRST_BARE
                      : cpu                     ? TRACE_FIRST_CPU
                                                : TRACE_FIRST;

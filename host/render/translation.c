@@ -164,7 +164,7 @@ static void translate_share(void *context)
 static bool keeps_machine_code(const struct renderer *renderer)
 {
     const char *off = getenv("MESA_SHADER_CACHE_DISABLE");
-    return device_get_info(renderer->device)->kind == DEVICE_CPU &&
+    return device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU &&
            device_compile_threads(renderer->device) != 1 && threads_available() > 1 &&
            !(off && (strcmp(off, "1") == 0 || strcmp(off, "true") == 0));
 }

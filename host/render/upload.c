@@ -47,7 +47,7 @@ static bool choose_texel_loads(const struct renderer *renderer)
     case WHIT_LOAD_AUTO:
         break;
     }
-    return device_get_info(renderer->device)->kind == DEVICE_CPU || !fits_storage(renderer);
+    return device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU || !fits_storage(renderer);
 }
 
 whit_result upload_words(struct renderer *renderer, const void *data, uint64_t size_bytes,

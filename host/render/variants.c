@@ -89,12 +89,12 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_PROBE = target->probed;
     spec.SPEC_SETTLES = !variant_has_deferred(target);
     spec.SPEC_SECONDARY = secondary;
-    spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == DEVICE_CPU;
+    spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
     spec.SPEC_WIDE_ROWS =
         spec.SPEC_INTERLEAVE && device_get_info(renderer->device)->int64; /* lavapipe */
     /* Counting wants all refs in memory. */
     spec.SPEC_SHORT_STACK =
-        device_get_info(renderer->device)->kind == DEVICE_CPU && !renderer->params.count;
+        device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
     spec.SPEC_LISTED = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     spec.SPEC_VIEWS = renderer->views.count > 0;

@@ -8,11 +8,25 @@
 extern "C" {
 #endif
 
+/* By how well they suit: "auto" takes the first. */
+typedef enum whit_device_kind {
+    WHIT_DEVICE_DISCRETE = 0,
+    WHIT_DEVICE_INTEGRATED,
+    WHIT_DEVICE_VIRTUAL,
+    WHIT_DEVICE_CPU,
+    WHIT_DEVICE_OTHER,
+} whit_device_kind;
+/* "discrete gpu", "integrated gpu", "virtual gpu", "cpu", "other" */
+const char *whit_device_kind_name(whit_device_kind kind);
+
 typedef struct whit_device_info {
-    uint32_t index;
-    char name[256], driver[256], api_version[32];
-    char kind[16]; /* "discrete", "integrated", "virtual", "cpu", "other" */
-    uint64_t memory_bytes, max_storage_range_bytes;
+    uint32_t index; /* in the order Vulkan lists them; what `--device N` takes */
+    char name[256];
+    char driver[256]; /* name and version text */
+    char api_version[32];
+    whit_device_kind kind;
+    uint64_t memory_bytes;            /* of the largest heap of its own */
+    uint64_t max_storage_range_bytes; /* of one storage buffer */
     uint32_t subgroup_size;
     bool float64, int64, timestamps, usable;
     bool automatic;    /* the one that "auto" takes */
@@ -25,7 +39,8 @@ WHIT_CHECK whit_result whit_device_list(const whit_log *log, whit_device_info **
                                         uint32_t *count);
 
 typedef struct whit_device_params {
-    const char *selector; /* NULL or "auto"; a number; part of a name */
+    const char *selector; /* NULL or "auto": the first usable one of the best kind; a number: that
+                             index; else part of a name, any case */
     bool validation;      /* Vulkan validation layers, with their messages in the log */
 } whit_device_params;
 

@@ -333,9 +333,9 @@ typedef struct whit_stats {
     uint32_t kernels_beside; /* of these kernels, translated to machine code by a second device */
     bool general;            /* drawn by the general kernel: see params.compile_async */
     uint32_t dispatches, tiles, tile_size;
-    uint32_t deferred;     /* exact numerics: steps of pixels' rays that took more than floats */
-    const char *load_path; /* "storage" or "texel" */
-    bool packets;          /* camera rays walked together */
+    uint32_t deferred;        /* exact numerics: steps of pixels' rays that took more than floats */
+    whit_load_path load_path; /* the one taken: not WHIT_LOAD_AUTO */
+    bool packets;             /* camera rays walked together */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
     whit_stage stages[WHIT_STAGES];  /* those that had rays; the others have none */
     whit_share shares[WHIT_SHARES];  /* largest first; the rest is left out */

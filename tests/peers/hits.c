@@ -357,8 +357,8 @@ static int compare_scene(const struct options *options)
     bool good = bench_open(&bench, options), done = good, exact = true;
     if (good) {
         const char *name = strrchr(options->path, '/');
-        const struct device_info *info = device_get_info(bench.device);
-        exact = info->kind == DEVICE_CPU;
+        const whit_device_info *info = device_get_info(bench.device);
+        exact = info->kind == WHIT_DEVICE_CPU;
         printf("%s: %llu triangles, %u instances; %s\n", name ? name + 1 : options->path,
                (unsigned long long)bench.scene->triangle_total, bench.accel->instance_count,
                info->name);

@@ -4,8 +4,12 @@
 #include "app/devices/device_hints.h"
 #include "folder_fixture.h"
 
-static const whit_device_info lavapipe = {.name = "llvmpipe", .kind = "cpu", .usable = true},
-                              nvidia = {.name = "NVIDIA H100", .kind = "discrete", .usable = true};
+static const whit_device_info lavapipe = {.name = "llvmpipe",
+                                          .kind = WHIT_DEVICE_CPU,
+                                          .usable = true},
+                              nvidia = {.name = "NVIDIA H100",
+                                        .kind = WHIT_DEVICE_DISCRETE,
+                                        .usable = true};
 
 static const char ask_for_all[] = "NVIDIA_DRIVER_CAPABILITIES=all", package[] = "libnvidia-gl-580";
 

@@ -46,7 +46,7 @@ TEST(sizes_are_rounded_up)
    devices that are no CPU, are as large as they were asked to be. */
 TEST(texel_buffers_are_of_one_kind_for_lavapipe)
 {
-    bool is_cpu = device_get_info(device)->kind == DEVICE_CPU;
+    bool is_cpu = device_get_info(device)->kind == WHIT_DEVICE_CPU;
     for (uint64_t around = 0; around <= 1 << 18; around += 1 << 15) {
         for (uint64_t size = around; size < around + 1024; size += 16) {
             struct buffer *storage = buffer_make(device, size, BUFFER_STORAGE, "storage");
@@ -137,15 +137,15 @@ TEST(refuses_access_outside)
 
 TEST(refuses_what_is_over_the_limits)
 {
-    const struct device_info *info = device_get_info(device);
+    const struct device_limits *limits = device_get_limits(device);
     const struct {
         uint64_t size_bytes;
         uint32_t uses;
         const char *what;
     } cases[] = {
-        {info->max_storage_range_bytes + 1, BUFFER_STORAGE, "a storage buffer"},
-        {info->max_texel_elements * 16 + 1, BUFFER_TEXELS, "a texel buffer"},
-        {info->max_allocation_bytes + 1, BUFFER_HOST, "one allocation"},
+        {device_get_info(device)->max_storage_range_bytes + 1, BUFFER_STORAGE, "a storage buffer"},
+        {limits->max_texel_elements * 16 + 1, BUFFER_TEXELS, "a texel buffer"},
+        {limits->max_allocation_bytes + 1, BUFFER_HOST, "one allocation"},
         {UINT64_MAX, BUFFER_HOST, "one allocation"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {

@@ -334,7 +334,7 @@ TEST(recording_errors_surface_at_submit)
             commands_dispatch(commands, 1, 1, 1);
             break;
         case 1:
-            commands_dispatch(commands, device_get_info(device)->max_group_count_x, 1, 1);
+            commands_dispatch(commands, device_get_limits(device)->max_group_count_x, 1, 1);
             commands_dispatch(commands, UINT32_MAX, 1, 1);
             break;
         case 2: /* none declared */

@@ -253,7 +253,7 @@ TEST(no_device_without_room_for_its_threads)
 {
     whit_log log = messages_log(&messages);
     struct device *device = device_open(&messages, false);
-    bool on_cpu = device_get_info(device)->kind == DEVICE_CPU;
+    bool on_cpu = device_get_info(device)->kind == WHIT_DEVICE_CPU;
     device_close(device, &messages);
     is_short = true;
     whit_result result = device_create(&log, &(struct device_params){0}, &device);

@@ -204,7 +204,7 @@ TEST(many_shadows_are_refused)
     renderer_destroy(f.renderer);
     assert_int_equal(renderer_create(&warnings_log, f.device, f.accel, &params, &f.renderer),
                      WHIT_OK);
-    bool limited = device_get_info(f.device)->loop_limited;
+    bool limited = device_get_limits(f.device)->loop_limited;
     assert_int_equal(renderer_render(f.renderer), limited ? WHIT_ERROR_USAGE : WHIT_OK);
     if (limited) {
         struct probe_report report;

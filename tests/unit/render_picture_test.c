@@ -213,7 +213,7 @@ TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
         print_message("  70000 panes, packets %d, one tree %d: %s\n", i & 1, accel.flatten,
                       whit_result_name(result));
         assert_int_equal(result,
-                         device_get_info(f.device)->loop_limited ? WHIT_ERROR_STATUS : WHIT_OK);
+                         device_get_limits(f.device)->loop_limited ? WHIT_ERROR_STATUS : WHIT_OK);
         fixture_close(&f);
     }
 }

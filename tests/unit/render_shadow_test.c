@@ -353,7 +353,7 @@ TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
         struct fixture f = fixture_open(scene, NULL, &params);
         whit_result result = renderer_render(f.renderer);
         print_message("  %s: %s\n", lit ? "light" : "eye", whit_result_name(result));
-        if (device_get_info(f.device)->loop_limited) {
+        if (device_get_limits(f.device)->loop_limited) {
             assert_int_equal(result, WHIT_ERROR_STATUS);
         } else {
             struct image image = {0};

@@ -345,7 +345,7 @@ TEST(cut_traversals_are_reported)
     whit_result result = renderer_trace(f.renderer, rays, 8, false, hits, NULL);
     print_message("  %u pairs and %u triangles for one ray: %s\n", counts.inner_nodes,
                   counts.triangles, whit_result_name(result));
-    if (device_get_info(f.device)->loop_limited) {
+    if (device_get_limits(f.device)->loop_limited) {
         assert_int_equal(result, WHIT_ERROR_STATUS);
     } else {
         assert_int_equal(result, WHIT_OK);

@@ -132,7 +132,7 @@ static int work(struct bench *bench)
     result = whit_device_create(&params, &cli_log, &bench->device);
     if (result == WHIT_OK) {
         whit_device_get_info(bench->device, &bench->device_info);
-        bench->is_cpu = strcmp(bench->device_info.kind, "cpu") == 0;
+        bench->is_cpu = bench->device_info.kind == WHIT_DEVICE_CPU;
         result = benches[bench->ask.which](bench);
     }
     if (result == WHIT_OK && bench->ask.json)

@@ -43,6 +43,7 @@ LogLevel = _enumeration("whit_log_level", "ERROR WARNING INFO DEBUG")
 Up = _enumeration("whit_up", "Y X Z MINUS_X MINUS_Y MINUS_Z AUTO")
 Lights = _enumeration("whit_lights", "AUTO FILE NONE KEY")
 EnvironmentKind = _enumeration("whit_environment_kind", "GRADIENT MAP")
+DeviceKind = _enumeration("whit_device_kind", "DISCRETE INTEGRATED VIRTUAL CPU OTHER")
 CameraKind = _enumeration("whit_camera_kind", "PERSPECTIVE ORTHOGRAPHIC PANORAMA")
 Traversal = _enumeration("whit_traversal", "DISTANCE SIGN BASIC")
 Numerics = _enumeration("whit_numerics", "WATERTIGHT FAST EXACT")
@@ -55,8 +56,8 @@ Classes = _enumeration("whit_classes", "AUTO ONE MANY")
 TraceOn = _enumeration("whit_trace_on", "DEVICE CPU_FLOAT CPU_BRUTE")
 Aov = _enumeration("whit_aov", "COLOR IDS CUTS DISTANCES")
 # What their enumerators begin with, where that is not the type's name.
-PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", EnvironmentKind: "WHIT_ENVIRONMENT", CameraKind: "WHIT_CAMERA",
-            SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD", TraceOn: "WHIT_TRACE"}
+PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", EnvironmentKind: "WHIT_ENVIRONMENT", DeviceKind: "WHIT_DEVICE",
+            CameraKind: "WHIT_CAMERA", SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD", TraceOn: "WHIT_TRACE"}
 
 _LogFn = ctypes.CFUNCTYPE(None, c_void_p, c_uint, c_char_p)
 _ProgressFn = ctypes.CFUNCTYPE(None, c_void_p, c_double)
@@ -92,7 +93,7 @@ CameraInfo = _struct("whit_camera_info", ("name", c_char_p), ("kind", CameraKind
 DeviceParams = _struct("whit_device_params", ("selector", c_char_p), ("validation", c_bool))
 DeviceInfo = _struct(
     "whit_device_info", ("index", c_uint32), ("name driver", c_char * 256), ("api_version", c_char * 32),
-    ("kind", c_char * 16), ("memory_bytes max_storage_range_bytes", c_uint64), ("subgroup_size", c_uint32),
+    ("kind", DeviceKind), ("memory_bytes max_storage_range_bytes", c_uint64), ("subgroup_size", c_uint32),
     ("float64 int64 timestamps usable automatic", c_bool), ("why_not", c_char * 128))
 RendererParams = _struct(
     "whit_renderer_params", ("width height first_row row_count", c_uint32), ("camera", Camera),

@@ -260,7 +260,7 @@ static json_t *device_document(const struct study *study)
     json_t *device = document_object();
     document_text(device, "name", info.name);
     document_text(device, "driver", info.driver);
-    document_text(device, "kind", info.kind);
+    document_text(device, "kind", whit_device_kind_name(info.kind));
     return device;
 }
 

@@ -143,8 +143,8 @@ static void put_head(json_t *out, const struct cost_report *report, const struct
     document_hash(out, "scene_hash", report->scene_hash);
     document_text(out, "device", report->device);
     document_text(out, "driver", report->driver);
-    document_text(out, "kind", report->kind);
-    document_text(out, "load_path", report->load_path);
+    document_text(out, "kind", whit_device_kind_name(report->kind));
+    document_text(out, "load_path", value_word(values_load_path, (int)report->load_path));
     document_flag(out, "complete", report->complete);
     document_number(out, "seconds", report->spent_ms * 1e-3);
     document_text(out, "clock", cost_clock_name(report->clock));

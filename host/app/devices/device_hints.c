@@ -105,7 +105,7 @@ void device_hints_find(const char *root, const char *asked, const whit_device_in
     *hints = (struct device_hints){0};
     for (uint32_t i = 0; i < count; ++i) {
         any |= infos[i].usable;
-        gpu |= strcmp(infos[i].kind, "cpu") != 0;
+        gpu |= infos[i].kind != WHIT_DEVICE_CPU;
         nvidia |= strstr(infos[i].name, "NVIDIA") != NULL;
     }
     bool has_nvidia = is_there(root, "/dev/nvidiactl") || is_there(root, "/proc/driver/nvidia");

@@ -62,7 +62,7 @@ static json_t *device_document(const whit_device_info *info)
     json_t *device = document_object();
     document_count(device, "index", info->index);
     document_text(device, "name", info->name);
-    document_text(device, "kind", info->kind);
+    document_text(device, "kind", whit_device_kind_name(info->kind));
     document_text(device, "driver", info->driver);
     document_text(device, "api_version", info->api_version);
     document_count(device, "memory_bytes", info->memory_bytes);
@@ -81,7 +81,7 @@ static json_t *device_document(const whit_device_info *info)
 static void print_device(const whit_device_info *info)
 {
     printf("%c %u  %s\n", info->automatic ? '*' : ' ', info->index, cli_shown(info->name));
-    printf("     kind      %s, Vulkan %s\n", info->kind, info->api_version);
+    printf("     kind      %s, Vulkan %s\n", whit_device_kind_name(info->kind), info->api_version);
     printf("     driver    %s\n", cli_shown(info->driver));
     printf("     memory    %.1f GiB, storage buffers to %.0f MiB\n",
            (double)info->memory_bytes / 1073741824.0,

@@ -235,7 +235,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     json_t *device = document_object();
     document_text(device, "name", figures->device.name);
     document_text(device, "driver", figures->device.driver);
-    document_text(device, "kind", figures->device.kind);
+    document_text(device, "kind", whit_device_kind_name(figures->device.kind));
     document_put(root, "device", device);
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(job, figures));
@@ -257,7 +257,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_count(work, "tiles", figures->render->tiles);
     document_count(work, "tile_size", figures->render->tile_size);
     document_count(work, "deferred", figures->render->deferred);
-    document_text(work, "load_path", figures->render->load_path);
+    document_text(work, "load_path", value_word(values_load_path, (int)figures->render->load_path));
     document_flag(work, "packets", figures->render->packets);
     document_put(root, "work", work);
     json_t *memory = document_object();
@@ -432,7 +432,8 @@ static int print_text(const struct job *job, const struct render_request *reques
         print_frames(figures->sequence);
     printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads%s\n",
            figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
-           figures->render->load_path, figures->render->packets ? ", camera rays in packets" : "");
+           value_word(values_load_path, (int)figures->render->load_path),
+           figures->render->packets ? ", camera rays in packets" : "");
     if (figures->render->deferred > 0)
         printf("  %u steps of pixels' rays took more than floats\n", figures->render->deferred);
     printf("memory\n  host %.1f MiB at most, device %.1f MiB\n",

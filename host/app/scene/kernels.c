@@ -59,7 +59,7 @@ static int print_json(const struct job *job, const whit_device_info *info,
     document_text(root, "file", job->settings.scene);
     document_text(device, "name", info->name);
     document_text(device, "driver", info->driver);
-    document_text(device, "kind", info->kind);
+    document_text(device, "kind", whit_device_kind_name(info->kind));
     document_count(device, "subgroup_size", info->subgroup_size);
     document_put(root, "device", device);
     settings_describe(&job->settings, IN_SCENE, of);

@@ -127,7 +127,7 @@ int receipt_print_json(const struct receipt *receipt)
     document_hash(root, "hash", scene.hash);
     document_text(device, "name", info.name);
     document_text(device, "driver", info.driver);
-    document_text(device, "kind", info.kind);
+    document_text(device, "kind", whit_device_kind_name(info.kind));
     document_put(root, "device", device);
     json_t *picture = document_object();
     settings_describe(&receipt->job->settings, IN_SCENE, picture);
