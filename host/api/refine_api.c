@@ -35,7 +35,7 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
-    if (shader_has(renderer->params.shader, SHADER_HOOK_POST)) {
+    if (shader_has(renderer->params.shader, WHIT_HOOK_POST)) {
         log_error(&renderer->log,
                   "what `post` of the shader makes of the mean of samples is not the "
                   "mean of what it makes of them: such a picture is not refined");

@@ -235,7 +235,7 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
 {
     *info = (whit_shader_info){.files = shader->files,
                                .file_count = shader->file_count,
-                               .hooks = shader->names,
+                               .hooks = shader->hooks,
                                .sliders = shader->sliders,
                                .slider_count = shader->slider_count,
                                .tests = shader->test_infos,
@@ -250,8 +250,6 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
                                .fuel = shader->trust ? 0 : shader->fuel,
                                .hash = shader_text_hash(&shader->text) ^
                                        (shader->stages ? shader->stages->hash : 0)};
-    while (info->hook_count < SHADER_HOOK_COUNT && shader->names[info->hook_count])
-        info->hook_count++;
     for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i) {
         info->kernel_count += shader->codes[i].words != NULL;
         info->instructions += shader->codes[i].instructions;
@@ -288,14 +286,4 @@ char *whit_shader_kernel_text(const whit_shader *shader, uint32_t index)
 char *whit_spirv_text(const uint32_t *words, size_t bytes)
 {
     return shader_disassemble(words, bytes);
-}
-
-char *whit_shader_template(const char *hook)
-{
-    return shader_template(hook);
-}
-
-const char *whit_shader_hook_name(uint32_t index)
-{
-    return shader_hook_name((enum shader_hook)index);
 }

@@ -178,6 +178,16 @@ whit_renderer_params job_picture(const struct job *job)
     return params;
 }
 
+uint32_t job_functions(const whit_shader_info *shader, const char *names[WHIT_HOOKS])
+{
+    uint32_t count = 0;
+    for (unsigned i = 0; i < WHIT_HOOKS; ++i) {
+        if (shader->hooks >> i & 1)
+            names[count++] = whit_hook_name((whit_hook)i);
+    }
+    return count;
+}
+
 int job_check_validation(const struct job *job)
 {
     uint32_t messages = job->device ? whit_device_validation_messages(job->device) : 0;

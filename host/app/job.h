@@ -47,6 +47,8 @@ whit_result job_open_device(struct job *job);
 whit_result job_still_wanted(void);
 /* Prints the notes of the scene: warnings, and with `all` what was added as well. */
 void job_print_notes(const struct job *job, bool all);
+/* Names of the functions that a shader stands in for; gives their number. */
+uint32_t job_functions(const whit_shader_info *shader, const char *names[WHIT_HOOKS]);
 /* A renderer's params for the settings, within what is left of the time limit; borrows them. */
 whit_renderer_params job_picture(const struct job *job);
 /* EXIT_DIFFERS when the validation layers had anything to say. */

@@ -15,9 +15,9 @@
 _Static_assert(DBG_CALLS == SHADER_DBG_MAX, "room for all of them");
 _Static_assert(SLIDERS_MAX == SHADER_SLIDERS_MAX, "the same values");
 _Static_assert(HIT_SHAPE == WHIT_INSTANCE_SHAPE, "the same instance");
-_Static_assert(HOOK_CAMERA == 1u << SHADER_HOOK_CAMERA && HOOK_SHADE == 1u << SHADER_HOOK_SHADE &&
-                   HOOK_POST == 1u << SHADER_HOOK_POST && HOOK_AOV == 1u << SHADER_HOOK_AOV &&
-                   HOOK_INTERSECT == 1u << SHADER_HOOK_INTERSECT,
+_Static_assert(HOOK_CAMERA == 1u << WHIT_HOOK_CAMERA && HOOK_SHADE == 1u << WHIT_HOOK_SHADE &&
+                   HOOK_POST == 1u << WHIT_HOOK_POST && HOOK_AOV == 1u << WHIT_HOOK_AOV &&
+                   HOOK_INTERSECT == 1u << WHIT_HOOK_INTERSECT,
                "the same bits");
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
@@ -65,7 +65,7 @@ static bool has_rays(const struct renderer *renderer)
 static uint32_t deciding(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
-    if (!shader_has(params->shader, SHADER_HOOK_SHADE) || params->all_effects ||
+    if (!shader_has(params->shader, WHIT_HOOK_SHADE) || params->all_effects ||
         renderer->effects.called[SCENE_EFFECT_CATCHERS])
         return 0;
     return (params->keep_unread ? SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS
@@ -88,7 +88,7 @@ void hooks_take(struct renderer *renderer)
     if (!params->shader)
         return;
     params->compile_async = false; /* there is no general kernel of it yet */
-    if (shader_has(params->shader, SHADER_HOOK_SCATTER))
+    if (shader_has(params->shader, WHIT_HOOK_SCATTER))
         params->effects_added |= EFFECT(REFLECTION);
     renderer->reaches_decide = deciding(renderer);
     renderer->effects_unasked = effects_not_asked_for(renderer) & ~params->effects_removed;
@@ -185,7 +185,7 @@ static void warn_of_material(const struct renderer *renderer, const struct shade
 whit_result hooks_find_material(struct renderer *renderer)
 {
     const whit_shader *shader = renderer->params.shader;
-    if (!shader_has(shader, SHADER_HOOK_INTERSECT))
+    if (!shader_has(shader, WHIT_HOOK_INTERSECT))
         return WHIT_OK;
     const struct shader_box *box = &shader->box;
     uint32_t index = scene_find_worn(renderer->scene, box->material);

@@ -63,7 +63,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     slots = slots > slots_max ? slots_max : slots;
     p->levels = pixels_levels(&renderer->params);
     /* The sums of samples are in the same buffer, behind the pixels. */
-    bool posts = shader_has(renderer->params.shader, SHADER_HOOK_POST);
+    bool posts = shader_has(renderer->params.shader, WHIT_HOOK_POST);
     uint64_t max_pixels = (limit / 16 - slots * p->levels) / (posts ? 2 : 1);
     uint32_t aovs = hooks_aov_count(target);
     if (aovs && limit / 16 / aovs - slots < max_pixels)

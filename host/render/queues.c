@@ -52,8 +52,8 @@ static uint64_t ray_bytes(uint64_t rays)
 
 static uint32_t hook_rows(const whit_shader *shader)
 {
-    return (shader_has(shader, SHADER_HOOK_SURFACE) ? HOOK_SURFACE_ROWS : 0) +
-           (shader_has(shader, SHADER_HOOK_SHADE) ? HOOK_LIGHT_ROWS : 0);
+    return (shader_has(shader, WHIT_HOOK_SURFACE) ? HOOK_SURFACE_ROWS : 0) +
+           (shader_has(shader, WHIT_HOOK_SHADE) ? HOOK_LIGHT_ROWS : 0);
 }
 
 /* Hits of one dispatch that rows are there for, of STAGE_HIT_FETCH. A tile of one block has no more
@@ -116,7 +116,7 @@ whit_result queues_create(struct target *target)
         {&queues->hook_rows, (rays * hook_rows(renderer->params.shader) + met_rows(target)) * 16,
          loaded, "functions at hits"},
         {&queues->shape_shadows,
-         shader_has(renderer->params.shader, SHADER_HOOK_INTERSECT)
+         shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT)
              ? (uint64_t)queues->lit_capacity * 2 * sizeof(uint32_t)
              : 0,
          BUFFER_STORAGE, "shadows of a shape"},

@@ -57,7 +57,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     const whit_shader *shader = renderer->params.shader;
     *job = (struct stages_job){.spec = *spec};
     /* A shading function of the user's has asked them itself, as all but catchers do. */
-    job->asks = !shader_has(shader, SHADER_HOOK_SHADE) || spec->SPEC_CATCHERS;
+    job->asks = !shader_has(shader, WHIT_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
     bool splits = variant_splits_hits(target);
     for (int i = 0; i < STAGE_COUNT; ++i) {
@@ -67,12 +67,12 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         bool part = i == STAGE_HIT_FETCH || i == STAGE_HIT_CALL;
         job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
                          (!part || splits) && (i != STAGE_HIT || !splits) &&
-                         (i != STAGE_MISS || shader_has(shader, SHADER_HOOK_MISS)) &&
-                         (i != STAGE_SHAPE || shader_has(shader, SHADER_HOOK_INTERSECT)) &&
-                         (i != STAGE_HIT || shader_has(shader, SHADER_HOOK_SURFACE) ||
-                          shader_has(shader, SHADER_HOOK_SHADE)) &&
+                         (i != STAGE_MISS || shader_has(shader, WHIT_HOOK_MISS)) &&
+                         (i != STAGE_SHAPE || shader_has(shader, WHIT_HOOK_INTERSECT)) &&
+                         (i != STAGE_HIT || shader_has(shader, WHIT_HOOK_SURFACE) ||
+                          shader_has(shader, WHIT_HOOK_SHADE)) &&
                          (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
-                         (i != STAGE_POST || shader_has(shader, SHADER_HOOK_POST)) &&
+                         (i != STAGE_POST || shader_has(shader, WHIT_HOOK_POST)) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);

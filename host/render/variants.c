@@ -421,7 +421,7 @@ bool variant_calls_rays(const struct gpu_spec *spec)
 static uint32_t lit_parts(const struct renderer *renderer, const struct gpu_spec *spec)
 {
     bool bent = spec->SPEC_SMOOTH_NORMALS || spec->SPEC_NORMAL_MAPS ||
-                shader_has(renderer->params.shader, SHADER_HOOK_SURFACE);
+                shader_has(renderer->params.shader, WHIT_HOOK_SURFACE);
     bool absorbing = spec->SPEC_FILTER_DETAIL && spec->SPEC_ABSORPTION && spec->SPEC_MEDIA;
     return (bent ? LIT_HAS_NG : 0) | (spec->SPEC_HIGHLIGHTS ? LIT_HAS_HIGHLIGHT : 0) |
            (absorbing ? LIT_HAS_ABSORPTION : 0);
@@ -452,7 +452,7 @@ static void choose_packets(const struct renderer *renderer, enum stage stage, st
         return;
     spec->SPEC_PACKETS = 1;
     bool from_eye = stage == STAGE_CAMERA && spec->SPEC_CAMERA == CAMERA_PERSPECTIVE &&
-                    !shader_has(renderer->params.shader, SHADER_HOOK_CAMERA);
+                    !shader_has(renderer->params.shader, WHIT_HOOK_CAMERA);
     bool to_point = stage == STAGE_SHADOW && !(spec->SPEC_LIGHTS & 1u << LIGHT_DIRECTIONAL);
     spec->SPEC_BEAM = spec->SPEC_INSTANCED ? BEAM_NONE
                       : from_eye           ? BEAM_STARTS
@@ -468,8 +468,8 @@ bool variant_can_split_hits(const struct target *target)
     const bool *called = target->renderer->effects.called;
     const whit_shader *shader = params->shader;
     /* What stands in rows is of hits that no function has changed, and of no ray that one made. */
-    return !target->probed && params->step && shader_has(shader, SHADER_HOOK_SHADE) &&
-           !shader_has(shader, SHADER_HOOK_SURFACE) && !shader_has(shader, SHADER_HOOK_CAMERA) &&
+    return !target->probed && params->step && shader_has(shader, WHIT_HOOK_SHADE) &&
+           !shader_has(shader, WHIT_HOOK_SURFACE) && !shader_has(shader, WHIT_HOOK_CAMERA) &&
            !shader->stages && (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_NORMAL_MAPS]);
 }
 
@@ -503,7 +503,7 @@ static void narrow_to_functions(const struct target *target, struct gpu_spec *sp
         spec->SPEC_FRESNEL = FRESNEL_NONE;
     if (!(reaches & SHADER_REACHES_NORMALS))
         spec->SPEC_NORMAL_MAPS = 0;
-    bool changes = shader_has(renderer->params.shader, SHADER_HOOK_SURFACE);
+    bool changes = shader_has(renderer->params.shader, WHIT_HOOK_SURFACE);
     if (!(reaches & SHADER_REACHES_VERTEX_COLORS) && !changes)
         spec->SPEC_VERTEX_COLORS = 0;
 }

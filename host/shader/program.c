@@ -9,7 +9,7 @@
 #include "shader/annotations.h"
 #include "shader/sliders.h"
 
-enum { DEFINES_MAX = SHADER_HOOK_COUNT + 1, DEFINE_BYTES = 48 };
+enum { DEFINES_MAX = WHIT_HOOKS + 1, DEFINE_BYTES = 48 };
 
 /* Functions of a few thousand lines take half of it; a text that is made to take for ever is told
    within a second. */
@@ -17,13 +17,13 @@ enum { DEFINES_MAX = SHADER_HOOK_COUNT + 1, DEFINE_BYTES = 48 };
 
 #define USER_INCLUDE    "#include \"../hook/user.glsl\"\n"
 
-static const char *const hook_names[SHADER_HOOK_COUNT] = {
-    [SHADER_HOOK_CAMERA] = "camera", [SHADER_HOOK_SURFACE] = "surface",
-    [SHADER_HOOK_SHADE] = "shade",   [SHADER_HOOK_SCATTER] = "scatter",
-    [SHADER_HOOK_MISS] = "miss",     [SHADER_HOOK_POST] = "post",
-    [SHADER_HOOK_AOV] = "aov",       [SHADER_HOOK_INTERSECT] = "intersect"};
+static const char *const hook_names[WHIT_HOOKS] = {
+    [WHIT_HOOK_CAMERA] = "camera", [WHIT_HOOK_SURFACE] = "surface",
+    [WHIT_HOOK_SHADE] = "shade",   [WHIT_HOOK_SCATTER] = "scatter",
+    [WHIT_HOOK_MISS] = "miss",     [WHIT_HOOK_POST] = "post",
+    [WHIT_HOOK_AOV] = "aov",       [WHIT_HOOK_INTERSECT] = "intersect"};
 
-#define BIT(hook) (1u << SHADER_HOOK_##hook)
+#define BIT(hook) (1u << WHIT_HOOK_##hook)
 
 /* In the order of enum hook_kernel. Every stage makes the camera's rays anew. */
 static const struct {
@@ -45,9 +45,9 @@ _Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
                    (int)SHADER_KERNEL_POST == (int)HOOK_KERNEL_POST,
                "the same kernels");
 
-const char *shader_hook_name(enum shader_hook hook)
+const char *whit_hook_name(whit_hook hook)
 {
-    return (unsigned)hook < SHADER_HOOK_COUNT ? hook_names[hook] : NULL;
+    return (unsigned)hook < WHIT_HOOKS ? hook_names[hook] : "";
 }
 
 const char *shader_kernel_name(enum shader_kernel kernel)
@@ -147,7 +147,7 @@ static char *declare_aovs(const whit_shader *shader)
 static char *declare_box(const whit_shader *shader)
 {
     const struct shader_box *box = &shader->box;
-    if (!shader_has(shader, SHADER_HOOK_INTERSECT))
+    if (!shader_has(shader, WHIT_HOOK_INTERSECT))
         return string_copy("");
     return string_format("void shape_box(out vec3 lo, out vec3 hi, out float error)\n{\n"
                          "    lo = vec3(%.9e, %.9e, %.9e);\n    hi = vec3(%.9e, %.9e, %.9e);\n"
@@ -243,8 +243,8 @@ static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
     if (parts->kind != TEXT_PLAIN)
         snprintf(of->texts[count++], DEFINE_BYTES,
                  parts->kind == TEXT_TESTS ? "HAS_TESTS" : "HAS_DBG");
-    for (uint32_t i = 0; i < SHADER_HOOK_COUNT; ++i) {
-        if (!shader_has(shader, (enum shader_hook)i))
+    for (uint32_t i = 0; i < WHIT_HOOKS; ++i) {
+        if (!shader_has(shader, (whit_hook)i))
             continue;
         snprintf(of->texts[count], DEFINE_BYTES, "HAS_%s", hook_names[i]);
         for (char *c = of->texts[count]; *c; ++c)
@@ -286,7 +286,7 @@ static whit_result compile(const whit_log *log, struct shader_compiler *compiler
 static bool find_box(const whit_log *log, const whit_shader *shader, struct shader_errors *errors)
 {
     uint32_t file, line;
-    bool has = shader_has(shader, SHADER_HOOK_INTERSECT);
+    bool has = shader_has(shader, WHIT_HOOK_INTERSECT);
     if (has == (shader->box.line > 0))
         return true;
     if (has && shader_text_defines(&shader->text, "intersect", &file, &line))
@@ -301,12 +301,11 @@ static bool find_box(const whit_log *log, const whit_shader *shader, struct shad
 static whit_result find_hooks(const whit_log *log, whit_shader *shader,
                               struct shader_errors *errors)
 {
-    for (uint32_t i = 0, count = 0; i < SHADER_HOOK_COUNT; ++i) {
-        if (i == SHADER_HOOK_AOV ? shader->aov_count == 0
-                                 : !shader_text_defines(&shader->text, hook_names[i], NULL, NULL))
+    for (uint32_t i = 0; i < WHIT_HOOKS; ++i) {
+        if (i == WHIT_HOOK_AOV ? shader->aov_count == 0
+                               : !shader_text_defines(&shader->text, hook_names[i], NULL, NULL))
             continue;
         shader->hooks |= 1u << i;
-        shader->names[count++] = hook_names[i];
     }
     if (!find_box(log, shader, errors))
         return WHIT_ERROR_INPUT;
@@ -510,22 +509,14 @@ void shader_program_destroy(whit_shader *shader)
     free(shader);
 }
 
-char *shader_template(const char *hook)
+char *whit_shader_template(whit_hook hook)
 {
+    static const char first[] = "//@ whit 1\n";
     char path[64];
-    bool known = false;
-    for (uint32_t i = 0; i < SHADER_HOOK_COUNT; ++i)
-        known = known || strcmp(hook, hook_names[i]) == 0;
-    snprintf(path, sizeof path, "hook/%.40s.glsl", hook);
+    snprintf(path, sizeof path, "hook/%s.glsl", whit_hook_name(hook));
     uint32_t index = shader_stages_find(NULL, path);
-    const struct shader_source *source = &shader_sources[index];
-    if (!known || index == shader_source_count)
-        return NULL;
-    const char *first = "//@ whit 1\n";
-    char *text = calloc(source->bytes + strlen(first) + 1, 1);
-    if (text) {
-        strcpy(text, first);
-        memcpy(text + strlen(first), source->text, source->bytes);
-    }
-    return text;
+    return index == shader_source_count
+               ? NULL
+               : string_format("%s%.*s", first, (int)shader_sources[index].bytes,
+                               (const char *)shader_sources[index].text);
 }

@@ -7,19 +7,6 @@
 #include "shader/tests.h"
 #include "whit/whit_shader.h"
 
-/* The functions of shaders/hook/ that a file may stand in for. */
-enum shader_hook {
-    SHADER_HOOK_CAMERA,
-    SHADER_HOOK_SURFACE,
-    SHADER_HOOK_SHADE,
-    SHADER_HOOK_SCATTER,
-    SHADER_HOOK_MISS,
-    SHADER_HOOK_POST,
-    SHADER_HOOK_AOV,       /* functions of any name below //@ aov */
-    SHADER_HOOK_INTERSECT, /* with //@ box */
-    SHADER_HOOK_COUNT
-};
-
 /* The kernels that hooks are parts of. */
 enum shader_kernel {
     SHADER_KERNEL_CLOSEST,
@@ -74,7 +61,7 @@ struct whit_shader {
     struct shader_tests tests;
     whit_shader_test *test_infos;
     whit_shader_check *check_infos;
-    uint32_t hooks; /* bits 1 << enum shader_hook */
+    uint32_t hooks; /* bits 1 << whit_hook */
     uint32_t fuel;
     bool trust;
     whit_slider sliders[SHADER_SLIDERS_MAX];
@@ -93,13 +80,11 @@ struct whit_shader {
                                                           does the same anew */
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;
-    const char *names[SHADER_HOOK_COUNT + 1]; /* of its hooks; NULL behind the last */
 };
 
 /* program.c */
-const char *shader_hook_name(enum shader_hook hook);
 const char *shader_kernel_name(enum shader_kernel kernel);
-static inline bool shader_has(const whit_shader *shader, enum shader_hook hook)
+static inline bool shader_has(const whit_shader *shader, whit_hook hook)
 {
     return shader && (shader->hooks >> hook & 1);
 }
@@ -138,7 +123,5 @@ WHIT_CHECK whit_result shader_program_compile_tests(const whit_log *log,
 /* whit_shader_kernel_text; NULL: no memory, which was logged. */
 char *shader_program_expand(const whit_log *log, const whit_shader *shader,
                             enum shader_kernel kernel);
-/* whit_shader_template */
-char *shader_template(const char *hook);
 
 #endif

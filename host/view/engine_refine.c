@@ -307,10 +307,7 @@ static void finish_whole(struct engine_refine *refine, const struct engine_frame
 /* What a function makes of the mean of samples is not the mean of what it makes of them. */
 static bool has_post(const struct session *session)
 {
-    bool has = false;
-    for (uint32_t i = 0; session->shader && i < session->shader->info.hook_count; ++i)
-        has = has || strcmp(session->shader->info.hooks[i], "post") == 0;
-    return has;
+    return session->shader && (session->shader->info.hooks >> WHIT_HOOK_POST & 1);
 }
 
 void engine_refine_take(struct engine *engine, const struct engine_task *task, bool same,

@@ -108,12 +108,26 @@ typedef struct whit_shader_expectation {
     uint32_t line;
 } whit_shader_expectation;
 
+/* Whit's functions that such files stand in for. */
+typedef enum whit_hook {
+    WHIT_HOOK_CAMERA = 0,
+    WHIT_HOOK_SURFACE,
+    WHIT_HOOK_SHADE,
+    WHIT_HOOK_SCATTER,
+    WHIT_HOOK_MISS,
+    WHIT_HOOK_POST,
+    WHIT_HOOK_AOV,       /* functions of any name below //@ aov */
+    WHIT_HOOK_INTERSECT, /* with //@ box */
+    WHIT_HOOKS,          /* how many there are */
+} whit_hook;
+/* "camera", "surface", ... as files name them. */
+const char *whit_hook_name(whit_hook hook);
+
 /* What a file is made of. All texts live as long as the shader. */
 typedef struct whit_shader_info {
     const char *const *files; /* the file and what it includes, as whit opened them */
     uint32_t file_count;
-    const char *const *hooks; /* whit's functions that it stands in for */
-    uint32_t hook_count;
+    uint32_t hooks; /* bits 1u << whit_hook: functions that it stands in for */
     const whit_slider *sliders;
     uint32_t slider_count;
     const whit_shader_test *tests;
@@ -188,11 +202,9 @@ WHIT_CHECK whit_result whit_shader_unpack(const char *packed, const char *where,
                                           const whit_log *log, whit_shader_file **files,
                                           uint32_t *count);
 
-/* The file that `whit shader new` writes: whit's own function of that name, with what it may use in
-   comments; NULL: there is no such hook. To be released by whit_memory_destroy. */
-char *whit_shader_template(const char *hook);
-/* Names of hooks by index; NULL past the last. */
-const char *whit_shader_hook_name(uint32_t index);
+/* The file that `whit shader new` writes: whit's own function, with what it may use in comments.
+   NULL: there is no such hook, or no memory. To be released by whit_memory_destroy. */
+char *whit_shader_template(whit_hook hook);
 
 #ifdef __cplusplus
 }

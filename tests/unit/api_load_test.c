@@ -127,6 +127,7 @@ TEST(every_kind_has_a_word)
     CHECK_WORDS(whit_camera_kind_name, WHIT_CAMERA_PANORAMA + 1);
     CHECK_WORDS(whit_environment_kind_name, WHIT_ENVIRONMENT_MAP + 1);
     CHECK_WORDS(whit_device_kind_name, WHIT_DEVICE_OTHER + 1);
+    CHECK_WORDS(whit_hook_name, WHIT_HOOKS);
     CHECK_WORDS(whit_part_kind_name, WHIT_PART_KINDS);
     CHECK_WORDS(whit_fault_kind_name, WHIT_FAULT_KINDS);
     CHECK_WORDS(whit_probe_end_name, WHIT_PROBE_ENDS);

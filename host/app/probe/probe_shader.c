@@ -19,24 +19,15 @@ static whit_shader_info shader_of(const struct probe *probe)
     return info;
 }
 
-static bool has_function(const whit_shader_info *info, const char *name)
-{
-    for (uint32_t i = 0; i < info->hook_count; ++i) {
-        if (strcmp(info->hooks[i], name) == 0)
-            return true;
-    }
-    return false;
-}
-
 enum { MISSING_MAX = 3 };
 
 static uint32_t list_missing(const whit_shader_info *info, const char *missing[MISSING_MAX])
 {
     uint32_t count = 0;
     missing[count++] = own_rays;
-    if (has_function(info, "intersect"))
+    if (info->hooks >> WHIT_HOOK_INTERSECT & 1)
         missing[count++] = shape;
-    if (has_function(info, "post"))
+    if (info->hooks >> WHIT_HOOK_POST & 1)
         missing[count++] = before_post;
     return count;
 }
@@ -44,13 +35,14 @@ static uint32_t list_missing(const whit_shader_info *info, const char *missing[M
 void probe_print_shader(const struct probe *probe)
 {
     const whit_shader_info info = shader_of(probe);
-    if (info.hook_count == 0)
+    if (info.hooks == 0)
         return;
     printf("shader     %s:", cli_shown(info.files[0]));
-    for (uint32_t i = 0; i < info.hook_count; ++i)
-        printf("%s %s", i ? "," : "", info.hooks[i]);
+    const char *names[WHIT_HOOKS], *missing[MISSING_MAX];
+    uint32_t name_count = job_functions(&info, names);
+    for (uint32_t i = 0; i < name_count; ++i)
+        printf("%s %s", i ? "," : "", names[i]);
     putchar('\n');
-    const char *missing[MISSING_MAX];
     uint32_t count = list_missing(&info, missing);
     for (uint32_t i = 0; i < count; ++i)
         printf("missing    %s\n", missing[i]);
@@ -104,12 +96,12 @@ static json_t *names_document(const char *const *names, uint32_t count)
 json_t *probe_shader_document(const struct probe *probe)
 {
     const whit_shader_info info = shader_of(probe);
-    const char *missing[MISSING_MAX];
-    if (info.hook_count == 0)
+    const char *names[WHIT_HOOKS], *missing[MISSING_MAX];
+    if (info.hooks == 0)
         return json_null();
     json_t *out = document_object();
     document_text(out, "file", info.files[0]);
-    document_put(out, "functions", names_document(info.hooks, info.hook_count));
+    document_put(out, "functions", names_document(names, job_functions(&info, names)));
     document_put(out, "missing", names_document(missing, list_missing(&info, missing)));
     return out;
 }

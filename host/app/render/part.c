@@ -147,11 +147,8 @@ bool part_check_shader(const struct job *job, const struct render_request *reque
     if (info.aov_count && layers_is_exr(request->output) && !job->settings.aov[0])
         what = "its `//@ aov` images are kept beside the colours of whole pictures alone; .pfm and "
                ".png are without them, and --aov NAME is one of them";
-    for (uint32_t i = 0; request->part.sets && i < info.hook_count; ++i) {
-        if (strcmp(info.hooks[i], "post") == 0)
-            what = "what its `post` makes of a part of the samples is no part of what it makes of "
-                   "all";
-    }
+    if (request->part.sets && (info.hooks >> WHIT_HOOK_POST & 1))
+        what = "what its `post` makes of a part of the samples is no part of what it makes of all";
     if (what)
         cli_error("%s: with --%s: %s", job->settings.shader,
                   request->part.sets ? "samples-part" : "tile", what);

@@ -41,13 +41,19 @@ static int print_template(struct cli_reader *reader)
         cli_misuse(reader, "new: which function? `whit shader new shade > my.glsl`");
         return reader->status;
     }
-    char *text = whit_shader_template(reader->second);
-    if (!text) {
-        for (uint32_t i = 0; whit_shader_hook_name(i); ++i)
-            snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "",
-                     whit_shader_hook_name(i));
+    unsigned hook = 0;
+    for (; hook < WHIT_HOOKS && strcmp(reader->second, whit_hook_name((whit_hook)hook)) != 0;
+         ++hook)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", hook ? ", " : "",
+                 whit_hook_name((whit_hook)hook));
+    if (hook == WHIT_HOOKS) {
         cli_misuse(reader, "new %s: one of %s is needed", reader->second, list);
         return reader->status;
+    }
+    char *text = whit_shader_template((whit_hook)hook);
+    if (!text) {
+        cli_error("out of memory");
+        return cli_exit_of(WHIT_ERROR_MEMORY);
     }
     fputs(text, stdout);
     whit_memory_destroy(text);
@@ -86,10 +92,12 @@ static void print_text(const whit_shader *shader, const char *path)
     const uint32_t *words;
     size_t bytes;
     whit_shader_get_info(shader, &info);
+    const char *names[WHIT_HOOKS];
+    uint32_t name_count = job_functions(&info, names);
     printf("%s: %u file%s, functions", cli_shown(path), info.file_count,
            info.file_count == 1 ? "" : "s");
-    for (uint32_t i = 0; i < info.hook_count; ++i)
-        printf("%s %s", i ? "," : "", info.hooks[i]);
+    for (uint32_t i = 0; i < name_count; ++i)
+        printf("%s %s", i ? "," : "", names[i]);
     printf("\n");
     for (uint32_t i = 0; i < info.aov_count; ++i)
         printf("  --aov %s\n", info.aovs[i]);
@@ -162,11 +170,12 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
 {
     whit_shader_info info;
     whit_shader_get_info(shader, &info);
+    const char *names[WHIT_HOOKS];
     json_t *object = document_root(), *sliders = document_array();
     for (uint32_t i = 0; i < info.slider_count; ++i)
         document_append(sliders, describe_slider(&info.sliders[i]));
     document_put(object, "files", list_texts(info.files, info.file_count));
-    document_put(object, "functions", list_texts(info.hooks, info.hook_count));
+    document_put(object, "functions", list_texts(names, job_functions(&info, names)));
     document_put(object, "aovs", list_texts(info.aovs, info.aov_count));
     document_put(object, "sliders", sliders);
     document_put(object, "kernels", list_kernels(shader));
