@@ -6,6 +6,7 @@
 #include "shader/disassemble.h"
 #include "shader/pack.h"
 #include "shader/program.h"
+#include "whit/whit_program.h"
 
 struct whit_shader_compiler {
     struct shader_compiler *compiler;

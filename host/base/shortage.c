@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "whit/whit_base.h"
+#include "whit/whit_program.h"
 
 enum { ROOM_FILES = 16 }; /* as many as a driver may want at a time */
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "whit/whit_program.h"
 
 static const char *const validation_layer = "VK_LAYER_KHRONOS_validation";
 static const char *const install_driver =

@@ -3,6 +3,7 @@
 #define DEVICE_PIPELINE_H
 
 #include "device/device.h"
+#include "whit/whit_program.h"
 
 enum binding_kind { BINDING_NONE, BINDING_STORAGE, BINDING_TEXELS };
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/path.h"
+#include "whit/whit_program.h"
 
 static const char *result_text(VkResult vk)
 {

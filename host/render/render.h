@@ -13,7 +13,7 @@
 #include "picture/params.h"
 #include "scene/scene.h"
 #include "twin/counters.h"
-#include "whit/whit_renderer.h"
+#include "whit/whit_program.h"
 
 /* Whether effects_added and effects_removed may name an effect. What geometry or the camera is made
    of cannot be taken out (spheres, instances, kinds of cameras); a lens can: a pinhole is left. */

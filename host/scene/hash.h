@@ -3,6 +3,7 @@
 #define SCENE_HASH_H
 
 #include "scene/freeze.h"
+#include "whit/whit_program.h"
 
 uint64_t freeze_hash(const struct scene *scene);
 /* The same of one record: a struct scene_mesh, scene_material and so on, by its kind;

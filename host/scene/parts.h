@@ -5,6 +5,7 @@
 #define SCENE_PARTS_H
 
 #include "scene/scene.h"
+#include "whit/whit_program.h"
 
 struct scene_part {
     whit_part_kind kind;

@@ -8,6 +8,7 @@
 #include "kernels.h"
 #include "shader/annotations.h"
 #include "shader/sliders.h"
+#include "whit/whit_program.h"
 
 enum { DEFINES_MAX = WHIT_HOOKS + 1, DEFINE_BYTES = 48 };
 

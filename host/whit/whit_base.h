@@ -1,5 +1,4 @@
-/* Part of whit's public face, shared by every module: results, logging, text, and what a driver
-   tells of kernels. */
+/* Part of whit's public face, shared by every module: results, logging, text. */
 #ifndef WHIT_BASE_H
 #define WHIT_BASE_H
 
@@ -67,28 +66,6 @@ typedef struct whit_refused {
 
 /* A short name for a result, for messages: "bad input". Never NULL. */
 const char *whit_result_name(whit_result result);
-
-/* What this process has run out of at this moment, by a limit of its own (`ulimit -v`, `ulimit -n`)
-   or the system's, for behind `: `: `room_bytes` of memory, or some descriptors; NULL: neither.
-   What drivers and libraries then fail with has other names, or they crash. Safe in signal
-   handlers. */
-const char *whit_shortage(uint64_t room_bytes);
-
-/* A number that a driver tells of a kernel that it made, under a name of the driver's. */
-typedef struct whit_statistic {
-    char name[64];
-    double value;
-} whit_statistic;
-enum { WHIT_STATISTICS_MAX = 48, WHIT_KERNELS_MAX = 30 };
-/* A kernel of a picture as the device's driver makes it. */
-typedef struct whit_kernel {
-    const char *name;      /* of its stage: "camera", "shade glass" */
-    bool deferred;         /* for the rays that the one before leaves open, at exact numerics */
-    uint32_t instructions; /* SPIR-V, of its functions */
-    double create_ms;      /* by the clock; lavapipe goes on at the first dispatch */
-    whit_statistic statistics[WHIT_STATISTICS_MAX];
-    uint32_t statistic_count; /* 0: the driver tells nothing */
-} whit_kernel;
 
 /* ---- Text that others wrote ---- */
 

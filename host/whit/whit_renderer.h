@@ -153,10 +153,6 @@ typedef struct whit_renderer_params {
    It is what a call takes whose params are NULL. */
 whit_renderer_params whit_renderer_defaults(void);
 
-/* Gives the choice that WHIT_CLASSES_AUTO makes for a renderer with these params: _ONE or _MANY,
-   and _MANY too where the params are refused. */
-whit_classes whit_classes_of(const whit_renderer_params *params);
-
 /* `device` may be NULL: then only whit_trace on the CPU works. WHIT_ERROR_USAGE for params out of
    range, a camera that there is none of, or a scene whose pictures were dropped; WHIT_ERROR_INPUT
    for a scene that has no finite pose at that time; WHIT_ERROR_STATUS for a camera in too many
@@ -215,30 +211,6 @@ bool whit_effect_can_add(uint32_t index);
 bool whit_effect_can_remove(uint32_t index);
 /* Whether the kernel of a renderer has an effect in it. */
 bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect);
-
-/* What is left of the kernel for this renderer, and of the same with every effect. */
-typedef struct whit_kernel_info {
-    uint32_t instructions, general_instructions; /* SPIR-V, in functions of all kernels */
-    uint32_t largest_instructions;               /* of the largest of the scene's own kernels */
-    uint32_t bindings, general_bindings;         /* descriptors */
-} whit_kernel_info;
-/* Takes some 50 ms. WHIT_ERROR_USAGE without a device, WHIT_ERROR_DEVICE when the kernel cannot be
-   specialized. */
-WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
-                                                whit_kernel_info *info);
-
-/* Makes the kernels of a picture with these params one after the other, and no picture: takes no
-   memory of the device. `kernels`: room for WHIT_KERNELS_MAX; `params` may be NULL.
-   WHIT_ERROR_USAGE for params that a renderer refuses too, WHIT_ERROR_DEVICE or _MEMORY where a
-   kernel cannot be made. */
-WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
-                                         const whit_renderer_params *params, whit_kernel *kernels,
-                                         uint32_t *count);
-/* The same, but counts their instructions and makes none: other figures are 0. It
-   gives what whit_kernels_list gives. */
-WHIT_CHECK whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
-                                          const whit_renderer_params *params, whit_kernel *kernels,
-                                          uint32_t *count);
 
 typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
@@ -386,13 +358,6 @@ WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, con
 /* Device time of the traversals of the last whit_trace on the device, without transfers; < 0: not
    measured. */
 double whit_trace_device_ms(const whit_renderer *renderer);
-
-/* What camera rays of the picture that was set last cost, without counting in its kernel: the twin
-   traces those of at most `pixels` pixels, all or a smaller picture of the view, up to what they
-   meet first. On the calling thread, some microseconds a ray. WHIT_ERROR_USAGE without a device,
-   WHIT_ERROR_STATUS and WHIT_ERROR_CANCELLED as whit_trace. */
-WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
-                                                  whit_cost *cost);
 
 #ifdef __cplusplus
 }

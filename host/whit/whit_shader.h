@@ -170,16 +170,6 @@ WHIT_CHECK whit_result whit_renderer_run_tests(whit_renderer *renderer, whit_che
    WHIT_ERROR_USAGE without a device, and others as of whit_renderer_render. */
 WHIT_CHECK whit_result whit_renderer_check_expectations(whit_renderer *renderer, bool *held);
 
-/* The kernels that the shader has part in, by index; NULL past the last. `words`: SPIR-V. */
-const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
-                               size_t *bytes);
-
-/* The GLSL of such a kernel with all that it includes, and what stands in `words` of it in the form
-   of spirv-dis. To be released by whit_memory_destroy; NULL: there is no such kernel, no memory, or
-   damaged words. */
-char *whit_shader_kernel_text(const whit_shader *shader, uint32_t index);
-char *whit_spirv_text(const uint32_t *words, size_t bytes);
-
 /* ---- In pictures ---- */
 
 /* What a picture's recipe calls the text of its functions. */
@@ -201,10 +191,6 @@ typedef struct whit_shader_file {
 WHIT_CHECK whit_result whit_shader_unpack(const char *packed, const char *where,
                                           const whit_log *log, whit_shader_file **files,
                                           uint32_t *count);
-
-/* The file that `whit shader new` writes: whit's own function, with what it may use in comments.
-   NULL: there is no such hook, or no memory. To be released by whit_memory_destroy. */
-char *whit_shader_template(whit_hook hook);
 
 #ifdef __cplusplus
 }

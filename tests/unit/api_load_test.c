@@ -8,6 +8,7 @@
 #include "base/foreign.h"
 #include "folder_fixture.h"
 #include "whit.h"
+#include "whit_program.h"
 
 /* All that a sandbox or a handler would change of this process. */
 struct host {
