@@ -76,9 +76,10 @@ struct setting {
     /* Used by the viewer. */
     const char *title;                      /* in the panel of settings; NULL: not there */
     const struct setting_value *steps;      /* of keys and panel; NULL: `values`, or numbers */
-    const struct setting_value *more_steps; /* behind those; or NULL */
+    const struct setting_value *more_steps; /* behind those, of the panel alone; or NULL */
     double step, shown_min, shown_max;      /* of numbers: of the key, and of the slider */
-    int key, key_back; /* capital letters; key_back 0: with Shift; key 0: it has none */
+    int key, key_back;     /* capital letters; key_back 0: with Shift; key 0: it has none */
+    const char *key_skips; /* a word that keys pass over, which another key is for; or NULL */
 };
 
 /* Where a value is, checked to be of the kind's type. An enumeration is a uint32_t to C. */

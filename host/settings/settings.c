@@ -202,6 +202,12 @@ static bool is_of_picture(const struct setting *row)
     return row->change != SETTING_RUN && row->commands & IN_RENDER;
 }
 
+/* The viewer draws over its pictures too. */
+static bool is_seen(const struct setting *row)
+{
+    return is_of_picture(row) || row->change == SETTING_PAINT;
+}
+
 static bool decides_pixels(const struct setting *row)
 {
     return is_of_picture(row) && row->change != SETTING_COST;
@@ -272,8 +278,7 @@ bool settings_same_pixels(const struct settings *a, const struct settings *b)
 
 bool settings_same(const struct settings *a, const struct settings *b)
 {
-    return settings_same_scene(a, b) && same_rows(a, b, is_of_picture) &&
-           settings_same_shader(a, b) && a->boxes == b->boxes && a->boxes_level == b->boxes_level;
+    return settings_same_scene(a, b) && same_rows(a, b, is_seen) && settings_same_shader(a, b);
 }
 
 static uint64_t hash_rows(uint64_t hash, const struct settings *settings, row_filter *wanted)

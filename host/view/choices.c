@@ -108,8 +108,11 @@ void choice_turn(struct settings *settings, const struct setting *row, int by)
         choice_set_number(settings, row, choice_number(settings, row) + by * row->step);
         return;
     }
-    int count = (int)step_count(row), at = choice_get(settings, row);
-    choice_set(settings, row, at < 0 ? 0 : (uint32_t)((at + by + count) % count));
+    int count = (int)count_of(steps_of(row)), at = choice_get(settings, row);
+    do
+        at = at < 0 || at >= count ? 0 : (at + by + count) % count;
+    while (row->key_skips && strcmp(step_at(row, (uint32_t)at)->word, row->key_skips) == 0);
+    choice_set(settings, row, (uint32_t)at);
 }
 
 void choice_say(const struct settings *settings, const struct setting *row, char *text,

@@ -20,7 +20,7 @@ void choice_set(struct settings *settings, const struct setting *row, uint32_t s
 /* A number, cut to what its option takes. */
 double choice_number(const struct settings *settings, const struct setting *row);
 void choice_set_number(struct settings *settings, const struct setting *row, double number);
-/* The next one or the one before; words go round, numbers end. */
+/* The next one or the one before; words go round, without `more_steps`, numbers end. */
 void choice_turn(struct settings *settings, const struct setting *row, int by);
 /* The value in words, whatever it is. */
 void choice_say(const struct settings *settings, const struct setting *row, char *text,

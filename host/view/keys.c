@@ -13,35 +13,15 @@
 #include "view/view_private.h"
 
 static const double ESCAPE_MS = 1500.0; /* between the two that quit */
-enum { BOXES_LEVEL_MAX = 127 };
 
-/* ---- Choices ---- */
-
-/* Through the builders alone: the panel has their numbers too. */
-static void next_builder(struct view *view)
-{
-    uint32_t at = value_place(values_build, (int)view->settings.trees.build);
-    uint32_t next = at == WHIT_NONE ? 0 : (at + 1) % value_count(values_build);
-    if (values_build[next].value == WHIT_BUILD_NONE)
-        next = 0;
-    choice_set(&view->settings, settings_row("build"), next);
-}
-
-static void say_builder(const struct view *view, char *text, size_t bytes)
-{
-    choice_say(&view->settings, settings_row("build"), text, bytes);
-}
+/* ---- Trees ---- */
 
 static void switch_trees(struct view *view)
 {
+    const struct setting *row = settings_row("build");
+    char why[SETTING_WHY_BYTES];
     bool none = view->settings.trees.build == WHIT_BUILD_NONE;
-    view->settings.trees = (whit_accel_params){
-        .build = none ? WHIT_BUILD_BINNED : WHIT_BUILD_NONE,
-        .leaf_limit = view->settings.trees.leaf_limit,
-        .instances = view->settings.trees.instances,
-        .instance_build = view->settings.trees.instance_build,
-        .instance_refit = view->settings.trees.instance_refit,
-    };
+    setting_read(row, none ? row->values[0].word : row->key_skips, &view->settings, why);
 }
 
 static void say_trees(const struct view *view, char *text, size_t bytes)
@@ -122,36 +102,6 @@ static void say_scale(const struct view *view, char *text, size_t bytes)
         snprintf(text, bytes, "%g", scale);
     else
         snprintf(text, bytes, "by the picture");
-}
-
-/* ---- Boxes of trees ---- */
-
-static void next_boxes(struct view *view)
-{
-    view->settings.boxes = (view->settings.boxes + 1) % BOXES_COUNT;
-}
-
-static void say_boxes(const struct view *view, char *text, size_t bytes)
-{
-    static const char *const names[BOXES_COUNT] = {"off", "of meshes", "of instances"};
-    snprintf(text, bytes, "%s", names[view->settings.boxes]);
-}
-
-static void deeper_boxes(struct view *view)
-{
-    if (view->settings.boxes != BOXES_OFF && view->settings.boxes_level < BOXES_LEVEL_MAX)
-        ++view->settings.boxes_level;
-}
-
-static void higher_boxes(struct view *view)
-{
-    if (view->settings.boxes != BOXES_OFF && view->settings.boxes_level > 0)
-        --view->settings.boxes_level;
-}
-
-static void say_level(const struct view *view, char *text, size_t bytes)
-{
-    snprintf(text, bytes, "%u", view->settings.boxes_level);
 }
 
 /* ---- Comparing ---- */
@@ -550,13 +500,7 @@ static const struct key_binding bindings[] = {
      .group = KEYS_EXPERTS},
     {']', 0, NULL, NULL, "twice the scale", more_scale, .state = say_scale, .group = KEYS_EXPERTS},
     {'\\', 0, NULL, NULL, "scale by the picture", own_scale, .group = KEYS_EXPERTS},
-    {'K', 0, "K", NULL, "tree builder", next_builder, .state = say_builder, .group = KEYS_EXPERTS},
     {'G', 0, "G", NULL, "trees", switch_trees, .state = say_trees, .group = KEYS_EXPERTS},
-    {'N', 0, "N", NULL, "boxes of trees", next_boxes, .state = say_boxes, .group = KEYS_EXPERTS},
-    {'J', 0, "J Shift+J", "deeper, higher", "a level deeper", deeper_boxes, .state = say_level,
-     .group = KEYS_EXPERTS},
-    {'J', EVENT_SHIFT, NULL, NULL, "a level higher", higher_boxes, .state = say_level,
-     .group = KEYS_EXPERTS},
 };
 
 enum { SETTING_KEYS_MAX = 32, KEY_NAME = 8 };

@@ -151,11 +151,18 @@ static void draw_files(struct view *view)
         panels_load(view, names[value]);
 }
 
+/* Which rays costs are of, and which level boxes are, where there are any. */
+static bool says_something(const struct view *view, const struct setting *row)
+{
+    return strcmp(row->name, "view-rays") == 0     ? view->settings.paint != PAINT_COLOR
+           : strcmp(row->name, "boxes-level") == 0 ? view->settings.boxes != BOXES_OFF
+                                                   : true;
+}
+
 static void draw_choices(struct view *view, enum choice_group group)
 {
     for (const struct setting *row = choice_next(NULL); row; row = choice_next(row)) {
-        bool rays = strcmp(row->name, "view-rays") == 0;
-        if (choice_group(row) == group && (!rays || view->settings.paint != PAINT_COLOR))
+        if (choice_group(row) == group && says_something(view, row))
             draw_choice(view, row);
     }
 }

@@ -101,7 +101,7 @@ if part 0 2; then
 key: press F2 x2, press T
 mouse: press Shift+T, still, press Tab, still, choose traversal, still, choose sign | words as key
     | keys.traversal as key | words = --size 320x400 --traversal sign | picked = false
-menu: choose traversal, still, press Escape | panels.Settings has 126
+menu: choose traversal, still, press Escape | panels.Settings has 129
 panel: press Escape | panels.Settings = (no panels.Settings)
 END
 

@@ -24,7 +24,7 @@ round: press T
 back: press Shift+T
 sweep: press T, press K
 spatial: press K
-median: press K | change.what = builder spatial -> median
+median: press K | change.what = tree builder spatial -> median
 binned: press K
 instances: press O
 flat: press O
