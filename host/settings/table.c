@@ -337,8 +337,10 @@ const struct setting settings_table[] = {
      "choose the best of these settings that take at most T ms, by\n"
      "`whit cost`, which measures the scene for 20 s the first time",
      "", AT(NUMBER, budget_ms), .min = 1e-3, .max = 1e9, .commands = IN_RENDER | IN_VIEW},
-    {"max-error", 0, "E", "the cheapest ones with an RMSE of at most E", "", AT(NUMBER, max_error),
-     .min = 1e-9, .max = 1e6, .commands = IN_RENDER | IN_VIEW},
+    {"max-error", 0, "E",
+     "the cheapest ones with an RMSE of at most E (FLIP, as of\n"
+     "`whit cost --under`, is another number)",
+     "", AT(NUMBER, max_error), .min = 1e-9, .max = 1e6, .commands = IN_RENDER | IN_VIEW},
 
     {"view", 0, NULL,
      "what traversals cost instead of colours: a heat map\n"

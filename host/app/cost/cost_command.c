@@ -54,7 +54,9 @@ static const struct setting options[] = {
     {"json", 0, "FILE", "all figures as JSON", SETTING_AT_NAME(struct cost, json)},
     {"csv", 0, "FILE", "a row for each setting", SETTING_AT_NAME(struct cost, csv)},
     {"markdown", 0, "FILE", "the tables as Markdown", SETTING_AT_NAME(struct cost, markdown)},
-    {"under", 0, "E", "find the cheapest settings with an error of at most E",
+    {"under", 0, "E",
+     "find the cheapest settings with a FLIP of at most E, or by\n"
+     "--metric an RMSE",
      SETTING_AT_NUMBER(struct cost, under), .min = 1e-12, .max = 1e6},
     {"within", 0, "T", "find the best picture that takes at most T ms",
      SETTING_AT_NUMBER(struct cost, within_ms), .min = 1e-3, .max = 1e9},
