@@ -17,7 +17,7 @@ add_executable(whit_program
   app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
   app/bvh/study_trace.c
   app/check/accept.c app/check/accept_from.c app/check/base.c app/check/case_options.c
-  app/check/cause.c app/check/check_command.c app/check/describe.c app/check/difference.c
+  app/check/cause.c app/check/check_command.c app/check/describe.c app/check/drawing_difference.c
   app/check/draw.c app/check/expect.c app/check/expect_check.c app/check/faults.c app/check/golden.c
   app/check/junit.c app/check/lanes.c app/check/mutate.c app/check/on_reference.c app/check/page.c
   app/check/pictures.c app/check/power.c app/check/probe.c

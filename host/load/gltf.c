@@ -226,7 +226,7 @@ static void finish(struct gltf *gltf)
     free(gltf->order);
     free(gltf->mesh_used);
     free(gltf->ignored);
-    table_finish(&gltf->ignored_names);
+    key_table_finish(&gltf->ignored_names);
     json_decref(gltf->root);
 }
 

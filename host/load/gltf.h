@@ -36,8 +36,8 @@ struct gltf {
     uint32_t *order;     /* drawn nodes of the file, parents first */
     bool *mesh_used;
     struct gltf_ignored *ignored;
-    struct table ignored_names; /* their index */
-    uint64_t counted_bytes;     /* of buffers in files of their own */
+    struct key_table ignored_names; /* their index */
+    uint64_t counted_bytes;         /* of buffers in files of their own */
     uint32_t buffer_count, image_count, material_count, mesh_count, node_count, order_count;
     uint32_t ignored_count, ignored_capacity;
     uint32_t default_material; /* SCENE_NONE until needed */

@@ -227,8 +227,8 @@ static bool count_ignored(struct reading *r, uint32_t index)
         uint32_t at = gltf->ignored_count;
         if (is_read(name))
             continue;
-        if (!table_find(&gltf->ignored_names, name, strlen(name), &at) &&
-            !(table_add(&gltf->ignored_names, name, strlen(name), at) &&
+        if (!key_table_find(&gltf->ignored_names, name, strlen(name), &at) &&
+            !(key_table_add(&gltf->ignored_names, name, strlen(name), at) &&
               ARRAY_PUSH(gltf->ignored, gltf->ignored_count, gltf->ignored_capacity,
                          (struct gltf_ignored){name, index, 0})))
             return false;

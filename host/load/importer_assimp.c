@@ -13,7 +13,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
-#include "base/table.h"
+#include "base/key_table.h"
 #include "load/importer_glb.h"
 #include "load/part.h"
 
@@ -74,8 +74,8 @@ static enum aiReturn seek_file(struct aiFile *io, size_t offset, enum aiOrigin o
 /* All files that there are. */
 struct library {
     const struct import_request *request;
-    struct table names; /* of the files */
-    bool lacks_memory;  /* to open one: assimp only says that it could not */
+    struct key_table names; /* of the files */
+    bool lacks_memory;      /* to open one: assimp only says that it could not */
 };
 
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
@@ -84,7 +84,7 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     struct library *library = (struct library *)(void *)io->UserData;
     const char *name = path_name(path);
     uint32_t index;
-    if (!table_find(&library->names, name, strlen(name), &index))
+    if (!key_table_find(&library->names, name, strlen(name), &index))
         return NULL;
     struct open_file *open = calloc(1, sizeof *open);
     library->lacks_memory |= !open;
@@ -354,13 +354,13 @@ static const struct aiScene *import(struct library *library)
         .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)library};
     for (uint32_t i = 0; i < request->file_count; i++) {
         const char *name = request->files[i].name;
-        if (!table_add(&library->names, name, strlen(name), i)) {
+        if (!key_table_add(&library->names, name, strlen(name), i)) {
             library->lacks_memory = true;
             return NULL;
         }
     }
     const struct aiScene *scene = aiImportFileEx(request->files[0].name, 0, &io);
-    table_finish(&library->names);
+    key_table_finish(&library->names);
     return scene;
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
-#include "base/table.h"
+#include "base/key_table.h"
 #include "base/text.h"
 #include "load/model.h"
 #include "load/model_mesh.h"
@@ -71,7 +71,7 @@ static whit_result add_instance(struct scene *scene, const char *name, uint32_t 
 /* The materials of one model: each is added to the scene when the first triangle asks for it. */
 struct palette {
     const struct mtl_library *library;
-    struct table indices; /* in the scene, by name */
+    struct key_table indices; /* in the scene, by name */
 };
 
 static void make_default(const char *name, bool colored, struct scene_material *out)
@@ -101,7 +101,7 @@ static whit_result find_material(struct scene *scene, const struct model_request
                                  uint32_t *index)
 {
     size_t name_bytes = strlen(part->material);
-    if (table_find(&palette->indices, part->material, name_bytes, index))
+    if (key_table_find(&palette->indices, part->material, name_bytes, index))
         return WHIT_OK;
     struct scene_material material = {0};
     whit_result result = make_material(scene, request, palette, part, &material);
@@ -110,8 +110,8 @@ static whit_result find_material(struct scene *scene, const struct model_request
         return result;
     }
     *index = scene_add_material(scene, material);
-    bool ok =
-        *index != SCENE_NONE && table_add(&palette->indices, part->material, name_bytes, *index);
+    bool ok = *index != SCENE_NONE &&
+              key_table_add(&palette->indices, part->material, name_bytes, *index);
     return ok ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
@@ -136,7 +136,7 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
         result = model_add_mesh(scene, name, parts, block->part_count, colors_are_srgb, &mesh);
     if (result == WHIT_OK)
         result = add_instance(scene, name, mesh, request->parent);
-    table_finish(&palette.indices);
+    key_table_finish(&palette.indices);
     free(parts);
     return result;
 }

@@ -92,16 +92,16 @@ struct reader {
     const char *path;
     uint32_t line;
     struct mtl_library *library;
-    struct table noted; /* keywords already spoken of */
-    bool failed;        /* no memory for a note */
+    struct key_table noted; /* keywords already spoken of */
+    bool failed;            /* no memory for a note */
 };
 
 static bool note_keyword(struct reader *reader, const char *keyword, const char *what)
 {
     uint32_t line;
-    if (table_find(&reader->noted, keyword, strlen(keyword), &line))
+    if (key_table_find(&reader->noted, keyword, strlen(keyword), &line))
         return true;
-    if (!table_add(&reader->noted, keyword, strlen(keyword), reader->line))
+    if (!key_table_add(&reader->noted, keyword, strlen(keyword), reader->line))
         return false;
     scene_note(reader->scene, SCENE_NOTE_WARNING, "%s:%u: `%s` %s", path_name(reader->path),
                reader->line, text_token(keyword).text, what);
@@ -330,8 +330,8 @@ static bool begin_entry(struct reader *reader, char *rest)
     struct mtl_library *library = reader->library;
     uint32_t index = library->count;
     bool named = entry.name && entry.file;
-    if (named && !table_find(&library->names, name, strlen(name), &index))
-        named = table_add(&library->names, name, strlen(name), index);
+    if (named && !key_table_find(&library->names, name, strlen(name), &index))
+        named = key_table_add(&library->names, name, strlen(name), index);
     if (named && ARRAY_PUSH(library->entries, library->count, library->capacity, entry))
         return true;
     free(entry.name);
@@ -393,7 +393,7 @@ bool mtl_parse(struct scene *scene, const char *path, const char *text, struct m
         reader.line += lines;
         line = next;
     }
-    table_finish(&reader.noted);
+    key_table_finish(&reader.noted);
     free(copy);
     return ok;
 }
@@ -408,13 +408,13 @@ void mtl_finish(struct mtl_library *library)
             free(entry->maps[map].file);
     }
     free(library->entries);
-    table_finish(&library->names);
+    key_table_finish(&library->names);
     *library = (struct mtl_library){0};
 }
 
 const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name)
 {
     uint32_t index;
-    bool found = table_find(&library->names, name, strlen(name), &index);
+    bool found = key_table_find(&library->names, name, strlen(name), &index);
     return found ? &library->entries[index] : NULL;
 }

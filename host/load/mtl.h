@@ -41,7 +41,7 @@ struct mtl_entry {
 
 struct mtl_library {
     struct mtl_entry *entries;
-    struct table names; /* of entries; the first of each */
+    struct key_table names; /* of entries; the first of each */
     uint32_t count, capacity;
 };
 

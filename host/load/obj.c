@@ -179,7 +179,7 @@ uint32_t obj_longest_face(const char *text)
 
 /* *why_not: NULL, or why the file is not read; one that was read before is not read again. */
 static whit_result read_library(struct scene *scene, const char *obj_path, const char *name,
-                                struct mtl_library *library, struct table *read,
+                                struct mtl_library *library, struct key_table *read,
                                 const char **why_not)
 {
     uint8_t *data = NULL;
@@ -189,14 +189,14 @@ static whit_result read_library(struct scene *scene, const char *obj_path, const
         return WHIT_ERROR_MEMORY;
     *why_not = roots_why_not(&scene->roots, path);
     uint32_t before;
-    if (*why_not || table_find(read, path, strlen(path), &before))
+    if (*why_not || key_table_find(read, path, strlen(path), &before))
         goto done;
     if (file_read(&scene->log, &scene->roots, path, LIBRARY_LIMIT, &data, &size) != WHIT_OK) {
         free(path);
         return WHIT_ERROR_INPUT;
     }
     scene->file_bytes += size;
-    bool ok = table_add(read, path, strlen(path), read->count) &&
+    bool ok = key_table_add(read, path, strlen(path), read->count) &&
               mtl_parse(scene, path, (const char *)data, library);
     free(path);
     free(data);
@@ -229,7 +229,7 @@ static char *copy_word(const char *at, const char *end)
 
 /* The line may be one name with blanks in it, or several names. */
 static whit_result read_named(struct scene *scene, const char *obj_path, const char *line,
-                              struct mtl_library *library, struct table *read)
+                              struct mtl_library *library, struct key_table *read)
 {
     const char *why_not = NULL;
     whit_result result = read_library(scene, obj_path, line, library, read, &why_not);
@@ -272,7 +272,7 @@ static char *names_on_line(const char *at, const char *end, bool *is_library)
 }
 
 static whit_result read_sibling(struct scene *scene, const char *path, struct mtl_library *library,
-                                struct table *read)
+                                struct key_table *read)
 {
     const char *name = path_name(path), *dot = strrchr(name, '.');
     int length = dot ? (int)(dot - name) : (int)strlen(name);
@@ -291,7 +291,7 @@ static whit_result read_sibling(struct scene *scene, const char *path, struct mt
 whit_result obj_read_libraries(struct scene *scene, const char *path, const char *text,
                                struct mtl_library *library)
 {
-    struct table read = {0};
+    struct key_table read = {0};
     whit_result result = WHIT_OK;
     for (const char *at = text; at && *at && result == WHIT_OK;) {
         const char *end = strchr(at, '\n');
@@ -306,6 +306,6 @@ whit_result obj_read_libraries(struct scene *scene, const char *path, const char
     }
     if (result == WHIT_OK && read.count == 0 && !scene->roots.is_input)
         result = read_sibling(scene, path, library, &read);
-    table_finish(&read);
+    key_table_finish(&read);
     return result;
 }

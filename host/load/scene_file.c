@@ -297,9 +297,9 @@ static bool read_root(struct reader *reader, const json_t *root)
 
 static void reader_finish(struct reader *reader)
 {
-    table_finish(&reader->material_names);
-    table_finish(&reader->shapes);
-    table_finish(&reader->model_keys);
+    key_table_finish(&reader->material_names);
+    key_table_finish(&reader->shapes);
+    key_table_finish(&reader->model_keys);
     free(reader->models);
 }
 

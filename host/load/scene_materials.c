@@ -408,7 +408,7 @@ bool reader_materials(struct reader *reader, const struct place *place, const js
         uint32_t index;
         if (!add_material(reader, &here, material, name, &index))
             return false;
-        if (!table_add(&reader->material_names, name, strlen(name), index))
+        if (!key_table_add(&reader->material_names, name, strlen(name), index))
             return reader_no_memory(reader);
     }
     reader->material_end = reader->scene->material_count;
@@ -419,7 +419,7 @@ static bool named_material(struct reader *reader, const struct place *place, con
                            uint32_t *index)
 {
     const struct scene *scene = reader->scene;
-    if (table_find(&reader->material_names, name, strlen(name), index))
+    if (key_table_find(&reader->material_names, name, strlen(name), index))
         return true;
     const char **names = array_alloc_zeroed((size_t)reader->material_end + 1, sizeof *names);
     if (!names)

@@ -96,7 +96,7 @@ static bool find_model(const struct reader *reader, const struct placement *what
                        uint32_t *index)
 {
     char *key = key_of(what, material);
-    bool found = key && table_find(&reader->model_keys, key, strlen(key), index);
+    bool found = key && key_table_find(&reader->model_keys, key, strlen(key), index);
     free(key);
     return found;
 }
@@ -105,7 +105,7 @@ static bool find_model(const struct reader *reader, const struct placement *what
 static bool know_model(struct reader *reader, const struct placement *what, uint32_t material)
 {
     char *key = key_of(what, material);
-    bool good = key && table_add(&reader->model_keys, key, strlen(key), reader->model_count);
+    bool good = key && key_table_add(&reader->model_keys, key, strlen(key), reader->model_count);
     free(key);
     return good || reader_no_memory(reader);
 }

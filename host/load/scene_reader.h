@@ -32,11 +32,11 @@ struct reader {
     size_t text_bytes;
     uint32_t lines_before; /* of the file, where the text is one line of it */
     whit_result result;
-    uint32_t material_end;       /* materials below it have the names that objects refer to */
-    uint32_t plain_material;     /* for objects that name none, or SCENE_NONE so far */
-    struct table material_names; /* of these; the first of each */
-    struct table shapes;         /* their mesh, by what they are */
-    struct table model_keys;     /* index of models */
+    uint32_t material_end;           /* materials below it have the names that objects refer to */
+    uint32_t plain_material;         /* for objects that name none, or SCENE_NONE so far */
+    struct key_table material_names; /* of these; the first of each */
+    struct key_table shapes;         /* their mesh, by what they are */
+    struct key_table model_keys;     /* index of models */
     struct scene_range *models;
     uint32_t model_count, model_capacity;
 };

@@ -276,9 +276,10 @@ static bool shared_mesh(struct reader *reader, const struct place *place, enum s
     if (!key)
         return reader_no_memory(reader);
     size_t key_bytes = strlen(key);
-    bool good = table_find(&reader->shapes, key, key_bytes, index) ||
-                (add_mesh(reader, place, shape, sizes, material, index) &&
-                 (table_add(&reader->shapes, key, key_bytes, *index) || reader_no_memory(reader)));
+    bool good =
+        key_table_find(&reader->shapes, key, key_bytes, index) ||
+        (add_mesh(reader, place, shape, sizes, material, index) &&
+         (key_table_add(&reader->shapes, key, key_bytes, *index) || reader_no_memory(reader)));
     free(key);
     return good;
 }

@@ -55,9 +55,9 @@ static struct key key_of_bytes(const uint8_t *data, size_t size_bytes,
 static bool share(struct scene *scene, const char *name, struct key key, bool damaged_too,
                   uint32_t *index)
 {
-    bool found = table_find(&scene->texture_keys, &key, sizeof key, index);
+    bool found = key_table_find(&scene->texture_keys, &key, sizeof key, index);
     key.damaged = 1;
-    if (!found && damaged_too && table_find(&scene->texture_keys, &key, sizeof key, index)) {
+    if (!found && damaged_too && key_table_find(&scene->texture_keys, &key, sizeof key, index)) {
         scene_note(scene, SCENE_NOTE_WARNING,
                    "texture `%s`: the same as `%s`; magenta takes its place",
                    text_token(path_name(name)).text,
@@ -65,7 +65,7 @@ static bool share(struct scene *scene, const char *name, struct key key, bool da
         found = true;
     }
     if (found)
-        scene->lacks_memory |= !table_add(&scene->texture_keys, name, strlen(name), *index);
+        scene->lacks_memory |= !key_table_add(&scene->texture_keys, name, strlen(name), *index);
     return found;
 }
 
@@ -187,7 +187,7 @@ static bool add(struct scene *scene, char *name, const struct picture *picture, 
     bool ok = *index != SCENE_NONE;
     for (uint32_t i = 0; ok && i < source->key_count; ++i) {
         source->keys[i].damaged = damaged;
-        ok = table_add(&scene->texture_keys, &source->keys[i], sizeof source->keys[i], *index);
+        ok = key_table_add(&scene->texture_keys, &source->keys[i], sizeof source->keys[i], *index);
     }
     return ok;
 }

@@ -12,8 +12,8 @@ struct mix {
     const struct scene_side *frame; /* whose objects, and lists of parts, the scene has */
     const bool *back;
     struct scene *out;
-    struct table added[SCENE_NAMES]; /* index in `out`, by name, of what `frame` has not */
-    bool failed;                     /* memory ran out */
+    struct key_table added[SCENE_NAMES]; /* index in `out`, by name, of what `frame` has not */
+    bool failed;                         /* memory ran out */
 };
 
 /* Where a part of that name is taken from. */
@@ -76,12 +76,13 @@ static uint32_t place_of(struct mix *mix, const struct scene_side *side, unsigne
         return index;
     const char *name = scene_parts_name(side->parts, kind, index);
     uint32_t place = scene_parts_index(mix->frame->parts, kind, name);
-    if (place != SCENE_NONE || table_find(&mix->added[kind], name, strlen(name), &place))
+    if (place != SCENE_NONE || key_table_find(&mix->added[kind], name, strlen(name), &place))
         return place;
     place = kind == WHIT_PART_TEXTURE    ? add_texture(mix, side, index)
             : kind == WHIT_PART_MATERIAL ? add_material(mix, side, index)
                                          : add_node(mix, side, index);
-    mix->failed |= place == SCENE_NONE || !table_add(&mix->added[kind], name, strlen(name), place);
+    mix->failed |=
+        place == SCENE_NONE || !key_table_add(&mix->added[kind], name, strlen(name), place);
     return place;
 }
 
@@ -215,7 +216,7 @@ whit_result scene_mix_begin(const whit_log *log, const struct scene_side *before
     bool good = add_objects(&mix) && add_parts(&mix);
     add_environment(&mix);
     for (unsigned kind = 0; kind < SCENE_NAMES; ++kind)
-        table_finish(&mix.added[kind]);
+        key_table_finish(&mix.added[kind]);
     if (good && !mix.failed && !mix.out->lacks_memory)
         return WHIT_OK;
     scene_destroy(mix.out);

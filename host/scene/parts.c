@@ -75,13 +75,13 @@ static bool add_name(struct scene_names *names, const char *own)
 {
     uint32_t index = names->count, taken, number = 2;
     char *name = own[0] ? string_copy(own) : string_format("#%u", index);
-    while (name && table_find(&names->table, name, strlen(name), &taken)) {
+    while (name && key_table_find(&names->table, name, strlen(name), &taken)) {
         free(name);
         name = string_format("%s#%u", own, number++);
     }
     names->names[index] = name;
     names->count += name != NULL;
-    return name && table_add(&names->table, name, strlen(name), index);
+    return name && key_table_add(&names->table, name, strlen(name), index);
 }
 
 /* Meshes of scene files are called after their shape: better by the first object that has them.
@@ -126,7 +126,8 @@ const char *scene_parts_name(const struct scene_parts *parts, unsigned kind, uin
 uint32_t scene_parts_index(const struct scene_parts *parts, unsigned kind, const char *name)
 {
     uint32_t index;
-    return table_find(&parts->names[kind].table, name, strlen(name), &index) ? index : SCENE_NONE;
+    return key_table_find(&parts->names[kind].table, name, strlen(name), &index) ? index
+                                                                                 : SCENE_NONE;
 }
 
 /* ---- Hashes ---- */
@@ -284,7 +285,7 @@ void scene_parts_finish(struct scene_parts *parts)
         for (uint32_t i = 0; i < names->count; ++i)
             free(names->names[i]);
         free(names->names);
-        table_finish(&names->table);
+        key_table_finish(&names->table);
     }
     free(parts->items);
     *parts = (struct scene_parts){0};

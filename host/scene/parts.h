@@ -21,7 +21,7 @@ const char *scene_part_kind_name(whit_part_kind kind);
 struct scene_names {
     char **names;
     uint32_t count;
-    struct table table; /* index by name */
+    struct key_table table; /* index by name */
 };
 
 /* Nodes are no parts of their own, but parts name them. */

@@ -127,7 +127,7 @@ void scene_destroy(struct scene *scene)
     if (!scene)
         return;
     roots_finish(&scene->roots);
-    table_finish(&scene->texture_keys);
+    key_table_finish(&scene->texture_keys);
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         scene_mesh_finish(&scene->meshes[i]);
     for (uint32_t i = 0; i < scene->node_count; ++i)
@@ -242,13 +242,13 @@ uint32_t scene_add_texture(struct scene *scene, struct scene_texture texture)
     uint32_t first;
     if (texture.name && !scene_find_texture(scene, texture.name, &first))
         scene->lacks_memory |=
-            !table_add(&scene->texture_keys, texture.name, strlen(texture.name), index);
+            !key_table_add(&scene->texture_keys, texture.name, strlen(texture.name), index);
     return index;
 }
 
 bool scene_find_texture(const struct scene *scene, const char *name, uint32_t *index)
 {
-    return table_find(&scene->texture_keys, name, strlen(name), index);
+    return key_table_find(&scene->texture_keys, name, strlen(name), index);
 }
 
 void scene_drop_lights(struct scene *scene)

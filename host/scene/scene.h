@@ -9,9 +9,9 @@
 #include <stdint.h>
 
 #include "base/affine.h"
+#include "base/key_table.h"
 #include "base/log.h"
 #include "base/roots.h"
-#include "base/table.h"
 #include "whit/whit_scene.h"
 
 #define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
@@ -254,7 +254,7 @@ struct scene {
     float time_end_s;                      /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;                   /* of all files read */
     uint64_t memory_limit, memory_taken;   /* see afford.h; 0: no limit */
-    struct table texture_keys;             /* their names, and what loaders know them by */
+    struct key_table texture_keys;         /* their names, and what loaders know them by */
     struct roots roots;                    /* what the files that it is loaded from may name */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool is_model;                         /* of another program: its lights may need help */

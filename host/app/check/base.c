@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "app/check/cause.h"
-#include "app/check/difference.h"
+#include "app/check/drawing_difference.h"
 #include "base/array.h"
 #include "base/path.h"
 
@@ -81,11 +81,11 @@ static whit_result write_all(const struct past *past, const struct studio *studi
 {
     const struct trial_input now = {studio_settings(studio, item), drawing->job.scene,
                                     drawing->job.shader, studio->job.device};
-    struct difference difference;
+    struct drawing_difference difference;
     struct cause cause;
     char words[WORDS_BYTES];
-    difference_find(&past->picture.drawing, drawing, &difference);
-    difference_write(&difference, words, sizeof words);
+    drawing_difference_find(&past->picture.drawing, drawing, &difference);
+    drawing_difference_write(&difference, words, sizeof words);
     fprintf(to, "%s; ", words);
     whit_result result = cause_find(&cause, &past->input, &past->picture, &now);
     if (result == WHIT_OK)
@@ -94,7 +94,8 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     if (result != WHIT_OK)
         return result;
     cli_hush(true);
-    difference_write_pixel(&difference, &past->picture.drawing, drawing, words, sizeof words);
+    drawing_difference_write_pixel(&difference, &past->picture.drawing, drawing, words,
+                                   sizeof words);
     cli_hush(false);
     fprintf(to, "%s%s", words[0] ? "; " : "", words);
     return WHIT_OK;

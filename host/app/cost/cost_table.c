@@ -259,7 +259,7 @@ static void put_markdown_row(FILE *to, const struct cost_column *columns, uint32
     fputc('\n', to);
 }
 
-struct table {
+struct cost_table {
     FILE *to;
     put_row *put;
     const struct cost_column *columns;
@@ -267,7 +267,7 @@ struct table {
     struct cost_cells rows[2 * COST_ROWS_MAX + 1];
 };
 
-static void add(struct table *table, const struct cost_cells *cells)
+static void add(struct cost_table *table, const struct cost_cells *cells)
 {
     table->rows[table->row_count++] = *cells;
     for (uint32_t i = 0; i < table->count; ++i) {
@@ -276,7 +276,7 @@ static void add(struct table *table, const struct cost_cells *cells)
     }
 }
 
-static void add_head(struct table *table, const struct cost_column *columns, uint32_t count)
+static void add_head(struct cost_table *table, const struct cost_column *columns, uint32_t count)
 {
     struct cost_cells cells = {0};
     table->columns = columns;
@@ -286,7 +286,7 @@ static void add_head(struct table *table, const struct cost_column *columns, uin
     add(table, &cells);
 }
 
-static void put_table(struct table *table)
+static void put_table(struct cost_table *table)
 {
     for (uint32_t i = 0; i < table->row_count; ++i) {
         table->put(table->to, table->columns, table->count, &table->rows[i], table->widths);
@@ -309,7 +309,7 @@ static bool has_hits(const struct cost_row *row)
 
 static void put_tables(const struct cost_report *report, FILE *to, put_row *put_one)
 {
-    struct table *table = calloc(1, sizeof *table);
+    struct cost_table *table = calloc(1, sizeof *table);
     struct cost_cells cells;
     if (!table)
         return;

@@ -1,4 +1,4 @@
-#include "base/table.h"
+#include "base/key_table.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "base/array.h"
 #include "base/hash.h"
 
-struct table_slot {
+struct key_table_slot {
     void *key; /* NULL: empty */
     size_t key_bytes;
     uint64_t hash;
@@ -22,25 +22,25 @@ static uint64_t spread(uint64_t hash)
 }
 
 /* Where the key is, or the empty slot where it would be. There is always an empty one. */
-static struct table_slot *find_slot(const struct table *table, const void *key, size_t key_bytes,
-                                    uint64_t hash)
+static struct key_table_slot *find_slot(const struct key_table *table, const void *key,
+                                        size_t key_bytes, uint64_t hash)
 {
     for (uint32_t i = (uint32_t)hash;; ++i) {
-        struct table_slot *slot = &table->slots[i & (table->slot_count - 1)];
+        struct key_table_slot *slot = &table->slots[i & (table->slot_count - 1)];
         if (!slot->key || (slot->hash == hash && slot->key_bytes == key_bytes &&
                            memcmp(slot->key, key, key_bytes) == 0))
             return slot;
     }
 }
 
-static bool grow(struct table *table)
+static bool grow(struct key_table *table)
 {
-    struct table larger = {.slot_count = table->slot_count ? 2 * table->slot_count : 16};
+    struct key_table larger = {.slot_count = table->slot_count ? 2 * table->slot_count : 16};
     larger.slots = array_alloc_zeroed(larger.slot_count, sizeof *larger.slots);
     if (!larger.slots)
         return false;
     for (uint32_t i = 0; i < table->slot_count; ++i) {
-        const struct table_slot *slot = &table->slots[i];
+        const struct key_table_slot *slot = &table->slots[i];
         if (slot->key)
             *find_slot(&larger, slot->key, slot->key_bytes, slot->hash) = *slot;
     }
@@ -50,18 +50,19 @@ static bool grow(struct table *table)
     return true;
 }
 
-bool table_find(const struct table *table, const void *key, size_t key_bytes, uint32_t *value)
+bool key_table_find(const struct key_table *table, const void *key, size_t key_bytes,
+                    uint32_t *value)
 {
     if (!table->count)
         return false;
     uint64_t hash = spread(hash_bytes(HASH_START, key, key_bytes));
-    const struct table_slot *slot = find_slot(table, key, key_bytes, hash);
+    const struct key_table_slot *slot = find_slot(table, key, key_bytes, hash);
     if (slot->key)
         *value = slot->value;
     return slot->key;
 }
 
-bool table_add(struct table *table, const void *key, size_t key_bytes, uint32_t value)
+bool key_table_add(struct key_table *table, const void *key, size_t key_bytes, uint32_t value)
 {
     if (2 * table->count >= table->slot_count && !grow(table))
         return false;
@@ -70,15 +71,15 @@ bool table_add(struct table *table, const void *key, size_t key_bytes, uint32_t 
         return false;
     memcpy(copy, key, key_bytes);
     uint64_t hash = spread(hash_bytes(HASH_START, key, key_bytes));
-    *find_slot(table, key, key_bytes, hash) = (struct table_slot){copy, key_bytes, hash, value};
+    *find_slot(table, key, key_bytes, hash) = (struct key_table_slot){copy, key_bytes, hash, value};
     table->count++;
     return true;
 }
 
-void table_finish(struct table *table)
+void key_table_finish(struct key_table *table)
 {
     for (uint32_t i = 0; i < table->slot_count; ++i)
         free(table->slots[i].key);
     free(table->slots);
-    *table = (struct table){0};
+    *table = (struct key_table){0};
 }

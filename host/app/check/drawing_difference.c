@@ -1,4 +1,4 @@
-#include "app/check/difference.h"
+#include "app/check/drawing_difference.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -20,15 +20,15 @@ static double distance_of(const float *a, const float *b, uint32_t channels)
     return largest;
 }
 
-void difference_find(const struct drawing *before, const struct drawing *after,
-                     struct difference *out)
+void drawing_difference_find(const struct drawing *before, const struct drawing *after,
+                             struct drawing_difference *out)
 {
     whit_image_info a, b;
     double largest = -2.0;
     whit_image_get_info(before->color, &a);
     whit_image_get_info(after->color, &b);
-    *out = (struct difference){.same_size = a.width == b.width && a.height == b.height &&
-                                            a.channels == b.channels};
+    *out = (struct drawing_difference){.same_size = a.width == b.width && a.height == b.height &&
+                                                    a.channels == b.channels};
     const float *x = whit_image_floats(before->color), *y = whit_image_floats(after->color);
     const uint32_t *p = whit_image_words(before->ids), *q = whit_image_words(after->ids);
     size_t pixels = out->same_size ? (size_t)a.width * a.height : 0;
@@ -48,7 +48,7 @@ void difference_find(const struct drawing *before, const struct drawing *after,
     }
 }
 
-void difference_write(const struct difference *difference, char *text, size_t bytes)
+void drawing_difference_write(const struct drawing_difference *difference, char *text, size_t bytes)
 {
     if (!difference->same_size)
         snprintf(text, bytes, "another size");
@@ -69,7 +69,8 @@ struct seen {
     char name[256];
 };
 
-static bool probe(const struct drawing *drawing, const struct difference *at, struct seen *out)
+static bool probe(const struct drawing *drawing, const struct drawing_difference *at,
+                  struct seen *out)
 {
     whit_probe_ray ray;
     whit_image_info info;
@@ -101,8 +102,9 @@ static void write_hit(const struct seen *seen, char *text, size_t bytes)
                  seen->hit.primitive, seen->hit.t);
 }
 
-void difference_write_pixel(const struct difference *difference, const struct drawing *before,
-                            const struct drawing *after, char *text, size_t bytes)
+void drawing_difference_write_pixel(const struct drawing_difference *difference,
+                                    const struct drawing *before, const struct drawing *after,
+                                    char *text, size_t bytes)
 {
     struct seen was, is;
     char hit_before[400], hit_after[400];
