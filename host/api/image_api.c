@@ -105,18 +105,6 @@ void whit_image_display_as(whit_image *image, const whit_renderer_params *params
     image->image.display_soft = params->soft_highlights;
 }
 
-/* Release with free(); NULL when memory runs out, which is logged. */
-static struct image_text *texts_from_public(const whit_log *log, const char *path,
-                                            const whit_text *texts, uint32_t text_count)
-{
-    struct image_text *copies = calloc(text_count ? text_count : 1, sizeof *copies);
-    if (!copies)
-        log_error(log, "%s: out of memory", path);
-    for (uint32_t i = 0; copies && i < text_count; ++i)
-        copies[i] = (struct image_text){.key = texts[i].key, .value = texts[i].value};
-    return copies;
-}
-
 whit_result whit_image_save(const whit_image *image, const char *path, const whit_text *texts,
                             uint32_t text_count, const whit_log *log)
 {
@@ -128,28 +116,20 @@ whit_result whit_image_save_layers(const whit_image *image, const whit_image_lay
                                    uint32_t text_count, const whit_log *log)
 {
     struct image_layer items[IMAGE_LAYERS_MAX];
-    struct image_text *copies = texts_from_public(log, path, texts, text_count);
-    if (!copies)
-        return WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; i < layer_count && i < IMAGE_LAYERS_MAX; ++i)
         items[i] = (struct image_layer){layers[i].name, &layers[i].image->image};
-    whit_result result =
-        image_save_layers(log, &image->image, items, layer_count, path, copies, text_count);
-    free(copies);
-    return result;
+    return image_save_layers(log, &image->image, items, layer_count, path, texts, text_count);
 }
 
 struct whit_image_strips {
     whit_log log;
     char *path;
-    struct image_text *texts;
     struct image_rows *rows;
 };
 
 static void free_strips(whit_image_strips *strips)
 {
     free(strips->path);
-    free(strips->texts);
     free(strips);
 }
 
@@ -167,11 +147,12 @@ whit_result whit_image_strips_begin(const char *path, const whit_image *like, ui
     }
     strips->log = *log;
     strips->path = string_copy(path);
-    strips->texts = texts_from_public(log, path, texts, text_count);
     whit_result result = WHIT_ERROR_MEMORY;
-    if (strips->path && strips->texts)
-        result = image_rows_begin(&strips->log, strips->path, &shape, strips->texts, text_count,
-                                  &strips->rows);
+    if (strips->path)
+        result =
+            image_rows_begin(&strips->log, strips->path, &shape, texts, text_count, &strips->rows);
+    else
+        log_error(log, "%s: out of memory", path);
     if (result == WHIT_OK)
         *out = strips;
     else
@@ -208,26 +189,14 @@ whit_result whit_image_encode_png(const whit_image *image, const whit_text *text
                                   uint32_t text_count, const whit_log *log, uint8_t **data,
                                   size_t *size_bytes)
 {
-    struct image_text *copies = texts_from_public(log, "a PNG in memory", texts, text_count);
-    *data = NULL;
-    if (!copies)
-        return WHIT_ERROR_MEMORY;
-    whit_result result = image_encode_png(log, &image->image, copies, text_count, data, size_bytes);
-    free(copies);
-    return result;
+    return image_encode_png(log, &image->image, texts, text_count, data, size_bytes);
 }
 
 whit_result whit_image_load_texts(const char *path, const whit_load_params *params,
                                   const whit_log *log, whit_text **texts, uint32_t *text_count)
 {
-    _Static_assert(sizeof(whit_text) == sizeof(struct image_text) &&
-                       offsetof(whit_text, value) == offsetof(struct image_text, value),
-                   "the same record");
     const struct foreign_params foreign = load_foreign(params);
-    struct image_text *loaded;
-    whit_result result = image_load_texts_by(log, path, &foreign, &loaded, text_count);
-    *texts = (whit_text *)loaded;
-    return result;
+    return image_load_texts_by(log, path, &foreign, texts, text_count);
 }
 
 whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
@@ -329,27 +298,13 @@ whit_result whit_image_compare(const whit_image *a, const whit_image *b,
                                whit_difference *out, whit_image **flip_map)
 {
     const whit_compare_params defaults = {0};
-    struct image_difference found;
     if (!params)
         params = &defaults;
     if (flip_map)
         *flip_map = NULL;
-    *out = (whit_difference){0};
-    whit_result result = image_compare(log, &a->image, &b->image, &found);
+    whit_result result = image_compare(log, &a->image, &b->image, out);
     if (result != WHIT_OK)
         return result;
-    *out = (whit_difference){
-        .pixel_count = found.pixel_count,
-        .differing_pixels = found.differing_pixels,
-        .over_1_255 = found.over_1_255,
-        .nonfinite_a = found.nonfinite_a,
-        .nonfinite_b = found.nonfinite_b,
-        .nonfinite_differing = found.nonfinite_differing,
-        .rmse = found.rmse,
-        .relative_mse = found.relative_mse,
-        .largest = found.largest,
-        .mean = {found.mean[0], found.mean[1], found.mean[2]},
-    };
     if (params->no_flip || !a->image.pixels)
         return WHIT_OK;
     return compare_by_flip(a, b, params, out, flip_map);

@@ -87,7 +87,7 @@ static whit_result read_picture(whit_shader_compiler *compiler, const char *path
     const struct shader_limits *limits = &compiler->limits;
     const struct foreign_params foreign = {.require_sandbox = limits->require_sandbox,
                                            .cancel = limits->cancel};
-    struct image_text *texts;
+    whit_text *texts;
     struct shader_pack pack;
     uint32_t count;
     const char *packed = NULL;

@@ -64,8 +64,7 @@ static bool is_over_1_255(const struct image *image_a, const struct image *image
     return false;
 }
 
-static void add_colours(const float a[4], const float b[4], struct image_difference *out,
-                        struct sums *sums)
+static void add_colours(const float a[4], const float b[4], whit_difference *out, struct sums *sums)
 {
     for (uint32_t c = 0; c < 3; ++c) {
         double reference = a[c], difference = (double)b[c] - reference;
@@ -79,7 +78,7 @@ static void add_colours(const float a[4], const float b[4], struct image_differe
 }
 
 static void compare_pixel(const struct image *image_a, const struct image *image_b, size_t i,
-                          struct image_difference *out, struct sums *sums)
+                          whit_difference *out, struct sums *sums)
 {
     float a[4], b[4];
     read_pixel(image_a, i, a);
@@ -97,7 +96,7 @@ static void compare_pixel(const struct image *image_a, const struct image *image
 }
 
 static void compare_words(const uint32_t *a, const uint32_t *b, uint32_t channels,
-                          struct image_difference *out, struct sums *sums)
+                          whit_difference *out, struct sums *sums)
 {
     bool differ = memcmp(a, b, channels * sizeof(uint32_t)) != 0;
     ++sums->terms;
@@ -109,7 +108,7 @@ static void compare_words(const uint32_t *a, const uint32_t *b, uint32_t channel
     sums->squares += 3.0;
 }
 
-static void divide(const struct sums *sums, struct image_difference *out)
+static void divide(const struct sums *sums, whit_difference *out)
 {
     double terms = sums->terms ? (double)sums->terms : 1.0;
     out->rmse = sqrt(sums->squares / (3.0 * terms));
@@ -119,9 +118,9 @@ static void divide(const struct sums *sums, struct image_difference *out)
 }
 
 whit_result image_compare(const whit_log *log, const struct image *a, const struct image *b,
-                          struct image_difference *out)
+                          whit_difference *out)
 {
-    *out = (struct image_difference){0};
+    *out = (whit_difference){0};
     if (!same_kind(a, b))
         return refuse(log, a, b);
     struct sums sums = {0};

@@ -25,7 +25,7 @@ struct image_target {
     const whit_log *log;
     const char *path;
     FILE *stream;
-    const struct image_text *texts;
+    const whit_text *texts;
     uint32_t text_count;
     const struct image_layer *layers; /* of an EXR */
     uint32_t layer_count;
@@ -33,7 +33,7 @@ struct image_target {
 
 /* Key and value pairs that grow; the strings are its own. A zeroed one is empty. */
 struct text_list {
-    struct image_text *texts;
+    whit_text *texts;
     uint32_t count, capacity;
 };
 

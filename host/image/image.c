@@ -159,14 +159,14 @@ static whit_result check_layers(const whit_log *log, const struct image *image,
 }
 
 whit_result image_save(const whit_log *log, const struct image *image, const char *path,
-                       const struct image_text *texts, uint32_t text_count)
+                       const whit_text *texts, uint32_t text_count)
 {
     return image_save_layers(log, image, NULL, 0, path, texts, text_count);
 }
 
 whit_result image_save_layers(const whit_log *log, const struct image *image,
                               const struct image_layer *layers, uint32_t layer_count,
-                              const char *path, const struct image_text *texts, uint32_t text_count)
+                              const char *path, const whit_text *texts, uint32_t text_count)
 {
     whit_result result = image_check_savable(log, image, path);
     if (result == WHIT_OK)
@@ -202,9 +202,8 @@ whit_result image_save_layers(const whit_log *log, const struct image *image,
     return result;
 }
 
-whit_result image_encode_png(const whit_log *log, const struct image *image,
-                             const struct image_text *texts, uint32_t text_count, uint8_t **data,
-                             size_t *size_bytes)
+whit_result image_encode_png(const whit_log *log, const struct image *image, const whit_text *texts,
+                             uint32_t text_count, uint8_t **data, size_t *size_bytes)
 {
     static const char name[] = "memory.png";
     char *bytes = NULL;
@@ -299,7 +298,7 @@ whit_result image_decode_texts(const struct image_source *source, struct text_li
 
 bool text_list_add(struct text_list *list, const char *key, const char *value)
 {
-    struct image_text text = {.key = string_copy(key), .value = string_copy(value)};
+    whit_text text = {.key = string_copy(key), .value = string_copy(value)};
     if (text.key && text.value && ARRAY_PUSH(list->texts, list->count, list->capacity, text))
         return true;
     free((void *)(uintptr_t)text.key);

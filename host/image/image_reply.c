@@ -133,13 +133,12 @@ whit_result image_load_by(const whit_log *log, const struct roots *roots, const 
 }
 
 /* The strings of a reply, in one block with the list of them. NULL: no memory, or *damaged. */
-static struct image_text *pack_texts(const struct reading *reading, bool *damaged)
+static whit_text *pack_texts(const struct reading *reading, bool *damaged)
 {
     size_t count = reading->answer.numbers[TEXT_COUNT];
     size_t bytes = reading->reply.size_bytes - sizeof reading->answer;
     *damaged = count > bytes / 2;
-    struct image_text *packed =
-        *damaged ? NULL : malloc(count * sizeof(struct image_text) + bytes + 1);
+    whit_text *packed = *damaged ? NULL : malloc(count * sizeof(whit_text) + bytes + 1);
     if (!packed)
         return NULL;
     char *at = (char *)(packed + count), *end = at + bytes;
@@ -155,14 +154,14 @@ static struct image_text *pack_texts(const struct reading *reading, bool *damage
     return packed;
 }
 
-whit_result image_load_texts(const whit_log *log, const char *path, struct image_text **texts,
+whit_result image_load_texts(const whit_log *log, const char *path, whit_text **texts,
                              uint32_t *text_count)
 {
     return image_load_texts_by(log, path, NULL, texts, text_count);
 }
 
 whit_result image_load_texts_by(const whit_log *log, const char *path,
-                                const struct foreign_params *params, struct image_text **texts,
+                                const struct foreign_params *params, whit_text **texts,
                                 uint32_t *text_count)
 {
     struct reading reading = {.log = log, .path = path};
@@ -172,7 +171,7 @@ whit_result image_load_texts_by(const whit_log *log, const char *path,
     whit_result result = ask(&reading, params, answer_texts);
     if (result != WHIT_OK)
         return result;
-    struct image_text *packed = pack_texts(&reading, &damaged);
+    whit_text *packed = pack_texts(&reading, &damaged);
     if (!packed || damaged) {
         free(packed);
         return no_good(&reading, damaged ? WHIT_ERROR_INPUT : WHIT_ERROR_MEMORY);

@@ -14,11 +14,11 @@ WHIT_CHECK whit_result image_load_by(const whit_log *log, const struct roots *ro
                                      const char *path, const struct foreign_params *params,
                                      struct image *image);
 /* The recipe in a PNG or EXR; *texts and its strings are one block, free() it. */
-WHIT_CHECK whit_result image_load_texts(const whit_log *log, const char *path,
-                                        struct image_text **texts, uint32_t *text_count);
+WHIT_CHECK whit_result image_load_texts(const whit_log *log, const char *path, whit_text **texts,
+                                        uint32_t *text_count);
 /* The same in a child with other limits; `params` may be NULL. */
 WHIT_CHECK whit_result image_load_texts_by(const whit_log *log, const char *path,
-                                           const struct foreign_params *params,
-                                           struct image_text **texts, uint32_t *text_count);
+                                           const struct foreign_params *params, whit_text **texts,
+                                           uint32_t *text_count);
 
 #endif

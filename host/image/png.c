@@ -132,7 +132,7 @@ static void set_texts(struct job *job, const struct image_target *target)
     job->texts = allocate(job, target->text_count, sizeof *job->texts);
     memset(job->texts, 0, target->text_count * sizeof *job->texts);
     for (uint32_t i = 0; i < target->text_count; ++i) {
-        const struct image_text *text = &target->texts[i];
+        const whit_text *text = &target->texts[i];
         bool ascii = is_ascii(text->value);
         job->texts[i].compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
         job->texts[i].key = (char *)(uintptr_t)text->key; /* copied by libpng */

@@ -42,8 +42,7 @@ static whit_result begin(struct image_rows *rows)
 }
 
 whit_result image_rows_begin(const whit_log *log, const char *path, const struct image *shape,
-                             const struct image_text *texts, uint32_t text_count,
-                             struct image_rows **out)
+                             const whit_text *texts, uint32_t text_count, struct image_rows **out)
 {
     *out = NULL;
     whit_result result = image_check_savable(log, shape, path);

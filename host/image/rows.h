@@ -13,7 +13,7 @@ enum { IMAGE_STRIP_ROWS = 16 };
    picture; which of its pixels or words is set tells the kind, and neither is read. `path`, `texts`
    and `log` have to stay until the end. Pipes are refused, WHIT_ERROR_OUTPUT. */
 WHIT_CHECK whit_result image_rows_begin(const whit_log *log, const char *path,
-                                        const struct image *shape, const struct image_text *texts,
+                                        const struct image *shape, const whit_text *texts,
                                         uint32_t text_count, struct image_rows **out);
 /* The next rows, from the top down. WHIT_ERROR_USAGE, logged, for a strip of another width or kind,
    or too many rows. Some errors are told by image_rows_commit alone. */

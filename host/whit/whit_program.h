@@ -42,7 +42,7 @@ double whit_clock_cpu_ms(void); /* used by all threads of this process */
    commit, with the bytes that whit_image_save of the whole picture gives it. */
 #define WHIT_STRIP_ROWS 16
 typedef struct whit_image_strips whit_image_strips;
-/* `like`: a strip, for all but the height. Names and log of `texts` have to stay. WHIT_ERROR_OUTPUT
+/* `like`: a strip, for all but the height. `texts` are borrowed until the end. WHIT_ERROR_OUTPUT
    also for pipes. */
 WHIT_CHECK whit_result whit_image_strips_begin(const char *path, const whit_image *like,
                                                uint32_t height, const whit_text *texts,

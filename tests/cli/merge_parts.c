@@ -21,7 +21,7 @@ int main(int argc, char **argv)
             "{\"tile\":%u,\"tiles\":%u,\"samples_part\":0,\"samples_parts\":0,\"first_row\":%u,"
             "\"rows\":%u,\"width\":%u,\"height\":%u,\"samples\":1}",
             tile, tiles, first, rows, side, side);
-        const struct image_text texts[] = {{"Software", "whit " WHIT_VERSION}, {"whit:part", part}};
+        const whit_text texts[] = {{"Software", "whit " WHIT_VERSION}, {"whit:part", part}};
         const whit_log log = {0};
         struct image image;
         if (image_init(&image, side, rows, 4, false) != WHIT_OK)

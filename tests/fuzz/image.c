@@ -19,7 +19,7 @@ static void load_whole(const char *path)
 
 static void load_texts(const char *path)
 {
-    struct image_text *texts;
+    whit_text *texts;
     uint32_t count;
     fuzz_log_clear();
     fuzz_check_errors(image_load_texts(&fuzz_log, path, &texts, &count), path);

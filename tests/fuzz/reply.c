@@ -56,7 +56,7 @@ static void ask_for_image(const char *path)
 
 static void ask_for_texts(const char *path)
 {
-    struct image_text *texts;
+    whit_text *texts;
     uint32_t count;
     size_t bytes = 0;
     check_errors(image_load_texts(&fuzz_log, path, &texts, &count), path);

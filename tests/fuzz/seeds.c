@@ -117,7 +117,7 @@ enum { SIDE = 5 };
 
 static void save_image(const char *name, uint32_t channels, bool integers)
 {
-    static const struct image_text texts[] = {{"whit", "render a.json"}, {"scene", "{ \"a\": 1 }"}};
+    static const whit_text texts[] = {{"whit", "render a.json"}, {"scene", "{ \"a\": 1 }"}};
     struct image image;
     fuzz_check(image_init(&image, SIDE, SIDE, channels, integers) == WHIT_OK, "no picture");
     for (uint32_t i = 0; i < SIDE * SIDE * channels; i++) {
@@ -202,7 +202,7 @@ static void ask(uint8_t who, const char *target, const char *name)
 {
     char *path = seed_path(target, name);
     struct image image = {0};
-    struct image_text *texts = NULL;
+    whit_text *texts = NULL;
     uint32_t count;
     whit_result result = WHIT_OK;
     asker = who;

@@ -3,9 +3,9 @@
 #include "image/compare.h"
 #include <math.h>
 
-static struct image_difference compare(const struct image *a, const struct image *b)
+static whit_difference compare(const struct image *a, const struct image *b)
 {
-    struct image_difference difference;
+    whit_difference difference;
     assert_int_equal(image_compare(NULL, a, b, &difference), WHIT_OK);
     return difference;
 }
@@ -27,7 +27,7 @@ TEST(equal_pictures)
     struct image a = fixture_floats(10, 10, 3);
     a.pixels[4] = NAN;
     struct image b = copy_of(&a);
-    struct image_difference difference = compare(&a, &b);
+    whit_difference difference = compare(&a, &b);
     assert_int_equal(difference.pixel_count, 100);
     assert_int_equal(difference.differing_pixels, 0);
     assert_int_equal(difference.over_1_255, 0);
@@ -48,7 +48,7 @@ TEST(differences_are_measured)
     b.pixels[4 + 3] = 1.0f; /* alpha of pixel 1: not part of the error */
     b.pixels[8] = 1e-6f;    /* far below 1/255 */
     b.pixels[12] = -0.0f;   /* only its sign */
-    struct image_difference difference = compare(&a, &b);
+    whit_difference difference = compare(&a, &b);
     assert_int_equal(difference.differing_pixels, 4);
     assert_int_equal(difference.over_1_255, 2);
     assert_true(difference.largest == 0.5);
@@ -83,7 +83,7 @@ TEST(nonfinite_counts_but_does_not_spread)
     b.pixels[3] = INFINITY;
     b.pixels[4] = INFINITY;
     b.pixels[6] = 0.25f;
-    struct image_difference difference = compare(&a, &b);
+    whit_difference difference = compare(&a, &b);
     assert_int_equal(difference.nonfinite_a, 1);
     assert_int_equal(difference.nonfinite_b, 1);
     assert_int_equal(difference.nonfinite_differing, 2);
@@ -105,13 +105,13 @@ TEST(means_are_those_of_the_formulas)
     const float to[6] = {0.75f, 0.25f, 0.125f, 1.0f, 0.0f, 1.5f};
     memcpy(a.pixels, from, sizeof from);
     memcpy(b.pixels, to, sizeof to);
-    struct image_difference difference = compare(&a, &b);
+    whit_difference difference = compare(&a, &b);
     double relative = 0.0625 / 0.26 + 0.015625 / 0.01 + 1.0 / (4.0 + 0.01) + 0.25 / (1.0 + 0.01);
     assert_true(fabs(difference.relative_mse - relative / 6.0) < 1e-12);
     assert_true(fabs(difference.rmse - sqrt((0.0625 + 0.015625 + 1.0 + 0.25) / 6.0)) < 1e-12);
     assert_true(difference.mean[0] == -0.375 && difference.mean[1] == 0.0);
     assert_true(difference.mean[2] == 0.3125 && difference.largest == 1.0);
-    struct image_difference back = compare(&b, &a);
+    whit_difference back = compare(&b, &a);
     assert_true(back.mean[0] == 0.375 && back.rmse == difference.rmse);
     assert_true(back.relative_mse != difference.relative_mse);
     b.pixels[4] = NAN;
@@ -137,7 +137,7 @@ TEST(channels_may_differ)
     assert_int_equal(compare(&colours[0], &colours[1]).differing_pixels, 0);
     colours[0].pixels[3 * 7 + 2] += 0.5f;
     colours[1].pixels[4 * 9 + 3] = 0.5f;
-    struct image_difference difference = compare(&colours[1], &colours[0]);
+    whit_difference difference = compare(&colours[1], &colours[0]);
     assert_int_equal(difference.differing_pixels, 2);
     assert_true(fabs(difference.largest - 0.5) < 1e-6 && difference.mean[0] == 0.0);
     image_finish(&grey);
@@ -152,7 +152,7 @@ TEST(integers_differ_or_not)
     b.words[0] ^= 1;
     b.words[1] ^= 1;
     b.words[199] ^= 0x80000000u;
-    struct image_difference difference = compare(&a, &b);
+    whit_difference difference = compare(&a, &b);
     assert_int_equal(difference.differing_pixels, 2);
     assert_true(difference.largest == 1.0);
     image_finish(&a);
@@ -164,7 +164,7 @@ TEST_IN(unlike_pictures_are_refused, folder_begin, folder_end)
     struct image a = fixture_floats(4, 3, 3),
                  other[3] = {fixture_floats(3, 4, 3), fixture_words(4, 3, 3), {0}};
     struct image ids = fixture_words(4, 3, 2), out;
-    struct image_difference difference;
+    whit_difference difference;
     for (int i = 0; i < 3; ++i) {
         assert_int_equal(image_compare(&warnings_log, &a, &other[i], &difference),
                          WHIT_ERROR_INPUT);

@@ -24,7 +24,7 @@ struct sample {
 
 static struct sample sample_of(const char *name, const struct image *image)
 {
-    static const struct image_text text = {"scene", "a.json"};
+    static const whit_text text = {"scene", "a.json"};
     struct sample sample = {.name = name};
     char *path = in_folder(name);
     assert_int_equal(image_save(&warnings_log, image, path, &text, 1), WHIT_OK);
@@ -52,7 +52,7 @@ static struct sample hdr_sample(void)
 static bool try_load(const char *path, const uint8_t *data, size_t size_bytes)
 {
     struct image image;
-    struct image_text *texts;
+    whit_text *texts;
     uint32_t text_count;
     fixture_put(path, data, size_bytes);
     messages.errors = 0;

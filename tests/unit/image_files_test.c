@@ -9,9 +9,9 @@
 #include "image/formats.h"
 #include "image/image_reply.h"
 
-static const struct image_text recipe[] = {{"scene", "scenes/default.json"},
-                                           {"options", "--aa 4 --depth 8"},
-                                           {"note", "\xc3\xbc 5\xc2\xb0"}};
+static const whit_text recipe[] = {{"scene", "scenes/default.json"},
+                                   {"options", "--aa 4 --depth 8"},
+                                   {"note", "\xc3\xbc 5\xc2\xb0"}};
 enum { RECIPE_COUNT = sizeof recipe / sizeof *recipe };
 
 static void save_and_load(const char *name, const struct image *image, struct image *loaded)
@@ -156,7 +156,7 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
     struct image image = fixture_floats(9, 7, 3);
     for (int i = 0; i < 3; ++i) {
         char *path = in_folder(names[i]);
-        struct image_text *texts;
+        whit_text *texts;
         uint32_t count, found = 0;
         assert_int_equal(image_save(&warnings_log, &image, path, recipe, RECIPE_COUNT), WHIT_OK);
         assert_int_equal(image_load_texts(&warnings_log, path, &texts, &count), WHIT_OK);
@@ -176,7 +176,7 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
 TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
 {
     struct image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2), none = {0};
-    const struct image_text empty = {"", "value"}; /* refused half-way */
+    const whit_text empty = {"", "value"}; /* refused half-way */
     const struct {
         const char *name;
         const struct image *image;

@@ -3,8 +3,8 @@
 
 #include "image/rows.h"
 
-static const struct image_text recipe[] = {{"scene", "scenes/default.json"},
-                                           {"note", "\xc3\xbc 5\xc2\xb0"}};
+static const whit_text recipe[] = {{"scene", "scenes/default.json"},
+                                   {"note", "\xc3\xbc 5\xc2\xb0"}};
 enum { RECIPE_COUNT = sizeof recipe / sizeof *recipe };
 
 static struct image_rows *begin(const char *path, const struct image *shape)
