@@ -265,11 +265,11 @@ static whit_camera camera_of(const struct scene_camera *from)
 {
     whit_camera camera = {
         .own = true,
+        .kind = from->kind,
         .fov_y_degrees = degrees_of(from->fov_y),
-        .height = from->kind == WHIT_CAMERA_ORTHOGRAPHIC ? (double)from->height : 0.0,
+        .height = (double)from->height,
         .lens_radius = (double)from->lens_radius,
         .focus_distance = (double)from->focus_distance,
-        .panorama = from->kind == WHIT_CAMERA_PANORAMA,
     };
     copy3_double(camera.eye, from->eye);
     copy3_double(camera.target, from->target);

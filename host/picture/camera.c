@@ -40,9 +40,7 @@ static whit_result find_camera(const whit_log *log, const struct scene_pose *pos
 {
     uint32_t index = 0;
     if (wanted->own) {
-        *out = (struct scene_camera){.kind = wanted->panorama       ? WHIT_CAMERA_PANORAMA
-                                             : wanted->height > 0.0 ? WHIT_CAMERA_ORTHOGRAPHIC
-                                                                    : WHIT_CAMERA_PERSPECTIVE,
+        *out = (struct scene_camera){.kind = wanted->kind,
                                      .node = SCENE_NONE,
                                      .fov_y = (float)(wanted->fov_y_degrees * PI / 180.0),
                                      .height = (float)wanted->height,
@@ -156,6 +154,8 @@ whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
     whit_result result = find_camera(log, pose, wanted, &camera);
     if (result != WHIT_OK)
         return result;
+    if ((unsigned)camera.kind > WHIT_CAMERA_PANORAMA)
+        return refuse(log, &camera, "there is no such kind of camera");
     double forward[3], right[3], up[3], half = half_height(&camera);
     if (!make_basis(&camera, forward, right, up))
         return refuse(log, &camera, "eye and target are the same point or not finite");

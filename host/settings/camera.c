@@ -48,7 +48,7 @@ static void write_numbers(const whit_camera *camera, char text[SETTING_TEXT_BYTE
 
 bool settings_name_camera(struct settings *settings, const whit_camera *camera)
 {
-    bool pinhole = !camera->panorama && !(camera->height > 0.0) && !(camera->lens_radius > 0.0);
+    bool pinhole = camera->kind == WHIT_CAMERA_PERSPECTIVE && !(camera->lens_radius > 0.0);
     settings->camera[0] = '\0';
     if (pinhole)
         write_numbers(camera, settings->camera);

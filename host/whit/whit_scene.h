@@ -144,14 +144,6 @@ typedef struct whit_light_info {
     float color[3];
     bool made_by_whit;
 } whit_light_info;
-typedef enum whit_camera_kind {
-    WHIT_CAMERA_PERSPECTIVE = 0,
-    WHIT_CAMERA_ORTHOGRAPHIC,
-    WHIT_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the width is 360
-                             degrees, the height 180 */
-} whit_camera_kind;
-/* "perspective", "orthographic", "panorama" */
-const char *whit_camera_kind_name(whit_camera_kind kind);
 typedef struct whit_camera_info {
     const char *name;
     whit_camera_kind kind;

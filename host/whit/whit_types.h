@@ -28,18 +28,25 @@ typedef struct whit_renderer whit_renderer; /* an accel on a device, with settin
 typedef struct whit_image whit_image;       /* pixels in host memory */
 typedef struct whit_shader whit_shader;     /* functions in the place of whit's own */
 
+typedef enum whit_camera_kind {
+    WHIT_CAMERA_PERSPECTIVE = 0,
+    WHIT_CAMERA_ORTHOGRAPHIC,
+    WHIT_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the width is 360
+                             degrees, the height 180 */
+} whit_camera_kind;
+/* "perspective", "orthographic", "panorama" */
+const char *whit_camera_kind_name(whit_camera_kind kind);
+
 /* Which camera a picture is seen by. Zeroed: the first of the scene. */
 typedef struct whit_camera {
     const char *name; /* of a camera of the scene, or its number where none has that name */
     bool own;         /* one at `eye` in place of the scene's cameras; `name` is not read */
+    whit_camera_kind kind;
     double eye[3], target[3], up[3]; /* world space */
-    double fov_y_degrees;            /* vertical, between 0 and 180 */
-    /* Zero for a pinhole. World units; as the keys `height`, `lens`, `focus` and `panorama` of
-       cameras in scene files. */
-    double height;         /* above 0: a parallel view of so much; fov_y_degrees is not read */
-    double lens_radius;    /* of a thin lens */
-    double focus_distance; /* along the view, with a lens; 0: the target's */
-    bool panorama;         /* all around, equirectangular; of the others eye, target and up */
+    double fov_y_degrees;            /* PERSPECTIVE: vertical, between 0 and 180 */
+    double height;                   /* ORTHOGRAPHIC: of the picture, world units; above 0 */
+    double lens_radius;              /* PERSPECTIVE: of a thin lens, world units; 0: a pinhole */
+    double focus_distance;           /* along the view, with a lens; 0: the target's */
 } whit_camera;
 
 /* Whether there is one tree over the triangles of all instances, each vertex placed in the world in

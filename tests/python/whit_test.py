@@ -56,7 +56,7 @@ def test_ids_are_what_rays_hit(renderer):
 
 def test_views_of_many_cameras(renderer):
     cameras = [((3, 2, 4 + i), (0, 0, 0), (0, 1, 0), 35) for i in range(3)] + [0, {"own": True, "eye": (3, 2, 4),
-               "up": (0, 1, 0), "height": 3.0}]
+               "up": (0, 1, 0), "kind": "orthographic", "height": 3.0}]
     color = renderer.render_views(cameras)
     ids, distances = renderer.ids(), renderer.distances()
     assert (color.shape, ids.shape, distances.shape) == ((5, 30, 40, 4), (5, 30, 40, 2), (5, 30, 40, 1))

@@ -18,8 +18,10 @@ static void place_cameras(whit_camera *cameras, int count, bool mixed)
                                             0.7, -0.2, 0, 1, 0, 30.0 + i);
         cameras[i].lens_radius = mixed && i % 4 == 1 ? 0.2 : 0.0;
         cameras[i].focus_distance = mixed && i % 8 == 1 ? 3.0 : 0.0;
-        cameras[i].height = mixed && i % 4 == 2 ? 4.0 : 0.0;
-        cameras[i].panorama = mixed && i % 4 == 3;
+        cameras[i].kind = !mixed || i % 4 < 2 ? WHIT_CAMERA_PERSPECTIVE
+                          : i % 4 == 2        ? WHIT_CAMERA_ORTHOGRAPHIC
+                                              : WHIT_CAMERA_PANORAMA;
+        cameras[i].height = 4.0;
     }
 }
 
@@ -237,5 +239,12 @@ TEST(what_views_do_not_go_with_is_refused)
         fixture_renew(&f, &wrong[i]);
         assert_int_equal(renderer_render_views(f.renderer, &camera, 1), WHIT_ERROR_USAGE);
     }
+    whit_camera none[] = {camera, camera, camera}; /* flat, of no kind, without an angle */
+    none[0].kind = WHIT_CAMERA_ORTHOGRAPHIC;
+    none[1].kind = WHIT_CAMERA_PANORAMA + 1;
+    none[2].fov_y_degrees = 0.0;
+    fixture_renew(&f, &(whit_renderer_params){.width = 16, .height = 16});
+    for (size_t i = 0; i < 3; ++i)
+        assert_int_equal(renderer_render_views(f.renderer, &none[i], 1), WHIT_ERROR_USAGE);
     fixture_close(&f);
 }

@@ -71,8 +71,8 @@ def _struct(name, *members):
 
 
 Log = _struct("whit_log", ("fn", _LogFn), ("user", c_void_p), ("level", LogLevel))
-Camera = _struct("whit_camera", ("name", c_char_p), ("own", c_bool), ("eye target up", c_double * 3),
-                 ("fov_y_degrees height lens_radius focus_distance", c_double), ("panorama", c_bool))
+Camera = _struct("whit_camera", ("name", c_char_p), ("own", c_bool), ("kind", CameraKind),
+                 ("eye target up", c_double * 3), ("fov_y_degrees height lens_radius focus_distance", c_double))
 Sampling = _struct("whit_sampling", ("kind", SamplingKind), ("count first", c_uint32), ("contrast", c_double))
 LoadParams = _struct(
     "whit_load_params", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),

@@ -55,9 +55,9 @@ static char *camera_line(const whit_camera *camera)
     document_numbers(object, "eye", camera->eye, 3);
     document_numbers(object, "target", camera->target, 3);
     document_numbers(object, "up", camera->up, 3);
-    if (camera->panorama)
+    if (camera->kind == WHIT_CAMERA_PANORAMA)
         document_flag(object, "panorama", true);
-    else if (camera->height > 0.0)
+    else if (camera->kind == WHIT_CAMERA_ORTHOGRAPHIC)
         document_number(object, "height", camera->height);
     else
         document_number(object, "fov", camera->fov_y_degrees);
