@@ -1,6 +1,4 @@
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "accel/boxes.h"
 #include "accel/validate.h"
@@ -58,6 +56,7 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
         log_error(&scene->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
+    accel->params = *params;
     accel->log = scene->log;
     const struct accel_params inner = {
         .mesh =
@@ -94,26 +93,6 @@ void whit_accel_destroy(whit_accel *accel)
     free(accel);
 }
 
-static void builder_name(const struct bvh_params *params, char *out, size_t out_bytes)
-{
-    static const char *const names[] = {
-        [WHIT_BUILD_BINNED] = "binned", [WHIT_BUILD_MEDIAN] = "median",
-        [WHIT_BUILD_SWEEP] = "sweep",   [WHIT_BUILD_SPATIAL] = "spatial",
-        [WHIT_BUILD_NONE] = "none",
-    };
-    char numbers[40] = "";
-    if (params->builder == WHIT_BUILD_BINNED && params->bins)
-        snprintf(numbers, sizeof numbers, ":%u", params->bins);
-    else if (params->builder == WHIT_BUILD_SPATIAL && params->spatial_budget != 0.0f)
-        snprintf(numbers, sizeof numbers, ":%g,%g",
-                 params->spatial_alpha != 0.0f ? (double)params->spatial_alpha : 1e-5,
-                 params->spatial_budget < 0.0f ? 0.0 : (double)params->spatial_budget);
-    else if (params->builder == WHIT_BUILD_SPATIAL && params->spatial_alpha != 0.0f)
-        snprintf(numbers, sizeof numbers, ":%g", (double)params->spatial_alpha);
-    snprintf(out, out_bytes, "%s%s%s", names[params->builder], numbers,
-             params->optimize ? "+opt" : "");
-}
-
 /* In the trees: of each mesh once, of one tree over all instances as often as it has instances. */
 static uint32_t count_spheres(const struct accel *accel)
 {
@@ -141,8 +120,8 @@ void whit_accel_get_info(const whit_accel *handle, whit_accel_info *info)
         .build_ms = accel->build_ms,
         .one_tree = accel->flat,
         .instance_build_ms = accel->instance_build_ms,
+        .params = handle->params,
     };
-    builder_name(&accel->params.mesh, info->builder, sizeof info->builder);
     uint32_t largest = 0;
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         const struct accel_mesh *mesh = &accel->meshes[i];

@@ -29,6 +29,7 @@ static inline bool api_one_tree(const struct whit_scene *scene, whit_instances i
 WHIT_CHECK whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out);
 
 struct whit_accel {
+    whit_accel_params params; /* that it was made with */
     struct accel *accel;
     whit_log log;
 };

@@ -72,9 +72,10 @@ static void draw_names(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
     const struct settings *s = &frame->settings;
-    bool trees = s->trees.build != WHIT_BUILD_NONE;
-    ui_text("%s, %s, %s", trees ? frame->accel.builder : "no trees",
-            value_word(values_traversal, (int)s->picture.traversal),
+    char builder[SETTING_VALUE_BYTES] = "no trees";
+    if (s->trees.build != WHIT_BUILD_NONE)
+        builder_write(&frame->accel.params, builder, sizeof builder);
+    ui_text("%s, %s, %s", builder, value_word(values_traversal, (int)s->picture.traversal),
             value_word(values_numerics, (int)s->picture.numerics));
 }
 

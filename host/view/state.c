@@ -70,8 +70,9 @@ static json_t *shader_json(const struct shaders *shaders)
 
 static json_t *frame_json(const struct engine_frame *frame)
 {
-    char words[4096];
+    char words[4096], builder[SETTING_VALUE_BYTES];
     json_t *object = json_object();
+    builder_write(&frame->accel.params, builder, sizeof builder);
     settings_write(&frame->settings, SETTINGS_STATE, " ", words, sizeof words);
     size_t pixels = (size_t)frame->width * frame->height;
     put_count(object, "number", frame->number);
@@ -89,7 +90,7 @@ static json_t *frame_json(const struct engine_frame *frame)
     }
     put_text(object, "drawn_words", words);
     put_text(object, "view", value_word(values_view, (int)frame->settings.paint));
-    put_text(object, "builder", frame->accel.builder);
+    put_text(object, "builder", builder);
     put_count(object, "made", frame->made);
     put_count(object, "kernels", frame->kernels);
     put_number(object, "render_ms", frame->stats.render_ms);

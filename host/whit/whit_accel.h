@@ -46,7 +46,7 @@ typedef struct whit_accel_info {
     uint64_t bytes;
     double build_ms, instance_build_ms, sah_cost; /* sah_cost: of the largest mesh */
     bool one_tree;                                /* in world space, see whit_instances */
-    char builder[48];                             /* of the mesh trees: "binned:7", "spatial+opt" */
+    whit_accel_params params;                     /* that it was made with */
 } whit_accel_info;
 void whit_accel_get_info(const whit_accel *accel, whit_accel_info *info);
 

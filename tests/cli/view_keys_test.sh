@@ -22,7 +22,7 @@ sign: press T | change.what = traversal distance -> sign
 basic: press T
 round: press T
 back: press Shift+T
-sweep: press T, press K
+sweep: press T, press K | frame.builder = sweep
 spatial: press K
 median: press K | change.what = tree builder spatial -> median
 binned: press K

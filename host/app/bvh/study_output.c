@@ -211,7 +211,7 @@ static json_t *row_document(const struct study *study, const struct study_row *r
     const whit_accel_info *info = &row->info;
     const whit_accel_report *report = &row->report;
     json_t *object = document_object();
-    document_text(object, "builder", info->builder);
+    document_text(object, "builder", row->name);
     document_put(object, "build_ms", build_document(study, row));
     document_count(object, "nodes", info->node_count);
     document_count(object, "leaves", info->leaf_count);
