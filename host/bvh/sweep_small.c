@@ -5,8 +5,9 @@
 
 struct small_range {
     struct build_box box;
-    uint32_t node, pair, first, count, depth; /* `first` counts from the range's first record */
-    uint32_t side;                            /* of `order` */
+    uint32_t node, pair, first, count,
+        depth;     /* `first` counts from the first record that small_grow was given */
+    uint32_t side; /* of `order` */
 };
 
 void small_put(struct small *small, uint32_t index, const struct build_record *record)

@@ -39,7 +39,7 @@ enum { MIPMAP_PIECES = 16 };
    kernels read them. */
 void mipmap_pieces(float pieces[2 * MIPMAP_PIECES]);
 /* The level whose texels are as large as `texels` of level 0: half their binary logarithm, within
-   4e-4; 0 up to one texel and for what is no number. mip_level of shaders/bind/shading.glsl. */
+   4e-4; 0 up to one texel and for NaN. mip_level of shaders/bind/shading.glsl. */
 double mipmap_level(const float pieces[2 * MIPMAP_PIECES], double texels);
 
 /* How many texels make up what a sample stands for. Between texels of side t colours go in a

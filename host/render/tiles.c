@@ -31,7 +31,7 @@ enum { TILE_FIRST_CPU = 128, TILE_FIRST = 192 };
 static const double SUBMISSION_LIMIT_MS = 100.0;
 
 /* Where pixels are not finite, of those drawn so far. Nothing where none is: a ray was lost whose
-   weight was no number. */
+   weight was NaN. */
 static void describe_non_finite(const struct target *target, char *text, size_t text_bytes)
 {
     uint32_t x, y, count, stride = views_stride(target->renderer);

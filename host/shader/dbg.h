@@ -15,7 +15,7 @@ enum {
 struct shader_dbg_site {
     char text[SHADER_DBG_BYTES]; /* x as it stands there, blanks as one; cut where it is long */
     uint32_t file, line;
-    size_t word, at; /* bytes of its name, and behind its bracket */
+    size_t word, at; /* offsets in the file: of the word dbg, and of what follows its bracket */
 };
 
 /* In the order of files, lines and what stands on them. */

@@ -5,8 +5,9 @@
 
 #include "shader/module.h"
 
-/* `user`: of kernel/hook.comp, with its remarks. Functions of hook/interface.glsl become those of
-   the same name in the kernel, and functions of the kernel that the user has as well become the
+/* `user`: the SPIR-V of kernel/hook.comp with its debug instructions, as functions are found by
+   name. `own`: how names of whit's own files begin. Functions of hook/interface.glsl become those
+   of the same name in the kernel, and functions of the kernel that the user has as well become the
    user's. What nothing calls is left out. Free ->words. No words: *why says why, or is NULL where
    there is no memory. */
 struct spv_words link_kernel(const uint32_t *kernel, size_t kernel_words, const uint32_t *user,

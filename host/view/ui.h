@@ -134,7 +134,8 @@ struct ui_plot {
 void ui_plot_points(const struct ui_plot *plot);
 /* Where a value is between two others that it is in, by its logarithm, 0..1. */
 float ui_log_place(double value, double low, double high);
-/* A picture as wide as the cell of a table, with lines below, by which ui_item finds it: "a, b". */
+/* A picture as wide as the cell of a table, with `lines` of text below it. ui_item finds it by
+   these, joined: "a, b". */
 void ui_picture(const uint32_t *rgba, uint32_t width, uint32_t height, const char *const *lines,
                 uint32_t line_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */

@@ -127,7 +127,7 @@ const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count);
 /* How hits compare with the exact ones, over all of a judge's rays. */
 typedef struct whit_judgement {
     whit_tally tally;
-    uint64_t non_finite; /* hits with a t, u or v that is no number */
+    uint64_t non_finite; /* hits with a t, u or v that is NaN or infinite */
     /* |dt| / t where the primitive is right, in floats between t and the exact one's rounding; not
        of hits nearer than 2^-20 of the origin's coordinates. */
     uint64_t ulp_rays;

@@ -24,7 +24,7 @@ struct Lit {
     vec3 absorption; // of the media around
     uint flags;     // LIT_*
     uint id, skip_instance, skip_primitive;
-    uint record; // of the primitive, where it is stored
+    uint record; // of the primitive; set for store_lit alone: fetch_lit gives skip_instance and skip_primitive
 };
 
 uvec4 fetch_lit_row(uint row)

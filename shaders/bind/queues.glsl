@@ -383,7 +383,8 @@ uint invocation_item(uint r, uint capacity)
     return listed_item(lane_place(r), SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, capacity);
 }
 
-// The invocation's item of the list of deferred rays, of kernels whose items are rays or that append nothing.
+// The invocation's item of the list of deferred items. `is_back` is right where items are ids of rays; kernels
+// with other items, such as shadow.comp, append nothing and do not read it.
 uint deferred_item(uint r)
 {
     uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;

@@ -86,7 +86,7 @@ vec4 fetch_hook_row(uint row)
     return uintBitsToFloat(fetch_hook_words(row));
 }
 
-// What surface() has changed of the hit of ray `id`. `lost`: it gave no number.
+// Stores what surface() made of the hit of ray `id`. `lost`: some of what it gave was NaN or infinite.
 void store_changed(uint id, Surface s, bool lost)
 {
     store_hook_row(id * HOOK_ROWS, vec4(s.ns, s.u));

@@ -51,7 +51,7 @@ void fetch_for_functions(uint id, bool alive)
 void call_functions(uint id, bool alive, uint row)
 {
     const bool stored = SPEC_HIT_PART == HIT_PART_CALL;
-    uint status = 0u;      // shade.comp reports it: what is not read here of the way through is not compiled
+    uint status = 0u;      // shade.comp fetches the same and reports it; here it is never read, and not compiled
     record_for(id, false); // values of dbg(x) in camera() are recorded by closest.comp
     Met met;
     if (stored) {

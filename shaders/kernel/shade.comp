@@ -33,7 +33,7 @@ struct Calls {
     uint cuts; // for --depth, and above bit 16 for --bailout
     float cut; // largest channels of what is not traced, summed up
     bool deep; // for --depth
-    bool lost; // a ray whose weight is no number is not traced, so the sum must tell
+    bool lost; // a ray whose weight is NaN is not traced, so the sum must tell
 };
 
 // Whether a ray of this weight is traced.
@@ -59,7 +59,7 @@ void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout
         calls.ends[which] = deep ? PROBE_DEPTH : PROBE_BAILOUT;
 }
 
-// hook/scatter.glsl, or the user's function. `lost`: it gave no number.
+// hook/scatter.glsl, or the user's function. `lost`: some of what it gave is NaN or infinite.
 void scatter_hook(Surface s, Optics o, inout Rays rays, inout bool lost)
 {
 #ifdef HOOKS

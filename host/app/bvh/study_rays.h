@@ -8,8 +8,9 @@
    and `height` are then multiples of. `rays->rays` is the caller's to free. */
 whit_result study_camera_rays(const whit_scene *scene, uint32_t width, uint32_t height, bool tiles,
                               struct study_rays *rays);
-/* From the hit of `ray`: off at random by the cosine, where `index` says at which; and to it from a
-   point light, with t 1 at the hit. They end clear of the surface. `size`: study_scene_size. */
+/* Rays from and to the hit of `ray`, whose intervals of t keep clear of the surface. The bounce ray
+   leaves it in a random direction, cosine-weighted, the same for the same `index`; the light ray
+   comes from a point light, with t 1 at the hit. `size`: study_scene_size. */
 whit_ray study_bounce_ray(const whit_ray *ray, const whit_hit *hit, uint64_t index, double size);
 whit_ray study_light_ray(const double light[3], const whit_ray *ray, const whit_hit *hit);
 /* Steele, Lea and Flood 2014: splitmix64 of `index`, in [0, 1). */

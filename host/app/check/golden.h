@@ -57,7 +57,7 @@ void golden_finish(struct golden *golden);
 
 /* NULL: there is none. */
 struct golden_case *golden_find(const struct golden *golden, const char *name);
-/* The key of a part that a case names; NULL: the golden has lost it. */
+/* The key of the part with this hash; NULL: the golden has no such part, though a case names it. */
 const char *golden_part_key(const struct golden *golden, uint32_t hash);
 
 /* Puts a copy of `item` in the place of the case of its name, or among the others. Its parts are to
