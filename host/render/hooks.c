@@ -89,7 +89,7 @@ void hooks_take(struct renderer *renderer)
         return;
     params->compile_async = false; /* there is no general kernel of it yet */
     if (shader_has(params->shader, WHIT_HOOK_SCATTER))
-        params->effects_added |= EFFECT(REFLECTION);
+        params->effects_added |= EFFECT(REFLECTION) & ~params->effects_removed;
     renderer->reaches_decide = deciding(renderer);
     renderer->effects_unasked = effects_not_asked_for(renderer) & ~params->effects_removed;
     params->effects_removed |= renderer->effects_unasked;

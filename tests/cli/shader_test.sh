@@ -282,6 +282,10 @@ if part 0 2; then
     draw "random" a.pfm cube --shader shaky.glsl
     draw "random again" b.pfm cube --shader shaky.glsl --tile-size 16 --packets on
     check "the same numbers in every run" cmp a.pfm b.pfm
+    # What is left out by name.
+    draw "mirrors" a.pfm default --shader scatter.glsl
+    draw "without them" b.pfm default --shader scatter.glsl --effects -reflection
+    check "they are left out" sh -c '! cmp -s a.pfm b.pfm'
 fi
 
 draw_usual
