@@ -59,6 +59,22 @@ void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout
         calls.ends[which] = deep ? PROBE_DEPTH : PROBE_BAILOUT;
 }
 
+// A scatter() of the user's sends rays of any kind, whatever the scene's materials do.
+bool scatters()
+{
+    return CALLS_RAYS && (SPEC_HOOKS & HOOK_SCATTER) != 0u;
+}
+
+bool refracts()
+{
+    return SPEC_REFRACTION != 0u || scatters();
+}
+
+bool passes_straight()
+{
+    return SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u || scatters();
+}
+
 // hook/scatter.glsl, or the user's function. `lost`: some of what it gave is NaN or infinite.
 void scatter_hook(Surface s, Optics o, inout Rays rays, inout bool lost)
 {
@@ -94,14 +110,14 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
     bool deep = SPEC_SECONDARY == 0u || ray_bounces(ray.steps) >= frame.depth;
     Rays rays = Rays(vec3(0.0), vec3(0.0), vec3(0.0), ray.dir, ray.dir);
     scatter_hook(s, o, rays, calls.lost);
-    if (SPEC_REFRACTION != 0u) {
+    if (refracts()) {
         vec3 dir = rays.refracted_dir;
         // A shading normal may bend the ray back to its own side: then straight on.
         if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
             dir = ray.dir;
         call(0u, dir, ray.weight * rays.refracted, deep, calls, status);
     }
-    if (SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u)
+    if (passes_straight())
         call(1u, ray.dir, ray.weight * rays.straight, deep, calls, status);
     if (SPEC_REFLECTION != 0u) {
         vec3 dir = rays.reflected_dir;
@@ -150,13 +166,13 @@ uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
     beyond.origin = offset_origin(met.c.p, met.c.error, -met.c.ng);
     beyond.skip_instance = met.c.instance;
     beyond.skip_record = met.c.record;
-    if ((SPEC_REFRACTION != 0u || SPEC_MEDIA != 0u) && calls.wanted[0]) {
+    if ((refracts() || SPEC_MEDIA != 0u) && calls.wanted[0]) {
         beyond.media = o.thin ? met.ray.media : met.c.after;
         beyond.kind = RAY_REFRACTED;
         send(met.slot, beyond, calls.dir[0], calls.weight[0], calls.steps, next);
         has |= SUM_REFRACTED;
     }
-    if ((SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u) && calls.wanted[1]) {
+    if (passes_straight() && calls.wanted[1]) {
         beyond.media = met.ray.media;
         beyond.kind = met.ray.kind;
         send(met.slot, beyond, calls.dir[1], calls.weight[1], calls.steps, next);

@@ -282,7 +282,16 @@ if part 0 2; then
     draw "random" a.pfm cube --shader shaky.glsl
     draw "random again" b.pfm cube --shader shaky.glsl --tile-size 16 --packets on
     check "the same numbers in every run" cmp a.pfm b.pfm
-    # What is left out by name.
+    # Rays that no material of the scene sends, and in one that has mirrors what is left out by name.
+    echo 'void scatter(Surface s, Optics o, inout Rays rays) { }' >sent.glsl
+    draw "no rays" none.pfm cube --shader sent.glsl
+    for kind in reflected refracted straight; do
+        echo "void scatter(Surface s, Optics o, inout Rays rays) { rays.$kind = vec3(0.7); }" >sent.glsl
+        draw "rays that are $kind" a.pfm cube --shader sent.glsl
+        check "$kind: they are seen" sh -c '! cmp -s a.pfm none.pfm'
+        draw "beside all effects" b.pfm cube --shader sent.glsl --effects all
+        check "$kind: the same bytes" cmp a.pfm b.pfm
+    done
     draw "mirrors" a.pfm default --shader scatter.glsl
     draw "without them" b.pfm default --shader scatter.glsl --effects -reflection
     check "they are left out" sh -c '! cmp -s a.pfm b.pfm'
