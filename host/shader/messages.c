@@ -7,6 +7,7 @@
 
 #include "shader/expand.h"
 #include "shader/scan.h"
+#include "whit/whit_shader.h"
 
 enum { NOBODY = 2, LINE_BYTES = 2048 };
 
@@ -202,6 +203,15 @@ static void plain_name(const char *mangled, char *out, size_t out_bytes)
     snprintf(out, out_bytes, "%.*s", (int)strcspn(mangled, "( "), mangled);
 }
 
+static bool is_hook(const char *name)
+{
+    for (int hook = 0; hook < WHIT_HOOKS; ++hook) {
+        if (strcmp(name, whit_hook_name((whit_hook)hook)) == 0)
+            return true;
+    }
+    return false;
+}
+
 /* What is told of functions when all text is read, with names on the next line. */
 static bool take_function(struct glslang_answer *answer, const struct glslang_question *question,
                           const char *line, const char *next)
@@ -221,6 +231,10 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
         snprintf(why, sizeof why,
                  "%s calls %s, which leads back to it: there is no recursion in GLSL", name,
                  called);
+    else if (is_hook(name))
+        snprintf(why, sizeof why,
+                 "%.16s has other parameters than whit's own: `whit shader new %.16s` prints it",
+                 name, name);
     else
         snprintf(why, sizeof why, "%s is called and has no body", name);
     uint32_t own = find_function(question, name, &file, &at) ? 0 : NOBODY;

@@ -231,6 +231,10 @@ vec3 miss(vec3 dir) {
     float x = 1.0 return vec3(x);
 }
 END
+broken "other parameters" 2 "shade has other parameters .* .whit shader new shade." <<'END'
+float f() { return 1.0; }
+vec3 shade(Surface s, vec3 to_eye) { return vec3(f()); }
+END
 echo 'float f() { return 1.0; }' >none.glsl
 expect 2 "no hook" shader none.glsl
 said "says which there are" "none of the functions camera, surface"
