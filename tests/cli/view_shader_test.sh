@@ -29,9 +29,11 @@ tint violet '1.0, 0.2, 1.0'
 tint red '1.0, 0.2, 0.2'
 tint white '1.0, 1.0, 1.0'
 check "five versions" test "$(printf '%s\n' "$green" "$blue" "$violet" "$red" "$white" | sort -u | wc -l)" -eq 5
-# Lines 2 to 5 have errors: the version that the file had is still shown. Of `here` there are two on a line.
-printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z = other;\n    c = far;\n    return c;\n}\n' \
+# Lines 2 to 5 have errors, and what it includes: the version that the file had is still shown. Of `here` there are two on
+# a line.
+printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z = other;\n    c = far;\n    return c;\n}\n#include "deep.glsl"\n' \
     >broken.new
+printf '\nfloat deep = nowhere;\n\n' >live/part/deep.glsl
 mkfifo "$OUT/pipe"
 NONE=
 if part 0 2; then
@@ -40,7 +42,7 @@ start: | toast has did you mean \`height\`? | shader.hash = $white | shader.file
 until shader.hash = $red
 red: | frame.ids as start | frame.pixels not as start | error =
 until error
-broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/part/tint.glsl:3: 'here' | errors_drawn = 4
+broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/part/tint.glsl:3: 'here' | errors_drawn = 5 | error has live/part/deep.glsl:2:14: 'nowhere'
     | error has live/part/tint.glsl:4:11: 'other' | error has live/part/tint.glsl:5:9: 'far' | frame.pixels as red | frame.ids as start | shader.hash = $red
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
 until error = $NONE
@@ -72,8 +74,8 @@ END
     done <"$OUT/pipe"
     wait $viewer
     check "exit code 0" test $? -eq 0
-    check "each error is said once" test "$(grep -cE 'error: live/part/tint.glsl:(2:11|3|4:11|5:9): ' "$OUT/stderr")" -eq 4
-    check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 4
+    check "each error is said once" test "$(grep -cE 'error: live/part/(tint.glsl:(2:11|3|4:11|5:9)|deep.glsl:2:14): ' "$OUT/stderr")" -eq 5
+    check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 5
     check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
     mv "$OUT/read" "$OUT/states"
     read_states
