@@ -252,6 +252,16 @@ if part 0 2; then
         expect 0 "$scene: the same as displayed" compare a.exr b.exr --metric over --tolerance 0
         test $scene != default || mv b.exr few.exr
     done
+    cat >called.glsl <<'END'
+void camera(vec2 at, inout vec3 origin, inout vec3 dir) { whit_camera(at, origin, dir); }
+void surface(inout Surface s) { whit_surface(s); }
+vec3 shade(Surface s, Optics o, vec3 to_eye) { return whit_shade(s, o, to_eye); }
+void scatter(Surface s, Optics o, inout Rays rays) { whit_scatter(s, o, rays); }
+vec3 miss(vec3 dir) { return whit_miss(dir); }
+vec3 post(ivec2 at, vec3 color) { return whit_post(at, color); }
+END
+    draw "the defaults, called by their names" c.exr default --shader called.glsl
+    expect 0 "the same as in a file" compare few.exr c.exr --metric over --tolerance 0
     draw "in other tiles" c.exr default --shader own.glsl --tile-size 16 --segments 1
     expect 0 "the same bits" compare few.exr c.exr --metric largest --tolerance 0
     if [ -n "$MORE" ]; then
