@@ -17,6 +17,8 @@ dom "$page"
 check "by its script: four crops" test "$(count '<div class="crop"')" -eq 4
 check "a point for each setting that the reference can judge" test "$(count '<circle ')" -ge 2
 check "a table of the usual settings and for each knob" test "$(count '<table>')" -ge 3
+check "of a knob with one setting one time and error, not from where to where" \
+    grep -q '<small>x [0-9.]* in time, FLIP [0-9.]*</small>' "$OUT/dom"
 check "the sentence" grep -q '<p id="sentence">[A-Z0-9].*\.</p>' "$OUT/dom"
 check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
 check "no request" test "$(wc -l <"$OUT/requests")" -eq 0
