@@ -92,14 +92,15 @@ bool shaders_set_before(const struct view *view, struct settings *settings)
     return view->shaders.was_saved;
 }
 
-void shaders_refuse(struct view *view)
+bool shaders_refuse(struct view *view)
 {
     struct shaders *shaders = &view->shaders;
     if (settings_same_shader(&view->settings, &view->fallback) || view->frame.number == 0)
-        return;
+        return false;
     snprintf(shaders->errors, sizeof shaders->errors, "%s", view_failure(view));
     shaders->errors_reload = view->settings.shader_reload;
     view_log_failure(view);
+    return true;
 }
 
 /* ---- What a reload changed ---- */

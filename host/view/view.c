@@ -160,11 +160,12 @@ bool view_go_back(struct view *view)
    go on with. */
 static whit_result take_failure(struct view *view)
 {
-    shaders_refuse(view);
+    bool told = shaders_refuse(view);
     if (scenes_refuse(view))
         return WHIT_OK;
     if (view_go_back(view)) {
-        view_say(view, "%s", view->status.error);
+        if (!told)
+            view_say(view, "%s", view->status.error);
         return WHIT_OK;
     }
     if (view->frame.number > 0)
