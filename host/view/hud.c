@@ -503,6 +503,7 @@ void hud_draw(struct view *view)
     }
     draw_question(view);
     pick_draw(view);
+    price_draw(view);
     draw_messages(view);
     if (is_low(view))
         panels_draw(view);
@@ -511,7 +512,6 @@ void hud_draw(struct view *view)
     compare_draw(view);
     draw_legends(view);
     draw_boxes(view);
-    price_draw(view);
     if (!is_low(view))
         panels_draw(view);
 }

@@ -119,3 +119,20 @@ renders() {
     eval "run $(value "$at" render | sed -e 's/^whit //' -e 's/ -o picture.png$//') \"\$@\" --quiet"
     check "at $at: the line renders (got $status)" test "$status" -eq 0
 }
+
+# apart NAME WIDTH HEIGHT COUNT: at least COUNT panels of the state, all in the window, no two of them
+# over each other.
+apart() {
+    awk -F '\t' -v name="$1" '$1 == name && sub(/^panels\./, "", $2) { print $2 " : " $3 }' \
+        "$OUT/values" >"$OUT/panels"
+    overlaps=$(awk -F ' : ' '
+        { split($2, r, " "); for (i = 0; i < NR - 1; ++i) if (r[1] < x1[i] && x0[i] < r[3] &&
+              r[2] < y1[i] && y0[i] < r[4]) print $1 " and " name[i]
+          name[NR - 1] = $1; x0[NR - 1] = r[1]; y0[NR - 1] = r[2]; x1[NR - 1] = r[3]
+          y1[NR - 1] = r[4] }' "$OUT/panels")
+    outside=$(awk -F ' : ' -v w="$2" -v h="$3" '{ split($2, r, " ")
+        if (r[1] < 0 || r[2] < 0 || r[3] > w || r[4] > h) print $1 }' "$OUT/panels")
+    check "at $1: $(grep -c . "$OUT/panels") panels, none over another ($overlaps)" test -z "$overlaps"
+    check "at $1: none outside ($outside)" test -z "$outside"
+    check "at $1: at least $4" test "$(grep -c . "$OUT/panels")" -ge "$4"
+}

@@ -22,6 +22,7 @@ took: choose 4 | words has --aa 4 | frame.samples = 4 | price_list.open = true
 moved: press 1 | frame.pixels not as priced
 stopped: press P x3 | price_list.open = false
 END
+    apart priced 160 200 1
     check "there are prices ($(value priced price_list.rows))" \
         test "$(value priced price_list.rows)" -ge 8
     # The strip says of each crop how long it takes and what FLIP sees, or that there is none.
