@@ -313,7 +313,10 @@ static void draw_effects(struct view *view)
         ui_text("--effects %s", effects);
         if (view->panels.measured)
             draw_dearest(view->panels.measured, view->frame.scene->scene);
-        ui_text_dim("Prices are of a small picture. A click switches, and measures the whole one.");
+        ui_text_dim("%s A click switches, and measures the whole picture.",
+                    settings_compiles(&view->frame.settings)
+                        ? "With --shader no price comes by itself."
+                        : "Prices are of a small picture.");
         int columns = say_reasons() ? 3 : 2;
         if (ui_table_begin("effects", columns)) {
             ui_table_header(titles, columns);
