@@ -12,7 +12,7 @@ static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
-static const float PANEL_WIDTH = 590.0f; /* at a scale of 1 */
+static const float PANEL_WIDTH = 612.0f; /* at a scale of 1 */
 enum { RAYS_SHOWN = 400, ROWS_AT_FIRST = 7, LINES_AT_FIRST = 9, VALUES_SHOWN = 3 };
 
 static void ask(struct view *view, double x, double y)
