@@ -27,6 +27,14 @@ static void add(struct text *text, const char *format, ...)
     text->bytes -= used;
 }
 
+/* "live.glsl, read again" after "live.glsl": only what is said of it is new. */
+static bool is_of_same_file(const char *a, const char *b)
+{
+    const char *end = strstr(b, ", ");
+    size_t length = end ? (size_t)(end - b) : 0;
+    return end && strncmp(a, b, length) == 0 && (a[length] == '\0' || a[length] == ',');
+}
+
 static void describe(const struct settings *a, const struct settings *b, char *out, size_t bytes)
 {
     struct choice_change changes[CHOICE_CHANGES_MAX];
@@ -34,9 +42,10 @@ static void describe(const struct settings *a, const struct settings *b, char *o
     struct text text = {out, bytes};
     out[0] = '\0';
     for (uint32_t i = 0; i < count; ++i) {
+        bool same = is_of_same_file(changes[i].a, changes[i].b);
         if (!changes[i].painted)
-            add(&text, "%s%s %s -> %s", out[0] ? ", " : "", changes[i].name, changes[i].a,
-                changes[i].b);
+            add(&text, "%s%s %s%s%s", out[0] ? ", " : "", changes[i].name, same ? "" : changes[i].a,
+                same ? "" : " -> ", changes[i].b);
     }
 }
 

@@ -42,7 +42,7 @@ start: | toast has did you mean \`height\`? | shader.hash = $white | shader.file
 until shader.hash = $red
 red: | frame.ids as start | frame.pixels not as start | error =
 until error
- told: | toast as red
+told: | toast as red | change.what = shader a.glsl, read again
 broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/part/tint.glsl:3: 'here' | errors_drawn = 5 | error has live/part/deep.glsl:2:14: 'nowhere'
     | error has live/part/tint.glsl:4:11: 'other' | error has live/part/tint.glsl:5:9: 'far' | frame.pixels as red | frame.ids as start | shader.hash = $red
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
