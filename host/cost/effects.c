@@ -9,7 +9,7 @@ static whit_result price_effect(const struct cost_effects *request, uint32_t ind
     whit_renderer_params params = *request->params;
     enum cost_clock clock = cost_clock_of(request->device, request->usual);
     whit_scene_get_effect(request->scene, index, &info);
-    effects_set(&params, index, info.called, !effect->compiled);
+    effects_set(&params, index, effect->compiled || info.called, !effect->compiled);
     whit_result result = whit_renderer_create(request->device, request->accel, &params, &other);
     if (result == WHIT_OK)
         result =

@@ -306,6 +306,8 @@ if part 0 2; then
         draw "beside all effects" b.pfm cube --shader sent.glsl --effects all
         check "$kind: the same bytes" cmp a.pfm b.pfm
     done
+    expect 0 "what they cost" scene "$CUBE" --effects --shader sent.glsl --size 32x24 --quiet
+    check "rays that a scatter() sends are something" grep -q '^  reflection  *yes .* [1-9][0-9]* pixels, by up to ' "$OUT/stdout"
     draw "mirrors" a.pfm default --shader scatter.glsl
     draw "without them" b.pfm default --shader scatter.glsl --effects -reflection
     check "they are left out" sh -c '! cmp -s a.pfm b.pfm'
