@@ -98,12 +98,14 @@ static void draw_row(struct view *view, const struct cost_report *report,
                       row->ms[report->clock]);
     if (row->broken)
         snprintf(text, sizeof text, "changed %llu pixels", (unsigned long long)row->pixels_changed);
+    else if (row->measured && !cost_is_judged(report, row))
+        snprintf(text, sizeof text, "FLIP unknown");
     else if (row->measured)
         snprintf(text, sizeof text, "FLIP %.3g", cost_error_of(&row->error, COST_FLIP));
     else
         snprintf(text, sizeof text, "%s", row->note);
     ui_cell(row->broken ? COLOR_ERROR : 0xFFFFFFFFu, text);
-    ui_cell(COLOR_GOOD, row->best ? "*" : "");
+    ui_cell(COLOR_GOOD, row->best && cost_is_judged(report, row) ? "*" : "");
 }
 
 static void widen(double range[2], double value)
@@ -121,14 +123,17 @@ static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_
     bool best = false;
     for (uint32_t i = first; i < end; ++i) {
         const struct cost_row *row = &report->rows[i];
-        if (row->measured) {
-            best = best || row->best;
+        if (row->measured)
             widen(ratio, of_usual(report, row));
+        if (row->measured && cost_is_judged(report, row)) {
+            best = best || row->best;
             widen(flip, cost_error_of(&row->error, COST_FLIP));
         }
     }
-    if (flip[0] > flip[1])
+    if (ratio[0] > ratio[1])
         snprintf(label, sizeof label, "%s: not measured##knob", knob);
+    else if (flip[0] > flip[1])
+        snprintf(label, sizeof label, "%s: x %.2f, FLIP unknown##knob", knob, ratio[0]);
     else if (end == first + 1)
         snprintf(label, sizeof label, "%s: x %.2f, FLIP %.3g##knob", knob, ratio[0], flip[0]);
     else
@@ -154,6 +159,14 @@ static void draw_table(struct view *view, const struct cost_report *report)
     }
 }
 
+static bool has_unknown(const struct cost_report *report)
+{
+    bool has = false;
+    for (uint32_t i = 0; i < report->row_count; ++i)
+        has = has || (report->rows[i].measured && !cost_is_judged(report, &report->rows[i]));
+    return has;
+}
+
 static void draw_report(struct view *view, const struct cost_report *report,
                         const struct price_strip *strip)
 {
@@ -163,6 +176,8 @@ static void draw_report(struct view *view, const struct cost_report *report,
     price_strip_draw(strip, report);
     ui_text_dim("By the clock; FLIP to the picture in double, %u samples.",
                 report->reference_samples);
+    if (has_unknown(report))
+        ui_text_dim("FLIP unknown: with no fewer samples than that nothing can be judged.");
     price_plot_draw(report, strip);
     draw_table(view, report);
     ui_text_dim("*: nothing is cheaper and as right.");
