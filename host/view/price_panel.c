@@ -9,6 +9,7 @@
 #include "view/view_private.h"
 
 static const double SPEND_S = 12.0;
+enum { RANGE = 32 };
 static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
                       COLOR_ERROR = 0xFF6070FFu;
 
@@ -114,12 +115,26 @@ static void widen(double range[2], double value)
     range[1] = fmax(range[1], value);
 }
 
+/* "0.46 to 1.16", or one number where both look the same; "unknown" where there is none. */
+static const char *write_range(const double range[2], char text[RANGE])
+{
+    char low[12], high[12];
+    snprintf(low, sizeof low, "%.3g", range[0]);
+    snprintf(high, sizeof high, "%.3g", range[1]);
+    bool one = strcmp(low, high) == 0;
+    if (range[0] > range[1])
+        snprintf(text, RANGE, "unknown");
+    else
+        snprintf(text, RANGE, "%s%s%s", low, one ? "" : " to ", one ? "" : high);
+    return text;
+}
+
 /* "depth: x 0.46 to 1.16, FLIP 0.0744 to 0.35": what the rows up to `end` span, all of one knob. */
 static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_t end)
 {
     const char *knob = report->rows[first].knob;
     double ratio[2] = {HUGE_VAL, 0.0}, flip[2] = {HUGE_VAL, 0.0};
-    char label[160];
+    char label[160], times[RANGE], flips[RANGE];
     bool best = false;
     for (uint32_t i = first; i < end; ++i) {
         const struct cost_row *row = &report->rows[i];
@@ -132,13 +147,9 @@ static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_
     }
     if (ratio[0] > ratio[1])
         snprintf(label, sizeof label, "%s: not measured##knob", knob);
-    else if (flip[0] > flip[1])
-        snprintf(label, sizeof label, "%s: x %.2f, FLIP unknown##knob", knob, ratio[0]);
-    else if (end == first + 1)
-        snprintf(label, sizeof label, "%s: x %.2f, FLIP %.3g##knob", knob, ratio[0], flip[0]);
     else
-        snprintf(label, sizeof label, "%s: x %.2f to %.2f, FLIP %.3g to %.3g##knob", knob, ratio[0],
-                 ratio[1], flip[0], flip[1]);
+        snprintf(label, sizeof label, "%s: x %s, FLIP %s##knob", knob, write_range(ratio, times),
+                 write_range(flip, flips));
     return ui_fold(label, best);
 }
 
@@ -177,7 +188,7 @@ static void draw_report(struct view *view, const struct cost_report *report,
     ui_text_dim("By the clock; FLIP to the picture in double, %u samples.",
                 report->reference_samples);
     if (has_unknown(report))
-        ui_text_dim("FLIP unknown: with no fewer samples than that nothing can be judged.");
+        ui_text_dim("FLIP unknown: not fewer samples than those.");
     price_plot_draw(report, strip);
     draw_table(view, report);
     ui_text_dim("*: nothing is cheaper and as right.");
