@@ -150,7 +150,7 @@ static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_
     else
         snprintf(label, sizeof label, "%s: x %s, FLIP %s##knob", knob, write_range(ratio, times),
                  write_range(flip, flips));
-    return ui_fold(label, best);
+    return ui_fold(label, best || first == 1); /* the first one shows that there are rows */
 }
 
 /* Folded by knob. */

@@ -31,7 +31,7 @@ END
     done
     check "the usual one with time and FLIP" grep -q "^priced	items.usual time, [0-9.]* m\?s, FLIP [0-9]" "$OUT/values"
     check "two ends that look the same are one number" \
-        sh -c '! grep -q "^priced	items[.].* \([0-9][0-9.e-]*\) to \1\b" "$1"' sh "$OUT/values"
+        sh -c '! grep -q "^priced	items[.].* \([0-9][0-9.e-]*\) to \1[^0-9.e]" "$1"' sh "$OUT/values"
     awk -F '\t' '$1 == "priced" && $2 ~ /^price_list.best[.]/ { print $3 } END { print "usual" }' "$OUT/values" |
         sort -u >"$OUT/names"
     check "the line joins some settings ($(tr '\n' ',' <"$OUT/names"))" test "$(wc -l <"$OUT/names")" -ge 2
