@@ -7,7 +7,7 @@
 
 #include "base/threads.h"
 #include "render/async.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "render/variants.h"
 
 struct async_job {

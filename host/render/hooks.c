@@ -8,7 +8,7 @@
 #include "device/buffer.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "scene/effects.h"
 #include "shader/sliders.h"
 

@@ -3,7 +3,7 @@
 #include "device/pipeline.h"
 #include "render/frame_uniform.h"
 #include "render/renderer.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "render/upload.h"
 #include "render/variants.h"
 
@@ -85,4 +85,55 @@ whit_result render_list_kernels(const whit_log *log, struct device *device, stru
         result = list_stages(&renderer, make, kernels, count);
     renderer_finish(&renderer);
     return result;
+}
+
+static uint32_t count_bits(uint64_t bits)
+{
+    uint32_t count = 0;
+    for (; bits; bits &= bits - 1)
+        ++count;
+    return count;
+}
+
+/* Counts all kernels of a set: the sum of their instructions, the bindings that any of them uses,
+   and the instructions of the largest one. False: a kernel cannot be specialized. */
+static bool count_set(const struct stages_job *job, struct pipeline_info *sum, uint32_t *largest)
+{
+    *sum = (struct pipeline_info){0};
+    *largest = 0;
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        struct pipeline_info info = {0};
+        if (job->wanted[i] && !pipeline_count(&job->stages[i].params, &info))
+            return false;
+        sum->instructions += info.instructions;
+        sum->bindings |= info.bindings;
+        *largest = info.instructions > *largest ? info.instructions : *largest;
+    }
+    return true;
+}
+
+whit_result renderer_get_kernel(const struct renderer *renderer, whit_kernel_info *info)
+{
+    const struct target *target = &renderer->picture;
+    struct gpu_spec own = variant_spec(target), general = variant_general_spec(target);
+    struct stages_job job;
+    struct pipeline_info own_info, general_info;
+    uint32_t largest, general_largest;
+    *info = (whit_kernel_info){0};
+    bool few = variant_few_kernels(target);
+    stages_job_init(target, &own, true, few, &job);
+    bool counted = count_set(&job, &own_info, &largest);
+    stages_job_init(target, &general, false, few, &job);
+    if (!counted || !count_set(&job, &general_info, &general_largest)) {
+        log_error(&renderer->log, "the kernels cannot be specialized");
+        return WHIT_ERROR_DEVICE;
+    }
+    *info = (whit_kernel_info){
+        .instructions = own_info.instructions,
+        .largest_instructions = largest,
+        .general_instructions = general_info.instructions,
+        .bindings = count_bits(own_info.bindings),
+        .general_bindings = count_bits(general_info.bindings),
+    };
+    return WHIT_OK;
 }

@@ -5,7 +5,7 @@
 #include "render/hooks.h"
 #include "render/material_shares.h"
 #include "render/queues.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 
 /* Pixels on a side of the largest tile, where no size is asked for. What the stages of a tile leave
    to each other should stay in a processor's caches. Another device has more threads than such a

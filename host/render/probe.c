@@ -11,6 +11,7 @@
 #include "render/hooks.h"
 #include "render/pixels.h"
 #include "render/renderer.h"
+#include "render/stage_set.h"
 #include "render/stages.h"
 #include "render/tiles.h"
 #include "render/views.h"

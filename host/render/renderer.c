@@ -12,7 +12,7 @@
 #include "render/frame_uniform.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "render/trace.h"
 #include "render/upload.h"
 #include "render/variants.h"

@@ -11,7 +11,7 @@
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "device/pipeline.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "render/translation.h"
 #include "render/variants.h"
 

@@ -2,7 +2,7 @@
 #ifndef RENDER_TRANSLATION_H
 #define RENDER_TRANSLATION_H
 
-#include "render/stages.h"
+#include "render/stage_set.h"
 
 /* Has the kernels of a set that was just made and bound translated to machine code by two cores,
    where the driver's cache has none of it and the driver would use one core. Errors are the

@@ -8,7 +8,7 @@
 #include "render/effects.h"
 #include "render/hooks.h"
 #include "render/lights.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "render/textures.h"
 #include "render/upload.h"
 #include "render/variants.h"

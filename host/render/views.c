@@ -11,7 +11,7 @@
 #include "render/pixels.h"
 #include "render/renderer.h"
 #include "render/retarget.h"
-#include "render/stages.h"
+#include "render/stage_set.h"
 #include "render/tiles.h"
 #include "render/upload.h"
 #include "render/variants.h"

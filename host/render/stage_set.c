@@ -1,0 +1,288 @@
+/* The kernels that draw a picture together: which stages have one, what of them another version of
+   a user's file leaves as it is, and what is made later than the rest. */
+#include <string.h>
+
+#include "base/threads.h"
+#include "device/device.h"
+#include "device/pipeline.h"
+#include "render/stage_set.h"
+#include "render/translation.h"
+
+/* Generations of the first tile, before it is known how many there are. */
+enum { EXPECTED_FIRST = 4 };
+
+/* One kernel for camera rays and later ones, where nothing but that tells the two apart. */
+static void share_kernel(struct stages_job *job, enum stage first, enum stage later)
+{
+    struct gpu_spec spec = job->stages[first].spec;
+    if (!job->wanted[later])
+        return;
+    spec.SPEC_GENERATIONS = job->stages[later].spec.SPEC_GENERATIONS;
+    if (memcmp(&spec, &job->stages[later].spec, sizeof spec) != 0)
+        return;
+    job->stages[later].spec.SPEC_GENERATIONS = 3;
+    job->wanted[first] = false;
+    job->of[first] = later;
+}
+
+void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own, bool few,
+                     struct stages_job *job)
+{
+    const struct renderer *renderer = target->renderer;
+    const whit_shader *shader = renderer->params.shader;
+    *job = (struct stages_job){.spec = *spec};
+    /* A shading function of the user's has asked them itself, as all but catchers do. */
+    job->asks = !shader_has(shader, WHIT_HOOK_SHADE) || spec->SPEC_CATCHERS;
+    job->classes = own ? variant_classes(target) : 1;
+    bool splits = variant_splits_hits(target);
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        job->of[i] = (enum stage)i;
+        bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
+        bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
+        bool part = i == STAGE_HIT_FETCH || i == STAGE_HIT_CALL;
+        job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
+                         (!part || splits) && (i != STAGE_HIT || !splits) &&
+                         (i != STAGE_MISS || shader_has(shader, WHIT_HOOK_MISS)) &&
+                         (i != STAGE_SHAPE || shader_has(shader, WHIT_HOOK_INTERSECT)) &&
+                         (i != STAGE_HIT || shader_has(shader, WHIT_HOOK_SURFACE) ||
+                          shader_has(shader, WHIT_HOOK_SHADE)) &&
+                         (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
+                         (i != STAGE_POST || shader_has(shader, WHIT_HOOK_POST)) &&
+                         (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
+        if (job->wanted[i])
+            variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
+    }
+    if (!few)
+        return;
+    share_kernel(job, STAGE_CAMERA, STAGE_CLOSEST);
+    share_kernel(job, STAGE_SHADOW, STAGE_SHADOW_LATER);
+    share_kernel(job, STAGE_RESOLVE, STAGE_RESOLVE_LATER);
+}
+
+/* A set in the making: stages are made at once, as far as there are threads. */
+struct set_making {
+    struct device *device;
+    const struct stages_job *job;
+    struct stage_set *set;
+    whit_result results[STAGE_COUNT];
+};
+
+static void make_stage(void *context, uint32_t i)
+{
+    struct set_making *making = context;
+    if (making->job->wanted[i])
+        making->results[i] =
+            variant_job_run(making->device, &making->job->stages[i], &making->set->passes[i]);
+}
+
+whit_result stages_job_run(struct device *device, const struct stages_job *job,
+                           struct stage_set *out)
+{
+    struct set_making making = {.device = device, .job = job, .set = out};
+    whit_result result = WHIT_OK;
+    *out = (struct stage_set){.classes = job->classes, .asks = job->asks};
+    memcpy(out->of, job->of, sizeof out->of);
+    for (uint32_t i = 0; i < job->classes; ++i)
+        out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
+                        job->spec.SPEC_PROBE; /* there sums are recorded */
+    threads_for(device_compile_threads(device), STAGE_COUNT, make_stage, &making);
+    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i)
+        result = making.results[i];
+    if (result != WHIT_OK)
+        stage_set_finish(out);
+    return result;
+}
+
+void stage_set_finish(struct stage_set *set)
+{
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        pass_finish(&set->passes[i]);
+    *set = (struct stage_set){0};
+}
+
+bool stage_set_is_made(const struct stage_set *set)
+{
+    return set->passes[set->of[STAGE_CAMERA]].pipeline != NULL;
+}
+
+bool stages_are_made(const struct target *target)
+{
+    return stage_set_is_made(&target->stages.set);
+}
+
+whit_result stages_bind(struct target *target)
+{
+    struct stages *stages = &target->stages;
+    whit_result result = WHIT_OK;
+    if (stages->set.passes[stages->set.of[STAGE_CAMERA]].set)
+        return WHIT_OK;
+    for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i) {
+        if (stages->set.passes[i].pipeline)
+            result = variant_bind_stage(target, &stages->set.passes[i]);
+    }
+    stages->expected = !target->renderer->has_secondary    ? 1
+                       : stages->expected > EXPECTED_FIRST ? stages->expected
+                                                           : EXPECTED_FIRST;
+    if (result != WHIT_OK)
+        stages_unbind(stages);
+    return result;
+}
+
+static void count_instructions(struct target *target)
+{
+    target->stats.kernel_instructions = 0;
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        const struct pass *pass = &target->stages.set.passes[i];
+        struct pipeline_info info = {0};
+        bool idle = i == STAGE_HIT_FETCH && target->stages.set.passes[STAGE_HIT].pipeline;
+        if (pass->pipeline && !idle)
+            pipeline_get_info(pass->pipeline, &info);
+        target->stats.kernel_instructions += info.instructions;
+    }
+}
+
+whit_result stages_take(struct target *target, struct stage_set *set)
+{
+    stage_set_finish(&target->stages.set);
+    target->stages.set = *set;
+    *set = (struct stage_set){0};
+    count_instructions(target);
+    return stages_bind(target);
+}
+
+/* Whether two stages have different kernels. `closely`: kernels whose words differ are specialized
+   and compared again. Where rays may wait for a second kernel words decide, for that one is not
+   compared. */
+static bool is_other(const struct variant_job *a, const struct variant_job *b, bool closely)
+{
+    struct gpu_spec second;
+    bool same_words = a->params.spirv_bytes == b->params.spirv_bytes &&
+                      memcmp(a->params.spirv, b->params.spirv, a->params.spirv_bytes) == 0;
+    return memcmp(&a->spec, &b->spec, sizeof a->spec) != 0 ||
+           (!same_words && !(closely && !variant_defers(&b->params, &second) &&
+                             pipeline_is_same(&a->params, &b->params)));
+}
+
+/* Whether both have a kernel of the stage. */
+static bool both_have(const struct stages_job *a, const struct stages_job *b, enum stage stage)
+{
+    return a->wanted[stage] && b->wanted[stage];
+}
+
+/* Leaves in `job` the kernels that are others than those of `was`. */
+static void drop_same(const struct stages_job *was, bool same, struct stages_job *job)
+{
+    /* Ids in other kernels move where a function that has one of its own is another. */
+    static const enum stage own[] = {STAGE_SHAPE, STAGE_HIT,  STAGE_HIT_CALL,
+                                     STAGE_AOV,   STAGE_MISS, STAGE_POST};
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        bool closely = false;
+        for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
+            closely = closely || ((int)own[k] != i && both_have(was, job, own[k]));
+        job->wanted[i] = job->wanted[i] && (!same || !was->wanted[i] ||
+                                            is_other(&was->stages[i], &job->stages[i], closely));
+    }
+}
+
+/* Where the kernel of shade() is another and `splits`, only its parts are made. */
+static void put_off_hits(bool splits, struct stage_set *set, struct stages_job *job)
+{
+    if (!splits || job->wanted[STAGE_HIT_FETCH])
+        pass_finish(&set->passes[STAGE_HIT_FETCH]);
+    if (!splits || job->wanted[STAGE_HIT_CALL])
+        pass_finish(&set->passes[STAGE_HIT_CALL]);
+    if (splits && job->wanted[STAGE_HIT_CALL])
+        pass_finish(&set->passes[STAGE_HIT]);
+    bool needed = splits && !set->passes[STAGE_HIT].pipeline;
+    job->wanted[STAGE_HIT_FETCH] = needed && !set->passes[STAGE_HIT_FETCH].pipeline;
+    job->wanted[STAGE_HIT_CALL] = needed && !set->passes[STAGE_HIT_CALL].pipeline;
+}
+
+whit_result stages_replace(struct target *target, const whit_shader *before)
+{
+    struct renderer *renderer = target->renderer;
+    struct stage_set *set = &target->stages.set, made;
+    const whit_shader *shader = renderer->params.shader;
+    struct stages_job was, job;
+    struct gpu_spec spec;
+    bool few = variant_few_kernels(target);
+    renderer->kept.known &= stages_are_made(target);
+    if (!stages_are_made(target))
+        return WHIT_OK;
+    renderer->params.shader = before;
+    spec = variant_spec(target);
+    stages_job_init(target, &spec, true, few, &was);
+    renderer->params.shader = shader;
+    spec = variant_spec(target);
+    stages_job_init(target, &spec, true, few, &job);
+    bool same = was.classes == job.classes && memcmp(was.of, job.of, sizeof job.of) == 0;
+    drop_same(&was, same, &job);
+    put_off_hits(variant_splits_hits(target), set, &job);
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        renderer->kept.known &= !job.wanted[i] || i == STAGE_AOV || i == STAGE_POST;
+    renderer->kept.aovs &= !job.wanted[STAGE_AOV];
+    whit_result result = stages_job_run(renderer->device, &job, &made);
+    if (result != WHIT_OK || !same)
+        stage_set_finish(set);
+    if (result != WHIT_OK)
+        return result;
+    stages_unbind(&target->stages);
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        if (job.wanted[i] || !same) {
+            pass_finish(&set->passes[i]);
+            set->passes[i] = made.passes[i];
+        }
+    }
+    set->classes = made.classes;
+    memcpy(set->of, made.of, sizeof set->of);
+    memcpy(set->calls, made.calls, sizeof set->calls);
+    count_instructions(target);
+    return WHIT_OK;
+}
+
+/* Makes the kernel of shade() whose parts have stood in for it. */
+static whit_result make_hits(struct target *target)
+{
+    struct stage_set *set = &target->stages.set, made;
+    struct gpu_spec spec = variant_spec(target);
+    struct stages_job job;
+    stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        job.wanted[i] = i == STAGE_HIT;
+    whit_result result = stages_job_run(target->renderer->device, &job, &made);
+    if (result != WHIT_OK)
+        return result;
+    stages_unbind(&target->stages);
+    set->passes[STAGE_HIT] = made.passes[STAGE_HIT];
+    pass_finish(&set->passes[STAGE_HIT_CALL]);
+    count_instructions(target);
+    return WHIT_OK;
+}
+
+whit_result stages_complete(struct target *target)
+{
+    bool parts = target->stages.set.passes[STAGE_HIT_CALL].pipeline;
+    whit_result result = parts && !variant_splits_hits(target) ? make_hits(target) : WHIT_OK;
+    return result == WHIT_OK ? stages_bind(target) : result;
+}
+
+whit_result stages_compile(struct target *target)
+{
+    struct stages_job job;
+    struct stage_set set;
+    struct gpu_spec spec = variant_spec(target);
+    if (stages_are_made(target))
+        return stages_bind(target);
+    stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
+    whit_result result = stages_job_run(target->renderer->device, &job, &set);
+    if (result == WHIT_OK)
+        result = stages_take(target, &set);
+    return result == WHIT_OK ? translation_share(target, &job) : result;
+}
+
+void stages_unbind(struct stages *stages)
+{
+    for (int i = 0; i < STAGE_COUNT; ++i)
+        pass_unbind(&stages->set.passes[i]);
+    stages->blocks_max = 0;
+}
