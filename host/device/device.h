@@ -18,7 +18,7 @@ struct pipeline;
 struct binding_set;
 struct commands;
 
-/* What only makers of kernels and buffers ask of a device. */
+/* Limits of a device that only makers of kernels and buffers need; the others are public. */
 struct device_limits {
     uint64_t max_texel_elements; /* of one texel buffer view */
     uint64_t max_allocation_bytes;

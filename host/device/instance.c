@@ -314,7 +314,7 @@ static bool lavapipe_ends_loops(const char *driver_info)
     return !mesa || strtoul(mesa + 5, NULL, 10) < 25;
 }
 
-/* What only a 1.2 device can be asked; `limits` may be NULL. */
+/* Fills in what Vulkan tells of devices of version 1.2 and later; `limits` may be NULL. */
 static void fill_details(VkPhysicalDevice physical, whit_device_info *info,
                          struct device_limits *limits)
 {

@@ -184,7 +184,9 @@ static void drop_same(const struct stages_job *was, bool same, struct stages_job
     }
 }
 
-/* Where the kernel of shade() is another and `splits`, only its parts are made. */
+/* Where a new version of shade() needs another kernel and `splits`, `job` gets the kernels of its
+   two parts, and the whole one waits for stages_complete. Takes out of `set` what is of an old
+   version. */
 static void put_off_hits(bool splits, struct stage_set *set, struct stages_job *job)
 {
     if (!splits || job->wanted[STAGE_HIT_FETCH])

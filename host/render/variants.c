@@ -467,7 +467,8 @@ bool variant_can_split_hits(const struct target *target)
     const whit_renderer_params *params = &target->renderer->params;
     const bool *called = target->renderer->effects.called;
     const whit_shader *shader = params->shader;
-    /* What stands in rows is of hits that no function has changed, and of no ray that one made. */
+    /* The rows are filled by whit's own kernel, which cannot call a surface() or camera() of the
+       user's. */
     return !target->probed && params->step && shader_has(shader, WHIT_HOOK_SHADE) &&
            !shader_has(shader, WHIT_HOOK_SURFACE) && !shader_has(shader, WHIT_HOOK_CAMERA) &&
            !shader->stages && (called[SCENE_EFFECT_TEXTURES] || called[SCENE_EFFECT_NORMAL_MAPS]);

@@ -51,7 +51,8 @@ void shaders_watch(struct view *view);
 void shaders_take(struct view *view);
 /* Makes settings those of the version before the last save. False: there is none. */
 bool shaders_set_before(const struct view *view, struct settings *settings);
-/* What was asked for failed: where it is the shader, keeps and shows why. False: it is not. */
+/* Settings that were asked for have failed. Where their shader is the reason, it keeps and shows
+   the errors of the compiler. False: the reason is another. */
 bool shaders_refuse(struct view *view);
 /* The window was drawn just now, with `view->frame` and what went wrong. */
 void shaders_shown(struct view *view);

@@ -34,7 +34,7 @@ bool skies_drop(struct view *view, const char *path)
     return true;
 }
 
-/* Where it is new it takes the place of the one that came first. */
+/* Adds a file to the list where it is not in it; a full list loses its oldest. */
 static void note(struct skies *skies, const char *path)
 {
     for (uint32_t i = 0; i < skies->count; ++i)

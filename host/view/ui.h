@@ -132,7 +132,8 @@ struct ui_plot {
     struct ui_tick ticks[2][UI_TICKS_MAX];
 };
 void ui_plot_points(const struct ui_plot *plot);
-/* Where a value is between two others that it is in, by its logarithm, 0..1. */
+/* The place of a value on a logarithmic axis from `low` to `high`, 0..1; 0.5 where both are equal.
+ */
 float ui_log_place(double value, double low, double high);
 /* A picture as wide as the cell of a table, with `lines` of text below it. ui_item finds it by
    these, joined: "a, b". */

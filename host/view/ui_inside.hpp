@@ -1,4 +1,4 @@
-// What the parts of the shim over Dear ImGui share.
+// Functions that ui.cpp, ui_widgets.cpp and ui_plots.cpp share.
 #ifndef VIEW_UI_INSIDE_HPP
 #define VIEW_UI_INSIDE_HPP
 
