@@ -1,5 +1,5 @@
-/* Adaptive anti-aliasing: which pixels get more samples. That follows from the picture so far as a
-   whole, so that bands, tiles and devices cannot change it. */
+/* Adaptive anti-aliasing: which pixels get more samples. The whole picture so far decides that, so
+   that bands, tiles and devices cannot change it. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,8 +23,8 @@ static bool differ(const float *a, const float *b, float contrast)
     return false;
 }
 
-/* Both pixels of every pair of neighbours that differ. Each pair is looked at once, from the pixel
-   that is left of or above the other. */
+/* Marks both pixels of every pair of neighbours that differ. Each pair is compared once, from the
+   pixel that is left of or above the other. */
 static void mark_around(const struct image *color, uint32_t x, uint32_t y, float contrast,
                         uint8_t level, uint8_t *levels)
 {

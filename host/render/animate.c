@@ -1,4 +1,4 @@
-/* Another time of the animation on a renderer that is there already. */
+/* Moves an existing renderer to another time of the animation. */
 #include "accel/pose.h"
 #include "base/clock.h"
 #include "render/async.h"
@@ -7,8 +7,8 @@
 #include "render/variants.h"
 #include "scene/pose.h"
 
-/* Rebuilt trees are not equally deep at all times: a stack that has to grow grows by more than it
-   has to, for a pipeline takes longer to compile than many a picture takes to render. */
+/* Rebuilt trees are not equally deep at all times. A stack that has to grow gets these spare
+   entries, since a new pipeline takes longer to compile than many a picture to render. */
 enum { STACK_SPARE = 4 };
 
 static whit_result take_pose(struct renderer *renderer, double time_s)
@@ -34,8 +34,7 @@ static whit_result upload_all(struct renderer *renderer)
     return result == WHIT_OK ? frame_upload(renderer) : result;
 }
 
-/* Drops the passes whose compiled constants no longer fit; new ones are made when they are called
-   for. */
+/* Drops the passes whose specialization constants no longer fit. New ones are made when needed. */
 static void passes_check(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
@@ -57,7 +56,7 @@ whit_result renderer_set_time(struct renderer *renderer, double time_s)
         uint32_t stack_size = renderer->packet_stack_size;
         passes_check(renderer);
         result = upload_all(renderer);
-        if (renderer->packet_stack_size != stack_size) { /* known when nodes of eight are made */
+        if (renderer->packet_stack_size != stack_size) { /* known once bvh8 nodes are made */
             async_finish(renderer);
             passes_finish(renderer);
         }

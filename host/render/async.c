@@ -1,6 +1,7 @@
 /* General kernels draw while a thread compiles those for the scene. The thread touches nothing of
-   the renderer: it takes a job that stands alone and leaves pipelines in it; all else happens in
-   calls of the renderer. Both sets of kernels give the same picture, byte for byte. */
+   the renderer: it works on a job with copies of all it needs, and leaves the pipelines there. All
+   else happens in calls of the renderer. Both sets of kernels give the same picture, byte for
+   byte. */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,7 @@ struct async_job {
     struct device *device;
     struct stages_job stages;
     struct thread *thread;
-    struct stage_set set; /* not bound; of the thread until it is done; empty when it failed */
+    struct stage_set set; /* not bound; owned by the thread until `done`; empty after an error */
     atomic_bool done;
 };
 
@@ -35,7 +36,7 @@ static void job_destroy(struct async_job *job)
     free(job);
 }
 
-/* NULL when memory or threads run out: then the general kernels stay until the next picture. */
+/* NULL when memory or threads run out: the general kernels then stay until the next picture. */
 static struct async_job *job_start(const struct renderer *renderer, const struct gpu_spec *spec)
 {
     struct async_job *job = calloc(1, sizeof *job);
@@ -62,7 +63,7 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
     return result;
 }
 
-/* The job is done: its kernels in place of the general ones. */
+/* Puts the kernels of the finished job in place of the general ones. */
 static whit_result take_over(struct renderer *renderer)
 {
     struct async_job *job = renderer->async.job;
@@ -84,7 +85,7 @@ whit_result async_prepare(struct renderer *renderer)
                     general = variant_async_spec(&renderer->picture);
     if (stages_are_made(&renderer->picture) && !async->general)
         return stages_bind(&renderer->picture);
-    /* Another time may ask for other constants than those that are being compiled. */
+    /* Another time may need other constants than those that are being compiled. */
     if (async->job && memcmp(&async->job->stages.spec, &own, sizeof own) != 0) {
         job_destroy(async->job);
         async->job = NULL;

@@ -1,14 +1,14 @@
-/* Pictures by a general kernel while the specialised one is compiled. */
+/* Draws with general kernels while a thread compiles the specialised ones. */
 #ifndef RENDER_ASYNC_H
 #define RENDER_ASYNC_H
 
 #include "render/renderer.h"
 
-/* renderer->picture.stages are the best kernels that there are without waiting for them:
-   at first the general one, while a thread compiles the specialised one, and from some later call
-   on that. The thread logs when it fails; the general kernel then stays. */
+/* Makes renderer->picture.stages the best kernels that are ready: at first the general ones, while
+   a thread compiles the specialised ones, and in some later call those. The thread logs when it
+   fails; the general kernels then stay. */
 WHIT_CHECK whit_result async_prepare(struct renderer *renderer);
-/* Waits for the thread. */
+/* Waits for the thread, and drops its kernels. */
 void async_finish(struct renderer *renderer);
 
 #endif

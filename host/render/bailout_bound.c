@@ -1,6 +1,6 @@
-/* By how much a picture can differ from one for which no ray was too weak to be traced: the weights
-   that were cut from a pixel, times the most radiance that a ray can bring, and what shadow rays
-   would have added. */
+/* By how much a picture can differ from one that traces every ray, however small its weight: the
+   weights that were cut from a pixel, times the largest radiance that a ray can bring, plus what
+   untraced shadow rays would have added. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -14,8 +14,9 @@ static double largest(const float rgb[3])
     return fmax(fmax((double)rgb[0], (double)rgb[1]), fmax((double)rgb[2], 0.0));
 }
 
-/* What lights can bring to a point at most; < 0: no bound is known. `highlights`: of some material.
-   Flat emitters fill no more than all that a surface sees, which bounds its diffuse light alone. */
+/* The most light that can arrive at a point; < 0: no bound is known. `highlights`: some material
+   has them. A flat emitter fills at most the hemisphere over a surface, which bounds only diffuse
+   light. */
 static double arriving_max(const struct renderer *renderer, bool highlights)
 {
     double sum = 0.0;
@@ -26,7 +27,7 @@ static double arriving_max(const struct renderer *renderer, bool highlights)
             return -1.0;
         if (light->falloff && light->kind != WHIT_LIGHT_DIRECTIONAL &&
             !scene_light_is_flat(light)) {
-            /* Hits are off by roundings. */
+            /* A hit may lie closer to the light than the exact surface, by rounding. */
             double away = 0.999 * accel_distance(renderer->accel, &renderer->pose, light->position);
             if (!(away > 0.0))
                 return -1.0;
@@ -37,7 +38,8 @@ static double arriving_max(const struct renderer *renderer, bool highlights)
     return sum;
 }
 
-/* A material's light of its own, and the weights of all rays that it calls for, at most. */
+/* Upper bounds for a material: the light that it sends itself, and the sum of the weights of all
+   rays that it sends on. */
 struct max {
     double own, weights;
 };
@@ -47,8 +49,8 @@ static bool uses(const struct scene_material *m, enum scene_slot slot)
     return m->textures[slot].texture != SCENE_NONE;
 }
 
-/* GGX times visibility and the light's cosine: 1 / alpha^2 where the half vector is the normal,
-   times 0.5 / alpha, as the spread is no less than alpha times the cosine (lib/optics.glsl). */
+/* GGX times visibility and the light's cosine is at most 1 / alpha^2 (half vector along the normal)
+   times 0.5 / alpha (the spread is no less than alpha times the cosine; lib/optics.glsl). */
 static double ggx_max(const struct scene_material *m)
 {
     double alpha =
@@ -84,7 +86,7 @@ static struct max material_max(const struct renderer *renderer, const struct sce
     double base = largest(m->diffuse), ambient = largest(m->ambient);
     double highlight = largest(m->specular);
     if (m->model == WHIT_MODEL_METAL_ROUGH) {
-        highlight = fmax(1.0, base); /* of F0 */
+        highlight = fmax(1.0, base); /* bound of F0 */
         ambient = base + highlight;
         highlight *= ggx_max(m);
     }
@@ -122,11 +124,10 @@ bool *bailout_bound_materials(const struct scene *scene)
     return worn;
 }
 
-/* The most that a ray of weight 1 can bring: `radiance` is the sky's, or a surface's own light and
-   what its rays bring. `unshadowed` is the light that is lost at all hits of its tree because
-   shadow rays are not traced; a hit loses at most BAILOUT_SHADOW_SHARE of its ray's weight, as rays
-   below the bailout are not traced themselves. Before its next bounce a ray may pass many blended
-   surfaces. */
+/* Upper bounds for a ray of weight 1. `radiance`: the sky's, or a surface's own light plus what its
+   rays bring. `unshadowed`: light lost at all hits of its ray tree because shadow rays are not
+   traced; a hit loses at most BAILOUT_SHADOW_SHARE of its ray's weight, as rays below the bailout
+   are not traced themselves. A ray may pass many blended surfaces before its next bounce. */
 struct brought {
     double radiance, unshadowed;
 };

@@ -1,5 +1,5 @@
-/* What traversals cost: the kernel's records of a chunk, summed up, and kept where they are of a
-   pixel's first sample. */
+/* What traversals cost: the kernel's counts of each chunk, summed up; those of a pixel's first
+   sample are kept as images. */
 #include <string.h>
 
 #include "device/buffer.h"
@@ -25,7 +25,7 @@ void costs_clear(struct renderer *renderer)
         image_finish(&renderer->costs[kind]);
 }
 
-/* Kinds of rays that a picture does without get no memory. */
+/* A kind of rays that does not occur in the picture gets no image. */
 static whit_result keep(struct renderer *renderer, uint32_t kind, uint32_t x, uint32_t y,
                         const struct gpu_cost *cost)
 {

@@ -1,4 +1,4 @@
-/* What rays cost. All of it does nothing without params.count. */
+/* What rays cost. These functions do nothing without params.count. */
 #ifndef RENDER_COSTS_H
 #define RENDER_COSTS_H
 
@@ -6,8 +6,8 @@
 
 WHIT_CHECK whit_result costs_create(struct target *target);
 void costs_clear(struct renderer *renderer);
-/* Takes over what the kernels counted for one sample of `chunk`, which was just drawn: the next
-   chunk counts in the same slots. */
+/* Adds up what the kernels counted for one sample of `chunk`, which was just drawn. Call it before
+   the next chunk, which counts in the same slots. */
 WHIT_CHECK whit_result costs_add(struct target *target, const struct gpu_chunk *chunk);
 
 #endif

@@ -1,10 +1,10 @@
-/* Effects and the specialization constants that they switch: the one list. */
+/* The one list of effects and the specialization constants that they switch. */
 #include <stddef.h>
 
 #include "render/effects.h"
 #include "scene/effects.h"
 
-/* LIGHT_* of emitters that have an area: every kind but points, suns and spots. */
+/* LIGHT_* bits of area lights: every kind but points, directional lights and spots. */
 #define AREA_LIGHT_BITS (255u & ~(1u << LIGHT_POINT | 1u << LIGHT_DIRECTIONAL | 1u << LIGHT_SPOT))
 
 #define SWITCH(effect, constant, bits)                                                             \
@@ -12,7 +12,7 @@
         SCENE_EFFECT_##effect, (uint32_t)offsetof(struct gpu_spec, constant) / 4u, bits            \
     }
 
-/* A constant is the sum of the bits of those of its effects that are on. */
+/* The value of a constant is the sum of the bits of its effects that are on. */
 static const struct effect_switch {
     enum scene_effect effect;
     uint32_t constant; /* its id */
@@ -45,7 +45,8 @@ static const struct effect_switch {
 };
 enum { SWITCH_COUNT = sizeof switches / sizeof switches[0] };
 
-/* What does nothing without something else. Every effect comes after what it needs. */
+/* Effects that do nothing without another one. Rows are sorted: an effect comes after what it
+   needs. */
 static const struct effect_need {
     enum scene_effect effect, needs;
 } needs[] = {

@@ -1,4 +1,4 @@
-/* The record that every ray of a picture reads: camera, sky, where trees begin, limits. */
+/* The record that every ray of a picture reads: camera, sky, roots of the trees, limits. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,7 @@ whit_result frame_fill(struct renderer *renderer)
     if (result != WHIT_OK)
         return result;
     frame->texel_area = (float)(camera_pixel_area(frame, kind) / MIPMAP_PIXEL_TEXELS);
-    /* Only the kind of the camera in use is called for, whatever others the scene has. */
+    /* The scene may have other cameras: only the kind of the one in use counts. */
     renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = kind == CAMERA_ORTHOGRAPHIC;
     renderer->effects.called[SCENE_EFFECT_LENS] = kind == CAMERA_LENS;
     renderer->effects.called[SCENE_EFFECT_PANORAMA] = kind == CAMERA_PANORAMA;
@@ -56,7 +56,7 @@ whit_result frame_fill(struct renderer *renderer)
     return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);
 }
 
-/* As struct FrameBuffer of shaders/bind/shading.glsl. */
+/* Laid out as struct FrameBuffer of shaders/bind/shading.glsl. */
 struct frame_words {
     struct gpu_frame frame;
     float sliders[SLIDERS_MAX];

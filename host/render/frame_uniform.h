@@ -1,16 +1,17 @@
-/* The frame record: camera, sky, media around the eye, and what else a whole picture shares. */
+/* The frame record (struct gpu_frame): camera, sky, media around the eye, and whatever else a whole
+   picture shares. */
 #ifndef RENDER_FRAME_UNIFORM_H
 #define RENDER_FRAME_UNIFORM_H
 
 #include "render/renderer.h"
 
-/* All of renderer->frame but the rows. */
+/* Fills in renderer->frame, but for the row numbers, which upload.c sets. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
-/* The buffer that holds it, and the values of sliders behind it. */
+/* Creates the buffer of the frame record and the slider values behind it. */
 WHIT_CHECK whit_result frame_create(struct renderer *renderer);
-/* Writes both to the device, as they are. */
+/* Writes record and slider values to the device, as they are. */
 WHIT_CHECK whit_result frame_write(const struct renderer *renderer);
-/* Fills the record and writes both to the device. */
+/* frame_fill, then frame_write. */
 WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
 
 #endif

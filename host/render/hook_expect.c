@@ -1,12 +1,12 @@
-/* What a user's file says that its functions do not change: the same picture without them, and what
-   of it differs. */
+/* Expectations of a user's file about what its functions do not change: draws the same picture
+   without them, and reports what differs. */
 #include <stdio.h>
 #include <string.h>
 
 #include "image/image.h"
 #include "render/renderer.h"
 
-/* The two pictures, and what was read of them so far. */
+/* The two pictures: with the user's functions, and without. Index 0 of images is `own`. */
 struct pair {
     struct renderer *own, *base;
     struct image ids[2], colors[2];
@@ -18,7 +18,7 @@ static void say(const struct pair *pair, const whit_shader_expectation *expected
               expected->line, expected->word, found);
 }
 
-/* Pixels whose bytes differ, and the first of them; `words`: of a pixel. */
+/* Counts the pixels whose bytes differ; *first: index of the first. `words`: of one pixel. */
 static uint64_t count_other(const uint32_t *a, const uint32_t *b, uint64_t pixels, uint32_t words,
                             uint64_t *first)
 {

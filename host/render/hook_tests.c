@@ -13,7 +13,7 @@
 _Static_assert(TEST_SEEDS == WHIT_TEST_SEEDS && TEST_SEEDS % RENDER_GROUP_SIZE == 0,
                "whole groups of all seeds");
 
-/* As uvec2 of shaders/hook/check.glsl. */
+/* An entry of check_rows in shaders/hook/check.glsl. */
 struct check_row {
     uint32_t reached, failed;
 };
@@ -43,7 +43,7 @@ static whit_result dispatch(struct renderer *renderer, const struct pass *pass, 
     return result == WHIT_OK ? status_check(&renderer->picture) : result;
 }
 
-/* `rows`: of the check's word, one for each seed. */
+/* `rows`: one for each seed, of the word that has the check's bit. */
 static whit_check_result result_of(const struct check_row *rows, uint32_t bit)
 {
     whit_check_result result = {.reached = false};

@@ -1,4 +1,4 @@
-/* Functions of a user in the place of whit's own: what they change of how a picture is made. */
+/* A user's functions in place of whit's own: what they change about how a picture is made. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,8 +22,8 @@ _Static_assert(HOOK_CAMERA == 1u << WHIT_HOOK_CAMERA && HOOK_SHADE == 1u << WHIT
 
 #define EFFECT(name) (UINT64_C(1) << SCENE_EFFECT_##name)
 
-/* Effects that are compiled for the user's functions only where these call or read what `reaches`
- * names. */
+/* Effects that kernels of the user's functions get only if these call or read what `reaches`
+   names. */
 static const struct {
     uint32_t reaches;
     uint64_t effects;
@@ -39,12 +39,12 @@ static const struct {
     {SHADER_REACHES_NORMALS, EFFECT(SMOOTH_NORMALS) | EFFECT(NORMAL_MAPS)},
 };
 
-/* Effects of these bits change no ray that whit itself sends on from a surface. */
+/* The effects of these bits change no ray that whit itself sends on from a surface. */
 #define BY_FUNCTIONS_ALONE                                                                         \
     (SHADER_REACHES_LIGHTS | SHADER_REACHES_SHADOWS | SHADER_REACHES_EMISSION |                    \
      SHADER_REACHES_HIGHLIGHTS)
 
-/* Whether surfaces send rays on, or are looked through, by what they look like. */
+/* Whether surfaces send rays on or let rays pass, by what they look like. */
 static bool has_rays(const struct renderer *renderer)
 {
     static const enum scene_effect rays[] = {SCENE_EFFECT_REFLECTION, SCENE_EFFECT_REFRACTION,
@@ -59,9 +59,9 @@ static bool has_rays(const struct renderer *renderer)
     return has;
 }
 
-/* Bits SHADER_REACHES_* that decide with which effects kernels are compiled. With a `shade` of the
-   user's nothing of whit's asks for lights and shadows, but for shadow catchers, and nothing but
-   rays for the rest. */
+/* SHADER_REACHES_* bits that decide which effects kernels are compiled with. With a user's shade(),
+   lights and shadows are needed by shadow catchers alone, apart from the user's functions; the rest
+   is needed by rays alone. */
 static uint32_t deciding(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -87,7 +87,7 @@ void hooks_take(struct renderer *renderer)
     whit_renderer_params *params = &renderer->params;
     if (!params->shader)
         return;
-    params->compile_async = false; /* there is no general kernel of it yet */
+    params->compile_async = false; /* the general kernel has none of the user's functions */
     if (shader_has(params->shader, WHIT_HOOK_SCATTER))
         params->effects_added |= EFFECT(REFLECTION) & ~params->effects_removed;
     renderer->reaches_decide = deciding(renderer);
@@ -131,7 +131,7 @@ whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
     return WHIT_ERROR_USAGE;
 }
 
-/* Buffers are made for their number. */
+/* Buffers are made for the number of aovs. */
 static bool same_aovs(const whit_shader *a, const whit_shader *b)
 {
     bool same = a->aov_count == b->aov_count;
@@ -163,7 +163,8 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
     return result == WHIT_OK ? renderer_set_view(renderer, params) : result;
 }
 
-/* Warns of a material that nothing wears, with the name that comes nearest. */
+/* Warns that no primitive has the material of the shape, and suggests the name that comes
+   nearest. */
 static void warn_of_material(const struct renderer *renderer, const struct shader_box *box)
 {
     const struct scene *scene = renderer->scene;
@@ -211,7 +212,7 @@ whit_result hooks_clear_status(const struct target *target)
     return buffer_write(target->buffers.status, STATUS_LOOP_AT, none, sizeof none);
 }
 
-/* A word of the status buffer; 0 where it cannot be read. */
+/* Reads a word of the status buffer at byte `at`; 0 where it cannot be read. */
 static uint32_t read_status(const struct target *target, uint64_t at)
 {
     uint32_t number = 0;

@@ -1,27 +1,30 @@
-/* What the functions of params.shader call for, beside what the scene does. */
+/* The functions of params.shader (a user's file), and what they change of a picture. */
 #ifndef RENDER_HOOKS_H
 #define RENDER_HOOKS_H
 
 #include "render/renderer.h"
 
 void hooks_take(struct renderer *renderer);
-/* Its code of a kernel, for a probe with dbg(x) that which records; NULL: whit's own serves. */
+/* The shader's code for a kernel; for a probe of a file with dbg(x) the code that records. NULL:
+   the shader has none, so whit's own kernel serves. */
 const struct shader_code *hooks_code(const struct target *target, const char *kernel);
-/* How often dbg(x) stands in it, where `target` records what it is; else 0. */
+/* The number of dbg(x) calls in the shader if `target` records their values; else 0. */
 uint32_t hooks_dbg_count(const struct target *target);
-/* Its functions whose values are kept beside the colour. A probe calls them for what dbg(x) is. */
+/* The number of the shader's aovs. A probe calls them only where the file has dbg(x). */
 uint32_t hooks_aov_count(const struct target *target);
-/* WHIT_ERROR_USAGE, logged, for sliders that the shader has not. */
+/* Sets renderer->sliders. WHIT_ERROR_USAGE, logged, for sliders that the shader does not have. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
-/* Finds the material of its shape in the scene, which may have none of that name. */
+/* Finds the material of intersect()'s shape in the scene, or a substitute where no such name is
+   used. */
 WHIT_CHECK whit_result hooks_find_material(struct renderer *renderer);
-/* Forgets loops that had no fuel left, and answers for a shape that were wrong. */
+/* Clears the words of the status buffer about loops without fuel and wrong answers of
+   intersect(). */
 WHIT_CHECK whit_result hooks_clear_status(const struct target *target);
-/* Adds to the text which file has functions in the place of whit's; nothing where there is none. */
+/* Appends to the text which user's file the picture has functions of; nothing without one. */
 void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes);
-/* What ran out of iterations, as the status buffer names it. */
+/* Describes the loop that ran out of iterations, as the status buffer names it. */
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
-/* Which answer for a shape was wrong, likewise. */
+/* Describes the wrong answer of intersect(), likewise. */
 void hooks_describe_shape(const struct target *target, char *text, size_t text_bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* The kernels of a picture, one by one, with what the driver tells of them. */
+/* The kernels of a picture, one by one, with what the driver reports of them. */
 #include "base/clock.h"
 #include "device/pipeline.h"
 #include "render/frame_uniform.h"
@@ -9,7 +9,7 @@
 
 _Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MAX, "room for all kernels");
 
-/* Without a pipeline of it. */
+/* Counts the instructions of a kernel without making a pipeline. */
 static void count_kernel(const struct pipeline_params *params, bool deferred, whit_kernel *kernel)
 {
     struct pipeline_info info = {0};
@@ -96,7 +96,7 @@ static uint32_t count_bits(uint64_t bits)
 }
 
 /* Counts all kernels of a set: the sum of their instructions, the bindings that any of them uses,
-   and the instructions of the largest one. False: a kernel cannot be specialized. */
+   and the instructions of the largest. False: a kernel cannot be specialized. */
 static bool count_set(const struct stages_job *job, struct pipeline_info *sum, uint32_t *largest)
 {
     *sum = (struct pipeline_info){0};

@@ -4,7 +4,7 @@
 
 #include "render/renderer.h"
 
-/* The rows of all lights of the pose. */
+/* Writes the rows of all lights of the pose. */
 WHIT_CHECK whit_result lights_write(struct renderer *renderer);
 /* Bits 1 << LIGHT_* of the kinds in `pose`. */
 uint32_t lights_kinds(const struct scene_pose *pose);

@@ -1,6 +1,6 @@
-/* Which materials the hits wear that a shading kernel works on: those of the timed tiles, counted
-   on the host from the lists that the tile has left. A kernel's time divided by these counts is a
-   share, no price: a hit of one material may take longer than one of another. */
+/* The materials of the hits that each shading kernel works on, in timed tiles, counted on the host
+   from the lists that the tile has left. A kernel's time split by these counts is a share, not a
+   price: a hit of one material may take longer than one of another. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,11 +10,11 @@
 #include "render/renderer.h"
 #include "render/variants.h"
 
-/* The lists and rows of hits of a tile, read back from the device: of `capacity` the first and the
-   last, which is all that the tile has used. */
+/* The lists and rows of hits of a tile, read back from the device. Lists are filled from both ends:
+   of `capacity` items the tile has used the `first` ones and the `last` ones. */
 struct tile_hits {
-    uint32_t *list; /* ids, class by class */
-    uint32_t *rows; /* of each id variant_hit_rows() of four words */
+    uint32_t *list; /* ids of hits, class by class */
+    uint32_t *rows; /* by id: variant_hit_rows() rows of four words */
     uint32_t capacity, first, last;
 };
 
@@ -24,7 +24,8 @@ static void tile_hits_finish(struct tile_hits *hits)
     free(hits->rows);
 }
 
-/* Array `index` of those of `capacity` items each that a buffer holds, as far as it is used. */
+/* Reads the used items of array number `index`, of several arrays of `capacity` items in a
+   buffer. */
 static whit_result read_used(struct buffer *buffer, const struct tile_hits *hits, uint64_t index,
                              uint64_t item_bytes, uint32_t *words)
 {
@@ -44,7 +45,7 @@ static whit_result read_tile(struct target *target, const struct gpu_generation 
     for (uint32_t g = 1; g < generation_count; ++g) {
         const struct gpu_items *rays = &generations[g].lists[LIST_RAYS];
         uint32_t first =
-            generations[g].firsts[0] + rays->front; /* 0 of a generation without rays */
+            generations[g].firsts[0] + rays->front; /* 0 where the generation has no rays */
         uint32_t last = generations[g].firsts[1] + rays->back;
         hits->first = first > hits->first ? first : hits->first;
         hits->last = last > hits->last ? last : hits->last;
@@ -112,7 +113,7 @@ void material_shares_clear(struct target *target)
     target->stages.material_hits = NULL;
 }
 
-/* Into a list that is sorted, largest first, and drops its last. */
+/* Inserts into a list that is sorted, largest first; a full list loses its last entry. */
 static void insert_share(whit_stats *stats, whit_share share)
 {
     uint32_t at = stats->share_count;

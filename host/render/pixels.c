@@ -1,4 +1,4 @@
-/* The buffers of pixels: as many rows and ray trees as the device holds at once. */
+/* The buffers of pixels: for as many rows and slots as the device holds at once. */
 #include "render/pixels.h"
 #include "device/buffer.h"
 #include "render/costs.h"
@@ -7,11 +7,12 @@
 #include "render/queues.h"
 #include "render/stage_set.h"
 
-/* Pixels on a side of the largest tile, where no size is asked for. What the stages of a tile leave
-   to each other should stay in a processor's caches. Another device has more threads than such a
-   tile has rays, and each dispatch costs the same: there a tile may take a share of the memory. */
+/* Pixels on a side of the largest tile, where no size is asked for. On a CPU the queues of a tile
+   should stay in the caches. Other devices have more threads than such a tile has rays, and each
+   dispatch has a fixed cost: there the queues may take one MEMORY_SHARE-th of the memory. */
 enum { TILE_CPU = 192, TILE_OTHER = 768, MEMORY_SHARE = 16 };
-/* A slot takes about SLOT_BYTES in all queues together, and at most SLOT_LARGEST_BYTES in one. */
+/* A slot takes about SLOT_BYTES in all queues together, and at most SLOT_LARGEST_BYTES in one
+   queue. */
 enum { SLOT_BYTES = 2048, SLOT_LARGEST_BYTES = 1024 };
 
 uint32_t pixels_slot_shift(uint32_t depth)
@@ -62,7 +63,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     slots_max = slots_max < limit / SLOT_LARGEST_BYTES ? slots_max : limit / SLOT_LARGEST_BYTES;
     slots = slots > slots_max ? slots_max : slots;
     p->levels = pixels_levels(&renderer->params);
-    /* The sums of samples are in the same buffer, behind the pixels. */
+    /* The pixels share their buffer with the partial sums of samples, which lie behind them. */
     bool posts = shader_has(renderer->params.shader, WHIT_HOOK_POST);
     uint64_t max_pixels = (limit / 16 - slots * p->levels) / (posts ? 2 : 1);
     uint32_t aovs = hooks_aov_count(target);
@@ -129,7 +130,7 @@ static void pixels_finish(struct pixel_buffers *p)
     *p = (struct pixel_buffers){0};
 }
 
-/* The word of the status stays: kernels of ray batches are bound to it. */
+/* The status buffer stays: kernels of ray batches are bound to it. */
 void target_drop_pixels(struct target *target)
 {
     struct buffer *status = target->buffers.status;

@@ -1,21 +1,24 @@
-/* Buffers of pixels, and of the rays of a tile. */
+/* Buffers of the pixels of a band and of the rays of a tile. */
 #ifndef RENDER_PIXELS_H
 #define RENDER_PIXELS_H
 
 #include "render/renderer.h"
 
-/* The bits of the steps of a ray of a picture of this depth, 8..16: gpu_frame. */
+/* How many low bits of a ray's state count its steps in a picture of this depth, 8..16:
+   gpu_frame.slot_shift. */
 uint32_t pixels_slot_shift(uint32_t depth);
 
-/* target->buffers, for the parameters and effects of the renderer, for bands of up to
-   `height` rows and chunks of `tile_size` (0: as large as is fit). */
+/* Creates target->buffers for the renderer's parameters and effects: bands of up to `height` rows,
+   chunks of up to tile_size x tile_size pixels (0: as large as is useful). */
 WHIT_CHECK whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_size);
 void target_finish(struct target *target);
-/* Before pictures of another size or depth: its pixels, and what is bound to them. */
+/* Drops the buffers of pixels and what is bound to them: call it before pictures of another size or
+   depth. */
 void target_drop_pixels(struct target *target);
-/* Partial sums that the most samples of a pixel leave at once. */
+/* Partial sums that a pixel needs while its samples are added up pairwise: log2 of its most
+   samples, rounded up. */
 uint32_t pixels_levels(const whit_renderer_params *params);
-/* Blocks of 8 x 8 that cover `pixels` in a row or column. */
+/* Number of blocks of 8 pixels that cover a row or column of `pixels`. */
 uint32_t pixels_blocks_across(uint32_t pixels);
 
 #endif

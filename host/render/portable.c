@@ -30,7 +30,7 @@ uint32_t portable_number(const struct portable_params *params)
            (uint32_t)params->own_comparison << 4;
 }
 
-/* One function of kernel/portable.comp, on a device. */
+/* Runs one function of kernel/portable.comp on a device. */
 struct run {
     struct device *device;
     struct buffer *in, *out;
@@ -48,7 +48,7 @@ static void run_finish(struct run *run)
     buffer_destroy(run->in);
 }
 
-/* Asks of floats what kernels of pictures ask. run_finish in any case. */
+/* Declares the same float controls as kernels of pictures. Call run_finish also after an error. */
 static whit_result run_init(struct run *run, struct device *device,
                             const struct portable_params *asks, uint32_t function)
 {
@@ -95,7 +95,7 @@ static whit_result run_dispatch(struct run *run, const void *cases, uint32_t byt
     return result == WHIT_OK ? commands_wait(run->commands, -1.0) : result;
 }
 
-/* All that compare() of kernel/portable.comp has to compare. */
+/* Runs compare() of kernel/portable.comp over all of its cases. */
 static whit_result compare_division(struct device *device, const struct portable_params *asks,
                                     bool *same)
 {
@@ -126,7 +126,7 @@ static bool is_denormal(uint32_t bits)
     return (bits & 0x7f800000) == 0 && (bits & 0x7fffffff) != 0;
 }
 
-/* The answer of kernel/portable.comp as this processor gives it, which is IEEE's. */
+/* What kernel/portable.comp must answer: this processor's result, which is IEEE's. */
 static uint32_t right_answer(uint32_t function, float x, float y)
 {
     float right = function == PORTABLE_SUM       ? x + y
@@ -141,7 +141,7 @@ static uint32_t right_answer(uint32_t function, float x, float y)
     return bits;
 }
 
-/* Sums, products, relations or absolute values of a few floats. */
+/* Tests sums, products, relations or absolute values of a few floats. */
 static whit_result compare_plain(struct device *device, const struct portable_params *asks,
                                  uint32_t function, whit_device_floats *out)
 {
@@ -202,7 +202,9 @@ whit_result portable_find(const whit_log *log, struct device *device, whit_devic
     char what[32], *name;
     whit_result result = WHIT_OK;
     const char *driver = device_get_info(device)->driver;
-    uint64_t hash = hash_bytes(HASH_START, driver, strlen(driver)); /* not all tell by their UUID */
+    /* The key has the driver's name and version, since not every driver changes its UUID with
+       them. */
+    uint64_t hash = hash_bytes(HASH_START, driver, strlen(driver));
     snprintf(what, sizeof what, "floats-%016llx", (unsigned long long)hash);
     name = device_kept_name(device, what);
     if (name && store_read(log, name, &kept, &bytes) && bytes == 4) {

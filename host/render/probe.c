@@ -1,5 +1,5 @@
-/* One pixel once more, by kernels that record its rays (bind/probe.glsl), into a target of its own,
-   so that the picture stays. */
+/* Draws one pixel once more, with kernels that record its rays (bind/probe.glsl), into a target of
+   its own, so that the picture stays. */
 #include "render/probe.h"
 
 #include <math.h>
@@ -21,11 +21,11 @@ enum { PROBE_ADAPTIVE_SAMPLES = 4 };
 #define DBG_HEAD  ((uint64_t)DBG_CALLS * sizeof(uint32_t))
 #define DBG_BYTES (DBG_HEAD + (uint64_t)DBG_CALLS * DBG_VALUES * sizeof(struct gpu_dbg))
 
-/* Until their tree is in order. */
+/* The records of a probe before they are sorted into a tree. */
 struct record_list {
     struct gpu_probe_ray *records; /* free() both */
-    uint32_t *places; /* by id of a ray, PROBE_RAYS_MAX of them: its index in `records`; HIT_NONE:
-                         no such ray */
+    /* PROBE_RAYS_MAX entries: index in `records` by id of a ray; HIT_NONE: there is no such ray. */
+    uint32_t *places;
 };
 
 /* ---- On the device ---- */
@@ -48,7 +48,7 @@ static whit_result create_buffers(struct target *probe)
     return result;
 }
 
-/* Where pixel (x, y) is in its block, as render_slot_pixel. */
+/* The place of pixel (x, y) in its block: the inverse of render_slot_pixel. */
 static uint32_t slot_of_pixel(uint32_t x, uint32_t y)
 {
     x %= 8;
@@ -91,8 +91,8 @@ static bool is_shadow(const struct gpu_probe_ray *record)
     return (record->kind & PROBE_KIND_MASK) == RAY_SHADOW;
 }
 
-/* In the order of parents, and of one parent shadow rays, then what is refracted, goes straight on,
-   is reflected. So all of a parent are next to each other, and none is before its parent. */
+/* Sorts by parent, then by kind: shadow rays, refracted, straight on, reflected. So the children of
+   a ray are next to each other, and no ray comes before its parent. */
 static int compare_records(const void *a, const void *b)
 {
     uint64_t keys[2];
@@ -106,8 +106,8 @@ static int compare_records(const void *a, const void *b)
     return (keys[0] > keys[1]) - (keys[0] < keys[1]);
 }
 
-/* Names parents by their place in place of their id, which traced rays have as their light_sample.
- */
+/* Replaces each parent's id by its index in the sorted records. A traced ray has its id in
+   light_sample. */
 static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t *places)
 {
     for (uint32_t i = 0; i < count; ++i) {
@@ -122,8 +122,8 @@ static void name_places(struct gpu_probe_ray *records, uint32_t count, uint32_t 
     }
 }
 
-/* What goes through shadow catchers has the weight that they leave it. `shares`: of each record,
-   what the surfaces before it leave. */
+/* Multiplies the weights of rays behind shadow catchers by the share that the catchers let through.
+   `shares`: for each record, the product of these shares on its way. */
 static void weigh_caught(struct gpu_probe_ray *records, uint32_t count, float (*shares)[3])
 {
     static const float whole[3] = {1, 1, 1};
@@ -148,7 +148,7 @@ static void weigh_caught(struct gpu_probe_ray *records, uint32_t count, float (*
     }
 }
 
-/* From the order of ids to that of a tree. */
+/* Sorts the records from the order of ids to that of a tree. */
 static whit_result sort_records(const struct renderer *renderer, struct record_list *list,
                                 uint32_t count)
 {
@@ -197,7 +197,7 @@ static whit_result read_records(const struct renderer *renderer, uint32_t max,
     return result;
 }
 
-/* As the device leaves them. */
+/* Reads the values of dbg(x) in the order in which the device has left them. */
 static whit_result read_values(const struct renderer *renderer, struct probe_report *report)
 {
     struct buffer *buffer = renderer->probe.dbg;
@@ -249,16 +249,18 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
 
 /* ---- The tree ---- */
 
-/* What is known of each record while the ray tree is put in order. */
+/* What is known of each record while the ray tree is put in order. The array is also a stack of
+   records. */
 struct branch {
     uint32_t first, count; /* its child rays, whose records are next to each other */
-    uint32_t place;        /* in the tree */
-    uint32_t waiting;      /* entry of a stack, of which each element holds one: a record to be put
-                              in the tree */
+    uint32_t place;        /* index in the ordered tree */
+    /* An entry of the stack, which is not about this record: a record that is to be put in the
+       tree. */
+    uint32_t waiting;
 };
 
 /* Pushes the child rays of a record so that its shadow rays are popped first, in their order, and
-   then the others, the last one first. */
+   then the other children, the last one first. */
 static uint32_t push_branches(const struct gpu_probe_ray *records, uint32_t first, uint32_t count,
                               struct branch *branches, uint32_t top)
 {
@@ -288,7 +290,8 @@ static void place_ray(const struct gpu_probe_ray *record, const struct branch *b
     }
 }
 
-/* False where the records are no tree with every ray at its end, which no kernel should leave. */
+/* False if the records do not make a tree, or the end of a ray is not known: no kernel should leave
+   such records. */
 static bool count_branches(const struct gpu_probe_ray *records, uint32_t count,
                            struct branch *branches)
 {
@@ -317,7 +320,8 @@ static int compare_values(const void *a, const void *b)
     return (x->traced.order > y->traced.order) - (x->traced.order < y->traced.order);
 }
 
-/* By rays of the tree, whose ids are others in every run; those of other rays are left out. */
+/* Sorts values by rays of the tree, since ids differ from run to run; drops values of rays that are
+   not in it. */
 static void order_values(const struct branch *branches, const uint32_t *places,
                          struct probe_report *report)
 {

@@ -1,5 +1,5 @@
-/* What the CPU says of the rays of a probed pixel. It knows no textures: where a surface may let a
-   ray pass, the device's word is taken, and all the rest must agree with it. */
+/* What the CPU finds for the rays of a probed pixel. It does not read textures: where a surface may
+   let a ray pass, the device's answer is taken, and everything else must agree with it. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "render/renderer.h"
 #include "twin/traverse.h"
 
-/* Surfaces on the way of one ray that exact answers can be told to leave out. */
+/* Most surfaces that the exact trace of a ray can be told to pass. */
 enum { PASSED_MAX = 64 };
 
 struct asking {
@@ -25,7 +25,8 @@ static bool is_shadow(const struct asking *a)
     return (a->ray->traced.kind & PROBE_KIND_MASK) == RAY_SHADOW;
 }
 
-/* From behind, or along the surface: there the kernel's test and this one may round apart. */
+/* Whether the ray comes from behind or along the surface, where the kernel's test and this one may
+   round differently. */
 static bool comes_from_behind(const struct gpu_ray *line, const struct gpu_hit *hit)
 {
     const float ng[3] = {hit->ng_x, hit->ng_y, hit->ng_z};
@@ -38,7 +39,7 @@ static bool comes_from_behind(const struct gpu_ray *line, const struct gpu_hit *
     return along > -1e-6 * size;
 }
 
-/* Whether the material may let the ray go on; only the device can tell whether a cut-out does. */
+/* Whether the material may let the ray go on. Only the device can decide that for a cut-out. */
 static bool may_pass(const struct asking *a, const struct gpu_hit *hit)
 {
     const struct renderer *renderer = a->renderer;
@@ -62,7 +63,8 @@ static void pass(struct asking *a, const struct gpu_hit *hit)
     }
 }
 
-/* Whether it was passed. A sphere may be passed at each of its ends, and is met as often. */
+/* Whether the twin passed the surface of `hit`; takes it off the list. A sphere may be passed at
+   both of its ends, and is then listed twice. */
 static bool take_passed(struct asking *a, const struct rational_hit *hit)
 {
     for (uint32_t i = 0; i < a->ray->passed && i < PASSED_MAX; ++i) {
@@ -86,14 +88,15 @@ static bool is_device_hit(const struct gpu_probe_ray *traced, const struct gpu_h
            same_bits(traced->v, hit->v);
 }
 
-/* Whether the device met the shape of a user's function, which only the device knows. The ray then
-   ends there, and on its way there is to be nothing. */
+/* Whether the device met the shape of a user's intersect(), which only the device knows. The ray
+   then ends there, and the CPU must find nothing before that. */
 static bool is_on_shape(const struct gpu_probe_ray *traced)
 {
     return traced->instance == HIT_SHAPE;
 }
 
-/* Hits from the front to the one that the device has, or for want of that to the end. */
+/* Goes through the hits from front to back, until it finds the device's hit or there are no
+   more. */
 static void ask_twin(struct asking *a)
 {
     struct probe_ray *ray = a->ray;

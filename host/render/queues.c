@@ -8,9 +8,9 @@
 #include "render/textures.h"
 #include "render/variants.h"
 
-/* How many rays of a tile there is room for, and hits of one generation that lights are asked for;
-   where that is too little, tiles get smaller. Generations: as many as a ray may bounce, and then
-   some, as surfaces that are passed unseen take one too. */
+/* Room for rays of a tile, and for hits of one generation that go on to the lights, by slot; a tile
+   that needs more is drawn in smaller parts. GENERATIONS_MAX: the most bounces, and more, as a
+   surface that a ray passes unseen takes a generation too. */
 enum {
     RAYS_A_SLOT = 16,
     LIT_A_SLOT = 2,
@@ -43,7 +43,7 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-/* Two generations of rays are kept at a time, each of up to a fourth of all rays of a tile:
+/* Two generations of rays are kept at a time, each of up to a fourth of a tile's rays: see
    generation_capacity() of bind/queues.glsl. */
 static uint64_t ray_bytes(uint64_t rays)
 {
@@ -56,8 +56,8 @@ static uint32_t hook_rows(const whit_shader *shader)
            (shader_has(shader, WHIT_HOOK_SHADE) ? HOOK_LIGHT_ROWS : 0);
 }
 
-/* Hits of one dispatch that rows are there for, of STAGE_HIT_FETCH. A tile of one block has no more
-   of them than a generation of the smallest queues, or of those that it had grown to. */
+/* Rows for the hits of one dispatch of STAGE_HIT_FETCH. A tile of one block has at most as many
+   hits as a generation of the smallest queues, or of the queues after they had to grow. */
 static uint64_t met_rows(const struct target *target)
 {
     enum { ITEMS = 1 << 15 };
@@ -78,7 +78,7 @@ whit_result queues_create(struct target *target)
     queues->generation_count = secondary ? GENERATIONS_MAX : 2;
     queues->ray_capacity = p->chunk_slots;
     queues->lit_capacity =
-        p->chunk_slots * 2; /* each half of a list is of one half of a dispatch */
+        p->chunk_slots * 2; /* each half of a dispatch fills its own half of a list */
     if (secondary) {
         uint32_t min = larger(target->stages.rays_min, RAYS_MIN);
         queues->ray_capacity = larger(p->chunk_slots * RAYS_A_SLOT, min);
@@ -88,8 +88,8 @@ whit_result queues_create(struct target *target)
     uint64_t heads = sizeof(struct gpu_tally) +
                      (uint64_t)queues->generation_count * sizeof(struct gpu_generation);
     uint32_t lights = renderer->pose.light_count, lists = lights <= LIGHT_LISTS ? lights : 1;
-    /* Invocations without an item of their own read that of another, which may not have been
-       written yet: zeros are ids that there are. */
+    /* Invocations without an item of their own read another item, which may not have been written
+       yet: buffers start as zeros, which are valid ids. */
     const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_ZEROED;
     const struct {
         struct buffer **buffer;

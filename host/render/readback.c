@@ -29,7 +29,7 @@ static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint
                        (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
 }
 
-/* Where nothing calls for rays there is nothing to read, and nothing is cut. */
+/* Without secondary rays nothing is cut, and there is no buffer to read. */
 static whit_result read_cuts(const struct renderer *renderer, uint32_t rows, float *weights)
 {
     struct buffer *sums = renderer->picture.buffers.queues.cut_sums;
@@ -43,7 +43,7 @@ static whit_result read_distances(const struct renderer *renderer, uint32_t rows
                        (uint64_t)renderer->params.width * rows * sizeof *distances);
 }
 
-/* All functions of `count` pixels of the band, from pixel `at` of it on. */
+/* Reads all aovs of `count` pixels of the band, from its pixel `at` on. */
 static whit_result read_aovs(const struct renderer *renderer, size_t at, size_t count,
                              float *values)
 {
@@ -78,8 +78,8 @@ static whit_result read_listed_aovs(struct renderer *renderer, const struct prog
     return result;
 }
 
-/* Those that the pass drew, of `count` pixels of the band, into the picture from pixel `first` on.
- */
+/* Copies the colours of the pixels that the pass drew, among `count` pixels of the band, into the
+   picture from pixel `first` on. */
 static whit_result read_listed(struct renderer *renderer, const struct progress *progress,
                                size_t first, size_t count)
 {
@@ -160,7 +160,7 @@ static whit_result begin_read(const struct renderer *renderer, uint32_t channels
     return image_init(out, renderer->params.width, views_rows(renderer), channels, integers);
 }
 
-/* Leaves out rows between views that belong to none. */
+/* Removes the rows of padding between views. */
 static void close_gaps(const struct renderer *renderer, struct image *image)
 {
     size_t words = (size_t)image->width * image->channels, height = renderer->params.height;
@@ -217,7 +217,7 @@ whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
     return result;
 }
 
-/* The numbers of one function out of those of all, of a row. */
+/* Copies aov `index` out of a row that has all of them. */
 static void pick_aov(const float *row, uint32_t all, uint32_t index, uint32_t width, float *to)
 {
     for (uint32_t x = 0; x < width; ++x)

@@ -1,4 +1,4 @@
-/* A renderer from its making to its end. */
+/* Creates and destroys renderers. */
 #include "render/async.h"
 
 #include <stdlib.h>
@@ -54,7 +54,7 @@ static whit_result create_parts(struct renderer *renderer)
     return result;
 }
 
-/* Renderers that only trace batches never need the kernels of pictures. */
+/* Called late, since renderers that only trace batches never need the kernels of pictures. */
 whit_result renderer_compile(struct renderer *renderer)
 {
     if (stages_are_made(&renderer->picture) && !renderer->async.general)

@@ -16,63 +16,66 @@
 #include "render/render.h"
 #include "shader/program.h"
 
-/* The scene in device memory. `none` stands in for what the scene lacks. */
+/* The scene in device memory. `none` is a small buffer that is bound in place of each buffer that
+   the scene does not need. */
 struct scene_buffers {
     struct buffer *nodes, *triangles, *instances;
     struct buffer *shading; /* rows of materials, texture uses, lights, triangles */
     struct buffer *texels, *environment, *frame;
     struct buffer *none;
     uint32_t environment_size, uv_sets;
-    bool smooth_normals, colors; /* what the shading rows hold */
+    bool smooth_normals, colors; /* whether the shading rows hold them */
     bool texel_loads;
-    struct buffer *nodes8; /* with renderer->packets */
+    struct buffer *nodes8; /* nodes of eight children; NULL unless renderer->wide */
     uint64_t bytes;
 };
 
-/* What the stages of a picture leave to each other, of one tile (abi/queues.h). */
+/* The queues between the stages of a picture, for the tile being drawn (abi/queues.h). */
 struct queue_buffers {
-    struct buffer *generations, *empty; /* gpu_tally and gpu_generation; as they begin */
+    /* A gpu_tally, then the gpu_generations; `empty` has their initial contents. */
+    struct buffer *generations, *empty;
     struct buffer *rays, *hits, *lit, *sums, *hit_list, *cuts, *cut_sums;
     struct buffer *lit_list;
-    struct buffer
-        *deferred; /* NUMERICS_EXACT: rays, or lit hits of a light, that floats leave open */
-    struct buffer *hook_rows;     /* of hits: what a user's surface() and shade() have said */
-    struct buffer *shape_shadows; /* of lit hits, with a user's shape: two words each */
-    struct buffer *kinds; /* RAY_*, with params.count; how far rays have come, for textures */
+    /* NUMERICS_EXACT: the rays, or the lit hits of a light, whose hits floats leave open. */
+    struct buffer *deferred;
+    struct buffer *hook_rows;     /* results of a user's surface() and shade(), by hit */
+    struct buffer *shape_shadows; /* with a user's intersect(): two words a lit hit */
+    struct buffer *kinds; /* by ray: RAY_* (params.count, probes), distance so far (mipmaps) */
     uint32_t generation_count, ray_capacity, lit_capacity;
     uint64_t bytes;
 };
 
-/* The pixels of one band of rows, and the rays of one chunk. */
+/* The pixels of one band (a range of rows of 8x8 blocks), and the queues of one chunk (a run of
+   blocks of the band: a tile). A slot is a pixel's place in a chunk. */
 struct pixel_buffers {
-    struct buffer
-        *pixels; /* behind them partial sums of samples, `levels` for each slot; last, from
-                    `before_post` on, what a user's post() is given: all pixels once more */
+    struct buffer *pixels; /* the pixels; then `levels` partial sums of samples for each slot; then,
+                              from `before_post` on, the pixels as a user's post() is given them */
     struct buffer *ids;
-    struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: nothing is counted */
-    struct buffer *listed; /* slots whose camera rays are traced; NULL: all always are */
+    struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: not counted */
+    struct buffer *listed; /* slots whose camera rays are traced; NULL: all slots */
     struct buffer *status;
-    struct buffer *aovs;      /* see bind/queues.glsl; NULL: the shader has no functions for it */
+    struct buffer *aovs;      /* see bind/queues.glsl; NULL: the shader has no aov */
     struct buffer *distances; /* NULL: the picture has one camera */
     struct queue_buffers queues;
-    uint32_t band_y;      /* first row that they hold now */
-    uint32_t band_rows;   /* rows the pixel buffers hold, a multiple of 8 */
-    uint32_t chunk_slots; /* pixels that the queues hold */
+    uint32_t band_y;      /* first row of the picture in the pixel buffers */
+    uint32_t band_rows;   /* rows that the pixel buffers hold, a multiple of 8 */
+    uint32_t chunk_slots; /* slots that the queues have room for */
     uint32_t levels;
     uint32_t before_post; /* 0: there is no post() */
-    uint64_t bytes;       /* of all of them, also counted in scene_buffers.bytes */
+    uint64_t bytes;       /* of all these buffers; scene_buffers.bytes includes them */
 };
 
-/* A kernel, and where rays may wait (SPEC_SETTLES) the one that takes what the first has put on the
-   list of deferred rays, else NULL. */
+/* The kernel of a stage. `deferred` (NULL where no ray can be deferred) is a second kernel, made
+   with SPEC_SETTLES, that runs on the rays that the first one has put on the list of deferred
+   rays. */
 struct pass {
     struct pipeline *pipeline, *deferred;
-    uint32_t rays_each;                     /* items that an invocation takes */
-    struct binding_set *set, *deferred_set; /* what they work on */
+    uint32_t rays_each;                     /* rays or hits that an invocation takes */
+    struct binding_set *set, *deferred_set; /* the buffers bound to each */
 };
 
-/* In the order in which a generation of rays goes through them; the last one from the youngest
-   generation back to the first. */
+/* In the order in which a generation of rays goes through them. STAGE_RESOLVE* come last, from the
+   youngest generation back to the camera rays. */
 enum stage {
     STAGE_CAMERA,
     STAGE_CLOSEST,
@@ -80,34 +83,33 @@ enum stage {
     STAGE_SHADE_GLASS,
     STAGE_SHADOW,
     STAGE_SHADOW_LATER,
-    STAGE_RESOLVE, /* into pixels */
+    STAGE_RESOLVE, /* generation 0: the sums go into the pixels */
     STAGE_RESOLVE_LATER,
-    STAGE_MISS,      /* of a user's function */
-    STAGE_SHAPE,     /* likewise, before rays go through the trees */
-    STAGE_HIT,       /* likewise, of what rays have met */
-    STAGE_HIT_FETCH, /* HIT_PART_FETCH and HIT_PART_CALL, which stand in for STAGE_HIT until it is
-                        made */
+    STAGE_MISS,  /* a user's miss() */
+    STAGE_SHAPE, /* a user's intersect(), before rays go through the trees */
+    STAGE_HIT,   /* a user's surface() and shade(), at hits */
+    /* HIT_PART_FETCH and HIT_PART_CALL: they stand in for STAGE_HIT until its kernel is made. */
+    STAGE_HIT_FETCH,
     STAGE_HIT_CALL,
-    STAGE_AOV,  /* likewise, beside the colour */
-    STAGE_POST, /* likewise, of pixels that have all samples */
+    STAGE_AOV,  /* a user's aovs, at hits of camera rays */
+    STAGE_POST, /* a user's post(), for pixels that have all samples */
     STAGE_COUNT
 };
 
 /* The kernels that draw a picture together. */
 struct stage_set {
-    struct pass
-        passes[STAGE_COUNT];    /* empty where a stage has nothing to do, or shares another's */
-    enum stage of[STAGE_COUNT]; /* whose kernel a stage runs: its own, or a later one's */
-    uint32_t classes;           /* of materials, each with a shading kernel of its own */
-    bool calls[CLASSES_MAX];    /* whether hits of a class call for rays */
-    bool asks;                  /* whether hits ask lights, for stages of their own */
+    struct pass passes[STAGE_COUNT]; /* empty: nothing to do, or the kernel of another stage */
+    enum stage of[STAGE_COUNT];      /* the stage whose kernel each runs: itself, or a later one */
+    uint32_t classes;                /* classes of materials; each has its own shading kernel */
+    bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
+    bool asks;                       /* whether hits go on to the shadow stages */
 };
 
 /* How long each stage of the tile being drawn takes, see stage_times.c. */
 struct stage_times {
-    uint32_t tiles; /* so far */
+    uint32_t tiles; /* drawn so far */
     bool on;        /* the tile is timed */
-    uint32_t row;   /* of the span that is open; RENDER_STAGE_COUNT: none */
+    uint32_t row;   /* RENDER_STAGE_* of the open span; RENDER_STAGE_COUNT: none */
     uint32_t rows[COMMANDS_SPANS], span_count;
     double ms[RENDER_STAGE_COUNT];
 };
@@ -121,57 +123,59 @@ struct stage_sample {
 struct stages {
     struct stage_set set;
     struct stage_times times;
-    uint32_t expected;       /* generations of the last tile */
-    bool full;               /* a queue was, in the last submission */
-    uint64_t *material_hits; /* of each class and material, in timed tiles; NULL: none so far */
-    uint32_t blocks_max;     /* of tiles, since one was too large; 0: as many as fit */
-    uint32_t rays_min; /* that the queues have room for, since a block was too large for them */
+    uint32_t expected;       /* number of generations of the last tile */
+    bool full;               /* a queue overflowed in the last submission */
+    uint64_t *material_hits; /* by class and material, in timed tiles; NULL: none yet */
+    /* Blocks that a tile may have, since a larger one overflowed a queue; 0: as many as fit. */
+    uint32_t blocks_max;
+    /* Rays that the queues get room for at least, since one block overflowed them. */
+    uint32_t rays_min;
 };
 
 struct trace_state {
     struct buffer *rays, *hits, *costs;
-    struct buffer *deferred; /* work list; NULL where no ray waits */
-    struct pass singles[2];  /* for closest hits, for any */
-    struct pass beams[2];    /* likewise, of rays that start at one point, in packets */
-    uint32_t capacity;       /* rays */
-    uint64_t together;       /* rays of the last batch that walked in packets */
+    struct buffer *deferred; /* rays left to a second dispatch; NULL: there are never any */
+    struct pass singles[2];  /* index: 0 closest hit, 1 any hit */
+    struct pass beams[2];    /* likewise, for packets of rays that start at one point */
+    uint32_t capacity;       /* rays that the buffers hold */
+    uint64_t together;       /* rays of the last batch that were traced in packets */
     double device_ms;
     uint32_t deferred_count; /* rays of the last batch that floats left open */
 };
 
-/* The pixels of a picture that a pass draws: from (x, y) on every so-many-th. */
+/* The pixels of a picture that a pass draws: (x, y), and from there every spacing_x-th column of
+   every spacing_y-th row. */
 struct lattice {
-    uint32_t x, y, spacing_x, spacing_y; /* spacing: 1, 2, 4, 8 */
-    uint32_t width, height;              /* how many, those above params.first_row among them */
+    uint32_t x, y, spacing_x, spacing_y; /* spacing: 1, 2, 4 or 8 */
+    uint32_t width, height; /* columns and rows; includes rows above params.first_row */
 };
 
-/* What one picture in the making knows. An adaptive one, or one in steps, is made in several
-   passes. */
+/* How far a picture is. Adaptive pictures and pictures in steps take several passes. */
 struct progress {
-    struct lattice lattice; /* of the pass */
+    struct lattice lattice; /* drawn by the pass */
     double start_ms;
     uint32_t tile;
-    uint64_t work_done, work_total; /* block samples of the pass */
-    double before, share;           /* of the picture: of passes before, of this one */
-    uint32_t samples;               /* a pixel, in this pass */
-    bool listed;                    /* it draws only pixels that `levels` gives these samples */
-    bool aovs_alone;                /* it leaves colours and identities as they are */
-    uint8_t *levels; /* of each pixel: 1: 4 samples, 2: 16, 3: 64; NULL when not adaptive */
+    uint64_t work_done, work_total; /* samples of blocks in this pass */
+    double before, share;           /* shares of the picture, 0..1: earlier passes, this pass */
+    uint32_t samples;               /* samples of a pixel in this pass */
+    bool listed;                    /* draws only the pixels whose level asks for `samples` */
+    bool aovs_alone;                /* draws aovs only; colours and ids stay */
+    uint8_t *levels;                /* by pixel: 1: 4 samples, 2: 16, 3: 64; NULL: not adaptive */
 };
 
-/* With params.compile_async: see async.c. */
+/* For params.compile_async: see async.c. */
 struct async_state {
     struct async_job *job; /* the specialised kernel in the making; NULL: none is */
-    bool general;          /* renderer->picture.stages.set is of general kernels */
+    bool general;          /* renderer->picture.stages.set has general kernels */
 };
 
-/* Views of many cameras, which a picture has one below the other. */
+/* Views of many cameras: one picture that has them one below the other. */
 struct views {
     uint32_t count;  /* 0: the picture has one camera */
-    uint32_t held;   /* that the buffers and kernels of the picture are made for */
-    uint32_t camera; /* CAMERA_* that kernels are made for */
+    uint32_t held;   /* views that buffers and kernels are made for */
+    uint32_t camera; /* CAMERA_* that the kernels are made for */
     struct gpu_view *all;
-    struct buffer *buffer; /* has them too */
+    struct buffer *buffer; /* `all` on the device */
 };
 
 /* The buffers that the stages read and write, the kernels bound to them, and the figures of what
@@ -182,9 +186,9 @@ struct target {
     struct stages stages;
     whit_stats stats;
     struct stage_sample timed[RENDER_STAGE_COUNT];
-    bool probed;            /* rays are recorded, those of listed pixels alone (probe.c) */
-    struct buffer *records; /* of a probe: gpu_probe, and gpu_probe_ray */
-    struct buffer *dbg;     /* of a probe with dbg(x): as hook/record.glsl; NULL before the first */
+    bool probed;            /* only listed pixels are drawn, and rays recorded (probe.c) */
+    struct buffer *records; /* of a probe: a gpu_probe, then gpu_probe_rays */
+    struct buffer *dbg;     /* of a probe with dbg(x): as in hook/record.glsl; NULL: not yet */
 };
 
 /* All that decides the colours of a picture, but for its kernels. */
@@ -195,10 +199,11 @@ struct kept_view {
     uint32_t samples, first_sample, first_row, rows;
 };
 
-/* The picture whose colours the device still has, as post() of a user's file was given them. */
+/* The picture whose colours are still on the device, as they are given to post() of a user's
+   file. */
 struct kept_picture {
-    bool known; /* false: there is none any more */
-    bool aovs;  /* what is beside the colours is of the file in hand */
+    bool known; /* false: no picture is kept */
+    bool aovs;  /* its aovs are those of the current shader */
     struct kept_view view;
     whit_stats stats;
     struct stage_sample timed[RENDER_STAGE_COUNT];
@@ -211,57 +216,56 @@ struct renderer {
     const struct scene *scene;
     whit_renderer_params params;
     struct scene_pose pose;
-    struct scene_effects effects; /* that kernels are made for: see effects_choose */
+    struct scene_effects effects; /* effects that kernels are made with: see effects_choose */
     struct scene_buffers scene_buffers;
     struct target picture;
-    struct target probe; /* a row of blocks; without buffers before the first probe */
+    struct target probe; /* holds one row of blocks; no buffers before the first probe */
     struct views views;
-    bool packets; /* rays of pictures may walk in packets, through nodes of eight children */
-    uint32_t packet_rays; /* of a lane, in these */
-    bool few_kernels;     /* one for several stages and materials, since the renderer was made */
-    bool wide;            /* there are such nodes on the device */
+    bool packets;         /* rays of pictures are traced in packets, on bvh8 */
+    uint32_t packet_rays; /* rays that each lane of a packet has */
+    bool few_kernels;     /* one kernel for several stages and all materials: render_few_kernels */
+    bool wide;            /* nodes of eight children are on the device */
     struct kept_picture kept;
     struct trace_state trace;
     struct async_state async;
     struct commands *commands;
     struct gpu_frame frame;
-    struct portable_params portable;    /* where params.portable asks for it */
-    float sliders[SLIDERS_MAX];         /* of params.shader */
-    uint32_t reaches_decide;            /* bits SHADER_REACHES_*: by which effects are chosen */
-    uint64_t effects_unasked;           /* of params.effects_removed, for the shader alone */
-    struct bodies bodies;               /* of media, of the frame's pose */
-    struct image color, ids, cuts;      /* of the last picture, where it has more than one band */
-    struct image aovs;                  /* likewise: a pixel beside itself for each function */
+    struct portable_params portable;    /* used with params.portable */
+    float sliders[SLIDERS_MAX];         /* slider values of params.shader */
+    uint32_t reaches_decide;            /* SHADER_REACHES_* bits that effects depend on: hooks.c */
+    uint64_t effects_unasked;           /* those removed only because the shader needs none */
+    struct bodies bodies;               /* bodies of media in the current pose */
+    struct image color, ids, cuts;      /* the last picture, where it has several bands */
+    struct image aovs;                  /* likewise: one column for each aov of each pixel */
     struct image distances;             /* likewise */
-    struct image costs[RAY_KIND_COUNT]; /* of first samples; empty where a kind has no rays */
+    struct image costs[RAY_KIND_COUNT]; /* of first samples; empty for a kind without rays */
     double create_ms;
-    /* What the pipelines were made for. */
-    bool *worn; /* of each material: some primitive has it */
+    /* What the pipelines were made for (up to has_secondary). */
+    bool *worn; /* by material: whether some primitive has it */
     uint32_t node_stack_size, packet_stack_size;
     bool single_identity;
-    bool has_secondary; /* the scene calls for more than camera rays */
-    bool between_times; /* another time was only set in part */
+    bool has_secondary; /* surfaces send rays on: renderer_bounces */
+    bool between_times; /* a change of time or view failed halfway: no picture can be drawn */
     bool rendered;
 };
 
 enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
-/* Bytes of the status buffer (shaders/bind/trees.glsl) where status_loop and status_shape are. */
+/* Byte offsets of status_loop and status_shape in the status buffer (shaders/bind/trees.glsl). */
 enum { STATUS_LOOP_AT = 8, STATUS_SHAPE_AT = 12 };
-enum { READ_SLICE = 4096 }; /* pixels that are read at once */
-enum { ADAPTIVE_MAX = 64 }; /* samples of a pixel of an adaptive picture */
+enum { READ_SLICE = 4096 }; /* pixels that are read back at once */
+enum { ADAPTIVE_MAX = 64 }; /* most samples of a pixel in an adaptive picture */
 
-/* Says that there is none on the host for `what`, and returns WHIT_ERROR_MEMORY. */
+/* Logs that host memory ran out for `what`, and returns WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const char *what);
-/* Whether surfaces leave rays, for the parameters and effects of the renderer. */
+/* Whether surfaces send rays on, with the parameters and effects of the renderer. */
 bool renderer_bounces(const struct renderer *renderer);
-/* Fills in of a zeroed renderer what needs no memory of the device. Call renderer_finish in any
- * case.
- */
+/* Fills in the parts of a zeroed renderer that need no device memory. Call renderer_finish also
+   after an error. */
 WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const whit_log *log,
                                      struct device *device, struct accel *accel,
                                      const whit_renderer_params *params);
 void renderer_finish(struct renderer *renderer);
-/* The kernel of the picture, where there is none yet. */
+/* Makes the kernels of the picture where there are none yet, and binds them. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 
 #endif

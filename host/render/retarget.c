@@ -1,4 +1,4 @@
-/* Another picture from a renderer that is there already: size, camera, time, samples, limits. */
+/* Points an existing renderer at another picture: size, camera, time, samples, limits. */
 #include "render/retarget.h"
 #include "render/async.h"
 #include "render/frame_uniform.h"
@@ -9,7 +9,7 @@
 #include "render/variants.h"
 #include "render/views.h"
 
-/* Parameters that other kernels, or other uploads, would be needed for stay as they are. */
+/* Takes over parameters of `from`, but for those that would need other kernels or uploads. */
 static whit_renderer_params merge(const whit_renderer_params *own, const whit_renderer_params *from)
 {
     whit_renderer_params params = *own;

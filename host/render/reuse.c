@@ -1,6 +1,6 @@
-/* A picture by the next version of a user's file, made of the picture before where only post() or
-   aovs are other: the colours that post() was given are still on the device, and aovs take camera
-   rays alone. */
+/* Draws a picture with the next version of a user's file from the last picture, if only post() or
+   aovs have changed: the colours that post() was given are still on the device, and aovs need only
+   camera rays. */
 #include <string.h>
 
 #include "device/commands.h"
@@ -11,15 +11,15 @@
 #include "render/steps.h"
 #include "render/tiles.h"
 
-/* The spacing of the first step: the window converts and shows a quarter of the pixels sooner than
-   all of them. */
+/* The spacing of the step that is shown first: the window converts and shows a quarter of the
+   pixels sooner than all of them. */
 enum { STEP_FIRST = 2 };
-enum { BLOCKS_AT_ONCE = 4096 }; /* below the 2^14 that slot_pixel() of the kernels divides right */
+enum { BLOCKS_AT_ONCE = 4096 }; /* below 2^14, where slot_pixel() of the kernels divides right */
 
 static void describe(const struct renderer *renderer, struct kept_view *of)
 {
     const whit_renderer_params *params = &renderer->params;
-    memset(of, 0, sizeof *of); /* it is compared by its bytes */
+    memset(of, 0, sizeof *of); /* padding too: it is compared by memcmp */
     of->frame = renderer->frame;
     memcpy(of->sliders, renderer->sliders, sizeof of->sliders);
     of->samples = params->sampling.count;
@@ -29,7 +29,8 @@ static void describe(const struct renderer *renderer, struct kept_view *of)
     of->rows = params_rows(params);
 }
 
-/* Rays of these functions are among those of the picture's statistics. */
+/* Whether post() or an aov traces rays, which would have to be counted in the picture's
+   statistics. */
 static bool functions_trace(const whit_shader *shader)
 {
     return ((shader->codes[SHADER_KERNEL_POST].reaches | shader->codes[SHADER_KERNEL_AOV].reaches) &
@@ -73,8 +74,8 @@ bool reuse_is_possible(const struct renderer *renderer)
     return renderer->params.reuse_rays && keeps_view(renderer);
 }
 
-/* One sample of each pixel is written once, and in the same view it is what stands there already.
- */
+/* A picture of one sample writes each pixel once. In the same view that is the value which is there
+   already. */
 bool reuse_outlives(const struct renderer *renderer)
 {
     return keeps_view(renderer) && renderer->params.sampling.count == 1 &&
@@ -125,8 +126,7 @@ static whit_result draw_aovs(struct renderer *renderer, bool in_steps)
                     : render_pass(renderer, renderer->params.sampling.count, &progress);
 }
 
-/* Statistics are those of the kept picture, but for kernels and memory, which this version has
-   made. */
+/* Statistics are those of the kept picture, except for kernels and memory, which are new. */
 static void restore_stats(struct renderer *renderer)
 {
     struct target *picture = &renderer->picture;

@@ -1,5 +1,5 @@
-/* The kernels that draw a picture together: which stages have one, what of them another version of
-   a user's file leaves as it is, and what is made later than the rest. */
+/* The kernels that draw a picture together: which stages have one, which of them stay when a user's
+   file changes, and which are made later than the rest. */
 #include <string.h>
 
 #include "base/threads.h"
@@ -8,10 +8,10 @@
 #include "render/stage_set.h"
 #include "render/translation.h"
 
-/* Generations of the first tile, before it is known how many there are. */
+/* Generations that are recorded for the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4 };
 
-/* One kernel for camera rays and later ones, where nothing but that tells the two apart. */
+/* Makes two stages share one kernel if their constants differ only in SPEC_GENERATIONS. */
 static void share_kernel(struct stages_job *job, enum stage first, enum stage later)
 {
     struct gpu_spec spec = job->stages[first].spec;
@@ -31,7 +31,8 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     const struct renderer *renderer = target->renderer;
     const whit_shader *shader = renderer->params.shader;
     *job = (struct stages_job){.spec = *spec};
-    /* A shading function of the user's has asked them itself, as all but catchers do. */
+    /* A user's shade() has added the light itself; only shadow catchers still need the shadow
+       stages. */
     job->asks = !shader_has(shader, WHIT_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
     bool splits = variant_splits_hits(target);
@@ -59,7 +60,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
     share_kernel(job, STAGE_RESOLVE, STAGE_RESOLVE_LATER);
 }
 
-/* A set in the making: stages are made at once, as far as there are threads. */
+/* A set in the making: its kernels are made in parallel, by as many threads as there are. */
 struct set_making {
     struct device *device;
     const struct stages_job *job;
@@ -84,7 +85,7 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
-                        job->spec.SPEC_PROBE; /* there sums are recorded */
+                        job->spec.SPEC_PROBE; /* a probe records sums */
     threads_for(device_compile_threads(device), STAGE_COUNT, make_stage, &making);
     for (int i = 0; result == WHIT_OK && i < STAGE_COUNT; ++i)
         result = making.results[i];
@@ -150,9 +151,9 @@ whit_result stages_take(struct target *target, struct stage_set *set)
     return stages_bind(target);
 }
 
-/* Whether two stages have different kernels. `closely`: kernels whose words differ are specialized
-   and compared again. Where rays may wait for a second kernel words decide, for that one is not
-   compared. */
+/* Whether two stages have different kernels. `closely`: if their SPIR-V differs, both are
+   specialized and compared again. That is not done where a second, deferred kernel exists, which
+   would not be compared. */
 static bool is_other(const struct variant_job *a, const struct variant_job *b, bool closely)
 {
     struct gpu_spec second;
@@ -163,16 +164,16 @@ static bool is_other(const struct variant_job *a, const struct variant_job *b, b
                              pipeline_is_same(&a->params, &b->params)));
 }
 
-/* Whether both have a kernel of the stage. */
 static bool both_have(const struct stages_job *a, const struct stages_job *b, enum stage stage)
 {
     return a->wanted[stage] && b->wanted[stage];
 }
 
-/* Leaves in `job` the kernels that are others than those of `was`. */
+/* Drops from `job` the kernels that are the same as in `was`. */
 static void drop_same(const struct stages_job *was, bool same, struct stages_job *job)
 {
-    /* Ids in other kernels move where a function that has one of its own is another. */
+    /* These stages have functions of the user's file. A change of one function may renumber the
+       SPIR-V ids in the kernels of the others. */
     static const enum stage own[] = {STAGE_SHAPE, STAGE_HIT,  STAGE_HIT_CALL,
                                      STAGE_AOV,   STAGE_MISS, STAGE_POST};
     for (int i = 0; i < STAGE_COUNT; ++i) {
@@ -184,9 +185,8 @@ static void drop_same(const struct stages_job *was, bool same, struct stages_job
     }
 }
 
-/* Where a new version of shade() needs another kernel and `splits`, `job` gets the kernels of its
-   two parts, and the whole one waits for stages_complete. Takes out of `set` what is of an old
-   version. */
+/* If a new version of shade() needs another kernel and `splits`, `job` gets the kernels of its two
+   parts, and the whole kernel is left to stages_complete. Removes outdated kernels from `set`. */
 static void put_off_hits(bool splits, struct stage_set *set, struct stages_job *job)
 {
     if (!splits || job->wanted[STAGE_HIT_FETCH])
@@ -242,7 +242,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     return WHIT_OK;
 }
 
-/* Makes the kernel of shade() whose parts have stood in for it. */
+/* Makes the kernel of shade() for which the two parts have stood in. */
 static whit_result make_hits(struct target *target)
 {
     struct stage_set *set = &target->stages.set, made;

@@ -1,6 +1,6 @@
-/* What the stages of a picture take. Time stamps around each dispatch would slow small tiles down
-   on drivers that end a batch of work for each stamp (lavapipe): so only some tiles are timed, and
-   what an item took there stands for all. */
+/* The time that the stages of a picture take. Time stamps around each dispatch would slow small
+   tiles down on drivers that end a batch of work for each stamp (lavapipe). So only some tiles are
+   timed, and the time of an item there stands for all items. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -12,8 +12,9 @@
 #include "render/stage_times.h"
 #include "render/stages.h"
 
-/* One tile in so many is timed, and the second. Which ones has no pattern in the picture. Never the
-   first: drivers that make machine code at the first dispatch (lavapipe) do it there. */
+/* One tile in TIMED_ONE_IN is timed, by a hash of its number, so that they make no pattern in the
+   picture; and always the second. The first never is: drivers that make machine code at the first
+   dispatch (lavapipe) do it there. */
 enum { TIMED_ONE_IN = 8 };
 
 void stage_times_begin(struct target *target)

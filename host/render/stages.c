@@ -1,6 +1,6 @@
-/* One sample of a tile in stages: what its rays meet, what the surfaces there do with light, what
-   comes from each light; then the same for the rays that these call for, generation by generation;
-   last the sums, from the youngest generation to the camera rays. */
+/* One sample of a tile in stages: what its rays hit, what the surfaces there do with light, what
+   comes from each light; then the same for the rays that these hits send, generation by generation;
+   at last the sums, from the youngest generation back to the camera rays. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -19,10 +19,10 @@
 #include "render/tiles.h"
 #include "render/variants.h"
 
-/* Generations that are recorded at once where the tile before had fewer. */
+/* Generations to record at once if a tile has more of them than the one before. */
 enum { MORE_AT_ONCE = 2 };
-/* A submission cannot be stopped. One of all the dispatches of a tile takes seconds in a scene of
-   thousands of lights, and Ctrl+C would wait for it. */
+/* A submission cannot be stopped. With all dispatches of a tile it would take seconds in a scene of
+   thousands of lights, and Ctrl+C would have to wait for it. */
 enum { DISPATCHES_A_SUBMISSION = 512 };
 
 /* A tile on its way through the stages. */
@@ -30,8 +30,8 @@ struct tile_run {
     struct target *target;
     struct gpu_chunk chunk;
     const struct progress *progress;
-    uint32_t dispatches; /* of the submission in the making */
-    double longest_ms;   /* of those before */
+    uint32_t dispatches; /* dispatches of the submission being recorded */
+    double longest_ms;   /* of the submissions so far */
 };
 
 uint64_t stages_generation_offset(uint32_t generation)
@@ -44,7 +44,7 @@ static size_t list_offset(uint32_t list)
     return offsetof(struct gpu_generation, lists) + list * sizeof(struct gpu_items);
 }
 
-/* A row of the prices of stages. */
+/* The row of whit_stats.stages that a dispatch counts in: RENDER_STAGE_*. */
 static uint32_t row_of(enum stage stage, uint32_t list)
 {
     static const uint32_t rows[STAGE_COUNT] = {
@@ -89,8 +89,8 @@ static whit_result finish_submission(struct tile_run *run)
     return result;
 }
 
-/* Submits what was recorded and begins anew where the submission has as many dispatches as one may
-   have; stops there if that is asked for. */
+/* Submits what was recorded and begins another submission, if this one has as many dispatches as
+   allowed; in between it obeys requests to stop. */
 static whit_result split_submission(struct tile_run *run)
 {
     if (run->dispatches < DISPATCHES_A_SUBMISSION)
@@ -105,9 +105,9 @@ static whit_result split_submission(struct tile_run *run)
     return result;
 }
 
-/* Records one stage over one list of the generation run->chunk.generation. How many workgroups that
-   takes is known to the device alone, but for camera rays: one for each listed pixel of the chunk.
- */
+/* Records one stage over one list of the generation run->chunk.generation. The device alone knows
+   the number of workgroups, except for camera rays: one invocation for each pixel drawn of the
+   chunk. */
 static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t list)
 {
     struct target *target = run->target;
@@ -144,7 +144,7 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
     return WHIT_OK;
 }
 
-/* A stage of a user's functions, where the file has them. */
+/* Records a stage of the user's functions, if the file has them. */
 static whit_result dispatch_own(struct tile_run *run, enum stage stage, uint32_t list)
 {
     bool has = run->target->stages.set.passes[stage].pipeline;
@@ -159,7 +159,7 @@ static whit_result record_rays(struct tile_run *run)
                              : result;
 }
 
-/* A stage of a user's functions over the hits of all classes. */
+/* Records a stage of the user's functions over the hits of all classes. */
 static whit_result record_own_hits(struct tile_run *run, enum stage stage)
 {
     whit_result result = WHIT_OK;
@@ -168,7 +168,8 @@ static whit_result record_own_hits(struct tile_run *run, enum stage stage)
     return result;
 }
 
-/* The rows that STAGE_HIT_CALL takes are those of the dispatch before it. */
+/* STAGE_HIT_CALL reads the rows of the dispatch before it: so the two parts alternate, class by
+   class. */
 static whit_result record_functions(struct tile_run *run)
 {
     const struct stage_set *set = &run->target->stages.set;
@@ -183,7 +184,7 @@ static whit_result record_functions(struct tile_run *run)
     return result;
 }
 
-/* Functions of users come first: where a shadow catcher is shaded there is no hit any more. */
+/* The user's functions come first, since shading a shadow catcher overwrites the row of its hit. */
 static whit_result record_hits(struct tile_run *run)
 {
     whit_result result = record_functions(run);
@@ -224,7 +225,8 @@ static whit_result record_generation(struct tile_run *run)
     return result == WHIT_OK ? record_lights(run) : result;
 }
 
-/* From the last generation to the camera rays. Does nothing where generation `count` has rays. */
+/* Records the sums, from generation `count` - 1 back to the camera rays. The kernels do nothing if
+   generation `count` has rays. */
 static whit_result record_resolve(struct tile_run *run, uint32_t count)
 {
     const struct stage_set *set = &run->target->stages.set;
@@ -250,14 +252,14 @@ static void clear_queues(struct target *target)
     commands_copy(commands, queues->empty, 0, queues->generations, 0,
                   stages_generation_offset(queues->generation_count));
     const struct pixel_buffers *pixels = &target->buffers;
-    if (pixels->aovs) /* of what is met nowhere */
+    if (pixels->aovs) /* pixels whose ray hits nothing keep these zeros */
         commands_fill(commands, pixels->aovs, 0,
                       (uint64_t)pixels->chunk_slots * hooks_aov_count(target) * 16, 0);
     if (queues->cuts)
         commands_fill(commands, queues->cuts, 0, buffer_size(queues->cuts), 0);
 }
 
-/* Generations `first` to `end` of a tile, and what they sum up to. */
+/* Traces generations `first` to `end` - 1 of a tile, and adds up what they bring. */
 static whit_result trace_generations(struct tile_run *run, uint32_t first, uint32_t end)
 {
     whit_result result = begin_submission(run);
@@ -275,7 +277,7 @@ static whit_result trace_generations(struct tile_run *run, uint32_t first, uint3
     return result == WHIT_OK ? finish_submission(run) : result;
 }
 
-/* Draws the aovs of a tile alone: camera rays, the aov stage, and the sums of aovs. */
+/* Draws only the aovs of a tile: camera rays, the aov stage, and the sums of aovs. */
 static whit_result draw_aovs(struct tile_run *run)
 {
     run->target->stages.times.on = false;
@@ -314,7 +316,7 @@ static whit_result take_tally(struct target *target)
     return WHIT_OK;
 }
 
-/* How many rays wait in a generation that was not traced yet. */
+/* Reads how many rays a generation has that was not traced yet. */
 static whit_result count_left(struct target *target, uint32_t generation, uint32_t *rays)
 {
     struct gpu_generation head = {0};
@@ -326,7 +328,7 @@ static whit_result count_left(struct target *target, uint32_t generation, uint32
     return result;
 }
 
-/* Leaves the pixels alone where a queue gets full. */
+/* Draws a tile; its pixels stay as they are if a queue overflows. */
 static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile,
                              const struct progress *progress, double *longest_ms)
 {
@@ -373,7 +375,7 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
     return result == WHIT_OK ? take_tally(target) : result;
 }
 
-/* Where a queue gets full, in halves. */
+/* If a queue overflows, the tile is drawn again in halves. */
 whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
                           const struct progress *progress, double *longest_ms)
 {
@@ -405,7 +407,7 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
             result = stages_sample(target, &part, progress, longest_ms);
     }
     part = *chunk;
-    if (result == WHIT_OK && progress->listed) /* for the next sample */
+    if (result == WHIT_OK && progress->listed) /* the whole list, for the next sample */
         result = adaptive_list(target, progress, &part);
     return result;
 }

@@ -1,5 +1,6 @@
-/* A picture in steps, each of which shows all of it: every eighth pixel of rows and columns, every
-   fourth, every second, all. A step draws what those before it have not. */
+/* A picture in steps, each of which shows the whole picture: every eighth pixel of rows and
+   columns, every fourth, every second, all. A step draws the pixels that the steps before it have
+   not. */
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -13,7 +14,8 @@
 
 enum { SIDE_MIN = 16 };
 
-/* The first pixel of a step is near the middle of its square, and of every step after it. */
+/* Offset of a step's pixels in their squares of `spacing` x `spacing`. It is near the middle, and
+   such that all later steps have these pixels too. */
 static uint32_t first_pixel(uint32_t spacing)
 {
     return spacing == 8 ? 5 : spacing > 1;
@@ -58,14 +60,16 @@ bool steps_are_wanted(const struct renderer *renderer)
            readback_is_late(renderer);
 }
 
-/* A column or row of squares that ends outside of the picture shows what is left of or above it. */
+/* The row or column of the picture that square `at` of a step shows: its own pixel, or the one of
+   the square before if its own is outside of the picture. */
 static uint32_t pixel_of(uint32_t at, uint32_t spacing, uint32_t end)
 {
     uint32_t first = first_pixel(spacing), pixel = at * spacing + first;
     return pixel < end ? pixel : pixel - spacing;
 }
 
-/* Row `y` of what steps show. `all`: room for all aovs of a row. */
+/* Reads row `y` of the image that steps show: an aov or the colours. `all`: room for all aovs of a
+   row. */
 static whit_result read_row(const struct renderer *renderer, uint32_t y, float *all, float *row)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -125,8 +129,8 @@ static whit_result draw_lattice(struct renderer *renderer, struct progress *prog
     return render_pass(renderer, params->sampling.count, progress);
 }
 
-/* A step of half the spacing has twice as many rows. Those that are new are drawn whole, as packets
-   of rays like their pixels side by side; of the others every second pixel is new. */
+/* Draws the step of half the spacing, which has twice as many rows. New rows are drawn whole, since
+   packets of rays gain by pixels side by side; in the other rows every second pixel is new. */
 static whit_result draw_between(struct renderer *renderer, struct progress *progress,
                                 uint32_t spacing)
 {

@@ -1,5 +1,5 @@
-/* Materials and the texels they use: as in their files, 8 bits a channel; shaders decode sRGB by a
-   table before they filter, since light adds up and codes do not. */
+/* Materials and the texels that they use. Texels stay as in their files, 8 bits a channel; shaders
+   decode sRGB by a table before they filter, since light adds up and sRGB codes do not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,14 +10,14 @@
 #include "render/renderer.h"
 #include "render/textures.h"
 
-/* A picture that some material uses, in the size it gets on the device. Where it is averaged in two
-   ways it is there twice. */
+/* A texture that some material uses, in its size on the device. If two materials need its levels
+   averaged in two ways (mipmap_kind), it is there twice. */
 struct texel_image {
-    uint32_t texture; /* of the scene */
+    uint32_t texture; /* index in scene->textures */
     enum mipmap_kind kind;
     uint32_t width, height, first;
     uint32_t halvings;
-    uint32_t levels; /* behind level 0 */
+    uint32_t levels; /* without level 0 */
 };
 
 struct material_upload {
@@ -25,7 +25,7 @@ struct material_upload {
     struct texel_image *images;
     uint32_t image_count, image_capacity;
     struct gpu_texture *uses;
-    uint32_t *use_images; /* image of each use */
+    uint32_t *use_images; /* by use: index in `images` */
     uint32_t use_count, use_capacity, use_image_capacity;
     struct gpu_material *materials;
 };
@@ -56,7 +56,8 @@ static uint32_t wrap_code(enum scene_wrap wrap)
                                        : WRAP_REPEAT;
 }
 
-/* Index of a new use record of the material's slot, TEXTURE_NONE when there is no texture. */
+/* *out: index of a new use record for the slot of the material; TEXTURE_NONE if it has no
+   texture. */
 static whit_result add_use(struct material_upload *up, const struct scene_material *m,
                            enum scene_slot slot, bool srgb, uint32_t *out)
 {
@@ -112,7 +113,7 @@ static uint32_t material_flags(const struct scene_material *m)
            m->priority << MATERIAL_PRIORITY_SHIFT;
 }
 
-/* Opacity is a picture of its own, or the alpha of the diffuse one. */
+/* Opacity is a texture of its own, or the alpha of the diffuse texture. */
 static whit_result add_opacity(struct material_upload *up, const struct scene_material *m,
                                struct gpu_material *out)
 {
@@ -133,15 +134,15 @@ static whit_result add_opacity(struct material_upload *up, const struct scene_ma
     return add_use(up, m, SCENE_SLOT_DIFFUSE, true, &out->tex_opacity);
 }
 
-/* Whether the kernel reads the pictures of a slot. */
+/* Whether the kernels read the textures of a slot. */
 static bool reads_slot(const struct renderer *renderer, enum scene_slot slot)
 {
     bool bends = slot == SCENE_SLOT_NORMAL || slot == SCENE_SLOT_BUMP;
     return renderer->effects.called[bends ? SCENE_EFFECT_NORMAL_MAPS : SCENE_EFFECT_TEXTURES];
 }
 
-/* Glass without refraction: a body of the colour that it lets through, under a face that mirrors
-   as it did. Its shadows stay those of glass, for which it keeps what passes. */
+/* Makes glass opaque, for pictures without refraction: it gets the colour that it would let
+   through, and reflects as before. `transmission` stays: shadows are still those of glass. */
 static void make_solid(struct scene_material *m)
 {
     float root = (m->ior - 1.0f) / (m->ior + 1.0f);
@@ -233,15 +234,15 @@ static uint64_t texel_total(const struct material_upload *up)
     return total;
 }
 
-/* The words that an image takes: level 0, a word for each level behind it, their texels. */
+/* The words that an image takes: level 0, a word for each further level, their texels. */
 static uint64_t image_words(const struct texel_image *image)
 {
     uint64_t words = mipmap_first(image->width, image->height, image->levels + 1);
     return words + image->levels;
 }
 
-/* Adds smaller levels where there is room for them; a picture without them is as it would be
-   without minification. */
+/* Adds mipmap levels where there is room for them. A texture without levels is sampled as without
+   minification. */
 static void add_levels(struct material_upload *up, uint64_t limit)
 {
     uint64_t room = limit - texel_total(up);
@@ -264,7 +265,7 @@ static void add_levels(struct material_upload *up, uint64_t limit)
                     "textures: %u without smaller levels, to fit the device's buffers", left_out);
 }
 
-/* Halves the largest pictures until all fit into one buffer, and says so. */
+/* Halves the largest textures until all fit into one buffer, and logs a warning. */
 static void fit_images(struct material_upload *up, uint64_t limit)
 {
     uint32_t halvings = 0;
@@ -286,7 +287,7 @@ static void fit_images(struct material_upload *up, uint64_t limit)
                     halvings);
 }
 
-/* Half the size, by averaging up to 2x2 texels; *width and *height follow. */
+/* Halves the size, by averaging up to 2x2 texels; updates *width and *height. */
 static void halve_texels(const uint8_t *from, uint32_t *width, uint32_t *height, uint8_t *to)
 {
     uint32_t w = (*width + 1) / 2, h = (*height + 1) / 2;
@@ -306,7 +307,7 @@ static void halve_texels(const uint8_t *from, uint32_t *width, uint32_t *height,
     *height = h;
 }
 
-/* Behind level 0 of an image, which is `rgba`. */
+/* Writes the levels behind level 0 of an image, which is `rgba`. */
 static whit_result write_levels(struct material_upload *up, const struct texel_image *image,
                                 const uint8_t *rgba)
 {
@@ -343,7 +344,7 @@ static whit_result write_image(struct material_upload *up, const struct texel_im
         halve_texels(source->rgba, &width, &height, half);
     }
     for (uint32_t i = 1; i < image->halvings; ++i)
-        halve_texels(half, &width, &height, half); /* reads ahead of what it writes */
+        halve_texels(half, &width, &height, half); /* in place: reads ahead of its writes */
     whit_result result =
         buffer_write(up->renderer->scene_buffers.texels, (uint64_t)image->first * 4, rgba,
                      (uint64_t)width * height * 4);
@@ -374,7 +375,7 @@ static whit_result upload_texels(struct material_upload *up)
     uint64_t limit = buffers->texel_loads
                          ? device_get_limits(renderer->device)->max_texel_elements * 4
                          : device_get_info(renderer->device)->max_storage_range_bytes / 4;
-    if (limit > UINT32_MAX) /* words are counted in 32 bits */
+    if (limit > UINT32_MAX) /* offsets of words have 32 bits */
         limit = UINT32_MAX;
     fit_images(up, limit - TEXEL_TABLE_WORDS);
     add_levels(up, limit - TEXEL_TABLE_WORDS);

@@ -1,6 +1,5 @@
 /* The order of a picture: tiles of pixel blocks, each sample of a tile in stages (stages.c). The
-   size of tiles follows measured time (adapt_tile), so that no submission runs long. A pixel that
-   is probed has one dispatch of its camera ray and one a ray as long as there are any left. */
+   size of tiles follows measured time (adapt_tile), so that no submission runs long. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -27,11 +26,11 @@
 #include "render/views.h"
 
 enum { TILE_FIRST_CPU = 128, TILE_FIRST = 192 };
-/* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs want less than a second. */
+/* Ctrl+C must be obeyed within 0.2 s, and GPU watchdogs allow less than a second. */
 static const double SUBMISSION_LIMIT_MS = 100.0;
 
-/* Where pixels are not finite, of those drawn so far. Nothing where none is: a ray was lost whose
-   weight was NaN. */
+/* Describes which pixels drawn so far are not finite. It adds no pixels if none is: then a ray with
+   a weight of NaN was lost. */
 static void describe_non_finite(const struct target *target, char *text, size_t text_bytes)
 {
     uint32_t x, y, count, stride = views_stride(target->renderer);
@@ -76,7 +75,7 @@ whit_result status_check(struct target *target)
     if (word & STATUS_SHAPE)
         hooks_describe_shape(target, shape, sizeof shape);
     if (word & (STATUS_FUEL | STATUS_SHAPE))
-        result = hooks_clear_status(target); /* the next picture begins without these */
+        result = hooks_clear_status(target); /* so that the next picture begins without them */
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         size_t used = strlen(text);
         if (word & reasons[i].bit)
@@ -90,7 +89,7 @@ whit_result status_check(struct target *target)
     return result == WHIT_OK ? WHIT_ERROR_STATUS : result;
 }
 
-/* Behind the bits, in the same buffer. */
+/* The count (status_waits) is the second word of the status buffer. */
 whit_result deferred_clear(struct target *target)
 {
     const uint32_t none = 0;
@@ -238,7 +237,7 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
     return WHIT_OK;
 }
 
-/* All samples of a chunk in this pass; of the pixels that it lists, when it does. */
+/* Draws all samples of a chunk in this pass, or of its listed pixels if the pass lists pixels. */
 static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
                               struct progress *progress)
 {
@@ -302,8 +301,8 @@ whit_result render_pass(struct renderer *renderer, uint32_t samples, struct prog
     return result;
 }
 
-/* 4 samples for all pixels; 16 for those that then differ from a neighbour; 64 for those that still
-   do. Only pictures as a whole tell who differs, so passes are over all bands. */
+/* 4 samples for all pixels; then 16 for pixels that differ from a neighbour; then 64 for those that
+   still do. The comparison needs the whole picture, so each pass goes over all bands. */
 static whit_result render_adaptive(struct renderer *renderer, struct progress *progress)
 {
     const whit_renderer_params *params = &renderer->params;

@@ -1,48 +1,50 @@
-/* Pictures tile by tile, and what submissions are made of. */
+/* Draws pictures tile by tile; parts of submissions. */
 #ifndef RENDER_TILES_H
 #define RENDER_TILES_H
 
 #include "render/renderer.h"
 
-/* Takes `samples` samples of all pixels of progress->lattice, or of those of them to which
-   progress->levels gives so many. */
+/* Takes `samples` samples of all pixels of progress->lattice, or (progress->listed) of those whose
+   level in progress->levels asks for that many. */
 WHIT_CHECK whit_result render_pass(struct renderer *renderer, uint32_t samples,
                                    struct progress *progress);
-/* Sample `index` of the `samples` of a pass, into a chunk whose blocks are set. */
+/* Sets up `chunk`, whose blocks are set, for sample `index` of the `samples` of a pass. */
 void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
                         struct gpu_chunk *chunk);
 
-/* Without trees, whose price is known, WHIT_ERROR_USAGE where the rays that an invocation
-   traces take more iterations of loops together than the driver grants it; else WHIT_OK. */
+/* WHIT_ERROR_USAGE, logged, if there are no trees and the rays that an invocation traces take more
+   loop iterations together than the driver allows; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
-/* Gives the progress of a pass over all pixels that begins now. */
+/* Gives the progress of a pass over all pixels, which begins now. */
 struct progress render_progress(const struct renderer *renderer);
-/* The picture, of one camera or of many. */
+/* Draws the picture, of one camera or of many. */
 WHIT_CHECK whit_result render_all(struct renderer *renderer);
 
-/* What submissions are made of. */
+/* WHIT_ERROR_CANCELLED or WHIT_ERROR_TIME_LIMIT if the picture is to stop; else WHIT_OK. */
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
-/* Empties a list of deferred rays, if there is one. Barriers are the caller's. */
+/* Empties a list of deferred rays; NULL: nothing to do. The caller adds barriers. */
 void render_clear_deferred(struct renderer *renderer, struct buffer *deferred);
-/* Runs the second kernel of `pass`, which has exact integers, on the rays that the dispatch before
-   has listed in `deferred`; a barrier goes between. `push`: its push constants, with `waiting`
-   set. */
+/* Records the second kernel of `pass`, which has exact integers, over the rays that the dispatch
+   before has put on the list `deferred`, with a barrier in between. `push`: its push constants,
+   with `deferred` set. */
 void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
                           const void *push, uint32_t push_bytes);
-/* Workgroups of the camera rays of a chunk. */
+/* Number of workgroups for the camera rays of a chunk, at one ray an invocation. */
 uint32_t render_groups(const struct gpu_chunk *chunk);
-/* Pixel `i` of block `block`, as slot_pixel() of the kernel. False when outside of the picture. */
+/* The pixel at place `i` of block `block`, as slot_pixel() of the kernels. False if it is outside
+   of the picture. */
 bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t i, uint32_t *x,
                        uint32_t *y);
 WHIT_CHECK whit_result render_finish_submission(struct target *target);
 
-/* What kernels have listed as waiting since `deferred_clear`. */
+/* The number of items that kernels have put on lists of deferred rays since `deferred_clear`. */
 WHIT_CHECK whit_result deferred_clear(struct target *target);
 WHIT_CHECK whit_result deferred_read(const struct target *target, uint32_t *count);
 
-/* Logs what the bits say. WHIT_OK when there are none. */
+/* Reads the status word, and logs what its bits mean. WHIT_OK if none is set, or STATUS_QUEUE_FULL
+   alone, which goes into target->stages.full. */
 WHIT_CHECK whit_result status_check(struct target *target);
 
 #endif

@@ -1,4 +1,5 @@
-/* Batches of rays: in, traced, out, in pieces that the device holds and finishes soon. */
+/* Batches of rays are uploaded, traced and read back in pieces that fit the device's buffers and
+   finish soon. */
 #include "render/trace.h"
 #include "render/renderer.h"
 #include "render/tiles.h"
@@ -13,13 +14,13 @@
 #include "device/commands.h"
 
 enum {
-    TRACE_CAPACITY = 1 << 20,   /* rays in device memory */
-    TRACE_FIRST_CPU = 1 << 14,  /* rays of the first dispatch, whose time sets the next one's */
-    TRACE_FIRST = 1 << 20,      /* the same of devices that have more threads than that */
+    TRACE_CAPACITY = 1 << 20,   /* most rays of a piece */
+    TRACE_FIRST_CPU = 1 << 14,  /* rays of the first piece on a CPU device */
+    TRACE_FIRST = 1 << 20,      /* the same on other devices, with more threads */
     TRACE_FIRST_BARE = 1 << 10, /* the same without trees */
-    TRACE_BEAMS_MIN = 1 << 17,  /* rays of a batch that are worth the kernel of beams */
+    TRACE_BEAMS_MIN = 1 << 17,  /* rays of a batch from which on packets pay */
 };
-/* Long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
+/* Time of a piece: long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;
 
 void trace_finish(struct trace_state *trace)
@@ -35,7 +36,7 @@ void trace_finish(struct trace_state *trace)
     *trace = (struct trace_state){0};
 }
 
-/* Pieces grow fourfold, up to the capacity. */
+/* Later pieces may be four times as large each, up to the capacity. */
 static uint32_t first_piece(const struct renderer *renderer)
 {
     bool cpu = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
@@ -89,7 +90,8 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
     return result;
 }
 
-/* Records a dispatch over the rays that the one before it has put on the list of deferred rays. */
+/* Records a dispatch over the rays that the dispatch before it has put on the list of deferred
+   rays. */
 static void record_deferred(struct renderer *renderer, struct pipeline *pipeline,
                             struct binding_set *set, const struct gpu_batch *batch)
 {
@@ -101,7 +103,8 @@ static void record_deferred(struct renderer *renderer, struct pipeline *pipeline
     commands_dispatch_indirect(renderer->commands, renderer->trace.deferred, 0);
 }
 
-/* Rays [0, batch->ray_count) of the ray buffer. `beams`: first together those that can be. */
+/* Traces rays [0, batch->ray_count) of the ray buffer. `beams`: in packets where possible, then the
+   rest ray by ray. */
 static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
                             const struct gpu_batch *batch)
 {
@@ -137,8 +140,8 @@ static whit_result cancelled(const struct renderer *renderer)
     return renderer->params.cancel && *renderer->params.cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
-/* Rays [0, count) of the ray buffer. *beams: whether to try them together; then, whether most went
-   together. */
+/* Traces rays [0, count) of the ray buffer. *beams: whether to try packets; afterwards, whether
+   most rays were traced in packets. */
 static whit_result trace_piece(struct renderer *renderer, bool any, bool *beams, uint32_t count)
 {
     const struct accel *accel = renderer->accel;

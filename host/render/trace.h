@@ -1,10 +1,9 @@
-/* Batches of rays. */
+/* Traces batches of rays. */
 #ifndef RENDER_TRACE_H
 #define RENDER_TRACE_H
 
 #include "render/renderer.h"
 
-/* trace.c */
 void trace_finish(struct trace_state *trace);
 
 #endif

@@ -1,7 +1,7 @@
-/* lavapipe translates a kernel to machine code when it is first dispatched, one after another on
-   one core, and keeps that in a cache of files. Where it has none yet, a second device translates
-   half of a picture's kernels on another core meanwhile, and the first finds them there. Dispatches
-   of no workgroup do: they translate and run nothing. */
+/* lavapipe translates kernels to machine code when they are first dispatched, one after another on
+   one core, and keeps the code in a cache of files. If the cache has none yet, a second device
+   translates half of a picture's kernels on another core meanwhile, and the first device finds them
+   in the cache. Dispatches of zero workgroups suffice: they translate and run nothing. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,9 +15,11 @@
 #include "render/translation.h"
 #include "render/variants.h"
 
-/* The smallest kernel takes less out of the cache, and more where it is translated. */
+/* The first dispatch of the smallest kernel takes less than this if its code is in the cache, and
+   more if it has to be translated. */
 static const double CACHED_MS = 10.0;
-/* START_INSTRUCTIONS: the first device translates about so many while the second one is made. */
+/* START_INSTRUCTIONS: SPIR-V instructions that the first device translates while the second one is
+   made. */
 enum { START_INSTRUCTIONS = 1000, KERNELS_MIN = 3, KERNELS_MAX = 2 * STAGE_COUNT };
 
 struct kernel {
@@ -53,7 +55,7 @@ static int by_size(const void *a, const void *b)
     return (x->instructions < y->instructions) - (x->instructions > y->instructions);
 }
 
-/* The largest first. */
+/* All kernels of the set, the largest first. */
 static struct share all_kernels(const struct target *target, const struct stages_job *job)
 {
     struct share all = {.renderer = target->renderer};
@@ -89,7 +91,7 @@ static whit_result submit_here(const struct renderer *renderer, const struct ker
                             : submit_nothing(renderer->commands, pass->pipeline, pass->set);
 }
 
-/* Whether the picture is to stop: it does before its first dispatch. */
+/* Whether the picture is to stop, which it will do before its first dispatch. */
 static bool stop_is_due(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -135,8 +137,8 @@ static whit_result translate_there(struct device *device, struct commands *comma
     return result;
 }
 
-/* The second device's share. The first device translates a kernel that is missing in the cache when
-   it dispatches it, so that an error here costs time alone. */
+/* Translates the second device's share. An error here costs only time: the first device translates
+   a kernel that is missing in the cache when it dispatches it. */
 static void translate_share(void *context)
 {
     struct share *share = context;

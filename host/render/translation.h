@@ -1,12 +1,12 @@
-/* Machine code by two cores. */
+/* Translates kernels to machine code on two cores. */
 #ifndef RENDER_TRANSLATION_H
 #define RENDER_TRANSLATION_H
 
 #include "render/stage_set.h"
 
-/* Has the kernels of a set that was just made and bound translated to machine code by two cores,
-   where the driver's cache has none of it and the driver would use one core. Errors are the
-   device's; where a stop is asked for, what is left is translated when it is dispatched. */
+/* Translates the kernels of a set that was just made and bound to machine code on two cores, if the
+   driver would use one core and its cache has none of this code. Errors are the device's. After a
+   request to stop, the remaining kernels are translated when they are dispatched. */
 WHIT_CHECK whit_result translation_share(struct target *target, const struct stages_job *job);
 
 #endif

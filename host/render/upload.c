@@ -1,4 +1,4 @@
-/* Flat arrays of the scene and its trees into device memory. */
+/* Uploads the flat arrays of the scene and its trees to device memory. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +18,8 @@
 
 enum { ROW_BYTES = 16 };
 
-/* What the scene is estimated to take has room for both copies of these, nodes two to an instance
-   and one to two primitives. */
+/* The memory that the scene is estimated to take (scene/afford.h) includes these records on host
+   and device, with two nodes for each instance and one node for two primitives. */
 _Static_assert(SCENE_TREE_INSTANCE_BYTES >=
                    2 * (sizeof(struct gpu_instance) + 2 * sizeof(struct gpu_bvh_node)),
                "instances cost more than estimated");
@@ -36,7 +36,7 @@ static bool fits_storage(const struct renderer *renderer)
            (uint64_t)accel->instance_count * sizeof(struct gpu_instance) <= limit;
 }
 
-/* Texel buffers are twice as fast on lavapipe, and reach beyond the range of a storage buffer. */
+/* Texel buffers are twice as fast as storage buffers on lavapipe, and may be larger. */
 static bool choose_texel_loads(const struct renderer *renderer)
 {
     switch (renderer->params.load_path) {
@@ -64,8 +64,8 @@ whit_result upload_words(struct renderer *renderer, const void *data, uint64_t s
     return result;
 }
 
-/* Into a buffer that may be there already. One that is too small is made anew, with room to grow;
-   passes bound to it are gone then. */
+/* Writes to *buffer. A buffer that is missing or too small is made anew, a larger one with room to
+   grow; passes, which are bound to the old one, are then dropped. */
 static whit_result store_words(struct renderer *renderer, const void *data, uint64_t size_bytes,
                                const char *name, struct buffer **buffer)
 {
@@ -114,7 +114,7 @@ whit_result upload_widen(struct renderer *renderer)
     return result;
 }
 
-/* Before the instances, which name their roots. */
+/* Call it before upload_instances, since instances hold their roots among these nodes. */
 static whit_result upload_nodes8(struct renderer *renderer)
 {
     const struct accel_bvh8 *bvh8 = &renderer->accel->bvh8;
@@ -145,7 +145,8 @@ static whit_result upload_trees(struct renderer *renderer)
 /* Writes one record of `words` words for a triangle. */
 typedef void (*fill_triangle)(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out);
 
-/* `fill` for every triangle of every mesh, each mesh once, into the shading rows from `row` on. */
+/* Writes the records that `fill` makes of every triangle of every mesh, each mesh once, to the
+   shading rows from `row` on. */
 static whit_result write_triangles(struct renderer *renderer, uint32_t row, uint32_t rows_each,
                                    fill_triangle fill)
 {
@@ -181,7 +182,7 @@ static void fill_material(const struct scene_mesh *mesh, uint32_t triangle, uint
     out[3] = mesh->materials[triangle];
 }
 
-/* Zeros for flat meshes and spheres: shading then takes the geometric normal. */
+/* Flat meshes and spheres get zeros: shading then takes the geometric normal. */
 static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
 {
     for (size_t k = 0; k < 3; ++k) {
@@ -194,7 +195,7 @@ static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint3
 
 static void fill_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out, int set)
 {
-    /* Surfaces on spheres come with u and v in place of weights (shaders/bind/surface.glsl). */
+    /* Hits on spheres have u and v in place of barycentric weights (shaders/bind/surface.glsl). */
     static const float unit[6] = {0, 0, 1, 0, 0, 1};
     const float *uvs = mesh->uvs[set] ? mesh->uvs[set] : mesh->uvs[0];
     if (mesh->sphere_count)
@@ -246,7 +247,7 @@ static bool has_second_uvs(const struct scene_mesh *mesh)
     return mesh->uvs[1] != NULL;
 }
 
-/* Which row each kind of record starts at, in renderer->frame. Gives the number of rows. */
+/* Sets the first row of each kind of record in renderer->frame. Returns the number of rows. */
 static uint64_t lay_out_rows(struct renderer *renderer, uint32_t use_count)
 {
     const struct scene *scene = renderer->scene;
@@ -312,9 +313,9 @@ static whit_result upload_shading(struct renderer *renderer)
     return result;
 }
 
-/* Packets of two rays a lane: their kernels take `kernels_ns` of processor time longer to make than
-   those of single rays, and each ray then takes `saved_ns` less for every halving of the tree's
-   records beyond PACKETS_HALVINGS. Packets of four: the same beside those of two. Measured, see
+/* Kernels for packets of 2 rays a lane take `kernels_ns` of processor time longer to make than
+   those for single rays. Each ray then takes `saved_ns` less for every halving of the tree's
+   records beyond PACKETS_HALVINGS. The row for 4 rays compares with 2 likewise. Measured, see
    docs/performance.md. */
 static const struct {
     uint32_t rays;
@@ -322,7 +323,8 @@ static const struct {
 } packet_choices[] = {{2, 60e6, 18.0}, {4, 90e6, 4.0}};
 enum { PACKETS_HALVINGS = 8 };
 
-/* They are for lavapipe: eight lanes, and shuffles that are single instructions. */
+/* Packets are for lavapipe, with subgroups of eight lanes and shuffles that are single
+   instructions. */
 bool upload_can_widen(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -340,9 +342,10 @@ whit_result upload_wide(struct renderer *renderer)
     return upload_nodes8(renderer);
 }
 
-/* Rays of a lane that pay for their kernels by one picture's camera rays and their shadow rays;
-   for many pictures those of two always do, and where nobody waits for them those of four. 1: none,
-   as in instances packets lose what they gain outside. */
+/* Rays of a lane for packets whose kernels pay, by the camera rays and shadow rays of one picture.
+   For many pictures kernels of 2 always pay, and with compile_async, where nobody waits, those of 4
+   too. 1: no packets, as with instances, where packets lose inside of them what they gain
+   outside. */
 static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -416,7 +419,7 @@ whit_result upload_scene(struct renderer *renderer)
     return result;
 }
 
-/* Where instances have a tree of their own, only the nodes in front move. */
+/* With a tree over instances only its nodes move, which are the first ones. */
 whit_result upload_pose(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;

@@ -5,23 +5,25 @@
 #include "render/renderer.h"
 
 WHIT_CHECK whit_result upload_scene(struct renderer *renderer);
-/* How kernels read the trees, and whether rays walk in packets; upload_scene begins with it. */
+/* Chooses how kernels read the trees, and whether rays are traced in packets; part of
+   upload_scene. */
 void upload_choose(struct renderer *renderer);
-/* Chooses packets anew for the number of rays that the picture has now; before the frame is filled.
- */
+/* Chooses again whether rays are traced in packets, for the number of rays that the picture has
+   now. Call it before frame_fill. */
 WHIT_CHECK whit_result upload_choose_packets(struct renderer *renderer);
-/* Makes the nodes of eight that packets need on the host, and says what stack they take. */
+/* Makes the nodes of eight children that packets need on the host, and sets
+   renderer->packet_stack_size. */
 WHIT_CHECK whit_result upload_widen(struct renderer *renderer);
-/* Whether rays can walk in packets here, as far as device, trees and parameters go. */
+/* Whether device, trees and parameters allow packets. */
 bool upload_can_widen(const struct renderer *renderer);
-/* Nodes of eight children, where there are none yet: renderer->wide. */
+/* Makes and uploads nodes of eight children, if there are none yet, and sets renderer->wide. */
 WHIT_CHECK whit_result upload_wide(struct renderer *renderer);
 void upload_finish(struct scene_buffers *buffers);
 WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,
                                     uint64_t size_bytes, uint32_t uses, const char *name,
                                     struct buffer **out);
-/* What another pose changes: instances with their tree, lights. Passes bound to buffers that had to
-   grow are gone afterwards. */
+/* Uploads what another pose changes: instances with their tree, lights. Drops all passes if a
+   buffer had to grow, as they are bound to it. */
 WHIT_CHECK whit_result upload_pose(struct renderer *renderer);
 
 #endif

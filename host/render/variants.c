@@ -49,7 +49,7 @@ static bool only_spheres(const struct scene *scene)
     return true;
 }
 
-/* Where one effect has a say in the constant of another. */
+/* Sets constants that depend on several effects or on a parameter. */
 static void refine_effects(const struct renderer *renderer, const struct scene_effects *effects,
                            struct gpu_spec *spec)
 {
@@ -92,7 +92,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
     spec.SPEC_WIDE_ROWS =
         spec.SPEC_INTERLEAVE && device_get_info(renderer->device)->int64; /* lavapipe */
-    /* Counting wants all refs in memory. */
+    /* The counters need all entries of the node stack in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU && !renderer->params.count;
     spec.SPEC_CAMERA = variant_camera(renderer);
@@ -109,7 +109,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     return spec;
 }
 
-/* Kinds of lights that the scene has none of. */
+/* SPEC_LIGHTS bits of the kinds of lights that params.effects_added adds. */
 static uint32_t added_lights(const struct renderer *renderer)
 {
     struct scene_effects added = {.called = {false}};
@@ -120,7 +120,7 @@ static uint32_t added_lights(const struct renderer *renderer)
     return spec.SPEC_LIGHTS;
 }
 
-/* Restricts texture slots and sampling to what the materials of `which` in use call for. */
+/* Restricts texture slots and sampling to what the materials of the set `which` use. */
 static void narrow_textures(const struct renderer *renderer, enum scene_materials which,
                             struct gpu_spec *spec)
 {
@@ -189,15 +189,15 @@ struct gpu_spec variant_async_spec(const struct target *target)
     }
     effects_choose(&all, &effects);
     struct gpu_spec spec = make_spec(target, &effects, renderer->has_secondary);
-    spec.SPEC_SETTLES = 1; /* one kernel is sooner made than two */
+    spec.SPEC_SETTLES = 1; /* one kernel is made sooner than two */
     return spec;
 }
 
-/* What a kernel is bound to, while it is put together. */
+/* The bindings of a kernel, while they are put together. */
 struct bindings {
     enum binding_kind kinds[BIND_STAGES_COUNT];
     struct buffer *buffers[BIND_STAGES_COUNT];
-    struct buffer *none; /* in place of what the scene lacks */
+    struct buffer *none; /* bound in place of buffers that do not exist */
 };
 
 static void bind(struct bindings *bindings, int at, enum binding_kind kind, struct buffer *buffer)
@@ -206,7 +206,7 @@ static void bind(struct bindings *bindings, int at, enum binding_kind kind, stru
     bindings->buffers[at] = buffer ? buffer : bindings->none;
 }
 
-/* A buffer that kernels read through either view, of which it has one. */
+/* Binds a buffer that kernels read either as storage buffer or as texel buffer. */
 static void bind_loads(struct bindings *bindings, int storage, int texels, bool texel_loads,
                        struct buffer *buffer)
 {
@@ -229,7 +229,8 @@ static struct bindings bind_trees(const struct target *target)
     return bindings;
 }
 
-/* A kernel's code: with the functions of the renderer's shader in it where it has any there. */
+/* Parameters of a kernel's pipeline. Its code is the shader's if that has functions in this
+   kernel. */
 static struct pipeline_params pass_params(const struct target *target,
                                           const struct kernel_code *own,
                                           const struct gpu_spec *spec,
@@ -303,12 +304,12 @@ bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec)
     if (spec->SPEC_SETTLES)
         return false;
     spec->SPEC_SETTLES = 1;
-    spec->SPEC_PACKETS = 0; /* few rays */
+    spec->SPEC_PACKETS = 0; /* few rays are deferred */
     spec->SPEC_PACKET_RAYS = 1;
     return true;
 }
 
-/* Both pipelines of the pass, of which `params` tells the first. */
+/* Creates the pipelines of a pass: `params` describes the first one. */
 static whit_result create_pipelines(struct device *device, const struct pipeline_params *params,
                                     struct pass *pass)
 {
@@ -321,7 +322,6 @@ static whit_result create_pipelines(struct device *device, const struct pipeline
     return pipeline_create(device, &deferred, &pass->deferred);
 }
 
-/* Creates the binding sets of both pipelines of a pass. */
 static whit_result create_sets(struct pass *pass, const struct bindings *bindings, uint32_t count)
 {
     whit_result result = binding_set_create(pass->pipeline, bindings->buffers, count, &pass->set);
@@ -336,9 +336,9 @@ whit_result variant_job_run(struct device *device, const struct variant_job *job
     return create_pipelines(device, &job->params, pass);
 }
 
-/* Camera rays from which on kernels for each stage and class pay. In whitted, glass and hollow they
-   save 10 to 25 % of a picture's time, some 0.3 us of the processor a camera ray, and take 30 ms
-   longer to make where the driver has them in its cache, 300 to 500 where not. */
+/* Number of camera rays from which on separate kernels for each stage and class pay. In whitted,
+   glass and hollow they save 10 to 25 % of a picture's time, some 0.3 us of processor time a camera
+   ray. They take 30 ms longer to make if the driver has them in its cache, 300 to 500 ms if not. */
 enum { RAYS_FOR_MANY = 150000 };
 
 bool render_few_kernels(const whit_renderer_params *params)
@@ -357,12 +357,11 @@ bool variant_few_kernels(const struct target *target)
     return target->probed || target->renderer->few_kernels;
 }
 
-/* Classes of materials that have kernels of their own. */
 uint32_t variant_classes(const struct target *target)
 {
     const struct renderer *renderer = target->renderer;
     struct scene_effects none = {.called = {false}};
-    /* What a hook traces may meet materials of either class. */
+    /* Rays that a user's function traces may hit materials of either class. */
     bool hooked = shader_is_hooked(renderer->params.shader, kernels[KERNEL_SHADE].name);
     bool both = !hooked && !renderer->params.all_effects && !variant_few_kernels(target) &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
@@ -370,7 +369,7 @@ uint32_t variant_classes(const struct target *target)
     return both ? CLASSES_MAX : 1;
 }
 
-/* Takes out of a shading kernel what the materials of its class do not call for. */
+/* Switches off in a shading kernel what no material of its class needs. */
 static void narrow_to_class(const struct renderer *renderer, uint32_t material_class,
                             struct gpu_spec *spec)
 {
@@ -391,7 +390,8 @@ static void narrow_to_class(const struct renderer *renderer, uint32_t material_c
     };
     struct scene_effects own = {.called = {false}};
     bool glass = material_class == CLASS_GLASS;
-    /* To what touches a surface, which may be of the other class. */
+    /* Kernels of glass then trace to the surface in contact, whose material may be of the other
+       class. */
     bool walks = glass && spec->SPEC_MEDIA == MEDIA_TOUCH;
     enum scene_materials which = glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE;
     scene_effects_scan_materials(renderer->scene, which, &own);
@@ -403,7 +403,7 @@ static void narrow_to_class(const struct renderer *renderer, uint32_t material_c
     }
     if (!walks || !spec->SPEC_CUTOUTS)
         narrow_textures(renderer, which, spec);
-    /* Glass that nothing refracts in is lit: see material_drawn. */
+    /* Glass without refraction is lit like other surfaces: see material_drawn. */
     if (!own.lit && !(glass && !renderer->effects.called[SCENE_EFFECT_REFRACTION]))
         spec->SPEC_LIGHTS = 0;
     if (!walks && spec->SPEC_SPHERES)
@@ -427,11 +427,12 @@ static uint32_t lit_parts(const struct renderer *renderer, const struct gpu_spec
            (absorbing ? LIT_HAS_ABSORPTION : 0);
 }
 
-/* Rays of a lane of a batch that start at one point and go about the same way. */
+/* Rays that a lane has in packets of a ray batch, whose rays start at one point and go about the
+   same way. */
 enum { BEAM_RAYS = 8 };
 
-/* As settles of shaders/bind/traverse.glsl: a record that waits is looked at for one ray a lane.
- */
+/* Whether packets may find records that need a closer look, as settles() of bind/traverse.glsl:
+   that is done for one ray of a lane only, so such packets have one ray a lane. */
 static bool packets_look(const struct gpu_spec *spec, bool shadow)
 {
     return (spec->SPEC_NUMERICS == NUMERICS_EXACT && spec->SPEC_SETTLES) || spec->SPEC_CUTOUTS ||
@@ -439,8 +440,8 @@ static bool packets_look(const struct gpu_spec *spec, bool shadow)
            (!shadow && spec->SPEC_SPHERES != SPHERES_NONE && spec->SPEC_CULLING);
 }
 
-/* The camera's rays and the shadow rays of what they meet go in packets, on lavapipe; what goes
-   all ways is quicker ray by ray. */
+/* On lavapipe, camera rays and the shadow rays of their hits go in packets. Later rays, which go in
+   all directions, are quicker ray by ray. */
 static void choose_packets(const struct renderer *renderer, enum stage stage, struct gpu_spec *spec)
 {
     uint32_t stack = renderer->packet_stack_size;
@@ -467,7 +468,7 @@ bool variant_can_split_hits(const struct target *target)
     const whit_renderer_params *params = &target->renderer->params;
     const bool *called = target->renderer->effects.called;
     const whit_shader *shader = params->shader;
-    /* The rows are filled by whit's own kernel, which cannot call a surface() or camera() of the
+    /* STAGE_HIT_FETCH is whit's own kernel, which cannot call a surface() or camera() of the
        user's. */
     return !target->probed && params->step && shader_has(shader, WHIT_HOOK_SHADE) &&
            !shader_has(shader, WHIT_HOOK_SURFACE) && !shader_has(shader, WHIT_HOOK_CAMERA) &&
@@ -482,8 +483,8 @@ bool variant_splits_hits(const struct target *target)
            (code->reaches & LOOKED_UP);
 }
 
-/* Takes out of the kernel of surface() and shade() what neither of them reads, though other kernels
-   may need it. Vertex colours stay where there is a surface(): its kernel stores them for
+/* Switches off in the kernel of surface() and shade() what neither of them reads, though other
+   kernels may need it. Vertex colours stay if there is a surface(): its kernel stores them for
    shade.comp. */
 static void narrow_to_functions(const struct target *target, struct gpu_spec *spec)
 {

@@ -1,6 +1,6 @@
 /* Views of many cameras as one picture, which has them one below the other: each in whole rows of
-   blocks, so that what walks together is of one view. A view is the picture of its camera, byte for
-   byte. */
+   blocks, so that the rays of a packet are of one view. A view is the picture of its camera, byte
+   for byte. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,7 +79,7 @@ static whit_result check(const struct renderer *renderer, uint32_t count)
     return WHIT_ERROR_USAGE;
 }
 
-/* The frame's own values, of the camera that it was filled for. */
+/* The values of the frame, for the camera that it was filled for. */
 static struct gpu_view view_of(const struct renderer *renderer)
 {
     const struct gpu_frame *frame = &renderer->frame;
@@ -98,7 +98,7 @@ static struct gpu_view view_of(const struct renderer *renderer)
     return view;
 }
 
-/* Fills in all views, and what the frame has for all of them. */
+/* Fills in all views, and the values of the frame that all of them share. */
 static whit_result take_cameras(struct renderer *renderer, const whit_camera *cameras,
                                 uint32_t count)
 {
@@ -136,7 +136,7 @@ static whit_result upload_views(struct renderer *renderer, uint32_t count)
     return upload_words(renderer, views->all, bytes, BUFFER_STORAGE, "views", &views->buffer);
 }
 
-/* Kernels as one picture of as many rays has them. True: others than before. */
+/* Chooses kernels as for a single picture of as many rays. *others: they differ from before. */
 static whit_result choose_kernels(struct renderer *renderer, bool *others)
 {
     whit_renderer_params all = renderer->params;
@@ -150,7 +150,7 @@ static whit_result choose_kernels(struct renderer *renderer, bool *others)
     return result;
 }
 
-/* Makes the renderer's picture that of these cameras. */
+/* Makes the renderer's picture one of these cameras. */
 static whit_result views_take(struct renderer *renderer, const whit_camera *cameras, uint32_t count)
 {
     struct views *views = &renderer->views;
@@ -162,7 +162,7 @@ static whit_result views_take(struct renderer *renderer, const whit_camera *came
     views->count = count;
     whit_result result =
         views->all ? choose_kernels(renderer, &others) : render_no_memory(renderer, "views");
-    views->count = 0; /* kinds of cameras are told one by one */
+    views->count = 0; /* so that variant_camera gives the kind of each camera */
     if (result == WHIT_OK)
         result = take_cameras(renderer, cameras, count);
     if (result == WHIT_OK)
@@ -178,7 +178,7 @@ static whit_result views_take(struct renderer *renderer, const whit_camera *came
         async_finish(renderer);
         passes_finish(renderer);
     }
-    views->held = result == WHIT_OK ? count : 0; /* after an error all is made anew */
+    views->held = result == WHIT_OK ? count : 0; /* after an error everything is made anew */
     return result;
 }
 
