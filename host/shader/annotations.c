@@ -1,4 +1,4 @@
-/* What a file of hooks says of itself: lines that begin with //@. */
+/* What a user's file says about itself, in lines that begin with //@. */
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include "shader/scan.h"
 #include "sources.h"
 
-/* One such line, taken apart from left to right. */
+/* An annotation, which is parsed from left to right; `at` is where parsing goes on. */
 struct line {
     const whit_log *log;
     whit_shader *shader;
@@ -113,7 +113,7 @@ static bool read_slider_toggle(struct line *line, whit_slider *slider)
         slider->value[0] = word[1] == 'n';
         return true;
     }
-    line->at = rest; /* it begins switched off */
+    line->at = rest; /* no value: it begins switched off */
     return true;
 }
 
@@ -165,14 +165,15 @@ static bool read_slider_value(struct line *line, whit_slider *slider,
     return read_slider_choice(line, slider, texts);
 }
 
-/* Whether some shader of whit's has a function of that name, which no global variable may have. */
+/* Whether some shader of whit's own has a function of that name, which no global variable may
+   have. */
 static bool is_function(const char *name)
 {
     char call[SHADER_NAME_BYTES + 2];
     snprintf(call, sizeof call, " %s(", name);
     for (uint32_t i = 0; i < shader_source_count; ++i) {
         const char *text = shader_sources[i].text;
-        if (strcmp(shader_sources[i].path, "hook/aov.glsl") == 0 || /* no part of a kernel */
+        if (strcmp(shader_sources[i].path, "hook/aov.glsl") == 0 || /* not part of any kernel */
             strcmp(shader_sources[i].path, "hook/intersect.glsl") == 0 ||
             strncmp(shader_sources[i].path, "examples/", 9) == 0)
             continue;
@@ -210,7 +211,7 @@ static bool is_new_name(const struct line *line, const char *name)
     return true;
 }
 
-/* Behind the line stands "vec4 NAME(Surface s)". */
+/* Whether the line is followed by "vec4 NAME(Surface s)". */
 static bool stands_before_function(const struct line *line, const char *name)
 {
     const struct shader_file *file = &line->shader->text.files[line->file];
@@ -285,7 +286,7 @@ static void read_slider(struct line *line, size_t kind)
     shader->slider_count++;
 }
 
-/* X0 Y0 Z0 X1 Y1 Z1 ERROR [MATERIAL] */
+/* Parses "X0 Y0 Z0 X1 Y1 Z1 ERROR [MATERIAL]". */
 static void read_box(struct line *line)
 {
     struct shader_box box = {.file = line->file, .line = line->number}, *own = &line->shader->box;
@@ -327,7 +328,7 @@ static void read_version(struct line *line)
                  word, own);
 }
 
-/* What stands behind it is read by tests.c. */
+/* Checks a line `//@ test`; tests.c reads the function that follows. */
 static void read_test_mark(struct line *line)
 {
     char rest[4];

@@ -4,12 +4,12 @@
 
 enum { CHAIN_MAX = 64 };
 
-/* What an index goes into. */
+/* The length of the array, vector or matrix that is indexed. */
 struct extent {
-    bool fixed;        /* `count` elements */
-    uint32_t count;    /* 0: none, or it is not known */
-    uint32_t count_id; /* else: a value that says how many; 0: nothing does */
-    bool is_uint;      /* count_id: for certain */
+    bool fixed;        /* the length is the constant `count` */
+    uint32_t count;    /* 0: no elements, or not known */
+    uint32_t count_id; /* if not `fixed`: id of the length; 0: there is none */
+    bool is_uint;      /* `count_id` is a uint, not only an int */
 };
 
 static struct extent extent_of(const struct spv_module *m, uint32_t type)
@@ -27,7 +27,7 @@ static struct extent extent_of(const struct spv_module *m, uint32_t type)
     return extent;
 }
 
-/* 0: no integer of 32 bits. Else `id` as a uint. */
+/* The value `id` as a uint; 0: it is not an integer of 32 bits. */
 static uint32_t as_uint(struct spv_module *m, uint32_t id)
 {
     uint32_t u = spv_uint(m), type = spv_type_of(m, id);
@@ -53,7 +53,7 @@ static uint32_t last_of(struct spv_module *m, struct extent extent)
     return last;
 }
 
-/* `index` within `extent`; 0 with *why. */
+/* The id of `index` clamped to `extent`; 0 and *why if it cannot be. */
 static uint32_t clamp(struct spv_module *m, uint32_t index, struct extent extent, const char **why)
 {
     uint32_t value, u = spv_uint(m);
@@ -70,7 +70,8 @@ static uint32_t clamp(struct spv_module *m, uint32_t index, struct extent extent
     return id;
 }
 
-/* How long the array is at the end of a buffer: `chain` goes from the buffer's variable to it. */
+/* The length of the array at the end of a buffer. `chain`: an access chain from the buffer's
+   variable; `depth`: indices before the one into the array. */
 static struct extent extent_of_buffer(struct spv_module *m, const uint32_t *chain, uint32_t depth)
 {
     uint32_t member, u = spv_uint(m);

@@ -23,19 +23,19 @@ struct shader_compiler {
     whit_log log;
     struct shader_limits limits;
     struct keep *keep; /* NULL: each request has a process of its own */
-    uint32_t restarts; /* of a process that ended */
-    bool warned;       /* that there is no sandbox */
+    uint32_t restarts; /* how often `keep` had to be started again */
+    bool warned;       /* it has warned that there is no sandbox */
 };
 
 /* --- the process ---------------------------------------------------------------------------- */
 
-/* Where the kernel stands that functions go into, behind a text and its 0. */
+/* Offset of question.base in a request: behind the text and its 0, aligned to a word. */
 static size_t base_at(size_t text_bytes)
 {
     return (text_bytes + sizeof(uint32_t)) / sizeof(uint32_t) * sizeof(uint32_t);
 }
 
-/* A request is a glslang_question, whose text follows, and the kernel. */
+/* A request is a glslang_question, then its text, then question.base. */
 static int answer(const void *request, size_t bytes, void *to, child_write write)
 {
     struct glslang_question question;
@@ -99,7 +99,8 @@ static int answer_once(void *user, void *to, child_write write)
     return answer(once->request, once->bytes, to, write);
 }
 
-/* In the process that is kept, in a new one where that has ended, or in one of its own. */
+/* Runs a request in the process that is kept, in a new one if that has ended, or else in a process
+   of its own. */
 static enum child_end run(struct shader_compiler *c, const struct child_limits *limits,
                           const void *request, size_t bytes, struct child_reply *reply)
 {
@@ -127,7 +128,7 @@ struct place {
     struct shader_errors *errors;
 };
 
-/* What errors of the text as a whole stand behind. */
+/* The file name in errors about the text as a whole. */
 static const char *whole_name(const struct place *place)
 {
     return place->text && place->text->file_count ? place->text->files[0].name
@@ -182,8 +183,8 @@ static whit_result explain(const struct place *place, enum child_end end,
     }
 }
 
-/* Finds a brace that opens and does not close, or the other way round: the compiler would report it
-   at the end of all text. */
+/* Finds a brace without its counterpart, which the compiler would report only at the end of all
+   text. */
 static bool find_open_brace(const struct shader_text *text, uint32_t *file, uint32_t *line)
 {
     enum { DEPTH = 256 };
@@ -212,8 +213,8 @@ static bool is_of_word(char c)
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* The first token of that text between `at` and `end` of a line that begins at `begin`. A word is
-   none within a longer one. */
+/* Finds the first occurrence of `token` between `at` and `end`, in a line that begins at `begin`. A
+   word within a longer word does not count. */
 static const char *find_token(const char *begin, const char *at, const char *end, const char *token,
                               size_t bytes)
 {
@@ -227,8 +228,8 @@ static const char *find_token(const char *begin, const char *at, const char *end
     return NULL;
 }
 
-/* Where the token that a reason quotes first, as 'token', stands on its line, if it stands there
-   once; else 0. */
+/* The column of the token that `reason` quotes first, as 'token', if it occurs once in its line;
+   else 0. */
 static uint32_t find_column(const struct shader_file *file, uint32_t line, const char *reason)
 {
     const char *open = strchr(reason, '\''), *close = open ? strchr(open + 1, '\'') : NULL;
@@ -247,7 +248,7 @@ static uint32_t find_column(const struct shader_file *file, uint32_t line, const
     return once ? (uint32_t)(found - at) + 1 : 0;
 }
 
-/* With the column of what the reason quotes. */
+/* Adds an error, with the column of the token that the reason quotes. */
 static void add_error_at(const struct place *place, const struct shader_file *file, uint32_t line,
                          const char *reason)
 {
@@ -293,7 +294,8 @@ static uint32_t count_lines(const struct shader_file *file)
     return count;
 }
 
-/* What a file leaves open may be told behind its end. */
+/* An error about something unclosed may have a line behind the file's end: it goes to the last
+   line. */
 static void add_user_error(const struct place *place, const struct glslang_error *error,
                            const char *reason)
 {
@@ -302,7 +304,7 @@ static void add_user_error(const struct place *place, const struct glslang_error
     add_error_at(place, file, line, reason);
 }
 
-/* What a child tells is not to be believed. */
+/* Adds the errors of an answer. The child that wrote it is not trusted. */
 static void add_errors(const struct place *place, const struct glslang_answer *answer)
 {
     bool user = false;
@@ -319,7 +321,7 @@ static void add_errors(const struct place *place, const struct glslang_answer *a
         } else if (error->own == 1 && !user) {
             add_own_error(place, error, reason);
             if (!place->request->stages)
-                break; /* the others follow from it */
+                break; /* other errors in whit's own text follow from this one */
         } else if (error->own > 1) {
             shader_error_add(place->log, place->errors, whole_name(place), 0, "%s", reason);
         }
@@ -330,7 +332,7 @@ static void add_errors(const struct place *place, const struct glslang_answer *a
 
 /* --- replies -------------------------------------------------------------------------------- */
 
-/* True: its parts are where they should be. */
+/* Whether the parts of the answer have the size that it says. */
 static bool is_whole(const struct glslang_answer *answer, size_t bytes)
 {
     uint64_t words = answer->word_count, loops = answer->loop_count;
@@ -386,7 +388,7 @@ static whit_result take_reply(const struct place *place, const struct child_repl
 
 /* --- a request ------------------------------------------------------------------------------ */
 
-/* A name that no text of a user can hold but by chance. */
+/* A tag for names of whit's own files, which a user's text can contain only by chance. */
 static void make_own_tag(char own[GLSLANG_OWN_BYTES])
 {
     uint64_t number = 0;
@@ -395,8 +397,8 @@ static void make_own_tag(char own[GLSLANG_OWN_BYTES])
     snprintf(own, GLSLANG_OWN_BYTES, "whit%016llx.", (unsigned long long)number);
 }
 
-/* Makes the question that is sent to the compiler's process, with the kernel's text. NULL: an error
-   was reported. */
+/* Makes the request for the compiler's process, with the kernel's text. NULL: an error was
+   reported. */
 static uint8_t *make_question(const struct place *place, size_t *bytes)
 {
     struct glslang_question question = {.trust = place->request->trust,

@@ -5,7 +5,7 @@
 
 #include "shader/scan.h"
 
-/* One file on its way. */
+/* The state while one file is read. */
 struct reading {
     const whit_log *log;
     const struct shader_text *text;
@@ -13,7 +13,7 @@ struct reading {
     struct shader_dbg *dbg;
     struct shader_errors *errors;
     uint32_t file;
-    bool wrong; /* an error was told */
+    bool wrong; /* an error was reported */
 };
 
 static void complain(struct reading *r, uint32_t line, const char *reason)
@@ -32,8 +32,8 @@ static bool is_in_test(const struct reading *r, size_t at)
     return false;
 }
 
-/* Values between the bracket that `scan` stands behind and its other one; 0: it has no other one.
- */
+/* Number of values between brackets; `scan` is behind the opening one. 0: no value, or no closing
+   bracket. */
 static uint32_t count_values(struct scan scan)
 {
     uint32_t open = 1, commas = 0, tokens = 0;
@@ -47,7 +47,7 @@ static uint32_t count_values(struct scan scan)
     return open || !tokens ? 0 : commas + 1;
 }
 
-/* The bracket of a call was just taken. NULL, or what is wrong with it. */
+/* Why a dbg(x) is wrong, whose bracket `scan` has just read; NULL: it is right. */
 static const char *refuse_call(const struct reading *r, const struct scan *scan,
                                const struct scan_functions *functions, size_t word)
 {
@@ -82,7 +82,7 @@ static void read_file(struct reading *r)
     struct scan scan;
     size_t word = 0;
     uint32_t line = 0;
-    bool named = false; /* the word before was dbg */
+    bool named = false; /* the last token was dbg */
     scan_begin(&scan, file->text, file->bytes);
     while (!r->wrong && scan_next(&scan)) {
         scan_follow(&scan, &functions);
@@ -116,7 +116,7 @@ whit_result shader_dbg_read(const whit_log *log, const struct shader_text *text,
 
 enum { NUMBER_BYTES = 8 };
 
-/* From `source`, which has the same text without numbers. */
+/* Writes the text of `source` into `file`, with the numbers of calls. */
 static void put_numbers(const struct shader_dbg *dbg, uint32_t index,
                         const struct shader_file *source, struct shader_file *file)
 {

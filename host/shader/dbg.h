@@ -1,5 +1,5 @@
-/* dbg(x) in a user's file: a value that is shown for one pixel. Kernels of pictures have x alone in
-   its place; those of a pixel that is looked at record what x is. */
+/* dbg(x) in a user's file: a value that is shown for one pixel. In kernels of pictures only x is
+   left; kernels of a probed pixel record the value. */
 #ifndef SHADER_DBG_H
 #define SHADER_DBG_H
 
@@ -7,34 +7,34 @@
 #include "shader/text.h"
 
 enum {
-    SHADER_DBG_MAX = 64 /* calls in all files: DBG_SITES of abi/shade.h */,
+    SHADER_DBG_MAX = 64 /* calls in all files: DBG_CALLS of abi/shade.h */,
     SHADER_DBG_BYTES = 96
 };
 
-/* A call in the text. */
+/* A dbg(x) in the text. */
 struct shader_dbg_site {
-    char text[SHADER_DBG_BYTES]; /* x as it stands there, blanks as one; cut where it is long */
+    char text[SHADER_DBG_BYTES]; /* source text of x, with single blanks; cut if it is long */
     uint32_t file, line;
-    size_t word, at; /* offsets in the file: of the word dbg, and of what follows its bracket */
+    size_t word, at; /* byte offsets in the file: of the word dbg, and of x */
 };
 
-/* In the order of files, lines and what stands on them. */
+/* All dbg(x) of a user's files, in the order of files and of text in them. */
 struct shader_dbg {
     struct shader_dbg_site sites[SHADER_DBG_MAX];
     uint32_t count;
 };
 
-/* Finds the calls of all files; in a file that has a function dbg() of its own there is none.
-   WHIT_ERROR_INPUT, with what is wrong in `errors` (may be NULL) and logged: a call outside of a
-   function, in a macro or in a test, of other than one value, or more than the limit. */
+/* Finds all dbg(x); none if a file defines a function dbg() of its own. WHIT_ERROR_INPUT, with the
+   reasons in `errors` (may be NULL) and logged: a call outside of a function, in a macro or in a
+   test, with other than one value, or more calls than the limit. */
 WHIT_CHECK whit_result shader_dbg_read(const whit_log *log, const struct shader_text *text,
                                        const struct shader_tests *tests, struct shader_dbg *dbg,
                                        struct shader_errors *errors);
 
-/* The text with the names of the calls blank, so that x is left, or with `numbered` the call's
-   number in front of x. Lines stay where they are, and without `numbered` bytes do too. The files
-   are those that shader_dbg_read saw, or as long. Freed by shader_text_end_copy; false: no memory.
- */
+/* Copies the text with each word dbg replaced by blanks, so that x is left, or with `numbered` with
+   the call's number before x. Lines keep their numbers; without `numbered` bytes keep their
+   offsets. The files are those that shader_dbg_read saw, or as long. Free it by
+   shader_text_end_copy; false: no memory. */
 bool shader_dbg_text(const struct shader_dbg *dbg, const struct shader_text *text, bool numbered,
                      struct shader_text *out);
 

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* In the form of spirv-dis; free() it. NULL: damaged, or no memory. */
+/* SPIR-V as text, as spirv-dis writes it; free() it. NULL: the module is damaged, or no memory. */
 char *shader_disassemble(const uint32_t *words, size_t bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* What is wrong with a user's functions, and where: for a log, and for a window. */
+/* Errors in a user's functions, with their places: for a log, and for a window. */
 #ifndef SHADER_ERRORS_H
 #define SHADER_ERRORS_H
 
@@ -8,25 +8,24 @@
 
 enum { SHADER_ERROR_MAX = 32, SHADER_FILE_BYTES = 512, SHADER_REASON_BYTES = 512 };
 
-/* Both texts are UTF-8 or foreign bytes, ended by 0, without line ends; whoever shows them does so
-   by whit_text_show, as the log does. */
+/* `file` and `reason` are UTF-8 or foreign bytes, ended by 0, without line ends: show them by
+   whit_text_show, as the log does. */
 struct shader_error {
-    char file[SHADER_FILE_BYTES]; /* as struct shader_file's `name`; of whit's own:
-                                     "whit:lib/x.glsl" */
-    uint32_t line;                /* from 1; 0: of the file as a whole */
+    char file[SHADER_FILE_BYTES]; /* as shader_file.name; a file of whit's own: "whit:lib/x.glsl" */
+    uint32_t line;                /* from 1; 0: the file as a whole */
     uint32_t column;              /* from 1, in bytes; 0: not known */
     char reason[SHADER_REASON_BYTES];
 };
 
-/* The first SHADER_ERROR_MAX of them, in the order of the text. Zero it before its first use. */
+/* The first SHADER_ERROR_MAX errors, in the order of the text. Zero it before its first use. */
 struct shader_errors {
     struct shader_error items[SHADER_ERROR_MAX];
     uint32_t count;
-    uint32_t more; /* that were not kept */
+    uint32_t more; /* number of further errors, which were not kept */
 };
 
-/* Keeps an error and logs it as "FILE:line: reason", or "FILE: reason" where line is 0. `errors`
-   may be NULL. */
+/* Keeps an error and logs it as "FILE:line: reason", or "FILE: reason" if `line` is 0. `errors` may
+   be NULL. */
 void shader_error_add(const whit_log *log, struct shader_errors *errors, const char *file,
                       uint32_t line, const char *format, ...) WHIT_PRINTF(5, 6);
 

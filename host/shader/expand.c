@@ -20,11 +20,11 @@ struct expansion {
     size_t user_at, user_end;
     const struct shader_source *sources; /* whit's own, or the request's stages */
     uint32_t source_count;
-    bool *pasted; /* of them: nothing left out */
+    bool *pasted; /* by source: it is in `out` unconditionally */
     uint32_t depth;
     bool failed; /* no memory */
     bool large;
-    const char *missing; /* a name that is not embedded */
+    const char *missing; /* name of an include that does not exist; NULL: none */
     char name[NAME_BYTES];
 };
 
@@ -72,7 +72,7 @@ static bool goes_on(const struct expansion *e)
 
 /* --- the user's text ------------------------------------------------------------------------ */
 
-/* The length of a line, and over its end. */
+/* Returns the start of the next line. *length: of this line, without its end. */
 static const char *next_line(const char *at, const char *end, size_t *length)
 {
     const char *start = at;
@@ -84,7 +84,7 @@ static const char *next_line(const char *at, const char *end, size_t *length)
     return at;
 }
 
-/* No file includes itself, so that this ends. */
+/* Recursive; ends since no file includes itself, directly or not. */
 static void put_user_file(struct expansion *e, uint32_t index)
 {
     const struct shader_file *file = &e->text->files[index];
@@ -104,7 +104,7 @@ static void put_user_file(struct expansion *e, uint32_t index)
             put(e, "\n", 1);
         }
     }
-    put_string(e, "\n\n"); /* twice: the last line may end with a backslash */
+    put_string(e, "\n\n"); /* two, since the last line may end with a backslash */
 }
 
 static bool may_be_undefined(const char *name)
@@ -114,7 +114,7 @@ static bool may_be_undefined(const char *name)
            strcmp(name, "__VERSION__") != 0;
 }
 
-/* What the user's macros stand for stays in the user's text. */
+/* Undefines the user's macros, so that they do not reach whit's own text. */
 static void put_undefs(struct expansion *e, const struct shader_file *file)
 {
     struct scan scan;
@@ -151,7 +151,7 @@ void expand_join(const char *from, const char *name, size_t length, char out[NAM
                  (int)length, name);
 }
 
-/* A directive of whit's own text: `at` behind its name, or NULL where the line is none. */
+/* If the line is the directive `name`, returns the text behind that name, else NULL. */
 static const char *is_directive(const char *line, const char *name)
 {
     line += strspn(line, " \t");
@@ -174,7 +174,7 @@ size_t expand_included(const char *line, const char **name)
 struct own_file {
     const char *path, *text;
     uint32_t index;
-    bool whole; /* it is pasted whatever is defined */
+    bool whole; /* it is included under no condition */
 };
 
 static void put_own(struct expansion *e, const struct own_file *file);
@@ -212,7 +212,8 @@ static void put_defines(struct expansion *e)
     }
 }
 
-/* The lines behind which defines go: the last #extension, or #version. 0: the file has neither. */
+/* The number of the line behind which defines go: the last #extension, or #version (with `version`
+   only that). 0: there is none. */
 static uint32_t head_lines(const char *text, bool version)
 {
     uint32_t line = 1, last = 0;
@@ -225,7 +226,8 @@ static uint32_t head_lines(const char *text, bool version)
     return last;
 }
 
-/* Conditions that are open, without the guard of the file. */
+/* Depth of open #if conditions. `guarded`: the first is the file's include guard, and counts
+   too. */
 struct open_conditions {
     uint32_t count;
     bool guarded, seen;
@@ -267,7 +269,8 @@ static void put_own(struct expansion *e, const struct own_file *file)
             put_string(e, "#extension GL_GOOGLE_cpp_style_line_directive : require\n");
         if (line == head)
             put_defines(e);
-        /* What is included under a condition that does not hold leaves no #line behind it. */
+        /* An include under a false condition leaves no #line behind it, so one follows each #endif
+           and #else. */
         bool ends = is_directive(at, "endif") || is_directive(at, "else");
         if (length || line == version || line == head || ends)
             put_line(e, line + 1, e->own, file->index);

@@ -2,7 +2,7 @@
 
 #include "base/array.h"
 
-/* The number of the first loop that had none left stays. */
+/* Stores the number of a loop that has run out of fuel, unless another loop's is there. */
 static void put_number(struct spv_module *m, uint32_t number)
 {
     uint32_t u = spv_uint(m), zero = spv_constant(m, u, 0);
@@ -13,8 +13,8 @@ static void put_number(struct spv_module *m, uint32_t number)
     SPV_EMIT(m, OP_STORE, m->fuel_loop, after);
 }
 
-/* Opens the loop's guard behind its header: a block that leaves the loop where there is no fuel,
-   and one in which it goes on, which gets what the header ended with. */
+/* Adds a guard to the header of a loop: a block that leaves the loop without fuel, and a block
+   where it goes on, which gets the header's former end. */
 static void put_guard(struct fuel *fuel, struct spv_module *m)
 {
     struct fuel_loop *loop = &fuel->blocks[fuel->block_count - 1];
@@ -48,7 +48,8 @@ static void begin_loop(struct fuel *fuel, struct spv_module *m, const uint32_t *
     spv_put(m, &m->body, words, spv_length(words));
 }
 
-/* A value of what the block before had: headers end elsewhere now, and loops are left once more. */
+/* Updates the predecessors of an OpPhi: headers of loops now end in block `in`, and merge blocks
+   have `out` as one more predecessor, with a value of zero. */
 static void put_phi(const struct fuel *fuel, struct spv_module *m, const uint32_t *words)
 {
     uint32_t length = spv_length(words), at = m->body.count;

@@ -24,7 +24,9 @@ struct compilation {
     struct fuel fuel;
     struct refuse_variables variables;
     struct reach reach;
-    struct spv_words unset; /* variables of the user's function in hand: they begin as 0 */
+    /* Type and id of each variable of the user's current function that must be set to 0 at its
+       start. */
+    struct spv_words unset;
 };
 
 static void report(struct compilation *c, struct spv_place place, const char *why)
@@ -46,7 +48,8 @@ static glslang_input_t input_of(const char *text)
         .code = text,
         .default_version = 460,
         .default_profile = GLSLANG_NO_PROFILE,
-        /* All errors; messages.c keeps the first of a line, from which others often follow. */
+        /* Report all errors; messages.c keeps the first of each line, since others often follow
+           from it. */
         .messages = (glslang_messages_t)(GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT |
                                          GLSLANG_MSG_CASCADING_ERRORS_BIT),
         .resource = glslang_default_resource(),
@@ -57,7 +60,7 @@ static glslang_program_t *link_program(struct compilation *c, glslang_shader_t *
 {
     glslang_program_t *program = glslang_program_create();
     glslang_program_add_shader(program, shader);
-    /* What goes into a kernel is called from there. */
+    /* Functions that will be linked into a kernel have no caller here yet. */
     int messages = GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT |
                    (c->question->base || c->question->names ? GLSLANG_MSG_KEEP_UNCALLED_BIT : 0);
     if (glslang_program_link(program, messages)) {
@@ -105,8 +108,9 @@ static bool is_counted(uint32_t op)
     return op != OP_LINE && op != OP_NO_LINE && op != OP_LABEL;
 }
 
-/* Variables of the user's begin as 0, so that the same text gives the same bytes. They are written
-   in the function, not by initializers: a call in a loop is set anew each time, inlined or not. */
+/* The user's variables begin as 0, so that the same text gives the same bytes. They are set by
+   stores in the function, not by initializers: a function in a loop has to set them in each call,
+   inlined or not. */
 static void begin_variables(struct compilation *c, struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
@@ -122,7 +126,7 @@ static void begin_variables(struct compilation *c, struct spv_module *m, const u
     c->unset.count = 0;
 }
 
-/* Keeps where an operation without a portable form stands first. */
+/* Keeps the first place of an operation without a portable form; `number`: of portable_lacks. */
 static void note_open(struct compilation *c, struct spv_place place, uint32_t number)
 {
     uint32_t i = 0;
@@ -132,7 +136,8 @@ static void note_open(struct compilation *c, struct spv_place place, uint32_t nu
         c->answer.opens[i] = (struct shader_open){number, place.file, place.line};
 }
 
-/* Copies what stands in functions, and what users wrote with fuel and bounds. */
+/* Copies an instruction of a function; in the user's code it is checked first, and gets fuel and
+   bounds. */
 static void take_instruction(struct compilation *c, struct spv_module *m, const uint32_t *words)
 {
     bool user = spv_follow(m, words), taken = false;
@@ -162,7 +167,7 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         spv_put(m, &m->body, words, spv_length(words));
 }
 
-/* A variable of all functions is the user's where the user's text has its name. */
+/* Checks a global variable. It is taken to be the user's if the user's text has its name. */
 static void check_global(struct compilation *c, struct spv_module *m, const uint32_t *name)
 {
     const uint32_t *variable = spv_def(m, name[1]);
@@ -195,7 +200,7 @@ static void check_module(struct compilation *c, struct spv_module *m)
     report(c, (struct spv_place){0, 0}, why);
 }
 
-/* Without a user there is nothing to rewrite; no words: no memory. */
+/* Rewrites returns in the user's functions (returns.h). No words in the result: no memory. */
 static struct spv_words rewrite_returns(struct compilation *c, const uint32_t *words, size_t count)
 {
     struct spv_module m;
@@ -208,7 +213,8 @@ static struct spv_words rewrite_returns(struct compilation *c, const uint32_t *w
     return out;
 }
 
-/* The module with passes behind it; no words: there are errors, or there is no memory. */
+/* Runs all passes over the module that glslang made. No words in the result: there are errors, or
+   no memory. */
 static struct spv_words make_module(struct compilation *c, const uint32_t *words, size_t count)
 {
     struct spv_module m;
@@ -248,7 +254,8 @@ static int write_answer(struct compilation *c, const uint32_t *words, size_t cou
     return written ? 0 : 1;
 }
 
-/* In a kernel; no words: there are errors, or there is no memory. */
+/* Links the user's functions into the base kernel. No words in the result: there are errors, or no
+   memory. */
 static struct spv_words link_module(struct compilation *c, const struct spv_words *user)
 {
     const char *why = NULL;

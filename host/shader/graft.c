@@ -58,7 +58,7 @@ static bool has_decoration(const struct spv_module *m, uint32_t id)
     return false;
 }
 
-/* Whether `words` says the same as `asked`, but for the result in word `result`. */
+/* Whether two instructions are equal, except for the result id in word `result`. */
 static bool is_same(const uint32_t *words, const uint32_t *asked, uint32_t result)
 {
     uint32_t length = spv_length(asked);
@@ -67,7 +67,8 @@ static bool is_same(const uint32_t *words, const uint32_t *asked, uint32_t resul
                0;
 }
 
-/* In the kernel, or among what was added; 0: it has none. A record with a layout is another one. */
+/* The id of an equal type or constant in the kernel, or among added instructions; 0: there is none.
+   A struct with decorations (a layout) is not equal to one without. */
 static uint32_t find_same(const struct graft *g, const uint32_t *asked, uint32_t result,
                           const char *name)
 {
@@ -98,7 +99,7 @@ void graft_value(struct graft *g, const uint32_t *words, uint32_t result)
     if (g->base.failed)
         return;
     uint32_t same = find_same(g, globals->words + at, result, g->user_names[id]);
-    /* The instruction that was put finds itself. */
+    /* An instruction that has just been added finds itself, with the id UINT32_MAX. */
     g->ids[id] = same && same != UINT32_MAX ? same : g->base.next_id++;
     globals->words[at + result] = g->ids[id];
     if (same && same != UINT32_MAX)

@@ -8,7 +8,7 @@
 #include "shader/refuse.h"
 
 struct function {
-    uint32_t id; /* in the kernel that is made */
+    uint32_t id; /* id in the linked kernel */
     const uint32_t *words;
     uint32_t count;
     bool reached;
@@ -16,12 +16,12 @@ struct function {
 
 struct link {
     struct graft g;
-    bool *dropped; /* by id of the kernel's: of a function that is left out */
+    bool *dropped; /* by id of the kernel: it belongs to a function that is left out */
     struct function *functions;
     uint32_t function_count, function_capacity;
-    uint32_t *variables; /* that are added */
+    uint32_t *variables; /* ids of added variables */
     uint32_t variable_count, variable_capacity;
-    struct spv_words mapped; /* the user's functions */
+    struct spv_words mapped; /* the user's functions, with ids of the kernel */
 };
 
 /* --- types, constants, variables -------------------------------------------------------------- */
@@ -101,13 +101,14 @@ static bool is_hook(const char *name)
     return false;
 }
 
-/* It holds what global variables of the user begin with. */
+/* main() of the user's module initializes the user's global variables. */
 static bool is_main(const char *name)
 {
     return graft_same_name(name, "main") || graft_same_name(name, "main(");
 }
 
-/* Where the user's functions go: what the kernel has of whit's is its own. */
+/* Maps the user's functions to ids of the kernel: hooks, functions of whit's own, and main(), which
+   becomes begin_user(). */
 static void name_functions(struct link *l)
 {
     const struct spv_module *user = &l->g.user;
@@ -125,7 +126,8 @@ static void name_functions(struct link *l)
     }
 }
 
-/* aov(), shape_box() and run_test() are written for the user, in whit's own text. */
+/* Whether the function is copied from the user's module. aov(), shape_box() and run_test() are,
+   too: whit generates them from the user's file. */
 static bool is_taken(const struct link *l, const uint32_t *words)
 {
     bool own = refuse_file(&l->g.user, words) != NULL;
@@ -139,14 +141,15 @@ static bool is_long_switch(const struct spv_module *m, const uint32_t *words)
     return !type || spv_op(type) != OP_TYPE_INT || type[2] != 32;
 }
 
-/* kernel/hook.comp calls everything, so that the compiler looks at it. */
+/* Whether this calls call_all() of kernel/hook.comp, which calls all functions only so that the
+   compiler checks them. */
 static bool is_call_of_all(const struct link *l, const uint32_t *words)
 {
     return spv_op(words) == OP_FUNCTION_CALL && words[3] < l->g.user.bound &&
            graft_same_name(l->g.user_names[words[3]], "call_all(");
 }
 
-/* Copies the functions that the kernel is to have besides its own. */
+/* Copies the functions that the kernel gets from the user's module. */
 static void map_functions(struct link *l)
 {
     const struct spv_module *user = &l->g.user;
@@ -165,7 +168,7 @@ static void map_functions(struct link *l)
     }
 }
 
-/* The user's functions, and those of the kernel that have no other in their place. */
+/* Lists the user's functions, and those functions of the kernel that they do not replace. */
 static void list_functions(struct link *l)
 {
     const struct spv_module *base = &l->g.base;
@@ -184,7 +187,8 @@ static void list_functions(struct link *l)
     }
 }
 
-/* A call goes no deeper than there are functions. */
+/* Marks the functions that are called from `id`. The recursion is at most as deep as there are
+   functions. */
 static void reach(struct link *l, uint32_t id)
 {
     struct function *function = find_function(l, id);
@@ -239,7 +243,7 @@ static void put_capabilities(struct link *l, struct spv_words *out)
     }
 }
 
-/* All but functions. Since SPIR-V 1.4 the entry point names all variables. */
+/* Writes everything but functions. Since SPIR-V 1.4 the entry point lists all variables. */
 static void put_globals(struct link *l, struct spv_words *out)
 {
     const struct spv_module *base = &l->g.base;

@@ -26,7 +26,7 @@ void messages_add(struct glslang_answer *answer, uint32_t own, uint32_t file, ui
                   const char *reason)
 {
     if (own != NOBODY && has_error(answer, own, file, line))
-        return; /* others of a line follow from the first */
+        return; /* other errors of a line follow from the first */
     if (answer->error_count == SHADER_ERROR_MAX) {
         answer->more++;
         return;
@@ -38,10 +38,10 @@ void messages_add(struct glslang_answer *answer, uint32_t own, uint32_t file, ui
 
 /* --- places in the user's text -------------------------------------------------------------- */
 
-/* The user's part of the text, with the place in the file that it came from. */
+/* Scans the user's part of the text, and keeps track of the place in the user's file by #line. */
 struct walk {
     struct scan scan;
-    uint32_t file, first, shift; /* the line of the file is `first`, at line `shift` of the part */
+    uint32_t file, first, shift; /* line `shift` of the part is line `first` of `file` */
 };
 
 static void walk_begin(struct walk *walk, const struct glslang_question *question)
@@ -84,7 +84,7 @@ bool messages_find_word(const struct glslang_question *question, const char *wor
     return false;
 }
 
-/* The place where a function has its body; of one that has none, where it is named first. */
+/* The place of a function's body, or, if it has none, the first place of its name. */
 static bool find_function(const struct glslang_question *question, const char *name, uint32_t *file,
                           uint32_t *line)
 {
@@ -110,7 +110,7 @@ static bool find_function(const struct glslang_question *question, const char *n
 
 /* --- words ---------------------------------------------------------------------------------- */
 
-/* What glslang's grammar calls signs. */
+/* Names of signs in glslang's grammar, and how they are shown. */
 static const char *const signs[][2] = {
     {"LEFT_BRACE", "'{'"},
     {"RIGHT_BRACE", "'}'"},
@@ -156,8 +156,8 @@ static const char *sign_of(const char *word, size_t length)
     return NULL;
 }
 
-/* `'x' :  reason ` as `'x': reason`, `'' : reason` as `reason`, with signs in the place of their
-   names. */
+/* Turns `'x' :  reason ` into `'x': reason` and `'' : reason` into `reason`, and names of tokens in
+   glslang's grammar into the signs. */
 static void tidy(const char *from, char out[SHADER_REASON_BYTES])
 {
     size_t used = 0;
@@ -196,7 +196,7 @@ static const char *behind(const char *text, const char *start)
     return strncmp(text, start, length) == 0 ? text + length : NULL;
 }
 
-/* `f(vf3;` as `f`. */
+/* Cuts a mangled name: `f(vf3;` becomes `f`. */
 static void plain_name(const char *mangled, char *out, size_t out_bytes)
 {
     mangled += strspn(mangled, " ");
@@ -212,7 +212,8 @@ static bool is_hook(const char *name)
     return false;
 }
 
-/* What is told of functions when all text is read, with names on the next line. */
+/* Errors about functions, which glslang reports after all text, with their names in the next
+   line. */
 static bool take_function(struct glslang_answer *answer, const struct glslang_question *question,
                           const char *line, const char *next)
 {
@@ -242,7 +243,7 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
     return true;
 }
 
-/* "NAME:LINE: reason"; without a name it is nobody's. */
+/* Adds an error of the form "NAME:LINE: reason"; without a name it has no file. */
 static void take_error(struct glslang_answer *answer, const struct glslang_question *question,
                        const char *line)
 {
@@ -263,7 +264,7 @@ static void take_error(struct glslang_answer *answer, const struct glslang_quest
     if (strncmp(why, "'dbg': no matching", 18) == 0 && strstr(question->text, "#define HAS_DBG\n"))
         snprintf(why, sizeof why,
                  "dbg(x) takes a float, int, uint, bool or a vector of two to four of these");
-    if (strcmp(why, "memory exhausted") == 0) /* as bison says it */
+    if (strcmp(why, "memory exhausted") == 0) /* bison's words for a full stack */
         snprintf(why, sizeof why, "brackets or blocks that are too deep");
     if (!strstr(why, "compilation terminated") && !strstr(why, "compilation errors.") && why[0])
         messages_add(answer, own, number, at, why);

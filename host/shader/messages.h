@@ -1,16 +1,16 @@
-/* What glslang says, as places in the user's text and reasons. */
+/* Turns messages of glslang into reasons with places in the user's text. */
 #ifndef SHADER_MESSAGES_H
 #define SHADER_MESSAGES_H
 
 #include "shader/glslang.h"
 
-/* The first one of a line is kept. `own` as in struct glslang_error. */
+/* Adds an error, unless its line has one. `own` as in struct glslang_error. */
 void messages_add(struct glslang_answer *answer, uint32_t own, uint32_t file, uint32_t line,
                   const char *reason);
-/* A log of glslang's: its errors, without what follows from them. One at least. */
+/* Adds the errors in a log of glslang, without those that follow from others; at least one. */
 void messages_take(struct glslang_answer *answer, const struct glslang_question *question,
                    const char *log);
-/* The first place in the user's text that has this word. */
+/* Finds the first place of a word in the user's text. */
 bool messages_find_word(const struct glslang_question *question, const char *word, uint32_t *file,
                         uint32_t *line);
 

@@ -12,8 +12,8 @@ static bool is_type(uint32_t op)
     return op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
 }
 
-/* The result of an instruction; 0: it has none. What has a type has it in front of its result, and
-   nothing else begins with a type. */
+/* An instruction with a type has the type's id in front of its result id, and no other instruction
+   begins with the id of a type. */
 uint32_t spv_result(const struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words), length = spv_length(words);
@@ -224,7 +224,7 @@ bool spv_is_id(const uint32_t *words, uint32_t i)
         return i != 3;
     case OP_EXT_INST:
         return i != 4;
-    case OP_SWITCH: /* numbers of 32 bits before labels */
+    case OP_SWITCH: /* pairs of a 32-bit literal and a label */
         return i < 3 || i % 2 == 0;
     default:
         return i < id_words(spv_op(words), spv_length(words));
@@ -303,7 +303,8 @@ static uint32_t keep_constant(struct spv_module *m, struct spv_constant constant
     return constant.id;
 }
 
-/* What was added before, by its type and value; a type that is no id names what was looked up. */
+/* Finds an id in m->constants, by type and value. A `type` of the following keys, which are no ids,
+   says what kind of lookup was cached. */
 static uint32_t find_constant(const struct spv_module *m, uint32_t type, uint32_t value)
 {
     for (uint32_t i = 0; i < m->constant_count; ++i) {
@@ -353,7 +354,7 @@ uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
     return keep_constant(m, (struct spv_constant){type, value, id});
 }
 
-/* A constant that is named by its type alone. */
+/* Adds a constant that has nothing but a type, if it is not there yet. */
 static uint32_t plain_constant(struct spv_module *m, uint32_t key, uint32_t op, uint32_t type)
 {
     uint32_t id = find_constant(m, key, type);
@@ -413,7 +414,8 @@ static bool begins_as_zero(const struct spv_module *m, const uint32_t *words)
     return found && spv_length(words) == 4;
 }
 
-/* The zero stands just before the variable: constants that are added come behind all variables. */
+/* The null constant is put just before the variable, since other added constants come behind all
+   variables. */
 static void put_zeroed(struct spv_module *m, struct spv_words *out, const uint32_t *words)
 {
     const uint32_t zero[] = {spv_def(m, words[1])[3], m->next_id++};

@@ -14,7 +14,7 @@ static const char head[] = "\\whit 1", file_mark[] = "\\file ", end_mark[] = "\\
 
 /* ---- Names ---- */
 
-/* As other systems have them, with whatever ending. */
+/* Whether it is the name of a device on some other system, with any extension. */
 static bool is_device(const char *part, size_t length)
 {
     static const char *const names[] = {"con", "prn", "aux", "nul", "conin$", "conout$"};
@@ -61,7 +61,7 @@ const char *shader_pack_name_refused(const char *name)
 
 /* ---- Writing ---- */
 
-/* With no `out`, counts alone. */
+/* Without `out`, bytes are only counted. */
 struct writing {
     char *out;
     size_t used;
@@ -142,7 +142,7 @@ struct unpacking {
     const whit_log *log;
     const char *where;
     const char *at;
-    char *out; /* into pack->bytes, which has room for all of it */
+    char *out; /* points into pack->bytes, which is large enough */
     struct shader_pack *pack;
 };
 
@@ -166,7 +166,7 @@ static bool starts_with(const char *text, const char *start)
     return strncmp(text, start, strlen(start)) == 0;
 }
 
-/* One byte as it is packed. */
+/* Decodes one packed byte. */
 static bool take_byte(struct unpacking *u)
 {
     const char *at = u->at;
@@ -201,7 +201,7 @@ static bool take_name(struct unpacking *u, const char **name)
     return !why || refuse(u, why, *name);
 }
 
-/* Whether `a` is `b`, or a folder of it. */
+/* Whether `a` is `b`, or a folder that `b` is in. */
 static bool covers(const char *a, const char *b)
 {
     size_t length = strlen(a);

@@ -13,9 +13,9 @@ enum { NAME_BYTES = 96 };
 
 struct portable {
     const struct portable_params *params;
-    struct graft g;   /* base: the kernel; user: the functions */
-    bool *replaced;   /* by id of the kernel: what it was the result of is a call now */
-    uint32_t *wanted; /* functions, ids of the user's module */
+    struct graft g;   /* base: the kernel; user: the module of portable functions */
+    bool *replaced;   /* by id of the kernel: its instruction is a call now */
+    uint32_t *wanted; /* ids of functions to copy, in g.user */
     uint32_t wanted_count, wanted_capacity;
     char *why;
 };
@@ -23,19 +23,20 @@ struct portable {
 /* --- what is left to the driver ----------------------------------------------------------------
  */
 
-/* Which devices a kernel is left the operation for: none; those that round divisions correctly;
-   those that tell denormals from 0 in comparisons. */
+/* On which devices an operation stays in the kernel: on none; where division is rounded correctly;
+   where comparisons distinguish denormals from 0. */
 enum stays { NOWHERE, RIGHT_DIVISION, RIGHT_COMPARISON };
 
 struct stand_in {
     uint16_t number;
     enum stays stays;
-    const char *function; /* behind "portable_"; NULL: there is none */
-    const char *name;     /* for messages; NULL: as the function */
+    const char *function; /* name without "portable_"; NULL: there is none */
+    const char *name;     /* name in messages; NULL: that of `function` */
 };
 
-/* Numbers of SPIR-V 1.5, 3.32. "Precision and Operation of SPIR-V Instructions" of Vulkan 1.2 tells
-   which of them are open; the others that kernels may have are exact, or rounded correctly. */
+/* By opcode (SPIR-V 1.5, 3.32): operations whose results are open by "Precision and Operation of
+   SPIR-V Instructions" of Vulkan 1.2. All others that kernels may have are exact, or rounded
+   correctly. */
 static const struct stand_in operations[] = {
     {109, NOWHERE, "uint", NULL},
     {110, NOWHERE, "int", NULL},
@@ -58,9 +59,9 @@ static const struct stand_in operations[] = {
     {190, RIGHT_COMPARISON, "at_least", NULL},
 };
 
-/* These are numbers of instructions of GLSL.std.450. Those that are not listed are exact:
-   RoundEven, Trunc, SAbs, SSign, Floor, Ceil, UMin, SMin, UMax, SMax, UClamp, SClamp, and the
-   finding of bits. */
+/* Likewise, by instruction number of GLSL.std.450. Those that are not listed are exact: RoundEven,
+   Trunc, SAbs, SSign, Floor, Ceil, UMin, SMin, UMax, SMax, UClamp, SClamp, FindILsb, FindSMsb,
+   FindUMsb. */
 static const struct stand_in instructions[] = {
     {1, NOWHERE, "round", NULL},
     {4, RIGHT_COMPARISON, "abs", NULL},
@@ -149,7 +150,7 @@ uint32_t portable_lacks(const uint32_t *words)
     return !row || row->function ? 0 : spv_op(words) << 16 | row->number;
 }
 
-/* "none.glsl:7: determinant has no portable form" */
+/* Writes a reason such as "none.glsl:7: determinant has no portable form". */
 static void refuse(struct portable *p, const struct stand_in *row, const uint32_t *words)
 {
     const whit_shader *shader = p->params->shader;
@@ -165,7 +166,7 @@ static void refuse(struct portable *p, const struct stand_in *row, const uint32_
 /* --- names -------------------------------------------------------------------------------------
  */
 
-/* "vf3;", as glslang writes the types of arguments behind the names of functions. */
+/* Appends a type as glslang writes types of arguments in names of functions: "vf3;" for vec3. */
 static void append_type(const struct spv_module *m, uint32_t type, char *name)
 {
     const uint32_t *def = spv_def(m, type), *row;
@@ -188,7 +189,7 @@ static void append_type(const struct spv_module *m, uint32_t type, char *name)
         snprintf(at, room, "%c1;", letter);
 }
 
-/* The id in the user's module of what stands in for an instruction; 0: there is none. */
+/* The id in g.user of the portable function for an instruction; 0: there is none. */
 static uint32_t find_function(const struct portable *p, const struct stand_in *row,
                               const uint32_t *words)
 {
@@ -228,7 +229,8 @@ static uint32_t spec_id(const struct spv_module *m, uint32_t id)
     return UINT32_MAX;
 }
 
-/* OWN_DIVISION or OWN_COMPARISON, which is set here. */
+/* Fixes the specialization constant OWN_DIVISION (id 0) or OWN_COMPARISON at its value for the
+   device. */
 static void take_switch(struct portable *p, const uint32_t *words)
 {
     struct spv_module *base = &p->g.base;
@@ -239,7 +241,7 @@ static void take_switch(struct portable *p, const uint32_t *words)
     spv_put(base, &base->globals, constant, 3);
 }
 
-/* A type or constant with all that it is made of. */
+/* Copies a type or constant, after those that it refers to. */
 static void take_global(struct portable *p, uint32_t id)
 {
     const uint32_t *words = spv_def(&p->g.user, id);
@@ -275,7 +277,7 @@ static void take_instruction(struct portable *p, const uint32_t *words)
         graft_put(&p->g, &p->g.base.body, words);
 }
 
-/* Those that the kernel calls, and those that these call. */
+/* Copies the functions that the kernel calls, and those that they call. */
 static void take_functions(struct portable *p)
 {
     const struct spv_module *user = &p->g.user;
@@ -290,7 +292,7 @@ static void take_functions(struct portable *p)
 /* --- the kernel --------------------------------------------------------------------------------
  */
 
-/* Puts the call of a function in the place of an instruction. */
+/* Replaces an instruction by a call of its portable function. */
 static bool replace(struct portable *p, const struct stand_in *row, const uint32_t *words)
 {
     struct spv_module *base = &p->g.base;
@@ -331,7 +333,7 @@ static bool replace_all(struct portable *p)
     return true;
 }
 
-/* What kernels ask of floats of 32 bits: capabilities and execution modes of SPIR-V 1.4. */
+/* A float control for 32-bit floats: a capability and an execution mode of SPIR-V 1.4. */
 struct mode {
     bool asked;
     uint32_t capability, mode;
@@ -385,7 +387,7 @@ static struct spv_words write_module(struct portable *p)
     return out;
 }
 
-/* No words: no memory, or `why` says why. */
+/* Result without words: no memory, or the reason is in p->why. */
 static struct spv_words make(struct portable *p, const uint32_t *words, size_t word_count)
 {
     struct spv_words out = {0};

@@ -12,8 +12,8 @@
 
 enum { DEFINES_MAX = WHIT_HOOKS + 1, DEFINE_BYTES = 48 };
 
-/* Functions of a few thousand lines take half of it; a text that is made to take for ever is told
-   within a second. */
+/* Processor time to compile a kernel. A few thousand lines take half of it, and a text that would
+   compile for ever is reported within a second. */
 #define FUNCTIONS_CPU_S 0.8
 
 #define USER_INCLUDE    "#include \"../hook/user.glsl\"\n"
@@ -26,7 +26,8 @@ static const char *const hook_names[WHIT_HOOKS] = {
 
 #define BIT(hook) (1u << WHIT_HOOK_##hook)
 
-/* In the order of enum hook_kernel. Every stage makes the camera's rays anew. */
+/* In the order of enum hook_kernel. camera() is in several kernels, as each of these stages makes
+   the camera rays anew. */
 static const struct {
     const char *path;
     uint32_t hooks;
@@ -56,7 +57,7 @@ const char *shader_kernel_name(enum shader_kernel kernel)
     return hook_kernels[kernel].name;
 }
 
-/* SHADER_KERNEL_COUNT: it is none that hooks are parts of. */
+/* The index of a kernel by name; SHADER_KERNEL_COUNT: hooks are no part of it. */
 static uint32_t find_kernel(const char *name)
 {
     uint32_t i = 0;
@@ -86,14 +87,14 @@ bool shader_is_hooked(const whit_shader *shader, const char *kernel)
 
 uint32_t shader_reaches(const whit_shader *shader)
 {
-    /* Other stages may call other functions than those that are looked for. */
+    /* Stages of the user's own may call functions that reach.c does not know. */
     uint32_t reaches = shader->stages ? SHADER_REACHES_ALL : 0;
     for (uint32_t i = 0; i < SHADER_KERNEL_TEST; ++i)
         reaches |= shader->codes[i].reaches;
     return reaches;
 }
 
-/* As report_hooks() of hook/prelude.glsl puts it together. */
+/* `number`: kernel << 16 | loop, as report_hooks() of hook/prelude.glsl stores it. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file, uint32_t *line)
 {
     uint32_t kernel = number >> 16, loop = number & 0xffff;
@@ -123,7 +124,8 @@ bool shader_find_open(const whit_shader *shader, uint32_t number, const char **f
 
 enum { AOV_BYTES = 256 };
 
-/* aov() of hook/declare.glsl, which calls the functions below //@ aov. NULL: no memory. */
+/* The GLSL of aov(), which hook/declare.glsl declares: it calls the functions below //@ aov. NULL:
+   no memory. */
 static char *declare_aovs(const whit_shader *shader)
 {
     size_t bytes = (size_t)(shader->aov_count + 1) * AOV_BYTES, used = 0;
@@ -144,7 +146,7 @@ static char *declare_aovs(const whit_shader *shader)
     return text;
 }
 
-/* shape_box() of hook/declare.glsl. NULL: no memory. */
+/* The GLSL of shape_box(), which hook/declare.glsl declares. NULL: no memory. */
 static char *declare_box(const whit_shader *shader)
 {
     const struct shader_box *box = &shader->box;
@@ -158,8 +160,8 @@ static char *declare_box(const whit_shader *shader)
                          (double)box->error);
 }
 
-/* Its text, with what is declared in front of the user's. NULL: no memory, or it has no place for
-   that. */
+/* The text of kernel/hook.comp, with `declared` inserted before the user's text. NULL: no memory,
+   or it does not include hook/user.glsl. */
 static char *hook_text(const struct shader_stages *stages, const char *declared)
 {
     uint32_t count, index = shader_stages_find(stages, HOOK_TEXT);
@@ -178,21 +180,21 @@ static char *hook_text(const struct shader_stages *stages, const char *declared)
     return text;
 }
 
-/* What of the user's text a kernel has besides its functions. */
+/* What a kernel has of the user's text besides its hooks. */
 enum kernel_text {
     TEXT_PLAIN,
     TEXT_TESTS,
-    TEXT_DBG /* dbg(x) records */
+    TEXT_DBG /* dbg(x) is replaced by code that records x */
 };
 
-/* The user's text as a kernel has it, and what is declared in front of it. */
+/* The user's text for a kernel, and the declarations in front of it. */
 struct kernel_parts {
     enum kernel_text kind;
     struct shader_text user;
     char *declared;
 };
 
-/* Each step finds its places by what the one before leaves where it was. */
+/* The step that keeps byte offsets comes first, so that the second one finds its places too. */
 static bool make_text(const whit_shader *shader, enum kernel_text kind, struct shader_text *out)
 {
     struct shader_text between;
@@ -228,7 +230,7 @@ static void parts_finish(struct kernel_parts *parts)
     free(parts->declared);
 }
 
-/* What a kernel is compiled of; it borrows all but its own text, and is not to be moved. */
+/* A request and what it points to. Only `text` is owned. It points into itself: do not move it. */
 struct kernel_request {
     char texts[DEFINES_MAX][DEFINE_BYTES];
     const char *defines[DEFINES_MAX];
@@ -266,7 +268,7 @@ static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
     return of->text != NULL;
 }
 
-/* The kernel `base` with the functions of the user. */
+/* Compiles the user's functions and links them into the kernel `base`. */
 static whit_result compile(const whit_log *log, struct shader_compiler *compiler,
                            const whit_shader *shader, const struct kernel_parts *parts,
                            const struct kernel_code *base, struct shader_code *code,
@@ -283,7 +285,7 @@ static whit_result compile(const whit_log *log, struct shader_compiler *compiler
     return result;
 }
 
-/* A function without a box, or a box without one, is an error. */
+/* intersect() without //@ box is an error, and so is //@ box without intersect(). */
 static bool find_box(const whit_log *log, const whit_shader *shader, struct shader_errors *errors)
 {
     uint32_t file, line;
@@ -319,8 +321,8 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
     return WHIT_ERROR_INPUT;
 }
 
-/* A kernel of other stages than the embedded ones: as it is, or with room for the user's functions.
- */
+/* Compiles a kernel of shader->stages: as it is, or (`hooks`) as a base that the user's functions
+   can be linked into. */
 static whit_result compile_stage(struct shader_compiler *compiler, const whit_shader *shader,
                                  enum shader_kernel kernel, bool hooks, struct shader_code *code,
                                  struct shader_errors *errors)
@@ -369,8 +371,8 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     return result;
 }
 
-/* Kernels that record what dbg(x) is. The shadow stage makes the camera's rays once more, of which
-   the first stage tells. */
+/* Compiles the kernels that record dbg(x), without the shadow stage: it makes the camera rays
+   again, which the first stage has recorded. */
 static whit_result compile_dbg(const whit_log *log, struct shader_compiler *compiler,
                                whit_shader *shader, struct shader_errors *errors)
 {
@@ -432,7 +434,7 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader,
     return text;
 }
 
-/* What whit_shader_info points to. */
+/* Fills in what whit_shader_info points to. */
 static bool fill_infos(whit_shader *shader)
 {
     const struct shader_tests *tests = &shader->tests;

@@ -1,4 +1,4 @@
-/* A user's file of hooks as a whole: its functions, its sliders, and the kernels with it. */
+/* A user's file as a whole: its functions, its sliders, and the kernels made with it. */
 #ifndef SHADER_PROGRAM_H
 #define SHADER_PROGRAM_H
 
@@ -7,18 +7,18 @@
 #include "shader/tests.h"
 #include "whit/whit_shader.h"
 
-/* The kernels that hooks are parts of. */
+/* The kernels that a user's functions (hooks) may be parts of. */
 enum shader_kernel {
     SHADER_KERNEL_CLOSEST,
     SHADER_KERNEL_SHADE,
     SHADER_KERNEL_SHADOW,
     SHADER_KERNEL_RESOLVE,
-    SHADER_KERNEL_MISS, /* from here on: of functions alone */
+    SHADER_KERNEL_MISS, /* from here on: kernels that are only made for hooks */
     SHADER_KERNEL_SHAPE,
     SHADER_KERNEL_HIT,
     SHADER_KERNEL_AOV,
     SHADER_KERNEL_POST,
-    SHADER_KERNEL_TEST, /* of no picture: see tests.h */
+    SHADER_KERNEL_TEST, /* runs the file's tests: see tests.h */
     SHADER_KERNEL_COUNT
 };
 
@@ -30,34 +30,34 @@ enum {
     SHADER_EXPECTATIONS_MAX = 16,
     SHADER_AOVS_MAX = 16,
     SHADER_FUEL_USUAL = 10000,
-    SHADER_FUEL_MAX = 30000, /* what lavapipe leaves of the 65,535 iterations of a group */
+    SHADER_FUEL_MAX = 30000, /* users' part of the 65,535 that lavapipe allows a group */
 };
 
-/* What whit_slider points to, and the line that says it. */
+/* The strings that a whit_slider points to, and the place of its annotation. */
 struct shader_slider_text {
     char name[SHADER_NAME_BYTES], help[SHADER_HELP_BYTES];
-    char text[SHADER_HELP_BYTES]; /* words, each ended by 0 */
+    char text[SHADER_HELP_BYTES]; /* the words of a choice, each ended by 0 */
     const char *words[SHADER_WORDS_MAX];
     uint32_t file, line;
 };
 
-/* A function below //@ aov, and where that line is. */
+/* A function with the annotation //@ aov, and the place of that. */
 struct shader_aov {
     char name[SHADER_NAME_BYTES];
     uint32_t file, line;
 };
 
-/* What //@ box says of the shape of intersect(), in world space. */
+/* The annotation //@ box: a box around the shape of intersect(), in world space. */
 struct shader_box {
     float lo[3], hi[3];
-    float error;                      /* how far from the shape an answer may be */
-    char material[SHADER_NAME_BYTES]; /* of the scene, by name; else the first that is worn */
-    uint32_t file, line;              /* from 1; line 0: there is no box */
+    float error;                      /* how far an answer may be off the shape, world units */
+    char material[SHADER_NAME_BYTES]; /* name of its material; unknown: the first in use */
+    uint32_t file, line;              /* `line` from 1; 0: there is no box */
 };
 
 struct whit_shader {
-    struct shader_text text;      /* without files: the stages alone */
-    struct shader_stages *stages; /* NULL: those that are embedded */
+    struct shader_text text;      /* without files: `stages` alone, no hooks */
+    struct shader_stages *stages; /* NULL: the embedded stages */
     struct shader_tests tests;
     whit_shader_test *test_infos;
     whit_shader_check *check_infos;
@@ -73,11 +73,11 @@ struct whit_shader {
     const char *aov_names[SHADER_AOVS_MAX];
     uint32_t aov_count;
     struct shader_box box;
-    struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words where no hook is part of it */
+    struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words: no hook is part of the kernel */
     struct shader_dbg dbg;
-    struct shader_code dbg_codes[SHADER_KERNEL_COUNT]; /* the same, that record what dbg(x) is; no
-                                                          words without any, and of a stage that
-                                                          does the same anew */
+    /* Variants of the kernels that record dbg(x). No words: the file has no dbg(x), or the stage
+       only repeats what another one records. */
+    struct shader_code dbg_codes[SHADER_KERNEL_COUNT];
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;
 };
@@ -88,39 +88,41 @@ static inline bool shader_has(const whit_shader *shader, whit_hook hook)
 {
     return shader && (shader->hooks >> hook & 1);
 }
-/* Its code of the kernel of that name, "shade" for example; NULL: whit's own serves. */
+/* The shader's code for the kernel of that name, "shade" for example; NULL: whit's own serves. */
 const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
-/* The code of that kernel for a probe, which records the value of each dbg(x); NULL: none. */
+/* The same for a probe, with code that records each dbg(x); NULL: none. */
 const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel);
-/* Whether functions of the user's are part of it. */
+/* Whether functions of the user are part of that kernel. */
 bool shader_is_hooked(const whit_shader *shader, const char *kernel);
-/* Bits SHADER_REACHES_* of what its functions may come to call. */
+/* Bits SHADER_REACHES_* of all of the shader's functions. */
 uint32_t shader_reaches(const whit_shader *shader);
-/* Where a loop begins, by the number that a kernel reports; false: no such loop. */
+/* The place where a loop begins, by the number that a kernel reports; false: no such loop. */
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file,
                       uint32_t *line);
-/* Where an operation without a portable form stands first, by the number of portable_lacks; false:
-   that is not known. */
+/* The first place of an operation without a portable form, by its number of portable_lacks; false:
+   it is not known. */
 bool shader_find_open(const whit_shader *shader, uint32_t number, const char **file,
                       uint32_t *line);
-/* Makes a program of a text that was read already, and of stages. Both are the program's from then
-   on, also where this fails. WHIT_ERROR_INPUT and others as of whit_shader_load. A text without
-   files needs stages: all kernels are made of them then. */
+/* Makes a program of a text that was read already, and of stages. It owns both from then on, also
+   after an error. WHIT_ERROR_INPUT and others as whit_shader_load. A text without files needs
+   stages: all kernels are then made of them alone. */
 WHIT_CHECK whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
                                              struct shader_text *text, struct shader_stages *stages,
                                              bool trust, whit_shader **out,
                                              struct shader_errors *errors);
-/* The stages of a folder, for it; NULL `folder`: *stages is NULL. As shader_stages_read. */
+/* Reads the stages of a folder for shader_program_create, as shader_stages_read. *stages is NULL if
+   `folder` is. */
 WHIT_CHECK whit_result shader_program_stages(const whit_log *log, const char *folder,
                                              struct shader_stages **stages,
                                              struct shader_errors *errors);
 void shader_program_destroy(whit_shader *shader);
-/* The kernel that runs its tests, which it must have; errors as above. */
+/* Compiles the kernel that runs the file's tests, of which there must be some; errors as
+   shader_program_create. */
 WHIT_CHECK whit_result shader_program_compile_tests(const whit_log *log,
                                                     struct shader_compiler *compiler,
                                                     whit_shader *shader,
                                                     struct shader_errors *errors);
-/* whit_shader_kernel_text; NULL: no memory, which was logged. */
+/* See whit_shader_kernel_text. NULL: no memory, which was logged. */
 char *shader_program_expand(const whit_log *log, const whit_shader *shader,
                             enum shader_kernel kernel);
 

@@ -4,11 +4,11 @@
 
 #define HAS(name) SHADER_REACHES_##name
 
-/* The colour of glass on a shadow ray's way is made of these. */
+/* The colour of glass that a shadow ray passes is computed from these. */
 #define FILTERS   (HAS(TEXTURES) | HAS(VERTEX_COLORS) | HAS(METAL_ROUGH))
 
-/* Beginnings of names of hook/interface.glsl as glslang writes them, and what their functions need
-   in the kernel. */
+/* Functions of hook/interface.glsl, by the start of their names as glslang writes them, and what
+   they need in the kernel. */
 static const struct {
     const char *name;
     uint32_t bits;
@@ -24,7 +24,8 @@ static const struct {
 
 static const char *const records[REACH_RECORDS] = {"Surface", "Optics"};
 
-/* As surface_optics() of bind/optics.glsl and fetch_surface() of bind/surface.glsl make them. */
+/* Members, and what surface_optics() of bind/optics.glsl and fetch_surface() of bind/surface.glsl
+   compute them from. */
 static const struct {
     uint32_t record; /* index in `records` */
     const char *name;
@@ -87,8 +88,8 @@ void reach_begin(struct reach *reach, const struct spv_module *m)
     }
 }
 
-/* Gives the bits of member `index` of struct or array *type, and sets *type to the member's type, 0
-   where there is none. */
+/* Gives the bits of member `index` of the struct or array *type, and sets *type to the type of the
+   member, 0 if there is none. */
 static uint32_t bits_of_part(const struct reach *reach, const struct spv_module *m, uint32_t *type,
                              uint32_t index)
 {

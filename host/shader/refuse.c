@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "sources.h"
 
-/* The last number of what SPIR-V has without extensions; above stand those of extensions. */
+/* The last opcode of SPIR-V without extensions; extensions have larger ones. */
 enum { LAST_PLAIN = 403, DEMOTE = 5380, TERMINATE = 4416 };
 
 static bool within(uint32_t op, uint32_t first, uint32_t last)
@@ -80,7 +80,7 @@ const char *refuse_instruction(const struct spv_module *m, const uint32_t *words
 
 const char *refuse_file(const struct spv_module *m, const uint32_t *function)
 {
-    const uint32_t *line = function - 4; /* where glslang puts it */
+    const uint32_t *line = function - 4; /* the OpLine that glslang puts before a function */
     if (line < m->words + m->functions_at - 4 || line[0] != spv_head(OP_LINE, 4))
         return "";
     const char *name = spv_string(m, line[1]);
@@ -115,8 +115,8 @@ static bool was_counted(struct refuse_variables *all, struct spv_module *m, uint
     return false;
 }
 
-/* Whether a variable holds a number or vector that a call is given. glslang makes one for each, and
-   drivers keep them in registers. */
+/* Whether a variable holds a scalar or vector argument of a call. glslang makes one for each
+   argument, and drivers keep them in registers. */
 static bool is_argument(const struct spv_module *m, const uint32_t *words, const uint32_t *pointer)
 {
     const uint32_t *type = pointer && spv_length(pointer) == 4 ? spv_def(m, pointer[3]) : NULL;

@@ -4,13 +4,13 @@
 
 #include "base/array.h"
 
-/* A loop or a switch that is open. */
+/* A loop or switch whose merge block has not come yet. */
 struct construct {
     uint32_t merge;
-    bool is_left; /* by a return */
+    bool is_left; /* a return leaves it */
 };
 
-/* A block that goes on in another one. */
+/* A block that was split: it now ends as block `to`. */
 struct moved {
     uint32_t from, to;
 };
@@ -18,12 +18,13 @@ struct moved {
 struct returns {
     struct construct *open;
     uint32_t open_count, open_capacity;
-    struct moved *moved; /* of the function in hand */
+    struct moved *moved; /* blocks of the current function */
     uint32_t moved_count, moved_capacity;
-    uint32_t label, flag, value;  /* variables of the function in hand; 0: it needs none */
-    bool is_void, needed, begins; /* begins: variables go behind its first label */
-    bool waits;                   /* a way out goes behind the values that the block begins with */
-    uint32_t selection;           /* the merge block of an OpSelectionMerge just seen */
+    uint32_t label, flag, value; /* `flag`, `value`: variables of the current function; 0: none */
+    /* needed: the function is rewritten; begins: its variables go behind its first label. */
+    bool is_void, needed, begins;
+    bool waits;         /* the test of the flag follows after the OpPhis of the current block */
+    uint32_t selection; /* the merge block of an OpSelectionMerge just seen */
 };
 
 static bool is_return(uint32_t op)
@@ -78,7 +79,7 @@ static void put_variables(struct returns *r, struct spv_module *m)
     SPV_EMIT(m, OP_VARIABLE, spv_pointer(m, m->return_type), r->value, STORAGE_FUNCTION);
 }
 
-/* To the end of what is open, or out of the function. */
+/* Leaves the innermost construct, or the function if none is open. */
 static void put_way_out(struct returns *r, struct spv_module *m)
 {
     if (r->open_count) {
@@ -94,7 +95,7 @@ static void put_way_out(struct returns *r, struct spv_module *m)
     }
 }
 
-/* Behind a loop or a switch that a return may have left. */
+/* Tests the flag behind a loop or switch that a return may have left. */
 static void put_question(struct returns *r, struct spv_module *m)
 {
     uint32_t left = m->next_id++, out = m->next_id++, on = m->next_id++;
@@ -141,7 +142,7 @@ static void put_return(struct returns *r, struct spv_module *m, const uint32_t *
     put_way_out(r, m);
 }
 
-/* What nothing reached before, loops that run out of fuel may. */
+/* Replaces OpUnreachable by a return, since a loop that runs out of fuel may reach it. */
 static void put_end(struct returns *r, struct spv_module *m)
 {
     if (r->is_void)

@@ -1,12 +1,13 @@
-/* Returns out of loops and switches of users become ways to the end of these, where a flag says
-   that the function is left: what is evaluated (device/evaluate.h) has no other way out of a loop.
- */
+/* Rewrites returns inside of loops and switches of users: each sets a flag and leaves the construct
+   at its merge block, after which the flag is tested. device/evaluate.h supports no other way out
+   of a loop. */
 #ifndef SHADER_RETURNS_H
 #define SHADER_RETURNS_H
 
 #include "shader/module.h"
 
-/* The module with its remarks. Free ->words; no words: no memory, m->failed. */
+/* Gives the rewritten module, with its debug instructions. Free ->words; no words: no memory,
+   m->failed. */
 struct spv_words returns_rewrite(struct spv_module *m);
 
 #endif

@@ -17,13 +17,13 @@ static bool is_word(char c)
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/* Over one end of a line: LF, CR or CR LF. */
+/* Skips one end of a line: LF, CR or CR LF. */
 static const char *behind_newline(const char *at, const char *end)
 {
     return at[0] == '\r' && at + 1 < end && at[1] == '\n' ? at + 2 : at + 1;
 }
 
-/* Over lines that end with a backslash. */
+/* Skips backslashes at ends of lines, with these ends. */
 static void join_lines(struct scan *scan)
 {
     while (scan->at + 1 < scan->end && scan->at[0] == '\\' && is_newline(scan->at[1])) {
@@ -32,7 +32,7 @@ static void join_lines(struct scan *scan)
     }
 }
 
-/* The character in hand, 0 at the end. */
+/* The current character, 0 at the end. */
 static char look(struct scan *scan)
 {
     join_lines(scan);
@@ -64,12 +64,12 @@ void scan_begin(struct scan *scan, const char *text, size_t bytes)
     scan->end = text + bytes;
     scan->line = 1;
     scan->at_line_start = true;
-    static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8 */
+    static const char mark[] = "\xef\xbb\xbf"; /* byte order mark of UTF-8 */
     if (bytes >= 3 && memcmp(text, mark, 3) == 0)
         scan->at += 3;
 }
 
-/* `scan` stands behind the first slash. */
+/* Skips a comment; `scan` is behind its first slash. */
 static bool skip_comment(struct scan *scan)
 {
     bool line = look(scan) == '/';
@@ -84,7 +84,7 @@ static bool skip_comment(struct scan *scan)
     return line || bad(scan, "a comment that does not end");
 }
 
-/* Blanks, comments and, where they mean nothing, ends of lines. */
+/* Skips blanks, comments and, outside of directives, ends of lines. */
 static bool skip_blanks(struct scan *scan)
 {
     for (;;) {
@@ -121,7 +121,7 @@ static void take_word(struct scan *scan)
     scan->text[used] = 0;
 }
 
-/* What the compiler and this scanner might read otherwise than each other is refused. */
+/* Reads a string; refuses what the compiler might read differently from this scanner. */
 static bool take_string(struct scan *scan)
 {
     size_t used = 0;
@@ -193,7 +193,7 @@ bool scan_is(const struct scan *scan, enum scan_kind kind, const char *text)
     return scan->kind == kind && strcmp(scan->text, text) == 0;
 }
 
-/* What #else leaves out may open what the branch before it has opened already. */
+/* Restores the depth of braces at #else, as both branches may open the same block. */
 static void follow_directive(const struct scan *scan, struct scan_functions *f)
 {
     const uint32_t max = sizeof f->depths / sizeof *f->depths;
@@ -206,7 +206,7 @@ static void follow_directive(const struct scan *scan, struct scan_functions *f)
     f->depth_count -= f->depth_count && strcmp(scan->text, "endif") == 0;
 }
 
-/* Whether the sign in hand opens the body of a function. */
+/* Whether the current sign opens the body of a function. */
 static bool follow_sign(char sign, struct scan_functions *f)
 {
     bool body = sign == '{' && f->braces == 0 && f->closed;

@@ -1,5 +1,5 @@
-/* GLSL as a row of words and signs, before macros: what is asked of a user's text without the
-   compiler. */
+/* Splits GLSL into tokens, without a preprocessor: for questions about a user's text that do not
+   need the compiler. */
 #ifndef SHADER_SCAN_H
 #define SHADER_SCAN_H
 
@@ -11,47 +11,49 @@ enum scan_kind {
     SCAN_END,
     SCAN_WORD,      /* a name, a keyword or a number */
     SCAN_SIGN,      /* one character, in text[0] */
-    SCAN_DIRECTIVE, /* text is its name, "" where there is none; its line's words follow */
-    SCAN_NEWLINE,   /* the end of a directive's line; ends of other lines are nothing */
-    SCAN_STRING,    /* text is what stands between the quotes */
-    SCAN_BAD,       /* `reason` says why; nothing follows */
+    SCAN_DIRECTIVE, /* text is its name, or ""; tokens of its line follow */
+    SCAN_NEWLINE,   /* the end of a directive's line; others give no token */
+    SCAN_STRING,    /* text is what is between the quotes */
+    SCAN_BAD,       /* damaged text, see `reason`; the last token */
 };
 
 enum { SCAN_TEXT_BYTES = 1024 };
 
-/* Set up by scan_begin. */
+/* The state of a scan, set up by scan_begin. */
 struct scan {
     const char *at, *end;
-    uint32_t line; /* of `at`, from 1 */
+    uint32_t line; /* line number of `at`, from 1 */
     bool at_line_start, in_directive;
-    /* The token in hand. */
+    /* The current token. */
     enum scan_kind kind;
     uint32_t token_line;
-    char text[SCAN_TEXT_BYTES]; /* the start of a longer one */
+    char text[SCAN_TEXT_BYTES]; /* a longer token is cut */
     const char *reason;
 };
 
 void scan_begin(struct scan *scan, const char *text, size_t bytes);
-/* The next token; false at the end, or where the text is damaged. Comments are skipped, and lines
-   that end with a backslash go on. */
+/* Reads the next token; false at the end, or where the text is damaged. Comments are skipped, and
+   lines that end with a backslash are joined with the next. */
 bool scan_next(struct scan *scan);
 bool scan_is(const struct scan *scan, enum scan_kind kind, const char *text);
 
-/* Functions with a body at the top level, one by one: `scan` stands behind the name when it
-   returns. Begins where `scan` stands; zero it first. */
+/* Finds functions with a body at the top level, one by one, from where `scan` is; zero it first.
+   After a function was found, `scan` is behind the brace that opens its body. */
 struct scan_functions {
     char name[SCAN_TEXT_BYTES];
     uint32_t line;
-    uint32_t braces, brackets;        /* that are open */
-    uint32_t depths[64], depth_count; /* of braces, at each #if */
-    bool closed;                      /* name and its brackets are complete */
+    uint32_t braces, brackets;        /* open braces and brackets */
+    uint32_t depths[64], depth_count; /* `braces` at each open #if */
+    bool closed;                      /* a name and its brackets in () have been read */
 };
 bool scan_next_function(struct scan *scan, struct scan_functions *functions);
-/* The same token by token, each after scan_next: true where the one in hand opens a body. */
+/* The same token by token, to be called after each scan_next. True: the current token opens the
+   body of a function. */
 bool scan_follow(const struct scan *scan, struct scan_functions *functions);
 
-/* What stands behind a bracket up to its other one, blanks as one and none at the ends; "..." where
-   `bytes`, of `out`, are too few or the bracket does not close. */
+/* Copies the text from behind a bracket up to its closing one into `out`, which has `bytes`: runs
+   of blanks become one, none at the ends. It ends with "..." if `out` is too small or the bracket
+   does not close. */
 void scan_copy_brackets(const char *at, char *out, size_t bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* Values that a file of hooks names, and that change without another kernel. */
+/* Sliders: values that a user's file names, and that can change without a new kernel. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,8 @@
 
 enum { DECLARATION_BYTES = 256 };
 
-/* Declares a slider's variable; of a choice, a constant for each word too: `mode == mode_b`. */
+/* Declares a slider's variable; for a choice also a constant for each word, as in `mode ==
+   mode_b`. */
 static size_t declare_one(const whit_slider *slider, char *text, size_t bytes)
 {
     static const char *const forms[] = {
@@ -69,7 +70,7 @@ static bool read_choice(const whit_slider *slider, const char *value, float *num
     return false;
 }
 
-/* As the option writes it, colours in sRGB. */
+/* Reads a value as in options; colours stay sRGB. */
 static bool read_value(const whit_slider *slider, const char *value, float out[3])
 {
     char *end;

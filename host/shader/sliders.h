@@ -1,4 +1,4 @@
-/* Sliders of files. */
+/* Sliders of a user's file. */
 #ifndef SHADER_SLIDERS_H
 #define SHADER_SLIDERS_H
 
@@ -6,9 +6,9 @@
 
 /* The GLSL that declares the sliders; free() it. NULL: no memory. */
 char *shader_sliders_declare(const whit_shader *shader);
-/* The values of all sliders, of which `text`, "NAME=VALUE,NAME=VALUE", changes some; NULL or "":
-   none. Colours come out linear. With `skip`, pairs that are no use are left out. False: why not,
-   and `values` means nothing. */
+/* Sets the values of all sliders: those of the file, changed by `text`, "NAME=VALUE,NAME=VALUE"
+   (may be NULL or ""). Colours become linear. `skip`: pairs that the file has no use for are
+   ignored. False: `why` has the reason, and `values` is not valid. */
 bool shader_sliders_read(const whit_shader *shader, const char *text, bool skip,
                          float values[SHADER_SLIDERS_MAX], char *why, size_t why_bytes);
 

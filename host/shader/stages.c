@@ -18,7 +18,7 @@ struct reading {
     uint32_t depth;
 };
 
-/* The #include that leads to a file; of a kernel, nobody's. */
+/* The #include that leads to a file; for a kernel `file` is NULL. */
 struct place {
     const char *file;
     uint32_t line;
@@ -50,7 +50,8 @@ static whit_result refuse(struct reading *r, const struct place *place, const ch
     return WHIT_ERROR_INPUT;
 }
 
-/* Its place in the list, which is made where there is none; SHADER_STAGES_MAX: the list is full. */
+/* Index of a path in stages->files, to which it is added if needed; SHADER_STAGES_MAX: full, or no
+   memory. */
 static uint32_t place_of(struct shader_stages *stages, const char *path)
 {
     for (uint32_t i = 0; i < stages->count; ++i) {

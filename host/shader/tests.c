@@ -8,7 +8,7 @@
 #include "base/array.h"
 #include "shader/scan.h"
 
-/* One file on its way. */
+/* The state while one file is read. */
 struct reading {
     const whit_log *log;
     const struct shader_text *text;
@@ -17,7 +17,7 @@ struct reading {
     uint32_t file;
     struct scan scan;
     bool failed; /* no memory */
-    bool wrong;  /* an error was told */
+    bool wrong;  /* an error was reported */
 };
 
 static const struct shader_file *file_of(const struct reading *r)
@@ -43,7 +43,8 @@ static bool is_mark(const char *line)
     return strncmp(line, "test", 4) == 0 && line[4 + strspn(line + 4, " \t\r")] == '\n';
 }
 
-/* The next mark from `at` on, of which `line` is the number; NULL: there is none. */
+/* Finds the next mark from `at` on; *line is the line number of `at`, and then of the mark. NULL:
+   there is none. */
 static const char *next_mark(const char *at, uint32_t *line)
 {
     while (at && !is_mark(at)) {
@@ -63,7 +64,7 @@ static bool take(struct reading *r, enum scan_kind kind, const char *text)
     return scan_next(&r->scan) && (text ? scan_is(&r->scan, kind, text) : r->scan.kind == kind);
 }
 
-/* From `void` to the brace that opens the body. */
+/* Reads from `void` to the brace that opens the body. */
 static bool read_head(struct reading *r, struct shader_test *test)
 {
     if (!take(r, SCAN_WORD, "void"))
@@ -77,7 +78,7 @@ static bool read_head(struct reading *r, struct shader_test *test)
            take(r, SCAN_SIGN, ")") && take(r, SCAN_SIGN, "{");
 }
 
-/* The word in hand is `check`. */
+/* Reads a check; the current token is `check`. */
 static void read_check(struct reading *r, const struct shader_test *test)
 {
     struct shader_tests *tests = r->tests;
@@ -117,7 +118,7 @@ static void read_body(struct reading *r, struct shader_test *test)
     test->end = (size_t)(r->scan.at - file_of(r)->text);
 }
 
-/* The test whose mark stands at `mark`, in line `line`. */
+/* Reads the test whose mark is at `mark`, in line `line`. */
 static void read_test(struct reading *r, const char *mark, uint32_t line)
 {
     struct shader_tests *tests = r->tests;
@@ -145,7 +146,7 @@ static void read_test(struct reading *r, const char *mark, uint32_t line)
 
 /* ---- Files ---- */
 
-/* What calls check() outside of the tests that were found. */
+/* Reports calls of check() outside of the tests that were found. */
 static void look_outside(struct reading *r)
 {
     const struct shader_tests *tests = r->tests;
@@ -182,7 +183,7 @@ whit_result shader_tests_read(const whit_log *log, const struct shader_text *tex
             line++;
         }
     }
-    /* A file without tests may have a function of that name. */
+    /* A file without tests may have a function check() of its own. */
     bool own = !tests->test_count && shader_text_defines(text, "check", NULL, NULL);
     for (r.file = 0; !own && r.file < text->file_count && goes_on(&r); ++r.file)
         look_outside(&r);
@@ -221,7 +222,7 @@ uint32_t shader_tests_words(const struct shader_tests *tests)
     return most > 0 ? (most + 31) / 32 : 1;
 }
 
-/* The word and the bit of each check. From `source`, which has the same text without them. */
+/* Writes the text of `source` into `file`, with the word and bit of each check. */
 static void put_numbers(const struct shader_tests *tests, uint32_t index,
                         const struct shader_file *source, struct shader_file *file)
 {

@@ -17,19 +17,19 @@ struct reading {
     const whit_log *log;
     struct shader_errors *errors;
     struct shader_text *text;
-    struct roots roots;                       /* where files are read from */
-    const char *folder;                       /* of the first file, as the user wrote it */
-    const struct shader_text_source *sources; /* in place of files; NULL: none */
+    struct roots roots;                       /* the folder that files must be in */
+    const char *folder;                       /* folder of the first file, as the user wrote it */
+    const struct shader_text_source *sources; /* read in place of files; NULL: files are read */
     uint32_t source_count;
-    uint32_t open[SHADER_TEXT_DEPTH_MAX], open_count; /* files that include each other */
-    uint32_t below[SHADER_TEXT_FILES_MAX]; /* by file: how deep its includes go, 1: it has none */
+    uint32_t open[SHADER_TEXT_DEPTH_MAX], open_count; /* the current file and its includers */
+    uint32_t below[SHADER_TEXT_FILES_MAX];            /* by file: depth of its includes; 1: none */
 };
 
-/* An #include that is being followed; of the first file, nobody's. */
+/* The place to name in errors: an #include that is being followed, or the file itself. */
 struct place {
     const char *file;
     uint32_t line;
-    const char *what; /* as it is written there; NULL: the file itself is meant */
+    const char *what; /* the included name; NULL: the file itself */
 };
 
 static whit_result refuse(struct reading *r, const struct place *place, const char *why)
@@ -106,7 +106,7 @@ static whit_result copy_source(struct reading *r, const struct place *place,
     return WHIT_OK;
 }
 
-/* Bytes that no text has, and lines that nobody writes. */
+/* Refuses bytes that are no text, and very long lines. */
 static whit_result check_bytes(struct reading *r, const struct shader_file *file)
 {
     uint32_t line = 1;
@@ -131,8 +131,8 @@ static whit_result check_bytes(struct reading *r, const struct shader_file *file
 
 /* --- names ---------------------------------------------------------------------------------- */
 
-/* `included` as the file `from` names it, both from the first file's folder, without "." and "..".
-   "" where it leads out of that folder; NULL: no memory. */
+/* The path of `included`, a name in file `from`. Paths are relative to the first file's folder,
+   without "." and "..". "": it leads out of that folder; NULL: no memory. */
 static char *resolve(const char *from, const char *included)
 {
     char *joined = path_beside(from, included);
@@ -148,7 +148,7 @@ static char *resolve(const char *from, const char *included)
             continue;
         if (length == 2 && part[0] == '.' && part[1] == '.') {
             if (used == 0)
-                break; /* out[0] is made 0 below */
+                break; /* out becomes "" below */
             used--;
             while (used && out[used - 1] != '/')
                 used--;
@@ -179,7 +179,7 @@ static uint32_t find_file(const struct shader_text *text, const char *relative)
 static whit_result read_one(struct reading *r, const struct place *place, char *relative,
                             uint32_t *index);
 
-/* A file that was read already, or is being read. */
+/* Includes a file that was read already, or is being read. */
 static whit_result include_again(struct reading *r, const struct place *place, uint32_t index)
 {
     for (uint32_t i = 0; i < r->open_count; ++i) {
@@ -235,7 +235,7 @@ static whit_result at(struct reading *r, uint32_t file, uint32_t line, const cha
     return WHIT_ERROR_INPUT;
 }
 
-/* What is whit's own to say: NULL, or why. */
+/* Why a directive is refused, which only whit's own text may use; NULL: it is not. */
 static const char *refused_directive(const char *name)
 {
     static const char *const pairs[][2] = {
@@ -252,7 +252,7 @@ static const char *refused_directive(const char *name)
     return NULL;
 }
 
-/* What only kernels declare. A name of these cannot be pasted together either, as ## is refused. */
+/* Refuses words that only kernels may use. They cannot be made by ## either, which is refused. */
 static const char *refused_word(const char *word)
 {
     static const char *const words[] = {"layout", "uniform", "buffer", "shared", "main"};
@@ -271,7 +271,7 @@ static const char *refused_word(const char *word)
 }
 
 struct conditions {
-    uint32_t lines[64], count; /* of #if that are open */
+    uint32_t lines[64], count; /* lines of the open #if */
 };
 
 static whit_result check_directive(struct reading *r, uint32_t file, const struct scan *scan,
@@ -295,7 +295,7 @@ static whit_result check_directive(struct reading *r, uint32_t file, const struc
     return WHIT_OK;
 }
 
-/* expand.c puts the included text in the place of the whole line. */
+/* Whether an #include is alone on its line, as expand.c replaces the whole line. */
 static bool stands_alone(const char *text, const char *directive)
 {
     while (directive > text && *directive != '#')
@@ -318,7 +318,8 @@ static whit_result read_include(struct reading *r, uint32_t file, struct scan *s
     return follow_include(r, file, line, name);
 }
 
-/* Strings stand in #error alone; glslang and scan.c might not see the same comments in others. */
+/* Strings other than names in #include occur in #error alone. Comment marks in them are refused, as
+   glslang and scan.c might disagree about them. */
 static whit_result check_token(struct reading *r, uint32_t file, struct scan *scan,
                                struct conditions *open)
 {
@@ -356,7 +357,8 @@ static whit_result check_file(struct reading *r, uint32_t index)
 
 /* --- files ---------------------------------------------------------------------------------- */
 
-/* Takes `relative` over. */
+/* Reads a file and what it includes; owns `relative`. `place`: its #include; NULL: the first
+   file. */
 static whit_result read_one(struct reading *r, const struct place *place, char *relative,
                             uint32_t *index)
 {
