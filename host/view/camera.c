@@ -7,9 +7,9 @@
 #include "base/vec.h"
 #include "settings/settings.h"
 
-static const double STEEPEST = 0.998; /* cosine between a look and up */
+static const double STEEPEST = 0.998; /* largest cosine between direction and up */
 
-/* Makes `a` a unit vector; false where it has no direction. */
+/* Makes `a` a unit vector; false: it has no direction. */
 static bool normalize(double a[3])
 {
     double length = double3_length(a);
@@ -17,7 +17,7 @@ static bool normalize(double a[3])
     return length > 0.0 && isfinite(length);
 }
 
-/* Around a unit axis (Rodrigues' formula). */
+/* Rotates `v` around a unit axis (Rodrigues' formula). */
 static void rotate(double v[3], const double axis[3], double angle)
 {
     double c = cos(angle), s = sin(angle), along = double3_dot(axis, v), side[3];
@@ -49,7 +49,7 @@ static struct frame frame_of(const struct view_camera *camera)
     return f;
 }
 
-/* Turns a look by the angles, but not over the top. */
+/* Turns a direction by the angles, but not beyond STEEPEST. */
 static void turn(const struct view_camera *camera, double look[3], double right, double up)
 {
     double axis[3], side[3], tilted[3];
@@ -117,7 +117,7 @@ void camera_focus(struct view_camera *camera, const double point[3])
     }
 }
 
-/* The distance from which a ball is inside the picture. */
+/* The distance at which a ball just fits into the picture. */
 static double distance_for(const struct view_camera *camera, double radius, double aspect)
 {
     double half = camera->fov_y_degrees * PI / 360.0;
@@ -180,7 +180,7 @@ bool camera_project(const struct view_camera *camera, const double a[3], const d
 {
     struct frame f = frame_of(camera);
     double focal = 0.5 * height / tan(camera->fov_y_degrees * PI / 360.0);
-    double near = 1e-3 * f.distance; /* part of the picture's own scale */
+    double near = 1e-3 * f.distance; /* relative to the scale of the view */
     double ends[2][3];
     for (int e = 0; e < 2; ++e) {
         double d[3];

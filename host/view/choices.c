@@ -45,7 +45,7 @@ static const struct setting_value *step_at(const struct setting *row, uint32_t i
     return i < first ? &steps_of(row)[i] : &row->more_steps[i - first];
 }
 
-/* Words of options are as options take them; other steps may have titles. */
+/* The text of a step: the word of the option, or, if the row has steps of its own, their title. */
 static const char *title_of(const struct setting *row, uint32_t i)
 {
     const struct setting_value *step = step_at(row, i);
@@ -86,7 +86,7 @@ void choice_set(struct settings *settings, const struct setting *row, uint32_t s
 double choice_number(const struct settings *settings, const struct setting *row)
 {
     char text[SETTING_VALUE_BYTES];
-    if (row->kind == SETTING_OWN) /* auto has a number too */
+    if (row->kind == SETTING_OWN) /* `auto` has a number too */
         return *(const double *)((const char *)settings + row->offset);
     setting_write(row, settings, 0, text);
     return strtod(text, NULL);
@@ -144,7 +144,7 @@ static void say_shader(const struct settings *settings, char text[CHOICE_WORDS])
                                                             : "");
 }
 
-/* Effects have a panel of their own, pictures around are files, and the shader is told above. */
+/* Whether choice_changes lists the setting: rows with a title, and these without. */
 static bool is_told(const struct setting *row)
 {
     return row->title || strcmp(row->name, "effects") == 0 ||

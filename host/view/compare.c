@@ -21,8 +21,8 @@ static bool same_kind(const struct view *view)
     return costs == (view->compare.frozen.paint != PAINT_COLOR);
 }
 
-/* False where the two cannot be subtracted: there is one, they show another view or other things,
-   or one is smaller as yet, which would show everywhere. */
+/* False if the two pictures cannot be subtracted: one is missing, they show another view or another
+   kind of values, or one is still smaller, so that every pixel would differ. */
 static bool get_pair(const struct view *view, struct compare_pair *pair)
 {
     const struct engine_frame *a = frame_of(view, 0), *b = frame_of(view, 1);
@@ -88,7 +88,7 @@ static void drop_left(struct compare *compare)
 
 /* ---- Jobs ---- */
 
-/* |a - b| of the channel with the largest. */
+/* Writes |a - b| of the largest channel. */
 static void subtract(const whit_image *a, const whit_image *b, float *out)
 {
     whit_image_info info;
@@ -99,7 +99,7 @@ static void subtract(const whit_image *a, const whit_image *b, float *out)
         float max = 0.0f;
         for (uint32_t c = 0; c < counted; ++c) {
             float d = fabsf(s[c] - t[c]);
-            max = d <= max || isnan(max) ? max : d; /* keeps what is not a number */
+            max = d <= max || isnan(max) ? max : d; /* keeps NaN */
         }
         *out++ = max;
         s += info.channels;
@@ -252,7 +252,7 @@ static bool make_room(struct compare *compare, uint32_t width, uint32_t height)
     return true;
 }
 
-/* Columns [left, right) of a picture that is stretched to width x height. */
+/* Copies columns [left, right) of a picture, stretched to width x height. */
 static void copy_part(const struct engine_frame *frame, uint32_t left, uint32_t right,
                       uint32_t width, uint32_t height, uint8_t *to)
 {
@@ -303,7 +303,8 @@ static whit_result show(struct view *view)
     return swapchain_set_picture(view->swapchain, frame->rgba, frame->width, frame->height);
 }
 
-/* In place of B's picture; its number stays, as newer ones have a higher one. */
+/* Replaces B's picture by `next`, whose number is never lower, as newer pictures have higher
+   ones. */
 static void replace_other(struct compare *compare, struct engine_frame *next)
 {
     engine_frame_inherit(&compare->other, next);
@@ -313,7 +314,7 @@ static void replace_other(struct compare *compare, struct engine_frame *next)
     compare->stale = true;
 }
 
-/* A picture of an older B, or by its kernel, is none of this one. */
+/* Takes B's newest picture, unless an older B or its kernel has drawn it. */
 static void take_other(struct view *view)
 {
     struct compare *compare = &view->compare;

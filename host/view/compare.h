@@ -1,5 +1,5 @@
-/* Two settings of one view beside each other: A is what the window draws, B is what was frozen.
-   What takes time, a difference as a heat map and its figures, is worked out in other threads. */
+/* Compares two settings of one view: A is what the window draws, B is frozen. Differences as a heat
+   map and in figures take time, so other threads compute them. */
 #ifndef VIEW_COMPARE_H
 #define VIEW_COMPARE_H
 
@@ -14,78 +14,81 @@
 enum compare_mode {
     COMPARE_OFF,
     COMPARE_SPLIT,      /* A left of the divider, B right of it */
-    COMPARE_DIFFERENCE, /* |A - B|, of the channel with the largest, as a heat map */
+    COMPARE_DIFFERENCE, /* |A - B| of the largest channel, as a heat map */
 };
 
-/* Pictures that a job looks at: of two frames, and kept until it is done, see compare_leave. */
+/* The pictures of A and B that a job reads. They are kept until it is done: see compare_leave. */
 struct compare_pair {
     const whit_image *color[2], *ids[2];
-    uint64_t numbers[2]; /* of the frames */
+    uint64_t numbers[2]; /* numbers of the frames */
     bool whole;
-    bool uneven; /* refined, and one is not as far as the other yet */
+    bool uneven; /* one has more samples than the other, by refinement */
 };
 
-/* |A - B| of a pair. */
+/* A heat map of |A - B|. */
 struct compare_heat {
     struct compare_pair pair;
-    double asked_scale, scale; /* 0: by itself; then the one that came of it */
+    double asked_scale, scale; /* asked_scale 0: chosen by the picture; scale: the one used */
     uint32_t width, height;
     uint32_t *rgba; /* NULL: none */
 };
 
-/* What whole pictures differ by. */
+/* Figures about the difference of two whole pictures. */
 struct compare_figures {
     struct compare_pair pair;
     bool known;
     struct difference difference;
-    bool has_flip; /* of colours alone */
+    bool has_flip; /* flip_* are known: both show colours */
     double flip_mean, flip_largest;
-    double ms[2]; /* of drawing A and B */
+    double ms[2]; /* time of drawing A and B */
 };
 
-/* Two jobs: heat maps of pictures as they come, and figures of whole ones. */
+/* The two kinds of jobs: heat maps of all pictures, and figures of whole ones. */
 enum compare_work { COMPARE_HEAT, COMPARE_FIGURES, COMPARE_WORKS };
 struct compare_job {
-    struct thread *thread; /* NULL: not at work */
+    struct thread *thread; /* NULL: the job is not running */
     atomic_bool done;
     const struct palette *palette;
-    struct compare_heat heat; /* what is asked for, and what came of it */
+    struct compare_heat heat; /* the request, and then the result */
     struct compare_figures figures;
 };
 
 struct compare {
     enum compare_mode mode;
     struct settings frozen;
-    struct engine_frame other; /* B's newest picture */
-    double divider;            /* part of the window's width that is A's */
+    struct engine_frame other; /* the newest picture of B */
+    double divider;            /* A's share of the window's width */
     bool dragging;
-    double scale; /* of the heat map; 0: by itself */
-    bool stale;   /* the window shows something else than it should */
+    double scale; /* of the heat map; 0: chosen by the picture */
+    bool stale;   /* the window has to be given a new picture */
     struct compare_heat heat;
     struct compare_figures figures;
     struct compare_job jobs[COMPARE_WORKS];
-    whit_image *left[4 * COMPARE_WORKS]; /* of frames that are gone, but a job still reads them */
-    uint8_t *mixed;                      /* what is shown of A and B */
+    /* Images of frames that are gone, which a job still reads. */
+    whit_image *left[4 * COMPARE_WORKS];
+    uint8_t *mixed; /* pixels of A and B side by side */
     uint32_t mixed_width, mixed_height;
 };
 
 struct view;
 
-/* From OFF to something else freezes B. */
+/* Changes the mode. From OFF to another mode it freezes B. */
 void compare_set(struct view *view, enum compare_mode mode);
-/* A newer picture will take this one's place: what jobs read of it stays with them. */
+/* Call it before `frame` is replaced by a newer one: images of it that jobs read move to
+   compare->left. */
 void compare_leave(struct compare *compare, struct engine_frame *frame);
-/* Takes what is new, and gives the window its picture: A's alone where nothing is compared. */
+/* Takes new pictures and finished jobs, and gives the window its picture; without comparison, that
+   of A. */
 WHIT_CHECK whit_result compare_step(struct view *view);
-/* Nothing of it is still to come, once the engine is still. */
+/* Whether nothing more will be shown, provided that the engine is still. */
 bool compare_is_still(const struct view *view);
-/* Whether the heat map is shown: not where one side shows costs, the other colours. */
+/* Whether the heat map is shown. It is not if one side shows costs and the other colours. */
 bool compare_subtracts(const struct view *view);
-/* The divider; true where the event was its own. */
+/* Moves the divider; true: the event was for it. */
 bool compare_event(struct view *view, const struct view_event *event);
-/* Names, divider, figures and legend, between ui_begin and ui_end. */
+/* Draws names, divider, figures and legend, between ui_begin and ui_end. */
 void compare_draw(struct view *view);
-/* Waits for jobs. */
+/* Waits for jobs, and frees everything. */
 void compare_finish(struct compare *compare);
 
 #endif

@@ -1,4 +1,4 @@
-/* What stands over the picture while A and B are compared. */
+/* What is drawn over the picture while A and B are compared. */
 #include <stdio.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 enum { NAMES_MAX = 4 }; /* lines of a name */
 static const uint32_t COLORS[2] = {0xFF60C8FFu, 0xFFFFC880u};
 
-/* "A  traversal sign", with a line for each setting that the other does not share. */
+/* Draws "A  traversal sign", with a line for each setting that differs from the other side's. */
 static void draw_name(const struct view *view, int side)
 {
     struct choice_change changes[CHOICE_CHANGES_MAX];

@@ -1,4 +1,4 @@
-/* What differs between two pictures of one size, pixel by pixel. */
+/* Measures the difference of two pictures of the same size, pixel by pixel. */
 #ifndef VIEW_DIFFERENCE_H
 #define VIEW_DIFFERENCE_H
 
@@ -7,8 +7,8 @@
 
 #include "whit/whit_image.h"
 
-/* One of two pictures that are compared: `channels` linear floats a pixel (1, or 4 of which alpha
-   does not count) and two words of hit identity a pixel. Either may be NULL. */
+/* One of two pictures that are compared: `color` has `channels` linear floats a pixel (1, or 4 with
+   an alpha that does not count), `ids` two words of hit identity a pixel. Either may be NULL. */
 struct difference_side {
     const float *color;
     const uint32_t *ids;
@@ -17,11 +17,11 @@ struct difference_side {
 struct difference {
     uint64_t pixels;
     uint64_t other_ids;    /* pixels that hit something else; 0 without identities */
-    uint64_t other_colors; /* pixels of which a channel is another number */
-    double largest, mean;  /* of |a - b| of a channel; NAN where one is not a number */
+    uint64_t other_colors; /* pixels with a channel that differs */
+    double largest, mean;  /* of |a - b| over channels; NaN if one is NaN */
 };
-/* How different they look (whit_compare.h), both as they are displayed: the mean over all pixels,
-   and the largest (may be NULL). False where that cannot be said: no colours, or no memory. */
+/* FLIP of both pictures as displayed (whit_compare.h): the mean over all pixels, and the largest
+   (may be NULL). False: not known, as they have no colours, or memory ran out. */
 bool difference_flip(const whit_image *a, const whit_image *b, double *mean, double *largest);
 void difference_measure(const struct difference_side *a, const struct difference_side *b,
                         uint32_t channels, uint64_t pixels, struct difference *out);

@@ -1,4 +1,4 @@
-/* The engine's threads, and who has what: see engine_private.h. */
+/* The engine's threads. Their shared state is in engine_private.h. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,12 +11,13 @@
 #include "view/engine_sessions.h"
 #include "whit/whit_program.h"
 
-/* Most that drawing waits for the first picture of a new version to be on the screen. */
+/* The longest time that drawing waits until the first picture of a new shader version is on
+   screen. */
 static const double YIELD_MS = 40.0;
-/* A picture is at rest this long before a session is made for the next version of its shader. */
+/* How long a picture is at rest before a session is made for the next version of its shader. */
 static const double SPARE_MS = 1e3;
 
-/* For pthread_cond_timedwait of the engine's conditions. */
+/* The time `ms` from now, for pthread_cond_timedwait. */
 static void after(double ms, struct timespec *until)
 {
     clock_gettime(CLOCK_MONOTONIC, until);
@@ -40,7 +41,7 @@ bool engine_is_done(const struct engine_lane *lane)
     return !lane->wanted || lane->failed || (lane->drawn == lane->asked && best && !lane->stale);
 }
 
-/* Starts the session that a lane lacks, once what is in the making has ended. */
+/* Starts making the session that a lane lacks, unless one is being made. */
 static void make_session_for(struct engine *engine, struct engine_lane *lane)
 {
     if (engine->job)
@@ -49,7 +50,7 @@ static void make_session_for(struct engine *engine, struct engine_lane *lane)
     engine_wake(engine);
 }
 
-/* A session in the making that nobody wants any more. */
+/* Cancels the session being made if nobody wants it any more. */
 static void stop_unwanted(struct engine *engine)
 {
     const struct engine_job *job = engine->job;
@@ -64,8 +65,8 @@ static void stop_unwanted(struct engine *engine)
         job->session->cancel = true;
 }
 
-/* Gives the compared side the camera of the window's last picture, also while that moves: with two
-   cameras any difference would be meaningless. False where its picture already has that camera. */
+/* Gives side B the camera of the window's last picture, also while that moves: with two cameras a
+   difference would be meaningless. False: B's picture already has that camera. */
 static bool follow_place(const struct engine *engine, const struct engine_lane *lane,
                          struct engine_task *task)
 {
@@ -76,8 +77,7 @@ static bool follow_place(const struct engine *engine, const struct engine_lane *
     return lane->place != engine->places;
 }
 
-/* While the window's picture moves, it is drawn at a part of its size. Gives the compared side the
-   same size and quality. */
+/* While the window's picture moves it is drawn smaller: gives side B the same size and quality. */
 static void follow_size(const struct engine *engine, const struct engine_lane *lane,
                         struct engine_task *task)
 {
@@ -88,8 +88,8 @@ static void follow_size(const struct engine *engine, const struct engine_lane *l
         task->quality = ENGINE_QUICK;
 }
 
-/* Whether the window's settings are once more those of the picture drawn last, so that nothing is
-   to be drawn: a switch failed, and was taken back. */
+/* Whether the window's settings are those of the last picture again, so that nothing has to be
+   drawn: a switch failed and was undone. */
 static bool shows_it(const struct engine *engine, const struct engine_lane *lane)
 {
     return lane == engine->lanes && lane->drawn != lane->asked && lane->quality == ENGINE_WHOLE &&
@@ -119,7 +119,7 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
         return true;
     }
     make_session_for(engine, lane);
-    /* The old kernel goes on at another place, but not to another scene. */
+    /* The old kernel goes on drawing from another camera, but not in another scene. */
     if (lane->failed || !lane->session || lane->drawn == lane->asked ||
         !settings_same_scene(&lane->session->settings, &lane->settings) ||
         settings_same_place(&lane->last, &task->settings))
@@ -132,10 +132,11 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
     return true;
 }
 
-/* Without the lock. Whether the picture came to the same bytes as the one before. */
+/* Notes what a whole picture changed. Returns whether it is the same bytes as the one before.
+   Without the lock. */
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
-    struct engine_change change = engine->change; /* which no other thread writes */
+    struct engine_change change = engine->change; /* no other thread writes it */
     struct engine_kept before = engine->last;
     bool same = engine_is_same(&before, frame);
     engine_compare(&before, frame, &change);
@@ -151,7 +152,7 @@ static bool note_change(struct engine *engine, const struct engine_frame *frame)
     }
     uint64_t reloads = engine->reload.number;
     engine_reload_note(engine, &before, &frame->settings, compared ? &change.difference : NULL);
-    engine->change_left |= engine->reload.number != reloads; /* that measures it */
+    engine->change_left |= engine->reload.number != reloads; /* reload measures the time instead */
     pthread_mutex_unlock(&engine->lock);
     engine_kept_finish(&before);
     return same;
@@ -163,14 +164,14 @@ static void note_speed(struct engine_lane *lane, const struct engine_frame *fram
     double pixels = (double)frame->width * frame->height;
     double samples = frame->samples ? frame->samples : 8;
     double ms = frame->draw_ms / (pixels * samples);
-    /* Small pictures have their own overhead: the larger one tells. */
+    /* Small pictures have overhead, so a larger time counts only at full size. */
     if (frame->divisor == 1 || lane->ms_per_sample <= 0.0 || ms > lane->ms_per_sample)
         lane->ms_per_sample = ms;
     else
         lane->ms_per_sample = 0.75 * lane->ms_per_sample + 0.25 * ms;
 }
 
-/* The file as it now stands may be another one than the version before. */
+/* Keeps the last two versions of the shader: the file may be saved again as it was before. */
 static void keep_version(struct engine *engine, struct shader_ref *shader)
 {
     if (shader == engine->versions[0])
@@ -180,7 +181,7 @@ static void keep_version(struct engine *engine, struct shader_ref *shader)
     engine->versions[0] = shader_ref_take(shader);
 }
 
-/* A picture of a lane, or a step on its way: `quality` of it. */
+/* Makes *frame, a picture or a step of one, with `quality`, the newest picture of the lane. */
 static void take_picture(const struct engine_task *task, enum engine_quality quality,
                          struct engine_frame *frame)
 {
@@ -189,7 +190,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     bool own = settings_same_kernel(&task->settings, &lane->settings);
     lane->session = task->session;
     bool there = settings_same_camera(&task->settings, &lane->settings);
-    lane->drawn = there || lane == engine->lanes ? task->asked : 0; /* 0: once more, elsewhere */
+    lane->drawn = there || lane == engine->lanes ? task->asked : 0; /* 0: draw it again */
     if (lane == engine->lanes) {
         keep_version(engine, task->session->shader);
         engine->place = task->settings;
@@ -210,7 +211,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     frame->first = lane->first;
     engine_frame_finish(&lane->frame);
     lane->frame = *frame;
-    if (!lane->wanted) /* any more: nobody would take it */
+    if (!lane->wanted) /* not any more: nobody would take it */
         engine_frame_finish(&lane->frame);
     engine_forget_error(engine);
     engine->lost = 0;
@@ -218,8 +219,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
         engine->spare_ms = whit_clock_ms() + SPARE_MS;
 }
 
-/* On the drawing thread, in engine_draw. Who asks for something else waits for the first step, and
-   for no other. */
+/* Called on the drawing thread, within engine_draw. A new request waits for the first step only. */
 void engine_show_step(void *user, const whit_step *step)
 {
     struct engine_task *task = user;
@@ -257,7 +257,7 @@ void engine_show_preview(struct engine *engine, struct engine_job *job)
     job->preview = (struct engine_frame){0};
 }
 
-/* With the lock. Where memory ran out often nobody said a word. */
+/* With the lock. Out of memory is often not logged, so a text is made up here. */
 static void say_failure(struct engine *engine, whit_result result)
 {
     engine->result = result;
@@ -278,7 +278,7 @@ void engine_show_samples(const struct engine_task *task, struct engine_frame *fr
     pthread_mutex_unlock(&engine->lock);
 }
 
-/* Whether it is drawn behind the picture of one sample that is shown. */
+/* Whether the task continues the picture of one sample that is shown. */
 static bool follows_one(const struct engine_lane *lane, const struct engine_task *task)
 {
     return task->quality == ENGINE_WHOLE && lane->quality == ENGINE_FULL &&
@@ -342,7 +342,7 @@ void engine_probe_finish(struct engine_probe *probe)
     *probe = (struct engine_probe){0};
 }
 
-/* Whether the window's picture is whole and of the session that would be probed. */
+/* Whether the window's picture is whole, and drawn by the session that would be probed. */
 static bool can_probe(const struct engine *engine)
 {
     const struct engine_lane *lane = &engine->lanes[0];
@@ -373,7 +373,7 @@ static void probe_one(struct engine *engine)
     engine_probe_finish(&engine->probe);
     engine->probe = probe;
     if (result == WHIT_ERROR_CANCELLED)
-        engine->probe_wanted = true; /* of the next picture */
+        engine->probe_wanted = true; /* again, with the next picture */
     else if (result == WHIT_ERROR_DEVICE)
         engine_lose_device(engine, session);
     else if (result != WHIT_OK)
@@ -381,8 +381,8 @@ static void probe_one(struct engine *engine)
     engine_wake(engine);
 }
 
-/* Drivers make kernels of millions of small blocks: the gaps that these leave fit nothing else, and
-   add up from session to session. */
+/* Gives free memory back. Drivers make kernels in millions of small blocks; the gaps that these
+   leave fit nothing else, and add up from session to session. */
 static void tidy_up(struct engine *engine)
 {
     engine->littered = false;
@@ -406,7 +406,7 @@ static void wait_for_work(struct engine *engine)
     }
 }
 
-/* Whether it has waited a while for the screen. */
+/* Waits for the screen if a new picture should be shown first. True: it has waited. */
 static bool yield(struct engine *engine)
 {
     struct timespec until;
@@ -572,7 +572,7 @@ void engine_ask_other(struct engine *engine, const struct settings *settings)
     pthread_mutex_lock(&engine->lock);
     struct engine_lane *other = &engine->lanes[1];
     if (settings) {
-        /* What stands beside each other has as many samples. */
+        /* Pictures side by side have the same number of samples. */
         if (!other->wanted)
             engine_refine_restart(engine, &engine->lanes[0]);
         ask(engine, other, settings, engine->lanes[0].moving);
@@ -601,7 +601,7 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
         .reload = engine->reload,
     };
     if (engine->drawing && !engine->refining &&
-        !engine->timing) { /* that is no work that anybody waits for */
+        !engine->timing) { /* nobody waits for refining and timing */
         status->drawing_ms = whit_clock_ms() - engine->drawing_since_ms;
         status->part = atomic_load(&engine->drawing->part);
     }
@@ -620,7 +620,7 @@ bool engine_take(struct engine *engine, bool other, struct engine_frame *frame)
         engine_frame_finish(frame);
         *frame = lane->frame;
         lane->frame = (struct engine_frame){0};
-        pthread_cond_signal(&engine->work); /* it may be refined now */
+        pthread_cond_signal(&engine->work); /* the picture may be refined now */
     }
     pthread_mutex_unlock(&engine->lock);
     return newer;

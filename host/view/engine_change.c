@@ -1,4 +1,4 @@
-/* What a switch changed. */
+/* What a change of settings did to the picture. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +27,7 @@ static void add(struct text *text, const char *format, ...)
     text->bytes -= used;
 }
 
-/* "live.glsl, read again" after "live.glsl": only what is said of it is new. */
+/* Whether `b` is `a` with another remark, as "live.glsl, read again" after "live.glsl". */
 static bool is_of_same_file(const char *a, const char *b)
 {
     const char *end = strstr(b, ", ");
@@ -77,13 +77,13 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
         .difference = difference,
         .before_ms = engine_drawn_ms(&before->stats),
         .after_ms = engine_drawn_ms(&after->stats),
-        .over = !colors, /* costs are painted by other kernels than pictures */
+        .over = !colors, /* costs and pictures are painted by different kernels */
     };
     memcpy(change->what, what, sizeof what);
 }
 
-/* Pairs that take longer wait until nothing is left to refine, unless the picture that is shown
-   needs no more of it. */
+/* Pairs of pictures that take longer than this are drawn when nothing is left to refine, unless the
+   picture has not changed. */
 static const double SOON_MS = 2e3;
 
 bool engine_change_waits(const struct engine *engine)
@@ -105,7 +105,7 @@ bool engine_change_step(struct engine *engine, bool late)
         change->before_ms = sample_of(&engine->changing.ms[0]).median;
         change->after_ms = sample_of(&engine->changing.ms[1]).median;
     }
-    change->over = why != ENGINE_TURNS_STOPPED; /* a pixel that was clicked on comes first */
+    change->over = why != ENGINE_TURNS_STOPPED; /* stopped, as by a clicked pixel: once more */
     engine_wake(engine);
     return true;
 }

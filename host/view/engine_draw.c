@@ -1,4 +1,4 @@
-/* One picture of one session. */
+/* Draws one picture with one session. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,8 @@
 static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
 enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };
 static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0, LARGER_MARGIN = 0.8;
-/* In steps a picture takes 1.4 times as long (34k.json at 1280x720: 450 ms, at once 330). */
+/* A picture takes 1.4 times as long in steps (34k.json at 1280x720: 450 ms, without 330). One that
+   takes less than AT_ONCE_MS is drawn without them. */
 static const double AT_ONCE_MS = 600.0, STEPS_TAKE = 1.4;
 
 static uint32_t samples_of(const struct settings *settings)
@@ -20,24 +21,24 @@ static uint32_t samples_of(const struct settings *settings)
         return 1;
     return p->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 8
            : p->sampling.count                        ? p->sampling.count
-                                                      : 1; /* adaptive: 4 and some */
+                                                      : 1; /* adaptive: 4 and more */
 }
 
-/* What one sample of all pixels is expected to take; 0: unknown. */
+/* The expected time of one sample of all pixels; 0: unknown. */
 static double sample_ms(const struct engine_lane *lane)
 {
     const whit_renderer_params *p = &lane->settings.picture;
     return (double)p->width * p->height * lane->ms_per_sample;
 }
 
-/* The largest picture of one sample within the budget. A larger one than the last has to be well
-   within, so that sizes do not flicker. */
+/* The divisor of the largest picture of one sample that fits the budget. A larger picture than the
+   last must fit it with a margin, so that sizes do not flicker. */
 static uint32_t choose_divisor(const struct engine *engine, const struct engine_lane *lane)
 {
     double budget_ms =
         engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
     if (engine->lanes[1].wanted)
-        budget_ms *= 0.5; /* for two pictures */
+        budget_ms *= 0.5; /* two pictures share it */
     double full_ms = sample_ms(lane);
     if (full_ms <= 0.0)
         return DIVISOR_UNKNOWN;
@@ -49,16 +50,16 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
     return divisors[DIVISORS - 1];
 }
 
-/* The spacing of the first step, none of which is to be coarser than what is shown of the same
-   picture, or than what can be drawn in the time of a quick one; 0: at once. */
+/* The spacing of the first step: not coarser than what is shown of the same picture, or than what
+   can be drawn in the time of a quick one. 0: no steps. */
 static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t divisor)
 {
     uint32_t spacing = 8, finest = first ? divisor : lane->shown / 2;
     if (lane->moving || lane->settings.paint != PAINT_COLOR)
-        return 0; /* steps are of colours, or of values of the shader */
+        return 0; /* steps exist for colours and aovs alone */
     double whole_ms = sample_ms(lane) * samples_of(&lane->settings);
     if (!first && whole_ms > 0.0 && whole_ms <= AT_ONCE_MS)
-        return 0; /* soon enough, and something is shown meanwhile */
+        return 0; /* quick enough, and something is shown already */
     if (first && whole_ms <= 0.0)
         return spacing;
     while (spacing > 1 && spacing / 2 >= finest)
@@ -66,7 +67,7 @@ static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t
     return spacing > 1 ? spacing : 0;
 }
 
-/* Whether the picture that is shown looks as the next one will. */
+/* Whether the next picture will have the same pixels as the one that is shown. */
 static bool looks_same(const struct engine_lane *lane)
 {
     return lane->frames > 0 && lane->quality == ENGINE_WHOLE &&
@@ -82,9 +83,9 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
     bool color = lane->settings.paint == PAINT_COLOR;
     enum engine_quality quality = first ? ENGINE_QUICK : lane->quality + 1;
     if (quality == ENGINE_QUICK && (divisor == 1 || (color && !lane->moving)))
-        quality = ENGINE_FULL; /* all pixels are quick, or come in steps */
+        quality = ENGINE_FULL; /* all pixels fit the budget, or come in steps */
     if (quality == ENGINE_FULL && (samples == 1 || (first && looks_same(lane))))
-        quality = ENGINE_WHOLE; /* one sample is all there is, or nothing else is to be seen */
+        quality = ENGINE_WHOLE; /* the picture has one sample, or would not look different */
     if (lane->moving && quality == ENGINE_WHOLE && samples > 1)
         quality = ENGINE_FULL;
     task->quality = quality;
@@ -97,7 +98,7 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
     task->asked_ms = lane->asked_ms;
 }
 
-/* Heat maps stand above a legend, and in the middle where that is wider. */
+/* Cuts the heat map out of its image, which has a legend below and may be wider on both sides. */
 static whit_result cut_out(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
 {
     whit_image_info info;
@@ -138,7 +139,7 @@ uint32_t engine_find_aov(const struct engine_frame *frame)
     return shader_ref_find_aov(frame->shader, frame->settings.aov);
 }
 
-/* Keeps the picture as it is below what is drawn over it, for more samples to be added. */
+/* Keeps a copy of the picture, to which samples can be added, and draws edges and grid over it. */
 static whit_result draw_over(whit_renderer *renderer, const whit_overlay *overlay,
                              struct engine_frame *frame)
 {
@@ -149,7 +150,7 @@ static whit_result draw_over(whit_renderer *renderer, const whit_overlay *overla
     return result == WHIT_OK ? whit_renderer_draw_over(renderer, overlay, frame->color) : result;
 }
 
-/* Colours, or the function of the shader that is shown in their place. */
+/* Paints colours, or the aov that is shown in place of them. */
 static whit_result paint_colors(const struct engine_task *task, struct engine_frame *frame)
 {
     const whit_overlay overlay = settings_overlay(&task->settings);
@@ -165,7 +166,7 @@ static whit_result paint_colors(const struct engine_task *task, struct engine_fr
     return result;
 }
 
-/* Whether samples are added to this picture later on. */
+/* Whether samples may be added to this picture later. */
 static bool is_begun(const struct engine_task *task)
 {
     bool whole = task->quality == ENGINE_WHOLE && engine_refines(&task->settings);
@@ -201,10 +202,11 @@ static whit_result read_boxes(const struct engine_task *task, struct engine_fram
     return result;
 }
 
-/* Camera rays whose visits are counted on the CPU, which is some 3 ms for a whole picture. */
+/* Number of camera rays whose visits are counted on the CPU, which takes some 3 ms for a whole
+   picture. */
 enum { VISITS_MOVING = 512, VISITS_WHOLE = 4096 };
 
-/* As the kernel counted, or its twin. */
+/* Gives the visits that the kernel counted, or else the C twin. */
 static whit_result count_visits(const struct engine_task *task, struct engine_frame *frame)
 {
     const whit_stats *stats = &frame->stats;
@@ -221,7 +223,7 @@ static whit_result count_visits(const struct engine_task *task, struct engine_fr
     return WHIT_OK;
 }
 
-/* The parameters of the picture; its camera's text is the session's own. */
+/* The parameters of the picture. They borrow the camera's text from session->settings. */
 static whit_renderer_params task_params(const struct engine_task *task)
 {
     struct session *session = task->session;
@@ -236,11 +238,11 @@ static whit_renderer_params task_params(const struct engine_task *task)
     }
     params.step_spacing = task->step_spacing;
     params.step_aov =
-        shader_ref_find_aov(session->shader, session->settings.aov) + 1; /* 0: none of that name */
+        shader_ref_find_aov(session->shader, session->settings.aov) + 1; /* 0: no such aov */
     return params;
 }
 
-/* A picture of the task, without its pixels. */
+/* A frame of the task, without pixels. */
 static struct engine_frame begin_frame(const struct engine_task *task, uint32_t width,
                                        uint32_t height)
 {
@@ -298,7 +300,7 @@ whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats)
     return result;
 }
 
-/* All samples of the task at once. */
+/* Draws all samples of the task in one picture. */
 static whit_result draw_all(const struct engine_task *task, const whit_renderer_params *params,
                             struct engine_frame *frame)
 {
@@ -334,7 +336,7 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
         frame->effects |= (uint64_t)whit_renderer_compiles(session->renderer, i) << i;
     frame->kernels = whit_device_kernels_made(session->device);
-    frame->draw_ms = fmax(whit_clock_ms() - start_ms, frame->stats.render_ms); /* of all rays */
+    frame->draw_ms = fmax(whit_clock_ms() - start_ms, frame->stats.render_ms); /* for all rays */
     if (task->step_spacing > 0)
         frame->draw_ms /= STEPS_TAKE;
     return result;

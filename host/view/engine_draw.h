@@ -1,4 +1,4 @@
-/* One picture of one session. */
+/* Draws one picture with one session. */
 #ifndef VIEW_ENGINE_DRAW_H
 #define VIEW_ENGINE_DRAW_H
 
@@ -10,26 +10,28 @@ struct engine_task {
     struct settings settings;
     enum engine_quality quality;
     uint32_t divisor;
-    uint32_t step_spacing; /* of the first step; 0: at once */
-    bool moving, brief;    /* brief: the first picture of what is asked for */
-    bool finishes;         /* it, or its first step, is within the budget, and is not cancelled */
-    struct engine_refine *refine; /* has some of its samples, and draws the others; NULL: none */
-    const struct engine_kept *single; /* that it began with */
+    uint32_t step_spacing; /* spacing of the first step; 0: no steps */
+    bool moving, brief;    /* brief: the first picture of a request */
+    bool finishes; /* the picture, or its first step, fits the budget: it is not cancelled */
+    struct engine_refine *refine;     /* has some of its samples, and adds the others; NULL: none */
+    const struct engine_kept *single; /* the picture of one sample that `refine` began with */
     double asked_ms;
     struct engine *engine; /* that shows the steps, in `lane` */
     struct engine_lane *lane;
-    uint64_t asked; /* of the lane */
+    uint64_t asked; /* lane->asked when it began */
 };
 
-/* How good the next picture of a lane is to be, and how large. */
+/* Plans quality and size of the next picture of a lane. */
 void engine_plan(const struct engine *engine, const struct engine_lane *lane,
                  struct engine_task *task);
-/* Draws; of the drawing thread, without the lock. *frame is the caller's to finish. */
+/* Draws a picture. On the drawing thread, without the lock. The caller calls
+   engine_frame_finish. */
 WHIT_CHECK whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame);
-/* A step on the way to it. WHIT_ERROR_MEMORY: there is nothing to show. */
+/* Makes a frame of a step of the picture. WHIT_ERROR_MEMORY: there is nothing to show. */
 WHIT_CHECK whit_result engine_draw_step(const struct engine_task *task, const whit_step *step,
                                         struct engine_frame *frame);
-/* The picture of a task once more, for its times alone. Of the drawing thread, without the lock. */
+/* Draws the picture of a task again, to measure its time. On the drawing thread, without the
+   lock. */
 WHIT_CHECK whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats);
 
 #endif

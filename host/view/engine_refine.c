@@ -1,7 +1,7 @@
-/* The window's picture at rest gets better by itself: 4, 16, 64 ... times the samples of the
-   settings. Whit_refine draws what is missing to twice as many, so that no ray is traced twice, and
-   tells what is still wrong. Where the settings say a power of 2, what is shown is bit by bit what
-   `--aa` gives. */
+/* Adds samples to pictures at rest: 4, 16, 64 ... times the samples of the settings. whit_refine
+   doubles the samples by drawing only the missing ones, so that no ray is traced twice, and
+   estimates the error. If the settings ask for a power of 2, the result has the same bits as
+   `--aa`. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,8 +10,8 @@
 #include "view/engine_refine.h"
 #include "view/engine_sessions.h"
 
-/* More samples change nothing that is seen where at most one pixel in so many changes by more than
-   this code of 255 in some channel. */
+/* More samples change nothing visible if at most one pixel in PIXELS_A_CHANGE changes by more than
+   CODE_SAME of 255 codes in some channel. A round multiplies samples by ROUND. */
 enum { CODE_SAME = 4, PIXELS_A_CHANGE = 1000, ROUND = 4 };
 
 static size_t bytes_of(const struct engine_refine *refine)
@@ -47,7 +47,7 @@ bool engine_doubles(const struct settings *settings)
     return engine_refines(settings) && count > 1 && (count & (count - 1)) == 0;
 }
 
-/* Begins with a picture; one that cannot be refined, by costs or adaptive samples, ends it. */
+/* Begins with a new picture. One of costs or adaptive samples cannot be refined. */
 static void begin(struct engine_refine *refine, const struct engine_frame *frame)
 {
     engine_refine_stop(refine);
@@ -59,7 +59,7 @@ static void begin(struct engine_refine *refine, const struct engine_frame *frame
     refine->ended = frame->samples * ROUND > WHIT_SAMPLES_MAX;
 }
 
-/* The first part is the whole picture that engine_keep copied. */
+/* Creates the whit_refine, whose first part is the picture that engine_keep copied. */
 static whit_result begin_parts(struct engine_refine *refine, whit_renderer *renderer,
                                const whit_renderer_params *params, const struct engine_kept *kept)
 {
@@ -68,7 +68,7 @@ static whit_result begin_parts(struct engine_refine *refine, whit_renderer *rend
         return WHIT_OK;
     if (!kept->color || !kept->cuts || kept->width != refine->base.width ||
         kept->height != refine->base.height)
-        return WHIT_ERROR_MEMORY; /* it could not be kept */
+        return WHIT_ERROR_MEMORY; /* engine_keep ran out of memory */
     refine->rgba = malloc(bytes_of(refine));
     if (!refine->rgba)
         return WHIT_ERROR_MEMORY;
@@ -100,7 +100,7 @@ static void note_estimate(struct engine_refine *refine, const whit_refine_info *
         .samples = info->samples, .error = info->error, .ms = refine->begun_ms + stats.render_ms};
 }
 
-/* Draws what comes next; the renderer is set to the picture of the settings again. */
+/* Draws the next part, and then sets the renderer back to the picture of the settings. */
 static whit_result draw_part(struct session *session, struct engine_refine *refine,
                              const struct engine_kept *kept, whit_refine_info *info)
 {
@@ -127,7 +127,7 @@ static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
     return changed * PIXELS_A_CHANGE <= pixels;
 }
 
-/* The sum, and over it what the settings say. */
+/* Reads the mean of all samples, with edges and grid as the settings say. */
 static whit_result read_sum(const struct engine_refine *refine, const struct engine_kept *kept,
                             struct session *session, whit_image **color)
 {
@@ -142,8 +142,8 @@ static whit_result read_sum(const struct engine_refine *refine, const struct eng
     return result;
 }
 
-/* What there is as a picture, and as it is displayed. `kept`: the picture that it began with; the
-   session's renderer has its view. */
+/* Puts the mean of all samples into *frame, also as displayed. `kept`: the picture that refining
+   began with; the session's renderer is set to its view. */
 static whit_result show_sum(const struct engine_refine *refine, const struct engine_kept *kept,
                             struct session *session, struct engine_frame *frame)
 {
@@ -169,7 +169,7 @@ static whit_result show_sum(const struct engine_refine *refine, const struct eng
     return WHIT_OK;
 }
 
-/* The picture of four times as many samples. */
+/* Makes *frame the picture of four times as many samples. */
 static whit_result finish_round(struct session *session, struct engine_refine *refine,
                                 const struct engine_kept *kept, struct engine_frame *frame)
 {
@@ -185,8 +185,9 @@ static whit_result finish_round(struct session *session, struct engine_refine *r
     return WHIT_OK;
 }
 
-/* Goes on from where it was, as a whole picture came to the same pixels as the one that it began
-   with: *frame then shows as many samples as the picture before. False: it cannot. */
+/* Keeps the samples that were added: a new whole picture has the same pixels as the one that
+   refining began with. *frame then shows as many samples as the picture before. False: it
+   cannot. */
 static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
                  struct session *session, struct engine_frame *frame)
 {
@@ -201,9 +202,9 @@ static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
     return show_sum(refine, kept, session, frame) == WHIT_OK;
 }
 
-/* Draws one part; without the lock. Behind the last part of a round *frame is a picture of four
-   times the samples, without hit identities; else it is zeroed. `kept`: the picture that it began
-   with. */
+/* Draws one part. After the last part of a round *frame is a picture of four times the samples,
+   without hit identities; otherwise it is zeroed. `kept`: the picture that refining began with.
+   Without the lock. */
 static whit_result draw_next(struct session *session, struct engine_refine *refine,
                              const struct engine_kept *kept, struct engine_frame *frame)
 {
@@ -212,7 +213,7 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
     *frame = (struct engine_frame){0};
     if (refine->refine)
         whit_refine_get_info(refine->refine, &info);
-    if (info.samples < ROUND * refine->samples) /* else it was left while it was to be shown */
+    if (info.samples < ROUND * refine->samples) /* otherwise it was stopped before it was shown */
         result = draw_part(session, refine, kept, &info);
     if (result == WHIT_OK && info.samples == ROUND * refine->samples) {
         struct scene_ref *scene = scene_ref_take(session->scene);
@@ -226,7 +227,7 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
 
 /* ---- Up to the samples of the settings ---- */
 
-/* A picture of fewer samples than the settings say. */
+/* Shows a picture of fewer samples than the settings say. */
 static void show_some(const struct engine_task *task)
 {
     struct engine_frame frame;
@@ -291,7 +292,7 @@ whit_result engine_refine_whole(const struct engine_task *task, struct engine_fr
     return result;
 }
 
-/* Takes over *frame, which refining has made, as what the next samples are added to. */
+/* Makes *frame, which refining has completed, the picture that further samples are added to. */
 static void finish_whole(struct engine_refine *refine, const struct engine_frame *frame)
 {
     set_base(refine, frame);
@@ -304,7 +305,8 @@ static void finish_whole(struct engine_refine *refine, const struct engine_frame
 
 /* ---- When ---- */
 
-/* What a function makes of the mean of samples is not the mean of what it makes of them. */
+/* Whether the shader has a post(). post() of the mean of samples is not the mean of post() of the
+   samples, so such pictures are not refined. */
 static bool has_post(const struct session *session)
 {
     return session->shader && (session->shader->info.hooks >> WHIT_HOOK_POST & 1);
@@ -343,7 +345,7 @@ void engine_refine_join(struct engine *engine, struct engine_task *task)
     task->single = single;
 }
 
-/* Its picture is there, was taken, and has something to be refined. */
+/* Whether the lane's picture is drawn, was taken, and can be refined. */
 static bool is_ready(const struct engine *engine, int index)
 {
     const struct engine_lane *lane = &engine->lanes[index];
@@ -402,7 +404,7 @@ void engine_refine_one(struct engine *engine, struct engine_lane *lane)
     if (result == WHIT_ERROR_DEVICE)
         engine_lose_device(engine, session);
     if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
-        refine->ended = true; /* the picture that there is stays */
+        refine->ended = true; /* the last picture stays */
     if (frame.color && lane->asked == asked && lane->wanted) {
         frame.number = ++lane->frames;
         frame.first = lane->first;

@@ -1,5 +1,5 @@
-/* What a new version of the shader makes of the picture. Both versions keep their sessions, so that
-   what a save changed is measured while nothing else is to be done. */
+/* Compares pictures of a new version of the shader and the version before. Both keep their
+   sessions, so that the effect of a save can be measured while there is nothing else to do. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -103,7 +103,7 @@ bool engine_reload_step(struct engine *engine)
     if (!reloading->wanted || engine->reload.over || !engine_is_idle(engine))
         return false;
     if (engine->flip)
-        return false; /* it signals its end */
+        return false; /* its end is signalled */
     if (reloading->before.color) {
         start_flip(engine);
         return true;

@@ -1,4 +1,4 @@
-/* The sessions that the engine has, and the one in the making. */
+/* The sessions of the engine, and the one being made. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,8 +19,9 @@ static void keep_error(char error[ENGINE_MESSAGE], whit_log_level level, const c
         snprintf(error, ENGINE_MESSAGE, "%s", message);
 }
 
-/* The first error is the reason; what follows from it is not. One that nobody wants any more, as
-   its scene was left, keeps its errors. The validation layers speak to whoever asked for them. */
+/* Log of a session. The first error is kept as the reason, later ones follow from it. A session
+   that nobody wants any more keeps its errors to itself. Messages of the validation layers go to
+   engine->params.log. */
 static void session_message(void *user, whit_log_level level, const char *message)
 {
     struct session *session = user;
@@ -46,7 +47,8 @@ static void scene_message(void *user, whit_log_level level, const char *message)
     pthread_mutex_unlock(&engine->lock);
 }
 
-/* On the job's thread: its picture ends with the first step, as who asks for it draws the rest. */
+/* Called on the job's thread. Keeps the first step and ends the picture there: the drawing thread
+   draws the rest. */
 static void keep_preview(void *user, const whit_step *step)
 {
     struct engine_job *job = user;
@@ -110,7 +112,7 @@ void engine_job_destroy(struct engine_job *job)
     free(job);
 }
 
-/* A scene that some session has loaded already, held; NULL: none. */
+/* The scene that some session has loaded already, with a reference taken; NULL: none. */
 static struct scene_ref *find_scene(const struct engine *engine, const struct settings *settings)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
@@ -121,7 +123,7 @@ static struct scene_ref *find_scene(const struct engine *engine, const struct se
     return NULL;
 }
 
-/* The same of a shader. */
+/* The same for a shader. */
 static struct shader_ref *find_shader(const struct engine *engine, const struct settings *settings)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
@@ -150,8 +152,8 @@ bool engine_same_but_version(const struct settings *a, const struct settings *b)
     return settings_same_kernel(&same, b);
 }
 
-/* A session that differs from what is asked for by the version of its shader alone, and that nobody
-   looks at: its device, trees and buffers serve the next version. NULL: none. */
+/* A session that differs from `settings` only by the version of its shader and is not shown: its
+   device, trees and buffers serve the next version. NULL: none. */
 static struct session *find_version(const struct engine *engine, const struct settings *settings)
 {
     uint32_t oldest = ENGINE_SESSIONS_MAX;
@@ -167,7 +169,7 @@ static struct session *find_version(const struct engine *engine, const struct se
     return oldest < ENGINE_SESSIONS_MAX ? engine->sessions[oldest] : NULL;
 }
 
-/* It is the job's until that is done. */
+/* Takes a session off the engine's list: the job owns it until it is done. */
 static void take_out(struct engine *engine, struct session *session)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
@@ -225,7 +227,7 @@ void engine_make_spare(struct engine *engine)
     engine->spare_ms = 0.0;
     if (lane->session && engine_is_done(lane) && !find_version(engine, &lane->settings) &&
         lane->session->scene->info.triangle_count <= LARGE_SCENE)
-        engine_start_job(engine, &lane->settings, true); /* nobody waits for it */
+        engine_start_job(engine, &lane->settings, true); /* it is a spare */
 }
 
 /* ---- The sessions that there are ---- */
@@ -258,7 +260,7 @@ static uint32_t sessions_max(const struct engine *engine, const struct session *
     return large && max > SESSIONS_LARGE ? SESSIONS_LARGE : max;
 }
 
-/* Makes room for one more: scenes that nobody looks at go first, then what was not used longest. */
+/* Makes room for one more session: drops those that are not shown, least recently used first. */
 static void make_room(struct engine *engine, const struct session *newest)
 {
     for (;;) {
@@ -330,7 +332,7 @@ void engine_reap_job(struct engine *engine)
                 lane->failed = true;
         }
     }
-    /* A shader that could not be compiled leaves the session of the version before. */
+    /* If a shader could not be compiled, the session stays one of the version before. */
     if (job->result == WHIT_OK || (job->reloads && job->session->renderer)) {
         job->session->ready = true;
         keep_session(engine, job->session);
@@ -338,7 +340,7 @@ void engine_reap_job(struct engine *engine)
         job->session = NULL;
     }
     engine_wake(engine);
-    engine->littered = true; /* compilers leave more than they take */
+    engine->littered = true; /* compilers leave much free memory */
     pthread_mutex_unlock(&engine->lock);
     engine_job_destroy(job);
     pthread_mutex_lock(&engine->lock);

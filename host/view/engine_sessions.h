@@ -1,5 +1,5 @@
-/* The sessions that the engine has, and the one in the making. Of the drawing thread, with the lock
-   but for drop and destroy. */
+/* The sessions of the engine, and the one being made. For the drawing thread, with the lock except
+   for drop and destroy. */
 #ifndef VIEW_ENGINE_SESSIONS_H
 #define VIEW_ENGINE_SESSIONS_H
 
@@ -7,15 +7,15 @@
 
 struct thread;
 
-/* A session in the making. */
+/* A session that is being made. */
 struct engine_job {
     struct session *session;
     struct settings settings;
     struct scene_ref *scene;
     struct shader_ref *shader;
     bool reloads;  /* the session has drawn before, with another version of the shader */
-    bool is_spare; /* nobody waits for it */
-    struct engine_frame preview; /* the first step by the new version; without pixels: none */
+    bool is_spare; /* a session for the next version of the shader, made in advance */
+    struct engine_frame preview; /* the first step of its picture; without pixels: none */
     struct session_progress progress;
     struct thread *thread;
     struct engine *engine;
@@ -24,21 +24,23 @@ struct engine_job {
     bool done; /* under the lock */
 };
 
-/* Whether both differ in the version of their shader alone, or in nothing that kernels know. */
+/* Whether both differ only in the version of their shader, or in nothing that needs another
+   session. */
 bool engine_same_but_version(const struct settings *a, const struct settings *b);
-/* Starts a session for the next version of the window's shader, once its picture has been there for
-   a while, so that the first save does not wait for one. */
+/* Starts making a session for the next version of the window's shader, once its picture has been
+   shown for a while, so that the first save does not have to wait for one. */
 void engine_make_spare(struct engine *engine);
-/* Makes a session in a thread. False: engine->error says why not. */
+/* Starts making a session in a thread. False: the reason is in engine->error. */
 bool engine_start_job(struct engine *engine, const struct settings *settings, bool is_spare);
-/* Takes what a finished job made. */
+/* Takes the session of a finished job. */
 void engine_reap_job(struct engine *engine);
 void engine_job_destroy(struct engine_job *job);
 struct session *engine_find_session(const struct engine *engine, const struct settings *settings);
 void engine_drop_session(struct engine *engine, struct session *session);
-/* The device is gone: everything on it is made again, unless that happens again and again. */
+/* Drops a session whose device is lost. It is made again, unless devices are lost again and
+   again. */
 void engine_lose_device(struct engine *engine, struct session *session);
-/* Clears the error of the window, unless the other side of a comparison has failed as well. */
+/* Clears the error, unless a side of the window has failed. */
 void engine_forget_error(struct engine *engine);
 
 #endif

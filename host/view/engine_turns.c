@@ -1,5 +1,5 @@
-/* Two pictures of one place, drawn in turns while nothing else is to be done: by how much the one
-   takes longer. */
+/* Draws two pictures with the same camera, time and size in turns, while there is nothing else to
+   do, and measures how much longer one of them takes. */
 #include "view/engine_turns.h"
 #include "view/engine_draw.h"
 #include "view/engine_private.h"
@@ -8,7 +8,8 @@
 /* 9 pairs are drawn at most: their confidence interval goes from the second to the eighth
    difference. 6 pairs are the fewest that give an interval of 95 % (base/sample.h). */
 enum { PAIRS = 9, PAIRS_MIN = ENGINE_PAIRS_MIN };
-static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3; /* for 6 pairs; for as many as there are */
+/* When to stop: with 6 pairs, and with any number of pairs. */
+static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3;
 const char ENGINE_TURNS_STOPPED[] = "something else came first";
 
 struct turn {
@@ -27,7 +28,7 @@ bool engine_is_idle(const struct engine *engine)
     return !engine->quit && !engine->job && !engine->probe_wanted;
 }
 
-/* One picture of one side; with the lock, which it gives back meanwhile. */
+/* Draws one picture of one side; with the lock, which is released meanwhile. */
 static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
 {
     const struct turn *turn = user;
@@ -59,7 +60,8 @@ static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
     return result;
 }
 
-/* The renderers of the window's pictures have their views again: pixels are traced by them. */
+/* Sets the renderers of the shown pictures back to their views, as clicked pixels are traced by
+   them. */
 static void show_again(struct engine *engine)
 {
     for (int i = 0; i < ENGINE_LANES; ++i) {
@@ -70,7 +72,7 @@ static void show_again(struct engine *engine)
         session->settings = lane->last;
         const whit_renderer_params params = settings_picture(&session->settings);
         if (whit_renderer_set_view(session->renderer, &params) != WHIT_OK)
-            lane->drawn = 0; /* once more, which says why */
+            lane->drawn = 0; /* draw it again, which reports the error */
     }
 }
 

@@ -1,23 +1,24 @@
-/* Two pictures of one place, drawn in turns while nothing else is to be done. With the lock. */
+/* Draws two pictures with the same camera, time and size in turns, while there is nothing else to
+   do. Call with the lock. */
 #ifndef VIEW_ENGINE_TURNS_H
 #define VIEW_ENGINE_TURNS_H
 
 #include "view/engine.h"
 
-/* Two pictures that are drawn in turns, before and after something changed; of the drawing thread.
- */
+/* Two pictures that are drawn in turns, before and after a change; used by the drawing thread. */
 struct engine_turns {
     struct settings settings[2];
-    struct sample_runs ms[2]; /* of drawing */
+    struct sample_runs ms[2]; /* times of drawing */
     double start_ms;
     bool stopped; /* something else came first */
 };
 enum { ENGINE_PAIRS_MIN = 6 };
 
-/* Whether pictures are there as they were asked for, and nothing else is to be done. */
+/* Whether all pictures are drawn as asked for, and nothing else has to be done. */
 bool engine_is_idle(const struct engine *engine);
-/* Fills in turns->ms, and *difference by how much the second picture takes longer in ms. Gives the
-   lock back meanwhile. "" or why there were too few pairs; *difference is then untouched. */
+/* Measures turns->ms, and *difference: how much longer the second picture takes, in ms. Releases
+   the lock meanwhile. Returns "", or why there were too few pairs; *difference is then
+   unchanged. */
 const char *engine_turns_measure(struct engine *engine, struct engine_turns *turns,
                                  struct sample_median *difference);
 extern const char ENGINE_TURNS_STOPPED[]; /* one of these reasons */

@@ -57,7 +57,7 @@ static bool is_own_name(int key)
     return (key >= 'A' && key <= 'Z') || (key >= '0' && key <= '9');
 }
 
-/* "T", "Left", "F12", "Comma"; "?" for what has no name. */
+/* The name of a key, as "T", "Left", "F12", "Comma"; "?": it has none. */
 static const char *key_name(int key)
 {
     static const char letters[26][2] = {"A", "B", "C", "D", "E", "F", "G", "H", "I",
@@ -92,7 +92,7 @@ static bool key_from_name(const char *name, int *key)
     return false;
 }
 
-/* "Shift+Ctrl+T" */
+/* Parses "Shift+Ctrl+T". */
 static bool chord_from_text(const char *text, int *key, unsigned *mods)
 {
     static const struct {
@@ -299,7 +299,7 @@ struct list {
     uint32_t count, capacity;
 };
 
-/* `text` ends with a 0 and is taken apart. */
+/* `text` ends with a 0; ends of lines in it are overwritten. */
 static whit_result read_lines(const whit_log *log, const char *path, char *text, struct list *list)
 {
     uint32_t line = 1;
@@ -325,7 +325,7 @@ static whit_result read_lines(const whit_log *log, const char *path, char *text,
     return WHIT_OK;
 }
 
-/* The events and what they point to, as one block in place of list->events. */
+/* Joins the events and the text that they point to in one block, in place of list->events. */
 static bool join(struct list *list, const char *text, size_t bytes)
 {
     size_t list_bytes = list->count * sizeof *list->events;

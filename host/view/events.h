@@ -1,19 +1,19 @@
-/* What the user does, as the window tells it or as a file of a replay does.
+/* Events of the user, from the window or from a file of a replay.
 
-   The file has one event a line; # begins a comment. What --record writes:
+   A file has one event a line; # begins a comment. --record writes:
        wait MS | key NAME down|up [Shift+][Ctrl+][Alt+] | char CODE | button left|right|middle
        down|up | move X Y | wheel X Y | size W H | drop PATH | close
-   and, for tests, also
+   Replays, which tests use, may also have:
        press [Shift+][Ctrl+][Alt+]NAME   a key down and up
-       click X Y                         move there, and the left button down and up
-       still, picture, priced, until FIELD [= VALUE], await PATH
-                                         the replay goes on once that is so
-       choose LABEL                      a click on what has this label, once it is there
-       clock real                        `wait` takes its time from here on
-       state [NAME]                      one line of JSON on standard output
-       shot FILE.png                     the window, with what is drawn over the picture
+       click X Y                         moves there; the left button down and up
+       still, picture, priced, refined, until FIELD [= VALUE], await PATH
+                                         the replay waits for that
+       choose LABEL                      a click on the item with this label, once it is there
+       clock real                        `wait` takes real time from here on
+       state [NAME]                      writes one line of JSON to standard output
+       shot FILE.png                     saves the window, with what is drawn over the picture
        minimise | restore
-   docs/view.md says what each of them does. */
+   docs/view.md describes each of them. */
 #ifndef VIEW_EVENTS_H
 #define VIEW_EVENTS_H
 
@@ -30,11 +30,11 @@ enum view_event_kind {
     EVENT_BUTTON,
     EVENT_MOVE,
     EVENT_WHEEL,
-    EVENT_SIZE, /* of the window's pixels; 0 x 0: minimised */
+    EVENT_SIZE, /* size of the window, pixels; 0 x 0: minimised */
     EVENT_DROP,
     EVENT_CLOSE,
     EVENT_REFRESH, /* the window wants to be drawn again */
-    /* of replays alone */
+    /* in replays alone */
     EVENT_WAIT,
     EVENT_STILL,
     EVENT_PICTURE,
@@ -43,7 +43,7 @@ enum view_event_kind {
     EVENT_UNTIL,
     EVENT_AWAIT,
     EVENT_CHOOSE,
-    EVENT_CLOCK, /* the real one */
+    EVENT_CLOCK, /* `wait` takes real time from here on */
     EVENT_STATE,
     EVENT_SHOT,
     EVENT_MINIMISE,
@@ -52,7 +52,8 @@ enum view_event_kind {
 
 enum { EVENT_SHIFT = 1, EVENT_CTRL = 2, EVENT_ALT = 4, EVENT_PATH = 1024 };
 
-/* Keys: letters and digits are themselves, as capitals; others from here on. */
+/* Keys: letters (as capitals), digits and signs are their ASCII codes; others follow from 256
+   on. */
 enum view_key {
     KEY_SPACE = ' ',
     KEY_ESCAPE = 256,
@@ -76,26 +77,28 @@ enum view_key {
 struct view_event {
     enum view_event_kind kind;
     int key;       /* enum view_key, or a character */
-    bool down;     /* of keys and buttons */
-    bool repeat;   /* a key that is held */
+    bool down;     /* keys and buttons */
+    bool repeat;   /* repeated, as the key is held */
     unsigned mods; /* EVENT_SHIFT and others, or-ed */
     int button;    /* 0 left, 1 right, 2 middle */
     uint32_t code; /* EVENT_CHAR: Unicode */
-    double x, y;   /* pixels of the window; notches of the wheel; EVENT_WAIT: x is ms */
+    double x, y;   /* window pixels; wheel: notches; EVENT_WAIT: x in ms */
     uint32_t width, height;
-    const char *path; /* of files, shorter than EVENT_PATH; EVENT_STATE: its name; EVENT_UNTIL: the
-                         condition; borrowed from where the event came from */
+    /* A path, shorter than EVENT_PATH; EVENT_STATE: its name; EVENT_UNTIL: the condition;
+       EVENT_CHOOSE: the label. Borrowed from where the event came from. */
+    const char *path;
 };
 
-/* One line, without the end; false, logged with file and line, for nonsense. Empty lines and
-   comments are EVENT_NONE. `press` and `click` give several events. Paths point into `text`. */
+/* Parses a line, without its end; false: it is no event, which is logged with file and line. Empty
+   lines and comments are EVENT_NONE. `press` and `click` give several events. Paths point into
+   `text`. */
 enum { EVENTS_A_LINE = 4 };
 bool events_from_line(const whit_log *log, const char *file, uint32_t line, const char *text,
                       struct view_event events[EVENTS_A_LINE], int *count);
-/* What events_from_line reads back; nothing for events that have no line. */
+/* Writes an event as a line that events_from_line reads; nothing for events that have no line. */
 void event_to_line(const struct view_event *event, FILE *to);
 
-/* All events of a file; *events is one block with all that they point to, free() it. */
+/* Reads all events of a file; *events is one block with all that they point to: free() it. */
 WHIT_CHECK whit_result events_load(const whit_log *log, const char *path,
                                    struct view_event **events, uint32_t *count);
 

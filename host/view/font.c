@@ -9,7 +9,7 @@
 #include "base/log.h"
 
 enum { FONT_BYTES_MAX = 16 << 20 };
-/* Columns of the window's lists stand below each other. */
+/* A monospaced font, so that columns of text line up. */
 static const char wanted[] = "DejaVu Sans Mono,monospace:scalable=true:fontformat=TrueType";
 
 static bool find_file(FcConfig *config, char *path, size_t bytes)

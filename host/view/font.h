@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Letters of one width, as this system has them, by fontconfig: *data is a TrueType file, for
-   free(). False: there is none. */
+/* Finds a monospaced font of this system by fontconfig. *data: a TrueType file; free() it. False:
+   there is none. */
 bool font_load(uint8_t **data, size_t *size_bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* Figures, the cheat sheet and messages over the picture. */
+/* Draws figures, the cheat sheet and messages over the picture. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,9 +14,9 @@
 
 static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
                       COLOR_GOOD = 0xFFD0E090u, COLOR_TEXT = 0xFFFFFFFFu;
-static const float ROOM_FOR_BOTH = 400.0f; /* pixels, of figures and a panel below them */
+static const float ROOM_FOR_BOTH = 400.0f; /* height of figures and a panel below them, pixels */
 
-/* "full size, 4 samples" */
+/* Draws "full size, 4 samples". */
 static void draw_quality(const struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
@@ -33,7 +33,7 @@ static void draw_quality(const struct view *view)
         ui_text("full size, %s", samples);
 }
 
-/* Whether no pixel has any light; of any other picture the first few tell. */
+/* Whether all pixels are black; in other pictures the loop ends at the first one that is not. */
 static bool is_black(const struct engine_frame *frame)
 {
     for (size_t i = 0; i < (size_t)frame->width * frame->height; ++i) {
@@ -96,7 +96,7 @@ static void draw_shares(const struct engine_frame *frame, uint32_t stage)
     }
 }
 
-/* What one tile in eight took by time stamps, for all. */
+/* Draws the times of stages, scaled up from one tile in eight that had time stamps. */
 static void draw_stages(const struct engine_frame *frame)
 {
     const whit_stats *s = &frame->stats;
@@ -109,8 +109,8 @@ static void draw_stages(const struct engine_frame *frame)
     }
 }
 
-/* The estimate of what is still wrong while the picture was refined, over the time of drawing. Both
-   axes are logarithms, by which it falls along a line. */
+/* Draws the estimated error while the picture was refined, over the time of drawing. Both axes are
+   logarithmic, so that it falls along a line. */
 static void draw_estimates(const struct engine_frame *frame)
 {
     const struct engine_estimate *all = frame->estimates;
@@ -176,7 +176,7 @@ static void draw_more(const struct view *view)
                 chain.draw_ms, chain.wait_ms);
 }
 
-/* Its parts, which two spaces divide, each on a line of its own. */
+/* Draws the parts of `line`, which two spaces separate, each on a line of its own. */
 static void draw_reload(const char *line)
 {
     for (const char *at = line; *at;) {
@@ -187,7 +187,7 @@ static void draw_reload(const char *line)
     }
 }
 
-/* In per cent of the time before, by the interval that holds the true difference. */
+/* Draws how drawing time changed, in per cent of the time before, with its confidence interval. */
 static void draw_change_ms(const struct engine_change *c)
 {
     double share = c->before_ms > 0.0 ? 100.0 / c->before_ms : 0.0;
@@ -201,7 +201,7 @@ static void draw_change_ms(const struct engine_change *c)
                 c->ms.median * share, low, high);
 }
 
-/* "traversal distance -> sign", one change a line; then what that did. */
+/* Draws "traversal distance -> sign", one change a line, then its effects. */
 static void draw_change(const struct view *view)
 {
     const struct engine_change *c = &view->status.change;
@@ -235,7 +235,7 @@ static void draw_change(const struct view *view)
         ui_text("0 colours");
 }
 
-/* Whether there is no room for figures beside much else. */
+/* Whether the window is too low for figures and a panel. */
 static bool is_low(const struct view *view)
 {
     return (float)view->settings.picture.height < ROOM_FOR_BOTH * ui_scale(view->ui);
@@ -269,8 +269,8 @@ static void draw_hud(const struct view *view)
     ui_panel_end();
 }
 
-/* Keys, what they do and their state, once or twice across the window; the widths in characters.
- */
+/* The cheat sheet has groups of three cells (keys, what they do, state), one or two groups across
+   the window; widths in characters. */
 enum { SHEET_CELLS = 3, SHEET_KEYS = 12, SHEET_NAME = 23, SHEET_STATE = 22, SHEET_STATE_MIN = 11 };
 
 static int lay_out_sheet(int widths[2 * SHEET_CELLS])
@@ -348,7 +348,7 @@ static void draw_help(struct view *view)
     ui_panel_end();
 }
 
-/* "drawing 35 %, 2 s left": as long as what is done took, for what is not. */
+/* Writes "drawing 35 %, 2 s left", at the speed so far. */
 static void say_drawing(const struct engine_status *status, char *text, size_t bytes)
 {
     double part = (double)status->part, left_s = status->drawing_ms * 1e-3 * (1.0 / part - 1.0);
@@ -358,7 +358,7 @@ static void say_drawing(const struct engine_status *status, char *text, size_t b
         snprintf(text, bytes, "drawing %.0f %%, %.*f s left", part * 1e2, left_s < 9.95, left_s);
 }
 
-/* Draws the panel of what takes long: a session being made, or a picture being drawn. */
+/* Draws the panel for what takes long: a session being made, or a picture being drawn. */
 static void draw_work(const struct view *view)
 {
     const struct engine_status *status = &view->status;
@@ -382,7 +382,7 @@ static void draw_work(const struct view *view)
     ui_panel_end();
 }
 
-/* Lines of the window that a text takes, wrapped at its right end. */
+/* Number of lines that a text takes when it is wrapped at the window's right end. */
 static float lines_of(const struct view *view, const char *text)
 {
     float width, height;
@@ -390,7 +390,7 @@ static float lines_of(const struct view *view, const char *text)
     return 1.0f + floorf(width / fmaxf((float)view->settings.picture.width - 2.0f * height, 1.0f));
 }
 
-/* As many errors as half of the window has room for, one a line, and how many there are besides. */
+/* Draws as many errors as fit into half of the window, one a line, and the number of the others. */
 static void draw_errors(struct view *view)
 {
     float width, height, room;
@@ -433,7 +433,7 @@ static void draw_messages(struct view *view)
     ui_panel_end();
 }
 
-/* Once for a folder; the picture goes on without it meanwhile. */
+/* Asks once for each folder; the picture is drawn without its files meanwhile. */
 static void draw_question(struct view *view)
 {
     const char *folder = scenes_question(view);
@@ -472,7 +472,7 @@ static void draw_boxes(const struct view *view)
     ui_panel_end();
 }
 
-/* Draws the legend of the window's picture, and of picture B where that stands beside it. */
+/* Draws the legend of the window's picture, and of picture B if that is beside it. */
 static void draw_legends(const struct view *view)
 {
     const struct compare *compare = &view->compare;
@@ -493,7 +493,7 @@ static void draw_legends(const struct view *view)
     }
 }
 
-/* What comes first stays where it is; what comes later gives way, or is left out. */
+/* In order of importance: a panel that comes later gives way to earlier ones, or is left out. */
 void hud_draw(struct view *view)
 {
     if (view->help) {

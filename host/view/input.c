@@ -1,4 +1,4 @@
-/* The mouse and held keys: cameras and time. */
+/* The mouse and held keys, which move the camera; playing animations. */
 #include <math.h>
 #include <string.h>
 
@@ -8,11 +8,11 @@
 #include "view/scenes.h"
 #include "view/view_private.h"
 
-static const double ORBIT_RADIANS = 3.14159265358979; /* across the window's height */
+static const double ORBIT_RADIANS = 3.14159265358979; /* for a drag across the window's height */
 static const double ZOOM_NOTCH = 0.85;
-static const double FLY_A_SECOND = 0.8; /* distances to the target */
-static const double CLICK_PIXELS = 4.0; /* less is no drag */
-static const double STEP_MAX_S = 0.25;  /* of one picture, however long it took */
+static const double FLY_A_SECOND = 0.8; /* multiples of the distance to the target */
+static const double CLICK_PIXELS = 4.0; /* a shorter move is a click, not a drag */
+static const double STEP_MAX_S = 0.25;  /* most time that one step of moving covers */
 
 static enum ui_key ui_key_of(int key)
 {
@@ -34,7 +34,7 @@ static enum ui_key ui_key_of(int key)
 
 /* ---- Keys ---- */
 
-/* Those that move the camera, and do nothing else. */
+/* Whether the key moves the camera, and does nothing else. */
 static bool flies(const struct view_event *event)
 {
     return !(event->mods & EVENT_CTRL) && event->key < 128 && event->key &&
@@ -109,7 +109,7 @@ static void on_move(struct view *view, const struct view_event *event)
     if (held && input->dragged)
         drag(view, dx, dy);
     if (!held)
-        view->dirty = true; /* what is under it may light up */
+        view->dirty = true; /* what is under the mouse may be highlighted */
 }
 
 static void on_button(struct view *view, const struct view_event *event)
@@ -164,7 +164,7 @@ void input_event(struct view *view, const struct view_event *event)
         break;
     case EVENT_CHAR:
         ui_character(view->ui, event->code);
-        view->dirty |= ui_has_keys(view->ui); /* a field takes it when it is drawn */
+        view->dirty |= ui_has_keys(view->ui); /* a text field takes it when it is drawn */
         break;
     case EVENT_BUTTON:
         on_button(view, event);

@@ -1,4 +1,4 @@
-/* What keys do, with the state of it. */
+/* What keys do, and the state that they change. */
 #ifndef VIEW_KEYS_H
 #define VIEW_KEYS_H
 
@@ -15,20 +15,21 @@ enum key_group { KEYS_CAMERA, KEYS_PICTURE, KEYS_FILES, KEYS_EXPERTS, KEY_GROUPS
 struct key_binding {
     int key;
     unsigned mods;
-    const char *keys;  /* as the cheat sheet says them; NULL: they are in another row of it */
-    const char *title; /* what it says of them; NULL: the name */
-    const char *name;  /* of the state */
+    /* As the cheat sheet names the keys; NULL: another row of it names them. */
+    const char *keys;
+    const char *title; /* what it says about them; NULL: `name` */
+    const char *name;  /* name of the state */
     void (*act)(struct view *view);
-    void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: none */
-    const struct setting *setting; /* that it turns, in place of `act` and `state`; NULL: none */
+    void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: it has no state */
+    const struct setting *setting; /* that the key steps through, instead of `act`; NULL: none */
     int by;
     enum key_group group;
-    bool shows_name; /* as a message, when the key is pressed */
+    bool shows_name; /* a message shows the name when the key is pressed */
 };
 const struct key_binding *key_bindings(uint32_t *count);
-/* False where there is nothing to say. */
+/* Writes the state of a key; false: it has none. */
 bool key_state(const struct view *view, const struct key_binding *key, char *text, size_t bytes);
-/* False where the key does nothing. */
+/* Does what the key does; false: nothing. */
 bool key_act(struct view *view, int key, unsigned mods);
 
 #endif
