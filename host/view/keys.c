@@ -1,4 +1,4 @@
-/* What keys do. One table: the keys, the cheat sheet and the states it shows. */
+/* What keys do, in one table: keys, their rows of the cheat sheet, and the states that it shows. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 #include "view/scenes.h"
 #include "view/view_private.h"
 
-static const double ESCAPE_MS = 1500.0; /* between the two that quit */
+static const double ESCAPE_MS = 1500.0; /* most time between two Escapes that quit */
 
 /* ---- Trees ---- */
 
@@ -43,7 +43,7 @@ static void next_cost_view(struct view *view)
     view->settings.paint = next < PAINT_COUNT ? next : PAINT_DEPTH;
 }
 
-/* From the colours over the functions below //@ aov of the shader, and back. */
+/* Switches from colours to the shader's aovs one by one, and back to colours. */
 static void next_aov(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
@@ -61,7 +61,7 @@ static void say_aov(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, "%s", view->settings.aov[0] ? view->settings.aov : "colours");
 }
 
-/* Multiplies the scale of the difference, where that is shown, else that of costs. */
+/* Multiplies the scale of the difference if that is shown, else the scale of costs. */
 static void scale_by(struct view *view, double factor)
 {
     struct compare *compare = &view->compare;
@@ -194,7 +194,7 @@ static void look_bottom(struct view *view)
     look_along(view, 1, -1);
 }
 
-/* Takes the camera that whit chooses for files without one. */
+/* Takes the camera that whit chooses for files without a camera. */
 static void look_as_whit(struct view *view)
 {
     whit_camera camera;
@@ -208,7 +208,7 @@ static void look_as_whit(struct view *view)
     view_say(view, "whit's own camera");
 }
 
-/* Goes through the file's cameras in their order, and ends with whit's own. */
+/* Goes through the file's cameras in their order; after the last one follows whit's own. */
 static void next_camera(struct view *view)
 {
     uint32_t count = view->scene ? view->scene->info.camera_count : 0;
@@ -345,7 +345,7 @@ static void say_scene(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, "%s", path_name(view->settings.scene));
 }
 
-/* whit-0001.png and on, in the folder where whit was started. */
+/* Saves as whit-0001.png or the next free number, in the folder where whit was started. */
 static void save_picture(struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
@@ -442,7 +442,8 @@ static void say_prices(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, view->prices_open ? "shown" : "not shown");
 }
 
-/* In the order of the sheet, by groups; keys of settings come first in theirs. */
+/* Keys other than those of settings, in the order of the cheat sheet. In each of its groups the
+   keys of settings come first. */
 static const struct key_binding bindings[] = {
     {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
     {'F', 0, "F", "frame what is there", "frame what is under the mouse", pick_focus,

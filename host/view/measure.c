@@ -1,4 +1,4 @@
-/* What the user waits for: how long pictures take, and how far apart they are. */
+/* Measures what the user waits for: how long pictures take, and the time between them. */
 #include <string.h>
 
 #include "base/clock.h"
@@ -32,7 +32,7 @@ void measure_begin(struct view *view)
     measure->cpu_ms = clock_cpu_ms();
 }
 
-/* A picture that was not shown before. */
+/* Counts a picture that is shown for the first time. */
 static void count_new(struct view_measure *measure, const struct engine_frame *frame, double now_ms)
 {
     const whit_stats *s = &frame->stats;

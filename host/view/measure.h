@@ -1,4 +1,4 @@
-/* What the user waits for: how long pictures take, and how far apart they are. */
+/* Measures what the user waits for: how long pictures take, and the time between them. */
 #ifndef VIEW_MEASURE_H
 #define VIEW_MEASURE_H
 
@@ -6,24 +6,24 @@
 
 struct view;
 
-/* Some figures, the first of many. */
+/* Values of a figure; only the first FIGURES_MAX are kept, `count` counts all. */
 enum { FIGURES_MAX = 4096 };
 struct view_figures {
     uint32_t count;
     double values[FIGURES_MAX];
 };
 
-/* What the user waited for since the last `state`. */
+/* What the user has waited for since the last `state` of a replay. */
 struct view_measure {
-    double first_ms;             /* when the first picture was shown, by the clock; 0: none yet */
-    double last_ms;              /* the last new picture while something moved; 0: it stood */
+    double first_ms;             /* clock_ms() when the first picture was shown; 0: none yet */
+    double last_ms;              /* when the last picture was shown, if it moved; else 0 */
     double shown_ms;             /* when the window was drawn last; 0: not yet */
-    double cpu_ms;               /* of the process, when this began */
+    double cpu_ms;               /* processor time of the process when this began */
     double start_ms;             /* when this began */
     uint32_t drawn;              /* how often the window was drawn */
-    uint64_t number;             /* of the last picture that was counted */
-    struct view_figures whole;   /* ms of render of whole pictures */
-    struct view_figures quick;   /* of those while something moves */
+    uint64_t number;             /* number of the last picture that was counted */
+    struct view_figures whole;   /* ms of drawing whole pictures */
+    struct view_figures quick;   /* ms of drawing pictures while something moves */
     struct view_figures size;    /* their divisors */
     struct view_figures gap;     /* ms from one new picture to the next, while something moves */
     struct view_figures between; /* ms from one drawing of the window to the next */
@@ -32,8 +32,9 @@ struct view_measure {
 };
 
 void measure_begin(struct view *view);
-/* The window was drawn just now, with `view->frame`. */
+/* Call it when the window was just drawn, with view->frame. */
 void measure_shown(struct view *view);
-double figures_quantile(struct view_figures *figures, double share); /* sorts; 0: of none */
+/* Sorts the values. 0: there are none. */
+double figures_quantile(struct view_figures *figures, double share);
 
 #endif

@@ -1,10 +1,10 @@
-/* Lines in the scene, over the picture. */
+/* Draws lines of the scene over the picture. */
 #include <string.h>
 
 #include "view/overlay.h"
 #include "view/view_private.h"
 
-/* Blue and orange are told apart by the colour-blind too. */
+/* The colour-blind can tell blue and orange apart. */
 static const uint32_t COLOR_INNER = 0xB0FFC060u, COLOR_LEAF = 0xD020A0FFu;
 
 bool overlay_is_possible(const struct view *view)

@@ -1,5 +1,5 @@
-/* Lines in the scene, over the picture: between ui_begin and ui_end. Cameras that are not
-   perspective have none. */
+/* Draws lines of the scene over the picture, between ui_begin and ui_end; only for perspective
+   cameras. */
 #ifndef VIEW_OVERLAY_H
 #define VIEW_OVERLAY_H
 

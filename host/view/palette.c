@@ -7,7 +7,8 @@
 
 #include "view/ui.h"
 
-/* The middle row of a heat map, which has its legend below and may be wider than its values. */
+/* Reads the colours from the middle of the first row of a heat map, which has a legend below and
+   may be wider than its values. */
 static whit_result read_ramp(const whit_image *heat, struct palette *palette)
 {
     whit_image_info info;

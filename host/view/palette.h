@@ -7,18 +7,18 @@
 #include "whit/whit.h"
 
 enum { PALETTE_COLORS = 256 };
-/* 0xAABBGGRR, from 0 to the scale; [PALETTE_COLORS]: of what is not a number. */
+/* 0xAABBGGRR, from 0 to the scale; [PALETTE_COLORS] is the colour of NaN. */
 struct palette {
     uint32_t colors[PALETTE_COLORS + 1];
 };
 WHIT_CHECK whit_result palette_init(struct palette *palette);
 
-/* `values` of one channel as RGBA; `rgba` has place for one word a pixel. */
+/* Converts `values`, one a pixel, to colours; `rgba` has room for one word a pixel. */
 void palette_paint(const struct palette *palette, const float *values, uint64_t count, double scale,
                    uint32_t *rgba);
 
-/* A bar of the colours with numbers from 0 to `scale`, in a panel at the window's lower right.
-   `id`: of the panel. */
+/* Draws a bar of the colours, with numbers from 0 to `scale`, in a panel at the window's lower
+   right. `id`: identifies the panel. */
 void palette_legend(const struct palette *palette, const char *id, const char *title, double scale);
 
 #endif

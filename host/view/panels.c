@@ -91,8 +91,8 @@ void panels_load(struct view *view, const char *path)
     if (next->width != now->width || next->height != now->height)
         window_set_pixels(view->window, next->width, next->height);
     view->settings = loaded;
-    view->resized = true;       /* the window may have kept its size */
-    view->camera_known = false; /* read again from the text */
+    view->resized = true;       /* even if the window keeps its size */
+    view->camera_known = false; /* it is read again from the text */
     view_learn_camera(view);
     set_fps_goal(view, loaded.fps_goal);
     view_say(view, "%s: these settings", path);
@@ -151,7 +151,8 @@ static void draw_files(struct view *view)
         panels_load(view, names[value]);
 }
 
-/* Which rays costs are of, and which level boxes are, where there are any. */
+/* Whether a setting has an effect now: the kind of rays needs a cost view, the level of boxes needs
+   boxes. */
 static bool says_something(const struct view *view, const struct setting *row)
 {
     return strcmp(row->name, "view-rays") == 0     ? view->settings.paint != PAINT_COLOR
@@ -196,7 +197,7 @@ void panels_switch_effects(struct view *view)
     panels->effects = !panels->effects;
     prices_leave(view, panels->measured);
     panels->measured = NULL;
-    bool can = !settings_compiles(&view->settings); /* prices are of whit's own functions */
+    bool can = !settings_compiles(&view->settings); /* prices are for whit's own functions */
     if (can && panels->effects && view->scene && view->frame.number > 0)
         panels->measured = prices_start(&(struct prices_params){.settings = &view->frame.settings,
                                                                 .scene = view->scene,
@@ -212,7 +213,7 @@ static void switch_effect(struct view *view, uint32_t index, bool called, bool o
     view->panels.pending = together ? -1 : (int)index + 1;
 }
 
-/* "on: 3.10 -> 3.52 ms, 120 of 12288 pixels", in a narrow window on two lines. */
+/* Draws "on: 3.10 -> 3.52 ms, 120 of 12288 pixels", in a narrow window on two lines. */
 static void draw_price(const struct effect_price *price)
 {
     ui_text("%s: %.2f -> %.2f ms,", price->added ? "on" : "off", price->before_ms, price->after_ms);
@@ -222,8 +223,8 @@ static void draw_price(const struct effect_price *price)
             (unsigned long long)price->pixels);
 }
 
-/* Shows the effects that take the largest shares of the picture's time, three at most, each of more
-   than 5 %, and what calls for it: "refraction: 41 % of the time, for material `glass`". */
+/* Shows up to three effects that take the largest shares of the picture's time, each more than 5 %,
+   with their reasons: "refraction: 41 % of the time, for material `glass`". */
 static void draw_dearest(struct prices *measured, const whit_scene *scene)
 {
     enum { TOLD = 3 };
@@ -250,7 +251,7 @@ static void draw_dearest(struct prices *measured, const whit_scene *scene)
     }
 }
 
-/* Draws the price of an effect: measured by the switch that was made, else in the background
+/* Draws the price of an effect: measured when the user switched it, else in the background
    (`measured`). */
 static void draw_price_of(struct view *view, uint32_t index, bool in, bool can)
 {
@@ -271,7 +272,7 @@ static void draw_price_of(struct view *view, uint32_t index, bool in, bool can)
         ui_text_dim(strcmp(state.what, whit_effect_name(index)) == 0 ? "measuring" : "to come");
 }
 
-/* In a narrow window effects are told without. */
+/* Whether there is room for the reasons of effects. */
 static bool say_reasons(void)
 {
     return ui_characters(3) >= 70;
@@ -334,7 +335,7 @@ void panels_step(struct view *view)
 {
     struct panels *panels = &view->panels;
     const struct engine_change *change = &view->status.change;
-    if (panels->scene != view->scene) { /* other prices; an address is enough to tell */
+    if (panels->scene != view->scene) { /* other prices; comparing addresses suffices */
         panels->scene = view->scene;
         memset(panels->prices, 0, sizeof panels->prices);
         panels->pending = 0;

@@ -1,4 +1,4 @@
-/* A pixel: what is there, and the rays that made its colour. */
+/* A pixel that is clicked on: the hit there, and the rays that made its colour. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +12,7 @@ static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
-static const float PANEL_WIDTH = 612.0f; /* at a scale of 1 */
+static const float PANEL_WIDTH = 612.0f; /* pixels at a scale of 1 */
 enum { RAYS_SHOWN = 400, ROWS_AT_FIRST = 7, LINES_AT_FIRST = 9, VALUES_SHOWN = 3 };
 
 static void ask(struct view *view, double x, double y)
@@ -64,8 +64,8 @@ static void bounds_of(const whit_scene *scene, uint32_t instance, double lo[3], 
     }
 }
 
-/* Whether an object is less than what the picture is of: a floor is not, nor is the one object of a
-   model, nor one that moves. */
+/* Whether an object is small enough to be framed: not a floor, nor the only object of a model, nor
+   an object of an animated scene. */
 static bool is_small(const struct view *view, const double lo[3], const double hi[3])
 {
     double all_lo[3], all_hi[3], all = 0.0, own = 0.0;
@@ -78,7 +78,8 @@ static bool is_small(const struct view *view, const double lo[3], const double h
     return own > 0.0 && own < 0.8 * all;
 }
 
-/* Frames the object that a ray met; of what is too large for that the point, from half as far. */
+/* Frames the object that a ray hit. If that is too large, looks at the point of the hit, from half
+   the distance. */
 static void frame_hit(struct view *view, const whit_probe_ray *ray)
 {
     struct view_camera *camera = &view->camera;
@@ -101,8 +102,8 @@ static void frame_hit(struct view *view, const whit_probe_ray *ray)
     view_moved(view);
 }
 
-/* Frees the probe of a panel that was closed: it holds its scene, which may be a large one that was
-   left. */
+/* Frees the probe after its panel was closed, since it holds its scene, which may be large and not
+   shown any more. */
 static void let_go(struct view *view)
 {
     struct engine_probe nothing = {.number = view->probe.number};
@@ -112,7 +113,8 @@ static void let_go(struct view *view)
     view->probe = nothing;
 }
 
-/* What dbg(x) is follows the picture: of another one the same pixel is asked for once more. */
+/* Keeps the values of dbg(x) up to date: asks for the same pixel again when the picture is
+   another. */
 static void follow(struct view *view)
 {
     const struct engine_frame *frame = &view->frame;
@@ -171,8 +173,7 @@ static void draw_place(const struct view *view)
             (double)first->normal[1], (double)first->normal[2], first->device.t);
 }
 
-/* Gives the number of values of a dbg(x) that the window shows; `whit probe` prints more of
-   them. */
+/* Number of values of a dbg(x) that the window shows; `whit probe` prints more of them. */
 static uint32_t values_shown(const whit_probe_call *call)
 {
     return call->value_count < VALUES_SHOWN ? call->value_count : VALUES_SHOWN;
@@ -209,7 +210,7 @@ static void draw_call(const whit_probe_call *call)
         ui_text_dim("%s:%u %s was not reached", path_name(call->file), call->line, call->text);
 }
 
-/* What dbg(x) of the user's functions was. */
+/* Draws the values of dbg(x) in the user's functions. */
 static void draw_calls(const whit_probe_report *r)
 {
     for (uint32_t i = 0; i < r->call_count; ++i)
@@ -226,7 +227,8 @@ static void draw_hit(const whit_probe_hit *hit)
         ui_text("%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
 }
 
-/* "=": the same hit; of the twin: by every bit. */
+/* Draws the hit of the twin or of exact arithmetic; "=": the same as the device's (the twin's: in
+   every bit). */
 static void draw_other(const whit_probe_hit *hit, bool known, bool equal)
 {
     if (!known || equal)
@@ -235,7 +237,7 @@ static void draw_other(const whit_probe_hit *hit, bool known, bool equal)
         ui_text_color(COLOR_DIFFERS, "%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
 }
 
-/* "6 shadow, lamp": so many to one light ended alike. */
+/* Draws "6 shadow, lamp": so many rays to one light ended in the same way. */
 static void draw_kind(const whit_scene *scene, const whit_probe_ray *ray, uint32_t count)
 {
     const char *kind = value_word(values_rays, (int)ray->kind);
@@ -250,7 +252,7 @@ static void draw_kind(const whit_scene *scene, const whit_probe_ray *ray, uint32
                   light.name ? ", " : "", light.name ? light.name : "");
 }
 
-/* "blocked by vase": why it ended, and of a shadow ray where. */
+/* Draws why a ray ended, and for a shadow ray where: "blocked by vase". */
 static void draw_end(const whit_scene *scene, const whit_probe_ray *ray)
 {
     whit_instance_info blocker = {0};
@@ -308,12 +310,12 @@ static bool has_moved_on(const struct view *view)
     return !settings_same_place(&view->probe.settings, &view->settings);
 }
 
-/* Where the panel stands, in the way of ui_window_begin: never over the pixel. */
+/* The place of the panel, as ui_window_begin takes it: never over the pixel. */
 struct place {
     float x, y, height;
 };
 
-/* Beside the pixel where that has room, else above or below it, as high as there is room. */
+/* Puts the panel beside the pixel if there is room, else above or below it, as high as possible. */
 static struct place place_panel(const struct view *view, const whit_probe_report *r, float height)
 {
     const whit_renderer_params *p = &view->settings.picture;
@@ -360,7 +362,8 @@ static void draw_panel(struct view *view)
 
 /* ---- In the scene ---- */
 
-/* Rays that miss, and lights far off, are drawn for as far as the camera is from its target. */
+/* The length at which a ray is drawn, in t. Rays that miss, and rays to far lights, are drawn at
+   twice the distance from camera to target. */
 static double drawn_length(const struct view *view, const whit_probe_ray *ray)
 {
     double t = ray->device.t, longest = 0.0, length = 0.0;

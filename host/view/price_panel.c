@@ -1,4 +1,4 @@
-/* Key P: the price list of this view, beside each switch. */
+/* Key P: the price list of this view. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +21,7 @@ void prices_leave(struct view *view, struct prices *prices)
     prices_cancel(prices);
     while (at < LEAVING_MAX - 1 && view->leaving[at])
         ++at;
-    prices_stop(view->leaving[at]); /* where there are many at once, the last one is waited for */
+    prices_stop(view->leaving[at]); /* if all places are taken, the last one is waited for */
     view->leaving[at] = prices;
 }
 
@@ -60,7 +60,8 @@ void price_switch(struct view *view)
     }
 }
 
-/* What the setting says, on top of what the window has. Trees have keys of their own. */
+/* Applies the setting of a row to the window's settings. Settings of trees have keys of their
+   own. */
 static void use(struct view *view, const struct cost_row *row)
 {
     uint32_t count;
@@ -69,7 +70,7 @@ static void use(struct view *view, const struct cost_row *row)
     view_changed(view);
 }
 
-/* The time of a row, as a multiple of the usual one. */
+/* The time of a row, as a multiple of the usual row's. */
 static double of_usual(const struct cost_report *report, const struct cost_row *row)
 {
     return row->ms[report->clock] / report->rows[0].ms[report->clock];
@@ -115,7 +116,7 @@ static void widen(double range[2], double value)
     range[1] = fmax(range[1], value);
 }
 
-/* "0.46 to 1.16", or one number where both look the same; "unknown" where there is none. */
+/* Writes "0.46 to 1.16", one number if both look the same, or "unknown" for an empty range. */
 static const char *write_range(const double range[2], char text[RANGE])
 {
     char low[12], high[12];
@@ -129,7 +130,8 @@ static const char *write_range(const double range[2], char text[RANGE])
     return text;
 }
 
-/* "depth: x 0.46 to 1.16, FLIP 0.0744 to 0.35": what the rows up to `end` span, all of one knob. */
+/* Begins the fold of a knob, whose rows are `first` to `end` - 1, with the ranges that they span:
+   "depth: x 0.46 to 1.16, FLIP 0.0744 to 0.35". */
 static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_t end)
 {
     const char *knob = report->rows[first].knob;
@@ -150,10 +152,10 @@ static bool begin_knob(const struct cost_report *report, uint32_t first, uint32_
     else
         snprintf(label, sizeof label, "%s: x %s, FLIP %s##knob", knob, write_range(ratio, times),
                  write_range(flip, flips));
-    return ui_fold(label, best || first == 1); /* the first one shows that there are rows */
+    return ui_fold(label, best || first == 1); /* the first fold shows that there are rows */
 }
 
-/* Folded by knob. */
+/* Draws the rows, folded by knob. */
 static void draw_table(struct view *view, const struct cost_report *report)
 {
     static const int widths[] = {19, 12, 18, 1};

@@ -1,14 +1,14 @@
-/* The price list of this view, beside each switch. */
+/* The price list: what each setting would cost in this view. */
 #ifndef VIEW_PRICE_PANEL_H
 #define VIEW_PRICE_PANEL_H
 
 struct prices;
 struct view;
 
-/* Opens the price list of this view, which starts to measure, or closes it. */
+/* Opens the price list of this view, which starts measuring, or closes it. */
 void price_switch(struct view *view);
 void price_draw(struct view *view);
-/* Tells a measurement to stop, and does not wait for it: prices_part frees it once its thread has
+/* Tells a measurement to stop without waiting for it: prices_part frees it once its thread has
    ended. NULL is fine. */
 void prices_leave(struct view *view, struct prices *prices);
 /* Frees the measurements that were told to stop and whose threads have ended. */

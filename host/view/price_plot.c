@@ -10,10 +10,10 @@
 
 enum { ABOUT = 160 };
 static const uint32_t COLOR_USUAL = 0xFF4C8CFFu, COLOR_BEST = 0xFFE9B456u, COLOR_REST = 0xFF8A8A85u;
-static const float MARGIN = 0.07f; /* on each side of the points, of the box */
+static const float MARGIN = 0.07f; /* margin on each side, as a share of the box */
 static const double ALL_TICKS = 100.0;
 
-/* A row's point, in figures. */
+/* A row and its point. */
 struct place {
     const struct cost_row *row;
     double ms, flip;
@@ -22,7 +22,7 @@ struct place {
 struct places {
     struct place list[COST_ROWS_MAX];
     uint32_t count;
-    double ms[2], flip[2]; /* the least and the most */
+    double ms[2], flip[2]; /* smallest and largest value */
 };
 
 static int compare_places(const void *a, const void *b)
@@ -31,7 +31,7 @@ static int compare_places(const void *a, const void *b)
     return (x->ms > y->ms) - (x->ms < y->ms);
 }
 
-/* From the quickest on, as the line goes. */
+/* Collects the rows that have a point, sorted by time, as the line joins them. */
 static void collect(const struct cost_report *report, const struct price_strip *strip,
                     struct places *places)
 {
@@ -57,7 +57,7 @@ static void collect(const struct cost_report *report, const struct price_strip *
     places->flip[1] = places->ms[1] = 0.0;
     for (uint32_t i = 0; i < places->count; ++i) {
         struct place *place = &places->list[i];
-        place->flip = fmax(place->flip, least < INFINITY ? 0.5 * least : 1e-4); /* no log of 0 */
+        place->flip = fmax(place->flip, least < INFINITY ? 0.5 * least : 1e-4); /* avoids log(0) */
         places->ms[0] = fmin(places->ms[0], place->ms);
         places->ms[1] = fmax(places->ms[1], place->ms);
         places->flip[0] = fmin(places->flip[0], place->flip);
@@ -70,7 +70,7 @@ static float inside(double value, const double range[2])
     return MARGIN + (1.0f - 2.0f * MARGIN) * ui_log_place(value, range[0], range[1]);
 }
 
-/* Powers of 10, and where these are few 2 and 5 of them. */
+/* Lists powers of 10 as ticks, and in small ranges also their multiples by 2 and 5. */
 static uint32_t list_ticks(const double range[2], struct ui_tick ticks[UI_TICKS_MAX])
 {
     static const double parts[] = {1.0, 2.0, 5.0};

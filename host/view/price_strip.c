@@ -8,7 +8,7 @@
 
 enum { LINE = 32 };
 
-/* The picture's part; NULL where there is none, or no memory. */
+/* Cuts the crop out of the picture; NULL: there is no picture, or no memory. */
 static uint32_t *cut(const whit_image *picture, const struct cost_crop *crop)
 {
     whit_image_info info;

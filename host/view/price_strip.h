@@ -1,19 +1,20 @@
-/* The strip of the price list: one crop at several times. */
+/* The strip of the price list: the same crop of the picture at several costs in time. */
 #ifndef VIEW_PRICE_STRIP_H
 #define VIEW_PRICE_STRIP_H
 
 #include "cost/cost.h"
 
 struct price_strip {
-    uint32_t width, height; /* of a crop */
+    uint32_t width, height; /* size of a crop, pixels */
     struct cost_share shares[COST_STRIP];
     uint32_t *rgba[COST_STRIP]; /* NULL: there is no picture */
 };
 
-/* Makes the crops of what the report has kept. */
+/* Makes the crops from the pictures that the report has kept. */
 void price_strip_init(struct price_strip *strip, const struct cost_report *report);
 void price_strip_finish(struct price_strip *strip);
-/* "depth 0"; of what was chosen for the strip its title, as "4 x the time". */
+/* Writes the name of a row, as "depth 0", or for a row that was chosen for the strip its title, as
+   "4 x the time". */
 void price_strip_name(const struct price_strip *strip, const struct cost_report *report,
                       const struct cost_row *row, char name[COST_NAME]);
 void price_strip_draw(const struct price_strip *strip, const struct cost_report *report);

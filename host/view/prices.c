@@ -73,7 +73,7 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
     whit_result result = cost_measure(&request, report);
     if (*report && prices->has_strip) {
         price_strip_init(&prices->strip, *report);
-        cost_report_drop_pictures(*report); /* the panel may stay open for long */
+        cost_report_drop_pictures(*report); /* frees memory, as the panel may stay open for long */
     }
     return result;
 }
@@ -100,7 +100,8 @@ static whit_result begin_effect(void *user, double done, const char *name)
     return prices->cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
-/* The settings' picture, as much smaller as its time wants it. */
+/* The picture of the settings with one sample, at most EFFECT_PIXELS_MAX pixels large, so that
+   measuring takes little time. */
 static whit_renderer_params small_picture(const struct prices *prices)
 {
     whit_renderer_params params = settings_picture(&prices->settings);
@@ -116,7 +117,7 @@ static whit_renderer_params small_picture(const struct prices *prices)
     return params;
 }
 
-/* Measures the effects that are in the kernel: without one of the others nothing would change. */
+/* Measures the effects that the kernel has; removing others would change nothing. */
 static whit_result measure_effects(struct prices *prices, const whit_log *log, whit_device *device,
                                    whit_accel *accel)
 {
@@ -174,7 +175,7 @@ struct prices *prices_start(const struct prices_params *params)
     if (!prices)
         return NULL;
     prices->settings = *params->settings;
-    prices->settings.paint = PAINT_COLOR; /* costs are not what pictures cost */
+    prices->settings.paint = PAINT_COLOR; /* prices are those of colours, not of cost views */
     prices->scene = scene_ref_take(params->scene);
     prices->seconds = params->seconds;
     prices->knobs = params->knobs;

@@ -1,5 +1,5 @@
-/* The price list of the picture in the window: what each switch would cost here, and what it would
-   get wrong. Measured in a thread of its own, on a device of its own, beside the window. */
+/* The price list of the picture in the window: what each setting would cost here, and how wrong the
+   picture would be. A thread measures it, on a device of its own, while the window goes on. */
 #ifndef VIEW_PRICES_H
 #define VIEW_PRICES_H
 
@@ -10,7 +10,7 @@
 struct prices;
 
 enum { EFFECTS_MAX = 64 };
-/* What switching one effect changes: the pictures before and after it. */
+/* The price of switching one effect, by the pictures before and after it. */
 struct effect_price {
     bool known, added;
     double before_ms, after_ms;
@@ -20,33 +20,33 @@ struct effect_price {
 struct prices_params {
     const struct settings *settings;
     struct scene_ref *scene;
-    double seconds;           /* that it may take, roughly */
-    uint64_t knobs;           /* bits of knob_table; 0: all */
-    bool strip;               /* with the pictures of cost_strip */
-    bool effects;             /* those of effects, in place of knobs; `seconds` says nothing */
-    void (*wake)(void *user); /* from the thread, when there is more to see */
+    double seconds;           /* time to spend, roughly */
+    uint64_t knobs;           /* bits 1 << index in knob_table; 0: all knobs */
+    bool strip;               /* also draws the pictures of cost_strip */
+    bool effects;             /* measures effects in place of knobs; `seconds` is ignored */
+    void (*wake)(void *user); /* called from the thread when there is something new */
     void *wake_user;
 };
-/* NULL where memory or threads run out. */
+/* Starts measuring. NULL: no memory, or no thread. */
 struct prices *prices_start(const struct prices_params *params);
-/* Stops it, waits, frees; NULL is fine. */
+/* Stops measuring, waits, frees; NULL is fine. */
 void prices_stop(struct prices *prices);
-/* Stops it without waiting: prices_stop does not wait any more once it is still. */
+/* Stops measuring without waiting. Once prices_are_still, prices_stop does not wait either. */
 void prices_cancel(struct prices *prices);
 
 enum { PRICES_TEXT = 160 };
 struct prices_state {
     bool finished;
-    double done, seconds_left;        /* 0..1 */
-    char what[PRICES_TEXT];           /* that is measured; where it failed: why */
+    double done, seconds_left;        /* `done`: 0..1 */
+    char what[PRICES_TEXT];           /* what is being measured; after a failure: the reason */
     const struct cost_report *report; /* borrowed until prices_stop; NULL until finished */
     const struct price_strip *strip;  /* likewise */
-    struct settings settings;         /* that it is of */
+    struct settings settings;         /* of the picture whose prices these are */
 };
-/* Whether there is more to see than at the last call. */
+/* Whether there is something new since the last call. */
 bool prices_have_news(struct prices *prices);
 bool prices_are_still(struct prices *prices); /* finished; NULL is fine */
-/* Gives the price of an effect; its `known` is false until it is measured. */
+/* Gives the price of an effect; its `known` is false until it was measured. */
 void prices_get_effect(struct prices *prices, uint32_t effect, struct effect_price *price);
 void prices_get_state(struct prices *prices, struct prices_state *state);
 

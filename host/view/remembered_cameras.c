@@ -13,7 +13,7 @@
 
 enum { SCENES_MAX = 200 };
 
-/* The folder, with a slash; NULL where there is none. free(). */
+/* The folder, with a slash at its end; NULL: there is none. free(). */
 static char *state_folder(void)
 {
     const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
@@ -22,7 +22,7 @@ static char *state_folder(void)
     return home && home[0] == '/' ? string_format("%s/.local/state/whit/", home) : NULL;
 }
 
-/* And those above it. */
+/* Makes the folder, and those above it. */
 static void make_folder(const char *folder)
 {
     char *path = string_copy(folder);
@@ -30,7 +30,7 @@ static void make_folder(const char *folder)
         if (*at != '/')
             continue;
         *at = '\0';
-        (void)mkdir(path, 0700); /* where that fails, writing does */
+        (void)mkdir(path, 0700); /* if it fails, writing fails too */
         *at = '/';
     }
     free(path);
@@ -44,7 +44,8 @@ static char *file_path(void)
     return path;
 }
 
-/* What does not read is forgotten: it is memory, not work. Never NULL but without memory. */
+/* Loads the file. One that is damaged counts as empty, as it holds nothing of value. NULL: no
+   memory. */
 static json_t *load(const char *path)
 {
     json_t *all = path ? json_load_file(path, 0, NULL) : NULL;
@@ -54,7 +55,7 @@ static json_t *load(const char *path)
     return json_object();
 }
 
-/* The same file has one name from wherever it is opened. free(). */
+/* The absolute path of a scene file, so that it is the same from every folder. free(). */
 static char *scene_key(const char *scene)
 {
     char *real = realpath(scene, NULL);
@@ -75,7 +76,7 @@ bool memory_find(const char *scene, char *camera, size_t camera_bytes)
     return found;
 }
 
-/* The oldest go: objects keep the order in which they were filled. */
+/* Drops the oldest entries: objects keep the order in which they were filled. */
 static void forget_old(json_t *all)
 {
     while (json_object_size(all) > SCENES_MAX)
@@ -102,7 +103,7 @@ void memory_keep(const whit_log *log, const char *scene, const char *camera)
     if (folder && path && key) {
         make_folder(folder);
         json_t *all = load(path);
-        json_object_del(all, key); /* so that it is the newest */
+        json_object_del(all, key); /* so that it becomes the newest */
         if (camera[0])
             json_object_set_new(all, key, json_string(camera));
         forget_old(all);

@@ -1,5 +1,5 @@
-/* Cameras of scenes that were looked at, in the user's state folder: $XDG_STATE_HOME/whit or
-   ~/.local/state/whit, cameras.json. */
+/* Remembers the cameras of scenes that were viewed, in cameras.json of the user's state folder:
+   $XDG_STATE_HOME/whit or ~/.local/state/whit. */
 #ifndef VIEW_REMEMBERED_CAMERAS_H
 #define VIEW_REMEMBERED_CAMERAS_H
 
@@ -8,9 +8,10 @@
 
 #include "base/log.h"
 
-/* The text of --camera that was kept for this scene file; false: none. */
+/* Finds the camera that was kept for this scene file, as text for --camera; false: there is
+   none. */
 bool memory_find(const char *scene, char *camera, size_t camera_bytes);
-/* Keeps it; "": forgets it. The last 200 scenes are kept. What goes wrong is a warning. */
+/* Keeps a camera; "": forgets it. The last 200 scenes are kept. Errors are only warned about. */
 void memory_keep(const whit_log *log, const char *scene, const char *camera);
 
 #endif

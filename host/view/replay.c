@@ -1,4 +1,4 @@
-/* Events from a file, and into one. */
+/* Replays events from a file, and records them to one. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +11,14 @@
 #include "view/state.h"
 #include "view/view_private.h"
 
-static const double LOOK_MS = 20.0; /* between looks whether what is waited for is there */
-static const double TURN_MS = 50.0; /* by which `wait` turns the clock at a time */
+static const double LOOK_MS = 20.0; /* time between checks of what is waited for */
+static const double TURN_MS = 50.0; /* `wait` moves the replay's clock by steps of this */
 
 struct replay {
     struct view_event *events;
     uint32_t count, at;
-    double wait_until_ms; /* 0: not waiting */
-    bool asked;           /* the window manager was */
+    double wait_until_ms; /* end of a `wait`; 0: not waiting */
+    bool asked;           /* the window manager was asked to minimise or restore */
 };
 
 whit_result replay_open(struct view *view)
@@ -31,7 +31,7 @@ whit_result replay_open(struct view *view)
             log_error(&view->log, "%s: cannot be written", params->record);
             return WHIT_ERROR_OUTPUT;
         }
-        setvbuf(view->record, NULL, _IOLBF, BUFSIZ); /* a line is there once it has happened */
+        setvbuf(view->record, NULL, _IOLBF, BUFSIZ); /* a line is written as soon as it happened */
         event_to_line(&(struct view_event){.kind = EVENT_CLOCK}, view->record);
     }
     if (!params->replay)
@@ -60,7 +60,7 @@ bool replay_is_over(const struct view *view)
 
 /* ---- What is waited for ---- */
 
-/* The window has its size, and knows what the engine is at. */
+/* Whether the window has its size, and shows the engine's latest status. */
 static bool is_settled(const struct view *view, const struct engine_status *status)
 {
     uint32_t width, height;
@@ -73,7 +73,7 @@ static bool is_settled(const struct view *view, const struct engine_status *stat
            strcmp(status->error, view->status.error) == 0 && !view->dirty && !view->shot[0];
 }
 
-/* Nothing is measured, and what was is drawn. */
+/* Whether no prices are being measured, and all that were measured are drawn. */
 static bool is_priced(struct view *view)
 {
     if (!prices_are_still(view->prices))
@@ -82,8 +82,8 @@ static bool is_priced(struct view *view)
     return !view->dirty;
 }
 
-/* As good as it gets, and seen. While the animation plays it never is: then nothing is waited for.
- */
+/* Whether the best picture is drawn and shown. While an animation plays this never happens, so
+   nothing is waited for. */
 static bool is_still(struct view *view)
 {
     struct engine_status status;
@@ -95,7 +95,7 @@ static bool is_still(struct view *view)
            wish_is_still(view) && (view->frame.number > 0 || status.error[0]);
 }
 
-/* A picture of all that was asked for so far was shown, however good; or there is an error. */
+/* Whether a picture of the current settings was shown, of any quality, or there is an error. */
 static bool is_shown(const struct view *view)
 {
     struct engine_status status;
@@ -110,7 +110,7 @@ static bool is_shown(const struct view *view)
                                  settings_same(&frame->settings, &view->settings);
 }
 
-/* Whether an event that waits need not wait any more. */
+/* Whether what an event waits for has happened. */
 static bool is_there(struct view *view, const struct view_event *event)
 {
     switch (event->kind) {
@@ -133,7 +133,7 @@ static bool is_there(struct view *view, const struct view_event *event)
 
 /* ---- Time ---- */
 
-/* A step at a time, so that keys that are held and animations go on as they would. */
+/* Waits a step at a time, so that held keys and animations go on. True: the time is over. */
 static bool wait_step(struct view *view, double ms)
 {
     struct replay *replay = view->replay;
@@ -150,7 +150,8 @@ static bool wait_step(struct view *view, double ms)
     return true;
 }
 
-/* Turns the clock of a replay to the moment at which a moved picture counts as standing. */
+/* Moves the clock of a replay to the moment at which a picture that moved counts as being at
+   rest. */
 static void let_stand(struct view *view)
 {
     if (view->time.turned && !view_plays(view))
@@ -165,7 +166,7 @@ static void use_real_clock(struct view *view)
 
 /* ---- Events ---- */
 
-/* The window manager does it: false until it has. */
+/* Minimises or restores the window; false until the window manager has done it. */
 static bool minimise(struct view *view, bool wanted)
 {
     uint32_t width, height;
@@ -177,7 +178,7 @@ static bool minimise(struct view *view, bool wanted)
     return !replay->asked;
 }
 
-/* False where nothing has this label as yet. */
+/* Clicks on the item with this label; false: there is none yet. */
 static bool choose(struct view *view, const char *wanted)
 {
     const char *label;
@@ -193,7 +194,7 @@ static bool choose(struct view *view, const char *wanted)
     return true;
 }
 
-/* False where the event has to wait. */
+/* Handles an event; false: it has to wait. */
 static bool replay_event(struct view *view, const struct view_event *event)
 {
     switch (event->kind) {
@@ -208,7 +209,7 @@ static bool replay_event(struct view *view, const struct view_event *event)
         if (!is_there(view, event))
             return false;
         engine_set_rest(view->engine, false, false);
-        engine_get_status(view->engine, &view->status); /* with what was measured meanwhile */
+        engine_get_status(view->engine, &view->status); /* it has what was measured meanwhile */
         return true;
     case EVENT_PICTURE:
     case EVENT_PRICED:
@@ -230,7 +231,7 @@ static bool replay_event(struct view *view, const struct view_event *event)
     case EVENT_MINIMISE:
     case EVENT_RESTORE:
         return minimise(view, event->kind == EVENT_MINIMISE);
-    case EVENT_SIZE: /* comes back from the window */
+    case EVENT_SIZE: /* the event comes back from the window */
         window_set_pixels(view->window, event->width, event->height);
         return true;
     default:

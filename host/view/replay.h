@@ -1,4 +1,4 @@
-/* Events from a file, and into one. */
+/* Replays events from a file, and records them to one. */
 #ifndef VIEW_REPLAY_H
 #define VIEW_REPLAY_H
 
@@ -7,9 +7,9 @@
 struct view;
 
 WHIT_CHECK whit_result replay_open(struct view *view);
-/* Feeds what is due, and turns the clock. */
+/* Feeds the events that are due, and moves the replay's clock. */
 void replay_step(struct view *view);
-/* Until its next event is due; HUGE_VAL without one. */
+/* Seconds until the next event is due; HUGE_VAL: there is none. */
 double replay_wait_s(struct view *view);
 bool replay_is_over(const struct view *view);
 void replay_close(struct view *view);

@@ -1,7 +1,7 @@
-/* The scene: which one is shown, asked for and refused; its files, and its cameras.
+/* Which scene is shown, asked for and refused; its files, and its cameras.
 
-   Whatever goes wrong with what is asked for, the one that is shown stays, and everything that is
-   asked of the viewer is about that one. */
+   If a request for a scene fails, the scene that is shown stays, and everything that the user does
+   is about that one. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 
 /* ---- Cameras ---- */
 
-/* The numbers of a camera of the scene, for the hand to begin with. */
+/* Sets view->camera to a camera of the scene, which the user then moves. */
 static void read_camera(struct view *view, uint32_t index)
 {
     whit_camera_info info;
@@ -24,7 +24,7 @@ static void read_camera(struct view *view, uint32_t index)
     memcpy(view->camera.eye, info.eye, sizeof info.eye);
     memcpy(view->camera.target, info.target, sizeof info.target);
     memcpy(view->camera.up, info.up, sizeof info.up);
-    if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: the angle is not its own */
+    if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: it has no angle */
         double distance = 0.0;
         for (int i = 0; i < 3; ++i)
             distance += (info.target[i] - info.eye[i]) * (info.target[i] - info.eye[i]);
@@ -44,11 +44,10 @@ void view_use_camera(struct view *view, int index)
     view->file_camera = index;
     snprintf(view->settings.camera, sizeof view->settings.camera, "%d", index);
     if (index == 0)
-        view->settings.camera[0] = '\0'; /* the default */
+        view->settings.camera[0] = '\0'; /* index 0 is the default */
     view->dirty = true;
 }
 
-/* What the settings' text says. */
 void view_learn_camera(struct view *view)
 {
     const char *text = view->settings.camera;
@@ -72,13 +71,13 @@ void view_learn_camera(struct view *view)
         read_camera(view, (uint32_t)view->file_camera);
 }
 
-/* What comes from standard input is another scene the next time. */
+/* Whether cameras are remembered; not for standard input, which is another scene the next time. */
 static bool remembers(const struct view *view)
 {
     return view->params->remember && !is_input(view->settings.scene);
 }
 
-/* What the user made of the scene's camera, for the next time. */
+/* Remembers the camera that the user has moved. */
 static void remember_camera(const struct view *view)
 {
     bool by_hand = view->file_camera < 0;
@@ -104,7 +103,8 @@ static bool is_state(const char *path)
     return strcmp(extension, "view") == 0;
 }
 
-/* The shown scene's own file is watched with it. */
+/* Watches the file that is asked for; the file of the shown scene is watched by view->watch
+   already. */
 static void set_asked(struct view *view, const char *path)
 {
     snprintf(view->asked, sizeof view->asked, "%s", path);
@@ -148,7 +148,8 @@ void view_open(struct view *view, const char *path)
     open_scene(view, path);
 }
 
-/* Whatever is known of this file. */
+/* Reads a scene again, whatever is known of it: the one asked for (`asked`), or the one of the
+   settings. */
 static void read_again(struct view *view, bool asked)
 {
     char path[SETTING_PATH_BYTES];
@@ -179,7 +180,7 @@ bool scenes_refuse(struct view *view)
     settings->reload = back->reload;
     memcpy(settings->environment, back->environment, sizeof settings->environment);
     view->dirty = true;
-    if (view->camera_known) /* it was read again, and kept its place */
+    if (view->camera_known) /* it was only read again, and keeps its camera */
         return true;
     memcpy(settings->scene, back->scene, sizeof settings->scene);
     memcpy(settings->camera, back->camera, sizeof settings->camera);
@@ -225,7 +226,7 @@ const struct settings *scenes_shown(const struct view *view)
 
 /* ---- Files ---- */
 
-/* Its own file, and those of its materials. */
+/* Watches the shown scene's own file and the files of its materials. */
 static void watch_scene(struct view *view)
 {
     const struct scene_ref *ref = view->scene;

@@ -1,4 +1,4 @@
-/* The scene that is shown, and the one that is asked for: its files, and its cameras. */
+/* The scene that is shown, and the one that is asked for: their files, and their cameras. */
 #ifndef VIEW_SCENES_H
 #define VIEW_SCENES_H
 
@@ -6,30 +6,31 @@
 
 struct view;
 
-/* Another scene, as the file dropped on the window. Keeps all but camera and time, which stands. */
+/* Opens another scene, such as a file dropped on the window. Other settings than camera and time
+   stay; animations stop. */
 void view_open(struct view *view, const char *path);
 void scenes_begin(struct view *view);
 void scenes_end(struct view *view);
-/* The new picture is of another scene. */
+/* Call it when a new picture is the first of another scene. */
 void scenes_show(struct view *view);
-/* What is asked for failed: says so, once for one error, and goes back to what is shown. False
-   where it is the shown scene that failed. */
+/* Call it when the request failed: shows the error, each one once, and goes back to the scene that
+   is shown. False: it is the shown scene that failed. */
 bool scenes_refuse(struct view *view);
-/* What was refused is no longer of interest. */
+/* Forgets the error of a refused scene, and stops watching its file. */
 void scenes_forget(struct view *view);
-/* The folder that the scene may read if the user says so; NULL: there is nothing to ask. */
+/* The folder that the user has to be asked about, as the scene names a file in it; NULL: none. */
 const char *scenes_question(const struct view *view);
-/* Ends the question; where `allow`, reads the scene again with that folder. */
+/* Ends the question; with `allow` the scene is read again and may read that folder. */
 void scenes_answer(struct view *view, bool allow);
-/* Reads what was written. */
+/* Reads the scene again if one of its files was written. */
 void scenes_watch(struct view *view);
-/* Reads what was refused, else what is shown, again. */
+/* Reads the refused scene again, or if there is none the shown one. */
 void scenes_read_again(struct view *view);
-/* The settings, unless they are of a scene that is not shown yet: then the last picture's. */
+/* The settings; but if their scene is not shown yet, those of the last picture. */
 const struct settings *scenes_shown(const struct view *view);
-/* Sets the camera of the scene with this index; -1: the text of the settings. */
+/* Uses the camera of the scene with this index; -1: the text of the settings. */
 void view_use_camera(struct view *view, int index);
-/* The camera as numbers, of what the settings' text says. */
+/* Sets view->camera and view->file_camera by the camera text of the settings. */
 void view_learn_camera(struct view *view);
 
 #endif

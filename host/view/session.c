@@ -75,7 +75,7 @@ static void add_error(struct session *session, const char *format, ...)
     log_error(&session->log, "%s", line);
 }
 
-/* The compiler keeps its errors to itself: they are those of the session. */
+/* Copies the errors of the compiler to the session, and logs them. */
 static void log_shader_errors(struct session *session, const whit_shader_compiler *compiler)
 {
     const whit_shader_error *errors;
@@ -174,7 +174,7 @@ static void note_step(void *user, const whit_step *step)
         session->step(session->step_user, step);
 }
 
-/* A small picture: drivers compile when a kernel is run for the first time. */
+/* Draws a small picture, as drivers compile a kernel when it runs for the first time. */
 static whit_result warm_up(struct session *session, bool few_pixels)
 {
     whit_renderer_params params = settings_picture(&session->settings);
@@ -183,7 +183,7 @@ static whit_result warm_up(struct session *session, bool few_pixels)
     params.sampling.count = 1;
     params.many_pictures = true;
     params.few_pixels = few_pixels;
-    params.keep_unread = true; /* saves and probes may read it */
+    params.keep_unread = true; /* later versions and probes may read what this one does not */
     params.shader = session->shader ? session->shader->shader : NULL;
     params.cancel = &session->cancel;
     params.progress = note_part;
@@ -238,8 +238,8 @@ whit_result session_open(struct session *session, const struct settings *setting
     return result;
 }
 
-/* What the driver has to compile, it compiles for the first step: where session->step cancels
-   there, no more is drawn. */
+/* Draws the first step, for which the driver compiles. No more is drawn if session->step cancels
+   there. */
 static whit_result draw_step(struct session *session, const whit_renderer_params *params)
 {
     bool takes = whit_renderer_takes_shader(session->renderer, params->shader);

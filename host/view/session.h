@@ -1,5 +1,5 @@
-/* A scene with trees on a device of its own, ready to draw: what a change of scene, trees or kernel
-   needs a new one of. Made in any thread, used by one at a time. */
+/* A scene with its trees on a device of its own, ready to draw. Another scene, tree or kernel needs
+   another session. Made in any thread, used by one thread at a time. */
 #ifndef VIEW_SESSION_H
 #define VIEW_SESSION_H
 
@@ -7,7 +7,7 @@
 
 #include "settings/settings.h"
 
-/* A loaded scene that several sessions, and whoever shows its names, hold. */
+/* A loaded scene. Several sessions, and whatever shows its names, hold references. */
 struct scene_ref {
     atomic_uint refs;
     whit_scene *scene;
@@ -18,7 +18,7 @@ struct scene_ref {
 struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
 void scene_ref_drop(struct scene_ref *ref);              /* likewise */
 
-/* A compiled file of hooks that sessions, and whoever shows its sliders, hold. */
+/* A compiled shader (a user's file). Sessions, and whatever shows its sliders, hold references. */
 struct shader_ref {
     atomic_uint refs;
     whit_shader *shader;
@@ -28,7 +28,7 @@ struct shader_ref {
 };
 struct shader_ref *shader_ref_take(struct shader_ref *ref); /* NULL is fine */
 void shader_ref_drop(struct shader_ref *ref);               /* likewise */
-/* The index of the function that shows `name` in place of colours; UINT32_MAX: there is none. */
+/* The index of the shader's aov `name`; UINT32_MAX: there is none. */
 uint32_t shader_ref_find_aov(const struct shader_ref *ref, const char *name);
 
 enum session_stage {
@@ -41,67 +41,70 @@ enum session_stage {
 };
 const char *session_stage_name(enum session_stage stage);
 
-/* Room for as many errors of a shader as its compiler keeps, 32, with names and reasons of 512
-   bytes. */
+/* Room for the 32 errors that a compiler of shaders keeps, each with a name and a reason of up to
+   512 bytes. */
 enum { SESSION_ERROR = 1100, SESSION_ERRORS = 34 * SESSION_ERROR };
 
 struct session {
-    void (*step)(void *user, const whit_step *step); /* of the picture that is drawn; or NULL */
+    void (*step)(void *user, const whit_step *step); /* gets steps of a picture; or NULL */
     void *step_user;
-    struct settings settings; /* of scene, trees and kernel; of the picture: last drawn */
+    struct settings settings; /* of scene, trees and kernel, and of the last picture */
     struct scene_ref *scene;
     struct shader_ref *shader; /* NULL: none */
     whit_accel *accel;
     whit_device *device;
     whit_renderer *renderer;
-    volatile bool cancel; /* stops what it is at */
-    whit_log log;         /* of all that the session is made of */
-    void *owner;          /* of who made it, as is `error` */
+    volatile bool cancel; /* stops what the session is doing */
+    whit_log log;         /* log of all its parts */
+    void *owner;          /* belongs to its maker, as does `error` */
     char error[512];
-    char errors[SESSION_ERRORS];      /* all that is wrong with a shader, one a line; else "" */
-    char refused[SETTING_PATH_BYTES]; /* folder of a file that the scene names and may not read; "":
-                                         none */
+    char errors[SESSION_ERRORS]; /* all errors of the shader, one a line; "": none */
+    /* Folder of a file that the scene names but may not read; "": none. */
+    char refused[SETTING_PATH_BYTES];
     bool ready;
     whit_accel_info accel_info;
     whit_device_info device_info;
-    double build_ms, compile_ms; /* of the trees; until the first pixels were there */
-    _Atomic(float) part;         /* of the picture that is being drawn, 0..1; from any thread */
+    double build_ms, compile_ms; /* building trees; compiling, up to the first pixels */
+    _Atomic(float) part; /* share of the current picture that is done, 0..1; read by any thread */
     float part_done,
-        part_share; /* of it before what the renderer is drawing, and by that; 0: all */
+        /* Shares of the picture: done before the renderer's current call, and drawn by that call
+           (0: all). */
+        part_share;
     uint64_t last_use;
-    uint64_t made; /* counts up: which of the engine's jobs it was made by, or made anew for another
-                      version of the shader */
+    /* Number of the engine's job that has made the session, or adapted it to another version of the
+       shader. */
+    uint64_t made;
 };
 
-/* How far it is; both may be NULL. Read by other threads while session_open works. */
+/* How far session_open is; other threads read it meanwhile. */
 struct session_progress {
     _Atomic(int) stage; /* enum session_stage */
 };
 
-/* What a session is made from: the scene and the shader of its settings, where they are loaded
-   already, else NULL; and the compiler of shaders, NULL where there is none. */
+/* What a session is made from: the scene and the shader of its settings if they are loaded already,
+   else NULL; and the compiler of shaders, NULL if there is none. */
 struct session_parts {
     struct scene_ref *scene;
     struct shader_ref *shader;
     whit_shader_compiler *compiler;
-    bool awaits_version; /* it is to draw with the next version of the shader, and nothing before */
+    bool awaits_version; /* made for the next version of the shader: it draws nothing before */
 };
 
-/* Loads, builds, opens and compiles. Reasons are logged: those of the scene and its trees by
-   `scene_log`, which lives as long as the scene. `session` is zeroed but for `cancel` and what is
-   its owner's; session_close ends it, also after a failure. */
+/* Loads the scene, builds trees, opens the device and compiles. Errors are logged: those of the
+   scene and its trees by `scene_log`, which must live as long as the scene. `session` is zeroed
+   except for `cancel` and its owner's fields. Call session_close also after a failure. */
 WHIT_CHECK whit_result session_open(struct session *session, const struct settings *settings,
                                     const struct session_parts *parts, const whit_log *log,
                                     const whit_log *scene_log, struct session_progress *progress);
-/* A session that has drawn with another version of the shader: compiles the one of `settings`,
-   which differ from the session's in what its renderer can change, and draws the first step of
-   their picture, for which the driver compiles; session->step is given it. Where the shader is
-   wrong the session stays as it was; where its kernels cannot be made it has no renderer, and is to
-   be closed. */
+/* Adapts a session to another version of the shader. `settings` differ from the session's only in
+   what its renderer can change. Compiles that version, and draws the first step of the picture,
+   since drivers compile then; session->step gets it. If the shader is wrong, the session stays as
+   it was. If its kernels cannot be made, the session has no renderer and has to be closed. */
 WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
                                       const struct session_parts *parts,
                                       struct session_progress *progress);
-/* How many messages the validation layers had of its device. */
+/* Frees everything. Returns the number of messages that the validation layers had about its
+   device. */
 uint32_t session_close(struct session *session);
 
 #endif

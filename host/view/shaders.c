@@ -12,12 +12,13 @@
 #include "view/view_private.h"
 
 enum { PAIR_BYTES = 256 };
-static const double SEEN_MS = 250.0; /* before times are measured: who types goes on by then */
+/* How long a picture is shown before times are measured: a user who goes on typing comes first. */
+static const double SEEN_MS = 250.0;
 
 /* ---- The file ---- */
 
-/* What an error does not tell of, stays watched. The functions of a picture are those that the user
-   was asked about: another picture of that name is not followed. */
+/* Watches the shader's file and the files of the shown version, also while there is an error. A
+   picture that carries functions is not watched: the user was asked about these functions only. */
 static void watch_files(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
@@ -56,7 +57,7 @@ void shaders_watch(struct view *view)
     view->progress_ms = shaders->wait.saved_ms;
 }
 
-/* Colours are shown in the place of a function that the file does not have. */
+/* Says that the shader has no aov of the name in the settings: colours are shown instead. */
 static void say_no_aov(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
@@ -105,7 +106,7 @@ bool shaders_refuse(struct view *view)
 
 /* ---- What a reload changed ---- */
 
-/* "1,204" */
+/* Writes a number as "1,204". */
 static void write_count(uint64_t count, char text[32])
 {
     char digits[24];
@@ -154,7 +155,7 @@ void shaders_say(const struct engine_reload *reload, const struct shaders_wait *
         add(line, ", whole %.1f s", (wait->whole_ms - wait->saved_ms) * 1e-3);
 }
 
-/* Notes the moment, the first time alone. */
+/* Notes the time of the first call. */
 static void note_moment(double *at_ms, uint64_t *count)
 {
     if (*at_ms > 0.0)
@@ -179,7 +180,7 @@ void shaders_shown(struct view *view)
         note_moment(&wait->whole_ms, &counts->whole);
 }
 
-/* All pictures that there will be of what the save asked for. */
+/* Whether all pictures that the save asked for were shown, or will not be as settings changed. */
 static bool is_shown(const struct view *view)
 {
     const struct shaders_wait *wait = &view->shaders.wait;
@@ -187,7 +188,7 @@ static bool is_shown(const struct view *view)
            (wait->whole_ms > 0.0 || !settings_same(&wait->asked, &view->settings));
 }
 
-/* Once the user has seen the picture for a moment. */
+/* Whether the user has seen the picture for a moment. */
 static bool is_seen(const struct shaders *shaders)
 {
     return shaders->wait.first_ms > 0.0 &&
@@ -210,7 +211,7 @@ void shaders_step(struct view *view)
     shaders->wait.goes_on = false;
     shaders_say(reload, &shaders->wait, shaders->line);
     log_info(&view->log, "%s: %s", name, shaders->line);
-    if (reload->ms.count > 0 || !view->toast[0]) /* what a key said, which ended it, stays */
+    if (reload->ms.count > 0 || !view->toast[0]) /* a message of the key that ended it stays */
         view_say(view, "%s: %s", name, shaders->line);
 }
 
@@ -222,10 +223,10 @@ static void set_slider(struct view *view, const whit_slider *slider, const char 
     snprintf(pair, sizeof pair, "%s=%s", slider->name, value);
     if (!settings_read(settings_row("set"), pair, &view->settings, why))
         view_say(view, "--set%s", why);
-    view->dirty = true; /* it is asked for before the window is drawn again */
+    view->dirty = true; /* the engine is asked before the window is drawn again */
 }
 
-/* What stands behind NAME= in the settings; "": the file's own value counts. */
+/* The value behind NAME= in the settings; "": there is none, so the file's own value counts. */
 static void get_slider(const struct view *view, const whit_slider *slider, char value[PAIR_BYTES])
 {
     const char *at = view->settings.sliders;
@@ -281,7 +282,7 @@ static void draw_color(struct view *view, const whit_slider *slider, const char 
         return;
     snprintf(text, sizeof text, "#%02x%02x%02x", (unsigned)(color[0] * 255.0f + 0.5f),
              (unsigned)(color[1] * 255.0f + 0.5f), (unsigned)(color[2] * 255.0f + 0.5f));
-    /* A field that is typed in says with each drawing that it changed it. */
+    /* While a field is typed into, ui_color reports a change at each drawing. */
     if (strcmp(text, value) != 0)
         set_slider(view, slider, text);
 }

@@ -28,13 +28,13 @@ bool skies_drop(struct view *view, const char *path)
         view_say(view, "environment%s", why);
         return true;
     }
-    settings->load.has_background = false; /* it would stand before the picture */
+    settings->load.has_background = false; /* a background colour would hide the environment */
     view_say(view, "environment: %s", path_name(path));
     view_changed(view);
     return true;
 }
 
-/* Adds a file to the list where it is not in it; a full list loses its oldest. */
+/* Adds a file to the list, unless it is there; a full list loses its oldest entry. */
 static void note(struct skies *skies, const char *path)
 {
     for (uint32_t i = 0; i < skies->count; ++i)

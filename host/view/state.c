@@ -1,4 +1,4 @@
-/* What the viewer is at, as one line of JSON: for tests, which read it between events. */
+/* The state of the viewer as one line of JSON: for tests, which read it between events. */
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static void put_text(json_t *object, const char *name, const char *text)
 {
     char shown[4096];
     json_t *value = json_string(text ? text : "");
-    if (!value) /* no UTF-8 */
+    if (!value) /* it is no UTF-8 */
         value = json_string(whit_text_show(text, shown, sizeof shown));
     json_object_set_new(object, name, value);
 }
@@ -152,7 +152,7 @@ static json_t *compare_json(const struct view *view)
     return object;
 }
 
-/* Places to click, by what stands there. */
+/* Positions of items to click, by label. */
 static json_t *items_json(void)
 {
     json_t *object = json_object();
@@ -166,7 +166,7 @@ static json_t *items_json(void)
     return object;
 }
 
-/* Where panels are, by title: all of them, or those alone of which a part is cut off. */
+/* Positions of panels, by title: of all, or only of those that are partly cut off. */
 static json_t *panels_json(bool all)
 {
     json_t *object = json_object();
@@ -183,7 +183,8 @@ static json_t *panels_json(bool all)
     return object;
 }
 
-/* Pixels that switches change: of those that were made, or of all that were measured beside. */
+/* Numbers of pixels that switching an effect changes: of switches that the user made, or
+   (`measured`) of those measured in the background. */
 static json_t *prices_json(const struct view *view, bool measured)
 {
     json_t *object = json_object();
@@ -212,7 +213,7 @@ static json_t *keys_json(const struct view *view)
     return object;
 }
 
-/* "FILE:LINE: x = VALUE; ...", of each dbg(x) the first value; "": of none. */
+/* Writes "FILE:LINE: x = VALUE; ...", the first value of each dbg(x); "" if there is none. */
 static void calls_text(const whit_probe_report *r, char *text, size_t bytes)
 {
     char value[4 * 24];
@@ -249,7 +250,7 @@ static json_t *probe_json(const struct engine_probe *probe)
     return object;
 }
 
-/* {"count":3,"median":..,"p95":..,"max":..} */
+/* Makes {"count":3,"median":..,"p95":..,"max":..}. */
 static json_t *figures_json(struct view_figures *figures)
 {
     json_t *object = json_object();
@@ -330,7 +331,7 @@ static json_t *memory_json(void)
     return object;
 }
 
-/* All of it, for the caller to give back. */
+/* The whole state; the caller calls json_decref. */
 static json_t *state_json(struct view *view, const char *name)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
@@ -380,7 +381,7 @@ static json_t *state_json(struct view *view, const char *name)
     return root;
 }
 
-/* A field, by the names on the way to it with dots between; borrowed, NULL: there is none. */
+/* Finds a field by its path, names with dots between; borrowed. NULL: there is none. */
 static const json_t *find_field(const json_t *object, const char *path, size_t length)
 {
     while (object && length > 0) {
@@ -395,8 +396,8 @@ static const json_t *find_field(const json_t *object, const char *path, size_t l
     return object;
 }
 
-/* What has the field of a condition. The shader's come without the hashes of pictures: who waits
-   for them measures. */
+/* The part of the state that has the field of a condition. The shader's fields come without hashes
+   of pictures, as waiting for them is part of measurements. */
 static json_t *condition_json(struct view *view, const char *condition)
 {
     if (strncmp(condition, "shader.", 7) != 0)

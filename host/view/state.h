@@ -1,4 +1,4 @@
-/* What the viewer is at, as one line of JSON. */
+/* The state of the viewer as one line of JSON. */
 #ifndef VIEW_STATE_H
 #define VIEW_STATE_H
 
@@ -7,9 +7,10 @@
 
 struct view;
 
-/* The line of JSON that tests read, with its name; the measure begins anew. */
+/* Prints the line of JSON that tests read, with `name`; view->measure begins anew. */
 void state_print(struct view *view, const char *name, FILE *to);
-/* Whether the line would have FIELD = VALUE, or a FIELD that is neither empty, false nor 0. */
+/* Whether the line would have FIELD = VALUE, or (condition FIELD) a FIELD that is not empty, false
+   or 0. */
 bool state_has(struct view *view, const char *condition);
 
 #endif

@@ -1,5 +1,5 @@
-// The shim over Dear ImGui 1.86 and its Vulkan backend: its memory, its life, where panels are.
-// With ui_widgets.cpp and ui_plots.cpp this is everything of the viewer that is C++.
+// The C interface to Dear ImGui 1.86 and its Vulkan backend: memory, start and end, layout of
+// panels. ui_widgets.cpp and ui_plots.cpp are the rest of the viewer's C++.
 #include "view/ui_inside.hpp"
 
 #include <cstdarg>
@@ -22,8 +22,8 @@ struct ui {
     VkDevice device;
     float scale;
     bool backend, pressed[3], down[3];
-    whit_result result; // of drawing: the first that failed
-    int vertices;       // as many as there is memory for
+    whit_result result; // of drawing: the first error
+    int vertices;       // most vertices that there is memory for
     uint32_t images;    // see give_back
 };
 
@@ -31,8 +31,9 @@ float line_scale = 1.0f;
 
 // ---- Memory ----
 
-// Dear ImGui does not look at what it gets. Where memory runs out it gets of what was set aside,
-// which lasts to the end of the frame; without that the next frame does not begin.
+// Dear ImGui does not check allocations. If memory runs out, a block that was set aside is freed,
+// which suffices to the end of the frame; the next frame begins only if the block can be allocated
+// again.
 enum { SET_ASIDE_BYTES = 8 << 20 };
 static void *aside;
 
@@ -43,7 +44,8 @@ static bool set_aside()
     return aside != nullptr;
 }
 
-// Before each block: all are known, so that what the backend leaves after a failure goes too.
+// Header of each block, in a list of all: so blocks that the backend leaves after a failure are
+// freed too.
 struct alignas(16) link {
     link *before, *after;
 };
@@ -79,9 +81,10 @@ static void give(void *memory, void *)
 
 // ---- Failures of the backend ----
 
-enum { IMAGES_MIN = 2 }; // the backend has no fewer
+enum { IMAGES_MIN = 2 }; // the backend requires as many
 
-// It goes on after a call that failed, with what that call did not make: this stops it there.
+// The backend goes on after a failed call, and uses what that did not create: an exception stops
+// it.
 struct failed_call {
     VkResult result;
 };
@@ -103,21 +106,21 @@ enum { PANELS_MAX = 24, ITEMS_MAX = 128, AGAIN_MAX = 8 };
 
 struct panel {
     char title[32];
-    ImVec2 size, at; // of the last frame it was in
-    int frame;       // that one
-    bool cut;        // some of it is beyond its right side
+    ImVec2 size, at; // in the last frame that it was in
+    int frame;       // number of that frame
+    bool cut;        // part of it is beyond its right side
     bool holds;      // it takes the mouse
 };
 
-// All panels. Those that have ended in this frame are obstacles for the next ones.
+// All panels. Those that were ended in this frame are obstacles for later ones.
 static struct {
     panel panels[PANELS_MAX];
     int count, frame, current;
     int obstacles[PANELS_MAX], obstacle_count;
-    panel kept_free; // a place that later panels keep free; without a size: none
+    panel kept_free; // area that later panels avoid; without a size: none
     bool changed, wraps;
-    bool has_menu, closes_menu; // a list of choices is open; and is to be closed
-    bool had_menu;              // in the frame before
+    bool has_menu, closes_menu; // a list of choices is open; it is to be closed
+    bool had_menu;              // has_menu of the frame before
     int again;
 } layout;
 
@@ -168,10 +171,10 @@ float panel_width()
     return ImGui::GetIO().DisplaySize.x - 2.0f * inside();
 }
 
-// Where panels are that have no room.
+// Position of panels for which there is no room.
 static const ImVec2 NOWHERE(-1e5f, -1e5f);
 
-// From its corner away from the window's edge, until it covers none of those before.
+// Moves a panel from its corner away from the window's edge, until it covers no earlier one.
 static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y, const ImVec2 &otherwise)
 {
     float height = ImGui::GetIO().DisplaySize.y;
@@ -182,10 +185,10 @@ static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y, const ImVec2 &o
         at.y = y < 0.5f ? other->at.y + other->size.y + gap() : other->at.y - gap() - size.y;
     }
     bool outside = at.y < 0.0f || at.y + size.y > height;
-    return outside ? otherwise : at; // there is no room: the window is small
+    return outside ? otherwise : at; // no room: the window is small
 }
 
-// The height that a panel `width` wide has at `at`: down to the next panel below it or to the
+// The height available at `at` for a panel of this width: down to the next panel below or to the
 // window's end, but never less than a minimum.
 static float room_below(const ImVec2 &at, float width)
 {
@@ -218,7 +221,7 @@ static void note_panel(int index, bool holds)
 bool note_menu()
 {
     layout.has_menu = !layout.closes_menu;
-    layout.changed |= !layout.had_menu; // it finds its size
+    layout.changed |= !layout.had_menu; // the list finds its size in this frame
     return layout.closes_menu;
 }
 
@@ -248,7 +251,7 @@ static void make_fonts(void *user, void *commands)
     }
 }
 
-// Dear ImGui's own font is of 13 pixels and comes without a file.
+// Dear ImGui's own font has 13 pixels and needs no file.
 static void set_font(float scale, const uint8_t *data, size_t size_bytes)
 {
     ImFontConfig font;
@@ -308,7 +311,7 @@ static void start_backend(struct ui *ui)
     info.MinImageCount = ui->images = IMAGES_MIN;
     info.ImageCount = handles.image_count;
     info.CheckVkResultFn = check_call;
-    ui->backend = true; // also where it gets half way: it knows what it has
+    ui->backend = true; // also after an error: the backend knows what it has created
     LAYERS_BESIDE(ImGui_ImplVulkan_Init(&info, (VkRenderPass)handles.render_pass));
 }
 
@@ -330,14 +333,13 @@ static whit_result start(struct ui *ui)
 template <typename T> static void shrink(ImVector<T> &list)
 {
     ImVector<T> copy;
-    if (!list.empty()) // else it would copy nothing from a null pointer
-        copy = list;   // of this size, not of that capacity
+    if (!list.empty()) // an empty list would be copied from a null pointer
+        copy = list;   // the copy has the capacity that it needs
     list.swap(copy);
 }
 
-// Lists and buffers of Dear ImGui only grow: after thousands of boxes they are of no use any more.
-// Its backend drops its buffers when the least number of images changes, which it uses for nothing
-// else.
+// Frees memory after frames with thousands of boxes, as lists and buffers of Dear ImGui only grow.
+// Its backend drops its buffers when MinImageCount changes, which it uses for nothing else.
 static bool give_back(struct ui *ui)
 {
     enum { VERTICES_KEPT = 1 << 15 };
@@ -395,7 +397,8 @@ void ui_destroy(struct ui *ui)
         return;
     if (ui->device)
         (void)vkDeviceWaitIdle(ui->device); // a lost device has nothing left to wait for
-    // After a failure in a frame it has handles to what it destroyed: then it is left as it is.
+    // After an error in a frame the backend may have handles of destroyed objects: it is left as it
+    // is.
     if (ui->backend && ui->result == WHIT_OK)
         LAYERS_BESIDE(ImGui_ImplVulkan_Shutdown());
     if (ui->device)
@@ -413,7 +416,7 @@ void ui_mouse(struct ui *, float x, float y)
     ImGui::GetIO().MousePos = ImVec2(x, y);
 }
 
-// A press and its release between two frames are a click all the same.
+// A press and its release between two frames also count as a click.
 void ui_button_event(struct ui *ui, int button, bool down)
 {
     if (button < 0 || button > 2)
@@ -438,7 +441,8 @@ void ui_character(struct ui *, uint32_t code_point)
     ImGui::GetIO().AddInputCharacter(code_point);
 }
 
-// Dear ImGui tells what the mouse was over when the last frame began; it may have been moved since.
+// Dear ImGui knows what the mouse was over when the last frame began; the mouse may have moved
+// since.
 bool ui_has_mouse(const struct ui *)
 {
     ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -473,7 +477,7 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     layout.changed = false;
     for (int i = 0; i < 3; ++i) {
         io.MouseDown[i] = ui->pressed[i] || ui->down[i];
-        layout.changed |= io.MouseDown[i] != ui->down[i]; // its release is to be drawn too
+        layout.changed |= io.MouseDown[i] != ui->down[i]; // the release needs another frame
         ui->pressed[i] = false;
     }
     ++layout.frame;
@@ -495,7 +499,7 @@ bool ui_end(struct ui *ui)
     return give_back(ui);
 }
 
-// Not for ever: numbers may change their width from frame to frame.
+// At most AGAIN_MAX times: numbers may change their width in every frame.
 bool ui_wants_again(const struct ui *)
 {
     return layout.again > 0 && layout.again < AGAIN_MAX;
@@ -540,7 +544,7 @@ static void place(float x, float y, ImGuiCond when)
                             when, ImVec2(x, y));
 }
 
-// Beside those that were begun before; what says nothing new gives way to them altogether.
+// Places a panel beside earlier ones; a plain one is moved to NOWHERE if there is no room.
 static void place_beside(const ImVec2 &size, float x, float y, enum ui_panel kind)
 {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
@@ -596,7 +600,7 @@ void ui_keep_free(float x, float y, float radius)
 
 void ui_panel_end(void)
 {
-    bool holds = !layout.wraps; // takes the mouse
+    bool holds = !layout.wraps; // it takes the mouse
     if (layout.wraps)
         ImGui::PopTextWrapPos();
     layout.wraps = false;

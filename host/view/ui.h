@@ -1,5 +1,5 @@
-/* Dear ImGui behind C: what the viewer draws over its picture. One at a time, of the window's
-   thread. Places are in pixels from the window's upper left, colours 0xAABBGGRR. */
+/* A C interface to Dear ImGui, which draws over the viewer's picture. There is one at a time, for
+   the window's thread. Positions are pixels from the window's upper left, colours 0xAABBGGRR. */
 #ifndef VIEW_UI_H
 #define VIEW_UI_H
 
@@ -16,13 +16,13 @@ extern "C" {
 struct swapchain;
 struct ui;
 
-/* `scale`: of text and all else, 1 on a screen of 96 dots an inch. `font`: a TrueType file, read
-   here alone; NULL: Dear ImGui's own. Errors are logged. */
+/* `scale`: size of text and everything else, 1 on a screen of 96 dots an inch. `font`: a TrueType
+   file, read during this call only; NULL: Dear ImGui's own font. Errors are logged. */
 WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, const uint8_t *font,
                                  size_t font_bytes, struct ui **out);
 void ui_destroy(struct ui *ui); /* before the swapchain; NULL is fine */
 
-/* What the user does, since the last frame. Keys are those of ui_key. */
+/* Input of the user since the last frame. Keys are those of ui_key. */
 enum ui_key {
     UI_KEY_TAB,
     UI_KEY_LEFT,
@@ -42,98 +42,98 @@ void ui_button_event(struct ui *ui, int button, bool down); /* 0 left, 1 right, 
 void ui_wheel(struct ui *ui, float x, float y);
 void ui_key_event(struct ui *ui, enum ui_key key, bool down);
 void ui_character(struct ui *ui, uint32_t code_point);
-/* Whether a panel has the mouse, or a text field the keys: the picture is then left alone. */
+/* Whether a panel uses the mouse, or a text field the keys: the picture then ignores them. */
 bool ui_has_mouse(const struct ui *ui);
-/* Closes the list of choices that is open; false where none is. */
+/* Closes the open list of choices; false: none is open. */
 bool ui_close_menus(struct ui *ui);
 bool ui_has_keys(const struct ui *ui);
 
-/* Everything below is drawn between these two. False: there is no memory for it, and no frame. */
+/* Everything below is drawn between ui_begin and ui_end. False: no memory; there is no frame. */
 WHIT_CHECK bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
-/* True where it gave back memory that many lines had needed. */
+/* True: it freed memory that many lines had needed. */
 bool ui_end(struct ui *ui);
-/* Whether panels found their sizes only now, and the next frame has them where they belong; or a
-   button went up already that this frame has down. */
+/* Whether another frame has to be drawn: panels found their sizes only in this one, or a mouse
+   button that it drew as down is up already. */
 bool ui_wants_again(const struct ui *ui);
 float ui_scale(const struct ui *ui);
-/* Where the middle of a button or other thing to click was drawn in the last frame, by its label
-   up to "##", for tests; false past the last one. */
+/* For tests: the label, up to "##", and the middle of the button or other item number `index` of
+   the last frame; false: there are fewer items. */
 bool ui_item(uint32_t index, const char **label, float *x, float *y);
-/* Where the panels of the last frame were: left, top, right, bottom; likewise. *cut: one has to
-   scroll sideways to see all of it. */
+/* Likewise for panels: left, top, right, bottom. *cut: it has to be scrolled sideways to see all of
+   it. */
 bool ui_panel(uint32_t index, const char **title, float rectangle[4], bool *cut);
-/* A swapchain_draw: what was drawn since the last ui_begin. */
+/* A swapchain_draw function: draws everything since the last ui_begin. */
 void ui_draw(void *ui, void *commands);
-/* What came of it, logged; after a failure there is only ui_destroy. */
+/* The result of ui_draw; errors are logged. After an error only ui_destroy may be called. */
 WHIT_CHECK whit_result ui_result(const struct ui *ui);
 
-/* A panel whose corner nearest to (x, y) of 0..1 stands at that part of the window, a little
-   inside, and beside those that were begun before it: further down where y is 0, up where it is 1.
-   It cannot be moved. Where there is no room beside them it is not seen; nor in ui_panel. */
+/* Begins a panel that cannot be moved. (x, y), 0..1, is its anchor in the window, with a small
+   margin; it avoids panels that were begun before, by moving down if y is 0 and up if y is 1. If
+   there is no room it is invisible, and not in ui_panel. */
 enum ui_panel {
-    UI_PANEL_PLAIN = 0, /* no title, lets the mouse through; text that is too long is wrapped */
-    UI_PANEL_STAYS = 1, /* is seen all the same */
-    UI_PANEL_HOLD = 2,  /* likewise; with a title, takes the mouse, scrolls where the window is
-                           too small */
+    UI_PANEL_PLAIN = 0, /* no title, lets the mouse through; long text is wrapped */
+    UI_PANEL_STAYS = 1, /* likewise, but visible even without room */
+    /* Visible even without room; has a title, takes the mouse, scrolls if the window is too
+       small. */
+    UI_PANEL_HOLD = 2,
 };
 bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind);
-/* The same with a cross that sets *open to false. Whoever dragged it finds it there, unless it
-   `moves`. */
+/* The same, but it can be dragged and stays there, unless it `moves`; a close button sets *open to
+   false. */
 bool ui_window_begin(const char *title, float x, float y, float width, float height, bool moves,
                      bool *open);
 void ui_panel_end(void);
-/* No panel that ui_panel_begin begins later in this frame covers what is so near, where there is
-   room beside it. */
+/* Panels that ui_panel_begin begins later in this frame do not cover this circle, if there is room
+   beside it. */
 void ui_keep_free(float x, float y, float radius);
 
-/* What these say is shown by whit_text_show, and so is one line; labels and titles are whit's own.
- */
+/* Texts go through whit_text_show, so each is one line; labels and titles are whit's own. */
 void ui_text(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_paragraph(const char *text); /* wrapped at the end of the window */
 void ui_text_dim(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_text_color(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
-/* On the line of what stands before where that has room for it, else on the next one. */
+/* Text on the line of the item before if it fits, else on the next line. */
 void ui_text_beside(uint32_t color, const char *format, ...) WHIT_PRINTF(2, 3);
 void ui_separator(void);
-void ui_same_line(float x); /* 0: right behind; else from the panel's left, in characters */
+void ui_same_line(float x); /* 0: just behind; else position from the panel's left, in characters */
 bool ui_button(const char *label);
 bool ui_selectable(const char *label, bool selected);
-/* A line that shows or hides what follows it, at first as `open` says. Whether it shows it. */
+/* A line that shows or hides what follows it, initially by `open`. Returns whether it is shown. */
 bool ui_fold(const char *label, bool open);
 bool ui_checkbox(const char *label, bool *value);
-/* `preview`: what it says closed. */
+/* `preview`: its text while it is closed. */
 bool ui_choice(const char *label, const char *preview, const char *const *names, int count,
                int *value);
 bool ui_slider(const char *label, double *value, double lo, double hi, bool logarithmic);
 bool ui_color(const char *label, float rgb[3]); /* sRGB, 0..1 */
 bool ui_slider_count(const char *label, uint32_t *value, uint32_t lo, uint32_t hi);
-/* A bar of colours with labels below, evenly from its left to its right end. */
+/* A bar of colours, with labels below it at equal distances from its left to its right end. */
 void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int label_count);
-/* Points of 0..1 from the lower left in a box. */
+/* A point of a plot; x and y are 0..1 from the lower left of its box. */
 struct ui_point {
     float x, y;
     uint32_t color;
     float radius;
-    bool joined;       /* by a line with the joined one before it */
-    const char *name;  /* stands beside it, and is found by ui_item; or NULL */
-    const char *about; /* what is said of it under the mouse; or NULL */
+    bool joined;       /* a line joins it with the last joined point before it */
+    const char *name;  /* text beside it, by which ui_item finds it; or NULL */
+    const char *about; /* text that is shown when the mouse is over it; or NULL */
 };
-/* A line across the box, with what it stands for below or on the left. */
+/* A line across the box of a plot, with a label below or on the left. */
 struct ui_tick {
     float at;
     char label[16];
 };
 enum { UI_TICKS_MAX = 16 };
 struct ui_plot {
-    float width, height; /* of the box, in heights of letters */
+    float width, height; /* size of the box, in font heights */
     uint32_t line_color;
     const struct ui_point *points;
-    uint32_t count, tick_count[2]; /* ticks: from left to right, upwards */
+    uint32_t count, tick_count[2]; /* ticks: along x, along y */
     struct ui_tick ticks[2][UI_TICKS_MAX];
 };
 void ui_plot_points(const struct ui_plot *plot);
-/* The place of a value on a logarithmic axis from `low` to `high`, 0..1; 0.5 where both are equal.
- */
+/* The position of a value on a logarithmic axis from `low` to `high`, 0..1; 0.5 if both are
+   equal. */
 float ui_log_place(double value, double low, double high);
 /* A picture as wide as the cell of a table, with `lines` of text below it. ui_item finds it by
    these, joined: "a, b". */
@@ -141,15 +141,17 @@ void ui_picture(const uint32_t *rgba, uint32_t width, uint32_t height, const cha
                 uint32_t line_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */
 bool ui_table_begin(const char *id, int columns);
-/* Instead of a header: how wide columns are, text that is longer is wrapped by ui_cell. */
+/* Sets the widths of columns, instead of a header; ui_cell wraps longer text. */
 void ui_table_widths(const int *characters, int count);
 void ui_cell(uint32_t color, const char *text); /* ui_table_next and a text */
-int ui_characters(int columns); /* that fit into a table of so many columns, as wide as the panel */
+/* Number of characters that fit into a table of `columns` columns that is as wide as the window
+   allows. */
+int ui_characters(int columns);
 void ui_table_header(const char *const *names, int count);
 void ui_table_next(void); /* cell */
 void ui_table_end(void);
 
-/* Over the picture, under the panels. Text as above. */
+/* Drawn over the picture, under the panels. Text as above. */
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width);
 void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled);
 void ui_text_size(const char *text, float *width, float *height);

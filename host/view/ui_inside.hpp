@@ -4,14 +4,14 @@
 
 #include "view/ui.h"
 
-extern float line_scale; // pixels a unit of lengths on the screen
+extern float line_scale; // pixels in a unit of length on the screen
 
-float panel_width(); // at most, pixels
+float panel_width(); // most width of a panel, pixels
 
-// A list of choices is open. Whether it is to be closed.
+// Call it while a list of choices is open. True: it has to be closed.
 bool note_menu();
 
-// The last item is found under its label by ui_item; or what is at this place.
+// Lets ui_item find the last item, or this position, by its label.
 void note_item(const char *label);
 void note_place(const char *label, float x, float y);
 

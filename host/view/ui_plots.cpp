@@ -1,4 +1,4 @@
-// The shim over Dear ImGui: plots and small pictures in panels.
+// The C interface to Dear ImGui: plots and small pictures in panels.
 #include "view/ui_inside.hpp"
 
 #include <cstdio>
@@ -16,11 +16,11 @@ struct box {
     ImVec2 lo, hi;
 };
 
-// A plot on the screen.
+// A plot while it is drawn.
 struct drawing {
     const ui_plot *plot;
     box inner;
-    ImVector<box> taken; // by names
+    ImVector<box> taken; // rectangles of names and named points
 };
 
 } // namespace
@@ -43,7 +43,7 @@ static bool is_free(const drawing &drawing, const box &b)
     return true;
 }
 
-// Right of its point, else left of it, a little higher or lower where another one stands.
+// Draws a name right of its point, else left of it, moved up or down if another name is there.
 static void draw_name(drawing &drawing, const ui_point &point)
 {
     enum { STEPS = 12 };
@@ -59,7 +59,7 @@ static void draw_name(drawing &drawing, const ui_point &point)
         found = is_free(drawing, name);
     }
     if (!found)
-        return; // what is under the mouse says it too
+        return; // the text under the mouse has the name too
     note_place(point.name, at.x, at.y);
     drawing.taken.push_back(name);
     ImGui::GetWindowDrawList()->AddText(name.lo, COLOR_TEXT, point.name);
@@ -104,7 +104,7 @@ static void draw_points(drawing &drawing)
             draw_name(drawing, drawing.plot->points[i]);
 }
 
-// What is said of the point that is nearest to the mouse.
+// Shows the text of the point that is nearest to the mouse.
 static void draw_about(const drawing &drawing)
 {
     ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -149,7 +149,7 @@ void ui_plot_points(const struct ui_plot *plot)
         draw_about(drawing);
 }
 
-// Equal pixels beside each other are one rectangle: pictures of a panel are small and flat.
+// Draws equal pixels of a row as one rectangle: pictures in panels are small, with few colours.
 static void draw_pixels(const uint32_t *rgba, uint32_t width, uint32_t height, float side)
 {
     ImDrawList *list = ImGui::GetWindowDrawList();

@@ -1,4 +1,4 @@
-// The shim over Dear ImGui: what stands in panels, and lines over the picture.
+// The C interface to Dear ImGui: items of panels, and lines over the picture.
 #include "view/ui_inside.hpp"
 
 #include <cstdarg>
@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-// Names of files, materials and cameras are in what the window says.
+// Most bytes of a text, which may contain names of files, materials and cameras.
 enum { SHOWN_BYTES = 4096 };
 
 static const char *shown(const char *text)
@@ -76,7 +76,7 @@ void ui_cell(uint32_t color, const char *text)
 {
     ImGui::TableNextColumn();
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::PushTextWrapPos(0.0f); // the cell's right side
+    ImGui::PushTextWrapPos(0.0f); // wraps at the cell's right side
     ImGui::TextUnformatted(shown(text));
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
@@ -175,7 +175,7 @@ void ui_ramp(const uint32_t *colors, int count, const char *const *labels, int l
                       line_scale);
         float left = part * (width - wide);
         if (i > 0 && i < label_count - 1 && (left < end || left + wide > last))
-            continue; // no room for it
+            continue; // no room for the label
         list->AddText(ImVec2(at.x + left, at.y + height + 0.25f * em), 0xFFE0E0E0u, labels[i]);
         end = left + wide + 0.5f * em;
     }

@@ -1,4 +1,4 @@
-/* The window's thread: events in, settings to the engine, pictures to the screen. */
+/* The window's thread: takes events, gives settings to the engine, and shows pictures. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,11 +16,12 @@
 #include "view/scenes.h"
 #include "view/view_private.h"
 
-static const double MOVING_MS = 160.0; /* after the last move: then the picture is made whole */
+static const double MOVING_MS = 160.0; /* time after the last move until a whole picture is drawn */
 static const double TOAST_MS = 4000.0;
-static const double REST_MS = 1000.0; /* without a picture: the next begins another rate */
-static const double PROGRESS_S = 0.1; /* between looks at what the engine is at */
-/* Between pictures of how far it is: on a CPU device each takes from the cores that draw. */
+static const double REST_MS = 1000.0; /* after such a pause the frame rate is counted anew */
+static const double PROGRESS_S = 0.1; /* time between looks at the engine's status */
+/* Time between drawings of a progress bar: on a CPU device each takes time of the cores that
+   draw. */
 static const double PROGRESS_SHOWN_MS = 400.0;
 static const double IDLE_S = 5.0;
 
@@ -111,7 +112,7 @@ struct settings view_drawn(const struct view *view, const struct settings *setti
     return drawn;
 }
 
-/* The exposure and the camera that stand for auto are the settings' own from here on. */
+/* Replaces `auto` in the settings by the exposure and the camera that were chosen for it. */
 static void take_choices(struct view *view, const struct engine_frame *frame)
 {
     settings_expose(&view->settings, &frame->scene->info);
@@ -156,8 +157,8 @@ bool view_go_back(struct view *view)
     return true;
 }
 
-/* What cannot be made goes back to what the picture shows. Where there is none there is nothing to
-   go on with. */
+/* After a failed request, goes back to the settings of the picture. Without a picture the viewer
+   ends. */
 static whit_result take_failure(struct view *view)
 {
     bool told = shaders_refuse(view);
@@ -174,7 +175,7 @@ static whit_result take_failure(struct view *view)
     return view->status.result;
 }
 
-/* Minimised: nobody sees what would be drawn. */
+/* Whether the window is minimised, so that nothing has to be drawn. */
 static bool is_hidden(const struct view *view)
 {
     struct swapchain_info info;
@@ -196,8 +197,8 @@ static whit_result take_status(struct view *view)
 {
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
-    /* After a save the window is not drawn only to say what the engine begins: drawing takes cores
-       from the compiler. */
+    /* After a save of the shader the window is not drawn only to show that the engine begins
+       something: drawing takes cores from the compiler. */
     bool tells = !view->shaders.wait.goes_on;
     bool other_stage = old.stage != view->status.stage;
     bool other_drawing = old.drawing != view->status.drawing;
@@ -207,7 +208,7 @@ static whit_result take_status(struct view *view)
         old.change.over != view->status.change.over ||
         old.reload.over != view->status.reload.over || is_progress_due(view))
         view->dirty = true;
-    /* Hidden, it is asked for nothing: the failure is that of something older. */
+    /* While hidden the engine is asked for nothing: a failure belongs to an older request. */
     return view->status.failed && !is_hidden(view) ? take_failure(view) : WHIT_OK;
 }
 
@@ -225,7 +226,7 @@ static whit_result fit_window(struct view *view)
         (picture->width != info.width || picture->height != info.height)) {
         picture->width = info.width;
         picture->height = info.height;
-        view->dirty = true; /* for another picture */
+        view->dirty = true; /* so that another picture is asked for */
     }
     return result;
 }
@@ -274,10 +275,10 @@ static whit_result draw_window(struct view *view)
     const struct settings before = view->settings;
     hud_draw(view);
     view->dirty |=
-        !settings_same(&before, &view->settings); /* by mouse: they are to be asked for */
+        !settings_same(&before, &view->settings); /* changed by mouse: the engine has to be asked */
     if (ui_end(view->ui))
         platform_trim_heaps();
-    if (ui_wants_again(view->ui)) { /* panels find their sizes: kept is what comes of it */
+    if (ui_wants_again(view->ui)) { /* panels find their sizes: a shot is taken later */
         view->dirty = true;
         keep = false;
     }
@@ -350,7 +351,8 @@ static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
         engine_ask(view->engine, &view->settings, view_is_moving(view));
-    /* It takes all cores: measurements beside the window come first. Replays ask for it. */
+    /* Refining takes all cores, so measurements in the background come first. Replays ask for it
+       themselves. */
     bool rests = prices_are_still(view->prices) && prices_are_still(view->panels.measured) &&
                  wish_is_still(view);
     if (!view->params->replay)
@@ -385,15 +387,15 @@ static whit_result step(struct view *view)
     wish_step(view);
     panels_step(view);
     shaders_step(view);
-    ask(view); /* a switch that failed was taken back */
+    ask(view); /* settings that failed may have been undone */
     if (view->params->frames > 0 && view->picture_set)
-        view->dirty = true; /* until there were so many */
+        view->dirty = true; /* until so many were shown */
     if (result == WHIT_OK && view->dirty)
         result = draw_window(view);
     return result;
 }
 
-/* Replays draw with the font that every machine has. */
+/* Replays use Dear ImGui's own font, which is the same on every machine. */
 static whit_result open_ui(struct view *view)
 {
     uint8_t *font = NULL;
@@ -407,8 +409,8 @@ static whit_result open_ui(struct view *view)
     return result;
 }
 
-/* Until there is a picture. It is scaled as the first steps are, which lavapipe compiles code for,
-   some 80 ms, that is then there when they are; other code where a side is a power of 2. */
+/* Sets a picture until the first one is drawn. Scaling it makes lavapipe compile the code, some 80
+   ms, that first steps need too; it would be other code if a side were a power of 2. */
 static whit_result set_background(struct view *view)
 {
     enum { SIDE = 3 };
@@ -438,7 +440,7 @@ static whit_result open_device(struct view *view)
     return result == WHIT_OK ? open_ui(view) : result;
 }
 
-/* The engine begins before the window has its device: both take a while. */
+/* The engine is started before the window's device is created: both take a while. */
 static whit_result open_all(struct view *view)
 {
     const struct view_params *params = view->params;

@@ -16,37 +16,39 @@ struct view_shot {
 };
 
 struct view_params {
-    struct settings settings;       /* to begin with; settings.picture's size is the window's */
-    whit_shader_compiler *compiler; /* of settings.shader, whose log is silent; NULL: none */
+    struct settings settings; /* initial settings; the size of settings.picture is the window's */
+    whit_shader_compiler *compiler; /* for settings.shader; its log is silent. NULL: no shaders */
     bool fullscreen, no_vsync;
-    double spend_s; /* on measuring costs, more or less; 0: as it suits */
-    bool fresh;     /* for --budget-ms and --max-error what is kept is measured anew */
-    /* Figures for these two and the choices made by them, from one run to the next. load: false
-       where there are none; *figures is then untouched. NULL: nothing is kept. */
+    double spend_s; /* time for measuring costs, roughly; 0: a default */
+    bool fresh;     /* --budget-ms and --max-error do not use figures of earlier runs */
+    /* Figures for these two options, and the choices made by them, kept from one run to the next.
+       load: false if there are none; *figures is then unchanged. NULL: nothing is kept. */
     bool (*load_figures)(const struct cost_place *place, struct cost_kept_figures *figures);
     void (*save_figures)(const struct cost_place *place, const struct cost_kept_figures *figures);
-    uint32_t frames;    /* pictures shown before it ends; 0: until it is closed */
-    const char *record; /* where events go, or NULL */
-    const char *replay; /* where they come from, or NULL */
-    const char *hint;   /* shown at first, or NULL */
-    bool remember;      /* cameras, from one run to the next */
+    uint32_t frames;    /* number of pictures to show; 0: until the window is closed */
+    const char *record; /* file to write events to, or NULL */
+    const char *replay; /* file to read events from, or NULL */
+    const char *hint;   /* message to begin with, or NULL */
+    bool remember;      /* remember cameras from one run to the next */
     const char *const
-        *scenes; /* for the arrows, borrowed; settings.scene need not be one of them */
+        /* Scenes that the arrow keys go through, borrowed; settings.scene need not be one of
+           them. */
+        *scenes;
     uint32_t scene_count;
     const volatile bool *cancel;
-    /* Saves a picture; the reason of a failure goes to the log. */
+    /* Saves a picture; logs the reason of an error. */
     whit_result (*save)(void *user, const struct view_shot *shot, const char *path);
     void *save_user;
-    /* Reads a file of settings, over what *settings has of scene and files; `message` gets the
-       reason of a failure, with file and line. May be NULL. */
+    /* Reads a file of settings; scene and files of *settings stay. `message` gets the reason of an
+       error, with file and line. May be NULL. */
     whit_result (*load_state)(void *user, const char *path, struct settings *settings,
                               char *message, size_t message_bytes);
     void *load_user;
-    float ui_scale; /* of text and panels; 0: the monitor's */
+    float ui_scale; /* scale of text and panels; 0: the monitor's */
 };
 
-/* Until the window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display. *validation: how
-   many messages the validation layers had, of all devices. */
+/* Runs the viewer until its window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display.
+ *validation: number of messages of the validation layers, about all devices. */
 WHIT_CHECK whit_result view_run(const struct view_params *params, const whit_log *log,
                                 uint32_t *validation);
 

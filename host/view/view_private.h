@@ -1,4 +1,4 @@
-/* The viewer from inside: shared by the files of view/ that draw and act. */
+/* The inside of the viewer: shared by the files of view/ that draw and act. */
 #ifndef VIEW_VIEW_PRIVATE_H
 #define VIEW_VIEW_PRIVATE_H
 
@@ -17,27 +17,28 @@
 
 enum { TOAST_BYTES = 256, LEAVING_MAX = 4 };
 
-struct view_clock { /* of the animation */
+struct view_clock { /* time of the animation */
     bool playing, once;
     double speed, last_ms;
 };
 
-/* A picture that takes longer shows how far it is. */
+/* A picture that takes longer than this shows a progress bar. */
 #define SLOW_MS 700.0
 
-/* Pictures of the last moments, for the HUD. */
+/* The frame rate of the last pictures, for the HUD. */
 struct view_rate {
-    double shown_ms[32]; /* one after the other, without a rest between */
+    double shown_ms[32]; /* ring buffer, since the last pause */
     uint32_t count;
-    double fps; /* 0: nothing went on */
+    double fps; /* 0: there was one picture */
 };
 
-/* The clock of what the viewer does: how long messages stay, when a picture stands, how far an
-   animation is. A replay turns it by its lines `wait`, so that load changes nothing. */
+/* The viewer's clock: it says how long messages stay, when a moved picture is at rest, and how far
+   an animation is. A replay moves it by its lines `wait`, so that the load of the machine changes
+   nothing. */
 struct view_time {
     bool turned;
-    double now_ms;   /* while it is turned */
-    double ahead_ms; /* of the system's clock, once it no longer is */
+    double now_ms;   /* the time, while a replay moves the clock (`turned`) */
+    double ahead_ms; /* otherwise: how far it is ahead of the system's clock */
 };
 
 struct view {
@@ -49,26 +50,26 @@ struct view {
     struct ui *ui;
     struct engine *engine;
 
-    struct settings settings; /* wanted */
-    /* Those of the last picture, or of the start: a switch that fails goes back to them. */
+    struct settings settings; /* that are asked for */
+    /* The settings of the last picture, or at the start: a failed request goes back to them. */
     struct settings fallback;
-    struct view_camera camera; /* of settings.camera, as numbers */
-    bool camera_known;         /* else the scene's first camera, not read as yet */
-    int file_camera;           /* of the scene's, or -1 */
+    struct view_camera camera; /* settings.camera as numbers */
+    bool camera_known;         /* false: the scene's camera was not read yet */
+    int file_camera;           /* index of the scene's camera; -1: moved by hand */
     uint32_t scene_index;      /* in params->scenes */
 
     struct engine_frame frame;
     struct engine_status status;
     struct engine_probe probe; /* the picked pixel; number 0: none */
-    float pick_place[3];       /* where the panel of the pixel was last: x, y, height */
-    bool picked;               /* its panel is open */
+    float pick_place[3];       /* last place of its panel: x, y, height */
+    bool picked;               /* the panel of the pixel is open */
     double pick_x, pick_y;     /* the pixel that was asked for last */
-    uint64_t pick_frame;       /* number of the picture that it was asked of by itself */
-    bool focus;                /* look at it when it is there */
-    struct scene_ref *scene;   /* of `frame` */
+    uint64_t pick_frame;       /* number of the picture for which it was last asked again */
+    bool focus;                /* frame what is there once the probe has come */
+    struct scene_ref *scene;   /* scene of `frame` */
 
-    struct prices *prices;               /* NULL: none are asked for */
-    struct prices *leaving[LEAVING_MAX]; /* stopped, and not at their end as yet */
+    struct prices *prices;               /* NULL: none are measured */
+    struct prices *leaving[LEAVING_MAX]; /* told to stop, not ended yet */
     struct wish wish;
     bool prices_open;
 
@@ -89,53 +90,54 @@ struct view {
     bool help, hint;
     char toast[TOAST_BYTES];
     double toast_until_ms;
-    double progress_ms; /* of the system's clock: when how far work is was shown last */
-    bool dirty;         /* the window is to be drawn again */
-    bool resized;       /* its images are to be made again */
+    double progress_ms; /* by the system's clock: when progress was shown last */
+    bool dirty;         /* the window has to be drawn again */
+    bool resized;       /* the images of the window have to be made again */
     bool quit;
-    uint32_t shown; /* pictures */
+    uint32_t shown; /* number of pictures shown */
     bool picture_set;
 
-    struct watch *watch;               /* on the shown scene's files; NULL: not possible */
-    struct watch *watch_asked;         /* on `asked`, until that is shown; likewise */
-    char asked[SETTING_PATH_BYTES];    /* what was opened, or read again, last */
-    char refused[ENGINE_MESSAGE];      /* why that is not shown; "": it is, or may be yet */
-    char answered[SETTING_PATH_BYTES]; /* the last folder of status.refused that the user was asked
-                                          about */
-    uint32_t reloads;                  /* that there were, of any scene */
-    bool played;                       /* the shown scene, before another one was asked for */
+    struct watch *watch;            /* of the shown scene's files; NULL: not possible */
+    struct watch *watch_asked;      /* of `asked`, until that is shown; likewise */
+    char asked[SETTING_PATH_BYTES]; /* the scene that was last opened, or read again */
+    char refused[ENGINE_MESSAGE];   /* why `asked` is not shown; "": it is, or may still be */
+    /* The last folder of status.refused that the user has answered about. */
+    char answered[SETTING_PATH_BYTES];
+    uint32_t reloads; /* number of reloads, of any file */
+    bool played;      /* the shown scene played before another one was asked for */
     struct replay *replay;
     FILE *record;
     double record_ms;
-    char shot[EVENT_PATH]; /* of the next drawing; "": none */
+    char shot[EVENT_PATH]; /* file for a picture of the next drawing; "": none */
 };
 
-/* The viewer's clock in ms: the system's, or the one that a replay turns. Only figures of measured
-   time read the system's clock in a replay. */
+/* The viewer's clock in ms: the system's, or the one that a replay moves. In a replay only measured
+   times use the system's clock. */
 double view_now_ms(const struct view *view);
-/* Says something for some seconds. */
+/* Shows a message for some seconds. */
 void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
-/* The settings changed: draw them. */
+/* Call it when the settings changed. */
 void view_changed(struct view *view);
-/* The camera was moved by hand: its text, and quick pictures for a moment. */
+/* Call it when the camera was moved by hand: updates its text, and asks for quick pictures for a
+   while. */
 void view_moved(struct view *view);
-/* `settings`, with the samples of the picture that is shown where that is refined. */
+/* Gives `settings`, with the number of samples of the shown picture if that is refined. */
 struct settings view_drawn(const struct view *view, const struct settings *settings);
-/* Whether quick pictures are wanted, as more will follow. */
+/* Whether quick pictures are wanted, since something moves. */
 bool view_is_moving(const struct view *view);
-/* When that ends, where nothing is moved any more. */
+/* When that ends if nothing is moved any more, by view_now_ms. */
 double view_stands_ms(const struct view *view);
-/* To what the picture shows, where another kernel or other trees were asked for and are not there
-   as yet; false where they were not. */
+/* Goes back to the settings of the shown picture if another kernel or tree was asked for and is not
+   there yet; false: it was not. */
 bool view_go_back(struct view *view);
-/* The animation goes on by itself, and there is one. */
+/* Whether an animation is playing. */
 bool view_plays(const struct view *view);
-/* What the engine could not do, an error a line; and the same for the log. */
+/* The errors of the engine's last failure, one a line; the second function logs them. */
 const char *view_failure(const struct view *view);
 void view_log_failure(const struct view *view);
-/* What went wrong, an error a line; "": nothing. */
+/* The errors to show, one a line; "": none. */
 const char *view_error(const struct view *view);
-/* The world's bounds of the scene; false where none is loaded, or it is empty. */
+/* The bounds of the scene's objects in world space; false: no scene is loaded, or it is empty. */
 bool view_bounds(const struct view *view, double lo[3], double hi[3]);
 double view_aspect(const struct view *view);
 

@@ -16,15 +16,15 @@ struct window {
     GLFWwindow *glfw;
     struct device_surface surface;
     bool fullscreen;
-    int x, y, width, height;         /* before full screen */
-    int wanted_width, wanted_height; /* asked for last; 0: never */
+    int x, y, width, height;         /* place and size before full screen */
+    int wanted_width, wanted_height; /* size asked for last, screen units; 0: none */
     struct view_event events[EVENTS_HELD];
     uint32_t first, count;
-    char dropped[EVENT_PATH]; /* the last file */
+    char dropped[EVENT_PATH]; /* path of the last dropped file */
     char error[256];
 };
 
-/* GLFW tells errors without saying of which window. */
+/* GLFW reports errors without naming a window. */
 static struct window *the_window;
 
 static void on_error(int code, const char *text)
@@ -97,7 +97,7 @@ static unsigned mods_from_glfw(int mods)
            (mods & GLFW_MOD_CONTROL ? EVENT_CTRL : 0u) | (mods & GLFW_MOD_ALT ? EVENT_ALT : 0u);
 }
 
-/* Letters and signs by what is printed on them, on whatever layout of keys. */
+/* Letters and signs by what is printed on their keys, for any keyboard layout. */
 static int printed_key(int key, int scancode)
 {
     const char *name = glfwGetKeyName(key, scancode);
@@ -132,7 +132,7 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
                                                                   .mods = mods_from_glfw(mods)});
 }
 
-/* GLFW counts in the screen's units, which need not be pixels. */
+/* GLFW uses screen units, which need not be pixels. */
 static void on_move(GLFWwindow *glfw, double x, double y)
 {
     int width, height, pixels_x, pixels_y;
@@ -228,7 +228,7 @@ whit_result window_create(const whit_log *log, const struct window_params *param
     window->log = *log;
     the_window = window;
     glfwSetErrorCallback(on_error);
-    child_hold_forks(); /* it loads libraries: see child.h */
+    child_hold_forks(); /* GLFW loads libraries: see child.h */
     whit_result result = make_window(window, params);
     child_release_forks();
     if (result != WHIT_OK) {

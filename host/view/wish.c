@@ -20,7 +20,7 @@ const char *wish_stage_name(enum wish_stage stage)
 
 /* ---- Settings ---- */
 
-/* In place of what was chosen before. */
+/* Resets the settings that a choice may change. */
 static void set_usual(struct settings *settings)
 {
     const struct settings usual = settings_usual();
@@ -33,7 +33,7 @@ static void set_choice(const struct cost_choice *choice, struct settings *settin
     cost_choice_apply(choice, settings);
 }
 
-/* Whether settings were changed since they were chosen. */
+/* Whether the user has changed settings since they were chosen. */
 static bool is_left(const struct view *view)
 {
     return !settings_same_light(&view->wish.settings, &view->settings);
@@ -91,7 +91,8 @@ static void fail(struct wish *wish, const char *why)
     snprintf(wish->text, sizeof wish->text, "%s", why);
 }
 
-/* What figures are kept by: their place, with the time that is asked for. */
+/* The key by which figures are kept: the settings of their picture, with the limit that is asked
+   for. */
 static struct cost_place place_of(const struct view *view, struct settings *settings)
 {
     *settings = view->wish.place;
@@ -116,7 +117,7 @@ static void save(const struct view *view)
     figures->choice.found = found;
 }
 
-/* By figures of an earlier run, and its choice, where there are any. */
+/* Chooses by figures of an earlier run, or takes its choice. False: there are no figures. */
 static bool choose_as_before(struct view *view)
 {
     const struct view_params *params = view->params;
@@ -172,7 +173,7 @@ static void take_figures(struct view *view)
         return;
     if (state.report && state.report->complete) {
         wish->figures->report = *state.report;
-        wish->figures->report.reference = NULL; /* the prices' own */
+        wish->figures->report.reference = NULL; /* it belongs to the prices */
         save(view);
         choose(view);
     } else {
@@ -180,8 +181,8 @@ static void take_figures(struct view *view)
     }
 }
 
-/* What the choice takes now: where that is too long, or far less than it might be, once more with
-   that in mind. */
+/* Checks the time of the chosen settings. If it is over the budget, or far below the prediction,
+   chooses again with times scaled by what was measured. */
 static void try_choice(struct view *view)
 {
     struct wish *wish = &view->wish;
@@ -200,7 +201,7 @@ static void try_choice(struct view *view)
         choose(view);
         if (wish->stage == WISH_TRIES && !settings_same(&frame->settings, &view->settings))
             return;
-        wish->took_ms = took_ms; /* nothing is nearer */
+        wish->took_ms = took_ms; /* no other choice is nearer */
         wish->stage = WISH_CHOSEN;
     }
     save(view);
