@@ -12,7 +12,7 @@ enum {
     SHADER_TEXT_FILES_MAX = 64,
     SHADER_TEXT_DEPTH_MAX = 16,       /* depth of includes, with the first file */
     SHADER_TEXT_FILE_BYTES = 1 << 20, /* of one file */
-    SHADER_TEXT_LINE_BYTES = 1 << 16 /* of a line; longer ones may overflow glslang's stack */
+    SHADER_TEXT_LINE_BYTES = 1 << 16  /* of a line; longer ones may overflow glslang's stack */
 };
 
 /* An `#include "x"` in a file. */
@@ -67,9 +67,9 @@ void shader_text_free(struct shader_text *text);
 bool shader_text_copy(const struct shader_text *text, size_t more, struct shader_text *out);
 void shader_text_end_copy(struct shader_text *copy); /* accepts a zeroed one */
 
-/* Whether any of the files has a function of this name with a body at the top level; *file and
-   *line (may be NULL): the first of them. The text is not preprocessed: code in a false #if counts,
-   and code that macros make does not. */
+/* Whether any of the files has a function of this name with a body at the top level; *file
+   and *line (may be NULL): the first of them. The text is not preprocessed: code in a false #if
+   counts, and code that macros make does not. */
 bool shader_text_defines(const struct shader_text *text, const char *name, uint32_t *file,
                          uint32_t *line);
 

@@ -70,8 +70,8 @@ struct engine {
     struct session *sessions[ENGINE_SESSIONS_MAX]; /* used by the drawing thread; NULL: free */
     struct session *drawing; /* that is drawing: its `cancel` stops it; NULL: none */
     double drawing_since_ms; /* when that began */
-    /* The current picture is done soon and is not cancelled: while the camera moves on, nothing at
-       all would be shown. */
+    /* The current picture is done soon and is not cancelled: otherwise nothing at all would be
+       shown while the camera moves on. */
     bool brief;
     /* Versions of the shader in the window's pictures: the last, and the one before; NULL: none. */
     struct shader_ref *versions[2];

@@ -66,10 +66,9 @@ struct session {
     whit_device_info device_info;
     double build_ms, compile_ms; /* building trees; compiling, up to the first pixels */
     _Atomic(float) part; /* share of the current picture that is done, 0..1; read by any thread */
-    float part_done,
-        /* Shares of the picture: done before the renderer's current call, and drawn by that call
-           (0: all). */
-        part_share;
+    /* Shares of the picture: done before the renderer's current call, and drawn by that call
+       (0: all). */
+    float part_done, part_share;
     uint64_t last_use;
     /* Number of the engine's job that has made the session, or adapted it to another version of the
        shader. */

@@ -30,10 +30,8 @@ struct view_params {
     const char *replay; /* file to read events from, or NULL */
     const char *hint;   /* message to begin with, or NULL */
     bool remember;      /* remember cameras from one run to the next */
-    const char *const
-        /* Scenes that the arrow keys go through, borrowed; settings.scene need not be one of
-           them. */
-        *scenes;
+    /* Scenes that the arrow keys go through, borrowed; settings.scene need not be one of them. */
+    const char *const *scenes;
     uint32_t scene_count;
     const volatile bool *cancel;
     /* Saves a picture; logs the reason of an error. */
@@ -48,7 +46,7 @@ struct view_params {
 };
 
 /* Runs the viewer until its window is closed. WHIT_ERROR_NO_DEVICE, logged, without a display.
- *validation: number of messages of the validation layers, about all devices. */
+   On return *validation is the number of messages of the validation layers, about all devices. */
 WHIT_CHECK whit_result view_run(const struct view_params *params, const whit_log *log,
                                 uint32_t *validation);
 
