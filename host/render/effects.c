@@ -15,7 +15,7 @@
 /* The value of a constant is the sum of the bits of its effects that are on. */
 static const struct effect_switch {
     enum scene_effect effect;
-    uint32_t constant; /* its id */
+    uint32_t constant; /* id of the specialisation constant */
     uint32_t bits;
 } switches[] = {
     SWITCH(SHADOWS, SPEC_SHADOWS, 1u),

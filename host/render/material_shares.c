@@ -82,7 +82,7 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
     const struct renderer *renderer = target->renderer;
     uint32_t material_count = renderer->scene->material_count;
     uint64_t **counts = &target->stages.material_hits;
-    if (material_count == 0) /* nothing can be hit */
+    if (material_count == 0) /* without materials no surface can be hit */
         return WHIT_OK;
     if (!*counts)
         *counts = array_alloc_zeroed((size_t)material_count * CLASSES_MAX, sizeof **counts);

@@ -252,7 +252,7 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
 /* What is known of each record while the ray tree is put in order. The array is also a stack of
    records. */
 struct branch {
-    uint32_t first, count; /* its child rays, whose records are next to each other */
+    uint32_t first, count; /* records of its child rays, next to each other */
     uint32_t place;        /* index in the ordered tree */
     /* An entry of the stack, which is not about this record: a record that is to be put in the
        tree. */

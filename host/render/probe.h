@@ -25,7 +25,7 @@ struct probe_ray {
     bool exact_known;
     float exact_t; /* a key; infinity: no hit */
     uint32_t exact_instance, exact_primitive;
-    bool exact_equal; /* as the device: ids (shadow rays: blocked or not), EXACT: t too */
+    bool exact_equal; /* the device has the same ids (shadow rays: the same answer); EXACT: t too */
 };
 
 /* A value of a dbg(x) of the user's file, recorded when that call was reached. */
@@ -38,8 +38,8 @@ struct probe_value {
 struct probe_report {
     uint32_t x, y;
     uint32_t samples;       /* samples in `color`; adaptive: the 4 of the first pass */
-    uint32_t light_samples; /* for each light: see gpu_probe_ray.light_sample */
-    float color[4];         /* of the pixel, as in the picture */
+    uint32_t light_samples; /* samples of each light, see gpu_probe_ray.light_sample */
+    float color[4];         /* colour of the pixel, as in the picture */
     /* The ray tree of the first sample, depth first: a ray is followed by its shadow rays, then by
        what the surface reflects and lets through, each with its own subtree. */
     struct probe_ray *rays;

@@ -39,7 +39,7 @@ struct queue_buffers {
     /* NUMERICS_EXACT: the rays, or the lit hits of a light, whose hits floats leave open. */
     struct buffer *deferred;
     struct buffer *hook_rows;     /* results of a user's surface() and shade(), by hit */
-    struct buffer *shape_shadows; /* with a user's intersect(): two words a lit hit */
+    struct buffer *shape_shadows; /* for a user's intersect(): two words a lit hit */
     struct buffer *kinds; /* by ray: RAY_* (params.count, probes), distance so far (mipmaps) */
     uint32_t generation_count, ray_capacity, lit_capacity;
     uint64_t bytes;
@@ -51,7 +51,7 @@ struct pixel_buffers {
     struct buffer *pixels; /* the pixels; then `levels` partial sums of samples for each slot; then,
                               from `before_post` on, the pixels as a user's post() is given them */
     struct buffer *ids;
-    struct buffer *costs;  /* of a chunk: RAY_KIND_COUNT a slot; NULL: not counted */
+    struct buffer *costs;  /* costs of a chunk: RAY_KIND_COUNT a slot; NULL: not counted */
     struct buffer *listed; /* slots whose camera rays are traced; NULL: all slots */
     struct buffer *status;
     struct buffer *aovs;      /* see bind/queues.glsl; NULL: the shader has no aov */
@@ -135,8 +135,8 @@ struct stages {
 struct trace_state {
     struct buffer *rays, *hits, *costs;
     struct buffer *deferred; /* rays left to a second dispatch; NULL: there are never any */
-    struct pass singles[2];  /* index: 0 closest hit, 1 any hit */
-    struct pass beams[2];    /* likewise, for packets of rays that start at one point */
+    struct pass singles[2];  /* kernels for single rays; index: 0 closest hit, 1 any hit */
+    struct pass beams[2];    /* as `singles`, for packets of rays that start at one point */
     uint32_t capacity;       /* rays that the buffers hold */
     uint64_t together;       /* rays of the last batch that were traced in packets */
     double device_ms;
@@ -187,8 +187,8 @@ struct target {
     whit_stats stats;
     struct stage_sample timed[RENDER_STAGE_COUNT];
     bool probed;            /* only listed pixels are drawn, and rays recorded (probe.c) */
-    struct buffer *records; /* of a probe: a gpu_probe, then gpu_probe_rays */
-    struct buffer *dbg;     /* of a probe with dbg(x): as in hook/record.glsl; NULL: not yet */
+    struct buffer *records; /* result of a probe: a gpu_probe, then gpu_probe_rays */
+    struct buffer *dbg;     /* values of dbg(x), as in hook/record.glsl; NULL: none yet */
 };
 
 /* All that decides the colours of a picture, but for its kernels. */
@@ -203,7 +203,7 @@ struct kept_view {
    file. */
 struct kept_picture {
     bool known; /* false: no picture is kept */
-    bool aovs;  /* its aovs are those of the current shader */
+    bool aovs;  /* the kept aovs are those of the current shader */
     struct kept_view view;
     whit_stats stats;
     struct stage_sample timed[RENDER_STAGE_COUNT];
@@ -230,15 +230,15 @@ struct renderer {
     struct async_state async;
     struct commands *commands;
     struct gpu_frame frame;
-    struct portable_params portable;    /* used with params.portable */
-    float sliders[SLIDERS_MAX];         /* slider values of params.shader */
-    uint32_t reaches_decide;            /* SHADER_REACHES_* bits that effects depend on: hooks.c */
-    uint64_t effects_unasked;           /* those removed only because the shader needs none */
-    struct bodies bodies;               /* bodies of media in the current pose */
-    struct image color, ids, cuts;      /* the last picture, where it has several bands */
-    struct image aovs;                  /* likewise: one column for each aov of each pixel */
-    struct image distances;             /* likewise */
-    struct image costs[RAY_KIND_COUNT]; /* of first samples; empty for a kind without rays */
+    struct portable_params portable; /* used with params.portable */
+    float sliders[SLIDERS_MAX];      /* slider values of params.shader */
+    uint32_t reaches_decide;         /* SHADER_REACHES_* bits that effects depend on: hooks.c */
+    uint64_t effects_unasked;      /* effects removed only because the shader needs none of them */
+    struct bodies bodies;          /* bodies of media in the current pose */
+    struct image color, ids, cuts; /* the last picture, where it has several bands */
+    struct image aovs;             /* as `color`: one column for each aov of each pixel */
+    struct image distances;        /* as `color` */
+    struct image costs[RAY_KIND_COUNT]; /* costs of first samples; empty for a kind without rays */
     double create_ms;
     /* What the pipelines were made for (up to has_secondary). */
     bool *worn; /* by material: whether some primitive has it */

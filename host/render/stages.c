@@ -31,7 +31,7 @@ struct tile_run {
     struct gpu_chunk chunk;
     const struct progress *progress;
     uint32_t dispatches; /* dispatches of the submission being recorded */
-    double longest_ms;   /* of the submissions so far */
+    double longest_ms;   /* longest time of a submission so far */
 };
 
 uint64_t stages_generation_offset(uint32_t generation)
@@ -316,7 +316,7 @@ static whit_result take_tally(struct target *target)
     return WHIT_OK;
 }
 
-/* Reads how many rays a generation has that was not traced yet. */
+/* Reads the number of rays of a generation that was not traced yet. */
 static whit_result count_left(struct target *target, uint32_t generation, uint32_t *rays)
 {
     struct gpu_generation head = {0};

@@ -75,7 +75,7 @@ whit_result status_check(struct target *target)
     if (word & STATUS_SHAPE)
         hooks_describe_shape(target, shape, sizeof shape);
     if (word & (STATUS_FUEL | STATUS_SHAPE))
-        result = hooks_clear_status(target); /* so that the next picture begins without them */
+        result = hooks_clear_status(target); /* or the next picture would name the same place */
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         size_t used = strlen(text);
         if (word & reasons[i].bit)

@@ -14,11 +14,11 @@
 #include "device/commands.h"
 
 enum {
-    TRACE_CAPACITY = 1 << 20,   /* most rays of a piece */
-    TRACE_FIRST_CPU = 1 << 14,  /* rays of the first piece on a CPU device */
-    TRACE_FIRST = 1 << 20,      /* the same on other devices, with more threads */
-    TRACE_FIRST_BARE = 1 << 10, /* the same without trees */
-    TRACE_BEAMS_MIN = 1 << 17,  /* rays of a batch from which on packets pay */
+    TRACE_CAPACITY = 1 << 20,  /* most rays of a piece */
+    TRACE_FIRST_CPU = 1 << 14, /* rays of the first piece on a CPU device */
+    TRACE_FIRST = 1 << 20, /* rays of the first piece on other devices, which have more threads */
+    TRACE_FIRST_BARE = 1 << 10, /* rays of the first piece without trees */
+    TRACE_BEAMS_MIN = 1 << 17,  /* batches of fewer rays gain nothing by packets */
 };
 /* Time of a piece: long enough to keep the device busy, short enough for watchdogs and Ctrl+C. */
 static const double TRACE_TARGET_MS = 150.0;

@@ -558,7 +558,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     job->params = pass_params(target, stages[stage].kernel, spec, &bindings, BIND_STAGES_COUNT,
                               sizeof(struct gpu_chunk), stages[stage].name);
     job->params.bindings = job->kinds;
-    if (stage == STAGE_HIT_FETCH) { /* it calls no function of the user, whatever file that is */
+    if (stage == STAGE_HIT_FETCH) { /* the same kernel for any file of the user */
         job->params.spirv = stages[stage].kernel->words;
         job->params.spirv_bytes = stages[stage].kernel->bytes;
     }

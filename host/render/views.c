@@ -178,7 +178,7 @@ static whit_result views_take(struct renderer *renderer, const whit_camera *came
         async_finish(renderer);
         passes_finish(renderer);
     }
-    views->held = result == WHIT_OK ? count : 0; /* after an error everything is made anew */
+    views->held = result == WHIT_OK ? count : 0; /* 0: the next call makes everything anew */
     return result;
 }
 

@@ -24,7 +24,7 @@ struct shader_compiler {
     struct shader_limits limits;
     struct keep *keep; /* NULL: each request has a process of its own */
     uint32_t restarts; /* how often `keep` had to be started again */
-    bool warned;       /* it has warned that there is no sandbox */
+    bool warned;       /* a warning has told that there is no sandbox */
 };
 
 /* --- the process ---------------------------------------------------------------------------- */

@@ -13,8 +13,8 @@
 
 /* Limits for one request. A zeroed struct means the defaults. */
 struct shader_limits {
-    double cpu_s;                /* processor time; 0: shader_request.cpu_s */
-    double clock_s;              /* wall time; 0: 20 */
+    double cpu_s;                /* processor time, seconds; 0: shader_request.cpu_s */
+    double clock_s;              /* wall time, seconds; 0: 20 */
     uint64_t memory_bytes;       /* 0: 1 GiB */
     bool require_sandbox;        /* no sandbox is an error, not a warning */
     const volatile bool *cancel; /* polled while a request is under way; may be NULL */
@@ -27,8 +27,9 @@ struct shader_request {
     const char *kernel_text;
     const char *const *defines; /* "NAME" or "NAME VALUE", as #define lines after #extension */
     uint32_t define_count;
-    const struct shader_stages *stages; /* in place of the embedded files; NULL: those */
-    bool trust;                         /* no fuel for loops, no bounds for indices */
+    /* Used in place of the embedded files; NULL: the embedded files are used. */
+    const struct shader_stages *stages;
+    bool trust; /* no fuel for loops, no bounds for indices */
     /* Keeps names, and functions that nothing calls: the result will be a `base`. */
     bool names;
     /* The kernel that functions of kernel/hook.comp are linked into (link.h); it was made with
@@ -58,7 +59,7 @@ enum { SHADER_OPENS_MAX = 8 }; /* places of further operations are not kept */
 enum {
     SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
     SHADER_REACHES_SHADOWS = 2, /* shadows: what blocks the way to a point */
-    SHADER_REACHES_RAYS = 4,    /* they trace rays */
+    SHADER_REACHES_RAYS = 4,    /* rays that the user's functions trace */
     SHADER_REACHES_TEXTURES = 8,
     SHADER_REACHES_VERTEX_COLORS = 16,
     SHADER_REACHES_METAL_ROUGH = 32, /* whether a material is metal-rough */
@@ -75,7 +76,7 @@ struct shader_code {
     size_t bytes;
     struct shader_loop *loops; /* none with `trust`, or if the kernel declares no whit_fuel */
     uint32_t loop_count;
-    uint32_t instructions; /* in all functions */
+    uint32_t instructions; /* number of instructions in all functions */
     uint32_t reaches;      /* bits SHADER_REACHES_* */
     struct shader_open opens[SHADER_OPENS_MAX];
 };

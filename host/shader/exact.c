@@ -14,7 +14,7 @@ static bool is_float_operation(uint32_t op)
 }
 
 struct scan {
-    bool *marked; /* by id: it is decorated already */
+    bool *marked; /* by id: whether it is decorated already */
     size_t types_at, operations;
 };
 

@@ -20,7 +20,7 @@ struct expansion {
     size_t user_at, user_end;
     const struct shader_source *sources; /* whit's own, or the request's stages */
     uint32_t source_count;
-    bool *pasted; /* by source: it is in `out` unconditionally */
+    bool *pasted; /* by source: whether it is in `out` under no condition */
     uint32_t depth;
     bool failed; /* no memory */
     bool large;
@@ -174,7 +174,7 @@ size_t expand_included(const char *line, const char **name)
 struct own_file {
     const char *path, *text;
     uint32_t index;
-    bool whole; /* it is included under no condition */
+    bool whole; /* the file is included under no condition */
 };
 
 static void put_own(struct expansion *e, const struct own_file *file);

@@ -12,7 +12,7 @@
 struct expanded {
     char *text; /* malloc'ed; ends with a 0 that `bytes` does not count */
     size_t bytes;
-    size_t user_at, user_end; /* the user's part of `text`; equal: there is none */
+    size_t user_at, user_end; /* range of the user's part of `text`; equal: no such part */
 };
 
 enum { EXPAND_NAME_BYTES = 256 };

@@ -8,7 +8,7 @@
 struct graft {
     struct spv_module base, user;          /* added instructions are in base.globals */
     uint32_t *ids;                         /* by id of `user`: its id in `base`; 0: none yet */
-    const char **base_names, **user_names; /* by id; NULL: none */
+    const char **base_names, **user_names; /* names by id; NULL: no name */
     const char *why;                       /* why it cannot be done; NULL: it can */
 };
 

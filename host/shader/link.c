@@ -16,7 +16,7 @@ struct function {
 
 struct link {
     struct graft g;
-    bool *dropped; /* by id of the kernel: it belongs to a function that is left out */
+    bool *dropped; /* by id of the kernel: whether it belongs to a function that is left out */
     struct function *functions;
     uint32_t function_count, function_capacity;
     uint32_t *variables; /* ids of added variables */

@@ -14,7 +14,7 @@ enum { NAME_BYTES = 96 };
 struct portable {
     const struct portable_params *params;
     struct graft g;   /* base: the kernel; user: the module of portable functions */
-    bool *replaced;   /* by id of the kernel: its instruction is a call now */
+    bool *replaced;   /* by id of the kernel: whether its instruction has become a call */
     uint32_t *wanted; /* ids of functions to copy, in g.user */
     uint32_t wanted_count, wanted_capacity;
     char *why;
@@ -31,7 +31,7 @@ struct stand_in {
     uint16_t number;
     enum stays stays;
     const char *function; /* name without "portable_"; NULL: there is none */
-    const char *name;     /* name in messages; NULL: that of `function` */
+    const char *name;     /* name in messages; NULL: `function` */
 };
 
 /* By opcode (SPIR-V 1.5, 3.32): operations whose results are open by "Precision and Operation of

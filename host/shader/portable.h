@@ -12,7 +12,7 @@
 
 struct portable_params {
     bool own_division;   /* the device rounds division and square root correctly */
-    bool own_comparison; /* its comparisons and absolute values distinguish denormals from 0 */
+    bool own_comparison; /* the device's comparisons and fabs distinguish denormals from 0 */
     /* Float controls that kernels declare, which the device must support: sums rounded to nearest;
        NaN, infinity and the sign of 0 kept; denormals kept. */
     bool asks_nearest, asks_special, asks_denormals;

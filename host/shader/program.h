@@ -56,7 +56,7 @@ struct shader_box {
 };
 
 struct whit_shader {
-    struct shader_text text;      /* without files: `stages` alone, no hooks */
+    struct shader_text text;      /* no files in it: the shader is `stages` alone, without hooks */
     struct shader_stages *stages; /* NULL: the embedded stages */
     struct shader_tests tests;
     whit_shader_test *test_infos;

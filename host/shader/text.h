@@ -11,7 +11,7 @@
 enum {
     SHADER_TEXT_FILES_MAX = 64,
     SHADER_TEXT_DEPTH_MAX = 16,       /* depth of includes, with the first file */
-    SHADER_TEXT_FILE_BYTES = 1 << 20, /* of one file */
+    SHADER_TEXT_FILE_BYTES = 1 << 20, /* of a file */
     SHADER_TEXT_LINE_BYTES = 1 << 16  /* of a line; longer ones may overflow glslang's stack */
 };
 
@@ -27,7 +27,7 @@ struct shader_file {
     char *relative;
     char *text; /* ends with a 0 that `bytes` does not count */
     size_t bytes;
-    struct shader_include *includes; /* in the order of lines */
+    struct shader_include *includes; /* in the order of their lines */
     uint32_t include_count, include_capacity;
 };
 

@@ -32,7 +32,7 @@ void choice_say(const struct settings *settings, const struct setting *row, char
 enum { CHOICE_WORDS = 96, CHOICE_CHANGES_MAX = 32 };
 struct choice_change {
     const char *name;
-    bool painted; /* it chooses what is painted, not how that is computed */
+    bool painted; /* the setting chooses what is painted, not how that is computed */
     char a[CHOICE_WORDS], b[CHOICE_WORDS];
 };
 /* Lists the differences of `a` and `b`, and returns their number. */

@@ -6,7 +6,8 @@
 
 #include "view/view_private.h"
 
-static const double GRIP_PIXELS = 6.0; /* on either side of the divider, at 96 dots an inch */
+/* Half the width of the divider for the mouse, at 96 dots an inch. */
+static const double GRIP_PIXELS = 6.0;
 
 /* ---- Pairs of pictures ---- */
 

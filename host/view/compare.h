@@ -22,7 +22,7 @@ struct compare_pair {
     const whit_image *color[2], *ids[2];
     uint64_t numbers[2]; /* numbers of the frames */
     bool whole;
-    bool uneven; /* one has more samples than the other, by refinement */
+    bool uneven; /* numbers of samples differ, as one was refined further */
 };
 
 /* A heat map of |A - B|. */
@@ -59,7 +59,7 @@ struct compare {
     struct engine_frame other; /* the newest picture of B */
     double divider;            /* A's share of the window's width */
     bool dragging;
-    double scale; /* of the heat map; 0: chosen by the picture */
+    double scale; /* scale of the heat map; 0: chosen by the picture */
     bool stale;   /* the window has to be given a new picture */
     struct compare_heat heat;
     struct compare_figures figures;

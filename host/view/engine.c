@@ -136,7 +136,7 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
    Without the lock. */
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
-    struct engine_change change = engine->change; /* no other thread writes it */
+    struct engine_change change = engine->change; /* which no other thread writes */
     struct engine_kept before = engine->last;
     bool same = engine_is_same(&before, frame);
     engine_compare(&before, frame, &change);
@@ -211,7 +211,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     frame->first = lane->first;
     engine_frame_finish(&lane->frame);
     lane->frame = *frame;
-    if (!lane->wanted) /* not any more: nobody would take it */
+    if (!lane->wanted) /* the lane was closed meanwhile: nobody would take the picture */
         engine_frame_finish(&lane->frame);
     engine_forget_error(engine);
     engine->lost = 0;

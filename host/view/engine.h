@@ -11,7 +11,7 @@
 struct engine;
 
 struct engine_params {
-    double budget_ms;         /* for a picture while something moves; 0: 1000 / 30 */
+    double budget_ms;         /* time for a picture while something moves; 0: 1000 / 30 */
     bool refine, times;       /* see engine_set_rest */
     uint32_t sessions;        /* most sessions kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* called from any thread: something can be taken. May be NULL */
@@ -51,9 +51,9 @@ enum { ENGINE_ESTIMATES_MAX = 16 };
 struct engine_frame {
     uint64_t number;                 /* counts up; 0: none yet */
     uint64_t first;                  /* number of the first picture of the same request */
-    struct settings settings;        /* that it was drawn with */
-    struct scene_ref *scene;         /* held */
-    struct shader_ref *shader;       /* held; NULL: none */
+    struct settings settings;        /* settings that it was drawn with */
+    struct scene_ref *scene;         /* the frame holds a reference */
+    struct shader_ref *shader;       /* likewise; NULL: none */
     whit_image *color;               /* floats: linear RGBA, or costs in one channel */
     whit_image *plain;               /* `color` without edges and grid; NULL: they are not drawn */
     whit_image *ids;                 /* hit identities; NULL unless all pixels were drawn */
@@ -64,14 +64,14 @@ struct engine_frame {
     /* It has another number of samples than the settings say. Without `ids`, ids and boxes are
        those of the picture before (engine_frame_inherit). */
     bool refined;
-    struct engine_estimate estimates[ENGINE_ESTIMATES_MAX]; /* while refined */
+    struct engine_estimate estimates[ENGINE_ESTIMATES_MAX]; /* errors while samples were added */
     uint32_t estimate_count;
     bool whole;           /* full size and all samples, as `whit render` makes it */
     bool moving;          /* asked for as `moving` */
-    double asked_ms;      /* by whit_clock_ms: when it was first asked for */
+    double asked_ms;      /* by whit_clock_ms: when the picture was first asked for */
     double draw_ms;       /* wall time with reading back, as if drawn without steps */
     double scale;         /* scale of a heat map */
-    whit_box *boxes;      /* for settings.boxes, at most ENGINE_BOXES_MAX */
+    whit_box *boxes;      /* those that settings.boxes asks for, ENGINE_BOXES_MAX at most */
     uint64_t boxes_total; /* number of all boxes */
     whit_stats stats;
     double visits;        /* mean nodes that a camera ray opens; < 0: not known */
@@ -92,7 +92,7 @@ double engine_drawn_ms(const whit_stats *stats);
    it to the first whole one after it, with the same camera, time and size. */
 struct engine_change {
     uint64_t number;          /* counts up; 0: none yet */
-    struct settings settings; /* after it */
+    struct settings settings; /* settings after the change */
     char what[128];           /* "traversal distance -> sign" */
     struct difference difference;
     /* engine_drawn_ms of one picture each, or the medians of the pictures in `ms`. */
@@ -128,14 +128,14 @@ struct engine_status {
     bool makes_spare;
     bool drawing;                /* a better picture than the last one is being drawn */
     double drawing_ms;           /* time spent so far on the current picture; 0: there is none */
-    float part;                  /* share of it that is done, 0..1 */
+    float part;                  /* share of the current picture that is done, 0..1 */
     char error[ENGINE_MESSAGE];  /* the last failure, until something succeeds; "": none */
     char errors[SESSION_ERRORS]; /* as session.errors, all that belongs to `error` */
     char refused[SETTING_PATH_BYTES]; /* as session.refused, for the scene that was loaded last */
     bool failed;        /* the last request cannot be drawn; the reason is in `error` */
     whit_result result; /* result of the last failure, also after `error` was cleared */
     bool device_lost;
-    struct engine_change change; /* the last one */
+    struct engine_change change; /* the last change */
     struct engine_reload reload; /* the last reload */
 };
 void engine_get_status(struct engine *engine, struct engine_status *status);
@@ -151,9 +151,9 @@ void engine_note_shown(struct engine *engine, uint64_t number);
 /* The ray tree of a pixel of the window's whole picture. */
 struct engine_probe {
     uint64_t number;           /* counts up; 0: none yet */
-    struct settings settings;  /* of the picture */
-    struct scene_ref *scene;   /* held */
-    whit_probe_report *report; /* NULL where it failed: see engine_status.error */
+    struct settings settings;  /* settings of the picture */
+    struct scene_ref *scene;   /* the probe holds a reference */
+    whit_probe_report *report; /* NULL: probing failed, see engine_status.error */
     whit_probe_row *rows;      /* rows of the report */
     uint32_t row_count;
     double ms;

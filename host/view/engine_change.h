@@ -21,7 +21,7 @@ struct engine_kept {
    released while it draws. */
 bool engine_change_step(struct engine *engine, bool late);
 void engine_change_stop(struct engine *engine);
-bool engine_change_waits(const struct engine *engine); /* it still has to be measured */
+bool engine_change_waits(const struct engine *engine); /* the last change is still to be measured */
 /* Compares two whole pictures with the same camera, time and size. *change stays as it is if they
    are not, or differ in nothing that has a name. */
 void engine_compare(const struct engine_kept *before, const struct engine_frame *after,

@@ -336,7 +336,8 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     for (uint32_t i = 0; i < 64 && whit_effect_name(i); ++i)
         frame->effects |= (uint64_t)whit_renderer_compiles(session->renderer, i) << i;
     frame->kernels = whit_device_kernels_made(session->device);
-    frame->draw_ms = fmax(whit_clock_ms() - start_ms, frame->stats.render_ms); /* for all rays */
+    /* If rays are reused, render_ms is still the time of tracing them. */
+    frame->draw_ms = fmax(whit_clock_ms() - start_ms, frame->stats.render_ms);
     if (task->step_spacing > 0)
         frame->draw_ms /= STEPS_TAKE;
     return result;

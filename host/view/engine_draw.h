@@ -16,9 +16,9 @@ struct engine_task {
     struct engine_refine *refine;     /* has some of its samples, and adds the others; NULL: none */
     const struct engine_kept *single; /* the picture of one sample that `refine` began with */
     double asked_ms;
-    struct engine *engine; /* that shows the steps, in `lane` */
+    struct engine *engine; /* the engine that shows the steps, in `lane` */
     struct engine_lane *lane;
-    uint64_t asked; /* lane->asked when it began */
+    uint64_t asked; /* lane->asked when the task began */
 };
 
 /* Plans quality and size of the next picture of a lane. */

@@ -29,19 +29,19 @@ struct engine_lane {
     bool wanted;
     struct settings settings;
     bool moving;
-    double asked_ms;             /* when `settings` were asked for */
+    double asked_ms;             /* by whit_clock_ms: when `settings` were asked for */
     uint64_t asked;              /* number of requests so far */
     uint64_t drawn;              /* `asked` of the last picture */
-    enum engine_quality quality; /* of the last picture */
+    enum engine_quality quality; /* quality of the last picture */
     bool failed;                 /* the request could not be drawn */
-    struct settings last;        /* that the last picture was drawn with */
-    bool stale;                  /* drawn by an older session; the right one is being made */
-    struct session *session;     /* that drew the last picture; NULL: none, or gone */
-    struct engine_frame frame;   /* the newest picture; number 0: taken */
+    struct settings last;        /* settings of the last picture */
+    bool stale; /* the last picture is by an older session; the right one is being made */
+    struct session *session;   /* session of the last picture; NULL: none, or gone */
+    struct engine_frame frame; /* the newest picture; number 0: taken */
     uint64_t frames;
     uint64_t first;       /* number of the first picture of the request */
     uint64_t place;       /* engine.places when the last picture was drawn */
-    uint32_t divisor;     /* of the last quick picture; 0: none */
+    uint32_t divisor;     /* divisor of the last quick picture; 0: none */
     uint32_t shown;       /* divisor of the last picture */
     double ms_per_sample; /* time a sample of a pixel in its session; 0: not known */
 };
@@ -49,27 +49,27 @@ struct engine_lane {
 struct engine {
     struct engine_params params;
     struct engine_refine refine[ENGINE_LANES];
-    bool refining; /* refining is drawing now */
+    bool refining; /* samples are being added to a picture now */
     struct engine_reload reload;
     struct engine_reloading reloading;
     struct engine_flip *flip;     /* NULL: no thread is running */
     struct engine_turns changing; /* measures `change` */
     /* `change` is not measured: something else was asked for, or `reload` measures the same. */
     bool change_left;
-    const struct engine_turns *timing; /* that is drawing now; NULL: none */
+    const struct engine_turns *timing; /* the pairs that are drawn now; NULL: none */
     pthread_mutex_t lock;
     pthread_cond_t work, news;
     struct thread *thread;
     bool quit;
     struct engine_lane lanes[ENGINE_LANES];
-    struct settings place; /* of A's last picture; B follows its camera, time and size */
+    struct settings place; /* settings of A's last picture; B has its camera, time and size */
     uint32_t place_divisor;
     uint64_t places;                               /* how often `place` was set */
     struct engine_job *job;                        /* NULL: none */
     uint64_t jobs;                                 /* number of jobs so far */
     struct session *sessions[ENGINE_SESSIONS_MAX]; /* used by the drawing thread; NULL: free */
-    struct session *drawing; /* that is drawing: its `cancel` stops it; NULL: none */
-    double drawing_since_ms; /* when that began */
+    struct session *drawing; /* the session that draws: its `cancel` stops it; NULL: none */
+    double drawing_since_ms; /* when `drawing` began to draw */
     /* The current picture is done soon and is not cancelled: otherwise nothing at all would be
        shown while the camera moves on. */
     bool brief;
@@ -84,14 +84,14 @@ struct engine {
        none is. */
     double spare_ms;
     uint32_t validation; /* messages about sessions that are gone */
-    bool busy;           /* it is drawing, or giving memory back */
+    bool busy;           /* the drawing thread draws, or gives memory back */
     bool littered;       /* a session was made or dropped: the heaps have free memory */
     uint64_t uses;
     uint32_t lost; /* devices lost without a picture in between */
     char error[ENGINE_MESSAGE];
     char errors[SESSION_ERRORS];
-    char refused[SETTING_PATH_BYTES]; /* of the last job that loaded a scene */
-    whit_result result;               /* of the last failure */
+    char refused[SETTING_PATH_BYTES]; /* session.refused of the last job that loaded a scene */
+    whit_result result;               /* result of the last failure */
     bool device_lost;
     struct engine_change change;
     bool probe_wanted;

@@ -213,7 +213,7 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
     *frame = (struct engine_frame){0};
     if (refine->refine)
         whit_refine_get_info(refine->refine, &info);
-    if (info.samples < ROUND * refine->samples) /* otherwise it was stopped before it was shown */
+    if (info.samples < ROUND * refine->samples) /* else the round only has to be shown */
         result = draw_part(session, refine, kept, &info);
     if (result == WHIT_OK && info.samples == ROUND * refine->samples) {
         struct scene_ref *scene = scene_ref_take(session->scene);

@@ -12,11 +12,11 @@ struct engine_task;
 struct engine_refine {
     struct engine_frame base; /* the frame that it began with, without what that owns */
     double begun_ms;          /* time that drawing `base` took */
-    uint32_t samples;         /* of what was displayed last; 0: nothing to refine */
-    bool settled;             /* more samples change nothing visible */
-    bool ended;               /* there are no more samples, or drawing them failed */
-    whit_refine *refine;      /* NULL: not begun */
-    uint8_t *rgba;            /* what was displayed last */
+    uint32_t samples;    /* samples a pixel of the picture displayed last; 0: nothing to refine */
+    bool settled;        /* more samples change nothing visible */
+    bool ended;          /* there are no more samples, or drawing them failed */
+    whit_refine *refine; /* NULL: not begun */
+    uint8_t *rgba;       /* the picture displayed last */
     struct engine_estimate estimates[ENGINE_ESTIMATES_MAX];
     uint32_t estimate_count;
 };

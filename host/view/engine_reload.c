@@ -103,7 +103,7 @@ bool engine_reload_step(struct engine *engine)
     if (!reloading->wanted || engine->reload.over || !engine_is_idle(engine))
         return false;
     if (engine->flip)
-        return false; /* its end is signalled */
+        return false; /* the FLIP thread wakes this one when it is done */
     if (reloading->before.color) {
         start_flip(engine);
         return true;

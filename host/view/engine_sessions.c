@@ -227,7 +227,7 @@ void engine_make_spare(struct engine *engine)
     engine->spare_ms = 0.0;
     if (lane->session && engine_is_done(lane) && !find_version(engine, &lane->settings) &&
         lane->session->scene->info.triangle_count <= LARGE_SCENE)
-        engine_start_job(engine, &lane->settings, true); /* it is a spare */
+        engine_start_job(engine, &lane->settings, true); /* true: as a spare session */
 }
 
 /* ---- The sessions that there are ---- */

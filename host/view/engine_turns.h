@@ -21,6 +21,6 @@ bool engine_is_idle(const struct engine *engine);
    unchanged. */
 const char *engine_turns_measure(struct engine *engine, struct engine_turns *turns,
                                  struct sample_median *difference);
-extern const char ENGINE_TURNS_STOPPED[]; /* one of these reasons */
+extern const char ENGINE_TURNS_STOPPED[]; /* the reason if something else came first */
 
 #endif

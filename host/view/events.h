@@ -34,7 +34,7 @@ enum view_event_kind {
     EVENT_DROP,
     EVENT_CLOSE,
     EVENT_REFRESH, /* the window wants to be drawn again */
-    /* in replays alone */
+    /* The events below occur in replays only. */
     EVENT_WAIT,
     EVENT_STILL,
     EVENT_PICTURE,
@@ -67,7 +67,7 @@ enum view_key {
     KEY_DOWN,
     KEY_HOME,
     KEY_END,
-    KEY_F1, /* to KEY_F1 + 11 */
+    KEY_F1, /* F2 to F11 follow */
     KEY_F12 = KEY_F1 + 11,
     KEY_SHIFT,
     KEY_CTRL,

@@ -8,7 +8,7 @@
 #include "view/scenes.h"
 #include "view/view_private.h"
 
-static const double ORBIT_RADIANS = 3.14159265358979; /* for a drag across the window's height */
+static const double ORBIT_RADIANS = 3.14159265358979; /* by a drag across the window's height */
 static const double ZOOM_NOTCH = 0.85;
 static const double FLY_A_SECOND = 0.8; /* multiples of the distance to the target */
 static const double CLICK_PIXELS = 4.0; /* a shorter move is a click, not a drag */
@@ -109,7 +109,7 @@ static void on_move(struct view *view, const struct view_event *event)
     if (held && input->dragged)
         drag(view, dx, dy);
     if (!held)
-        view->dirty = true; /* what is under the mouse may be highlighted */
+        view->dirty = true; /* the item under the mouse may be highlighted */
 }
 
 static void on_button(struct view *view, const struct view_event *event)

@@ -17,11 +17,11 @@ struct key_binding {
     unsigned mods;
     /* As the cheat sheet names the keys; NULL: another row of it names them. */
     const char *keys;
-    const char *title; /* what it says about them; NULL: `name` */
+    const char *title; /* what the cheat sheet says about the keys; NULL: `name` */
     const char *name;  /* name of the state */
     void (*act)(struct view *view);
     void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: it has no state */
-    const struct setting *setting; /* that the key steps through, instead of `act`; NULL: none */
+    const struct setting *setting; /* stepped through by the key, instead of `act`; NULL: none */
     int by;
     enum key_group group;
     bool shows_name; /* a message shows the name when the key is pressed */

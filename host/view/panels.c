@@ -91,8 +91,8 @@ void panels_load(struct view *view, const char *path)
     if (next->width != now->width || next->height != now->height)
         window_set_pixels(view->window, next->width, next->height);
     view->settings = loaded;
-    view->resized = true;       /* even if the window keeps its size */
-    view->camera_known = false; /* it is read again from the text */
+    view->resized = true;       /* the images are made anew even if the window keeps its size */
+    view->camera_known = false; /* read again from the text settings.camera */
     view_learn_camera(view);
     set_fps_goal(view, loaded.fps_goal);
     view_say(view, "%s: these settings", path);
@@ -335,7 +335,7 @@ void panels_step(struct view *view)
 {
     struct panels *panels = &view->panels;
     const struct engine_change *change = &view->status.change;
-    if (panels->scene != view->scene) { /* other prices; comparing addresses suffices */
+    if (panels->scene != view->scene) { /* another scene has other prices; addresses suffice */
         panels->scene = view->scene;
         memset(panels->prices, 0, sizeof panels->prices);
         panels->pending = 0;

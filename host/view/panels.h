@@ -14,8 +14,8 @@ struct panels {
     bool settings, effects;
     uint64_t change;   /* number of the last engine_change that was handled */
     int pending;       /* 1 + the effect that was just switched; 0: none; -1: several */
-    const void *scene; /* that `prices` belong to */
-    struct effect_price prices[EFFECTS_MAX]; /* prices measured by switches that the user made */
+    const void *scene; /* the scene that `prices` belong to */
+    struct effect_price prices[EFFECTS_MAX]; /* measured when the user switched an effect */
     struct prices *measured; /* measures all prices while the panel is open; or NULL */
     char states[STATES_MAX][VIEW_FREE_NAME]; /* names of files of settings, newest first */
     uint32_t state_count;

@@ -103,7 +103,7 @@ void memory_keep(const whit_log *log, const char *scene, const char *camera)
     if (folder && path && key) {
         make_folder(folder);
         json_t *all = load(path);
-        json_object_del(all, key); /* so that it becomes the newest */
+        json_object_del(all, key); /* the scene is then added as the newest */
         if (camera[0])
             json_object_set_new(all, key, json_string(camera));
         forget_old(all);

@@ -209,7 +209,7 @@ static bool replay_event(struct view *view, const struct view_event *event)
         if (!is_there(view, event))
             return false;
         engine_set_rest(view->engine, false, false);
-        engine_get_status(view->engine, &view->status); /* it has what was measured meanwhile */
+        engine_get_status(view->engine, &view->status); /* with what was measured meanwhile */
         return true;
     case EVENT_PICTURE:
     case EVENT_PRICED:

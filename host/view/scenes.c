@@ -148,7 +148,7 @@ void view_open(struct view *view, const char *path)
     open_scene(view, path);
 }
 
-/* Reads a scene again, whatever is known of it: the one asked for (`asked`), or the one of the
+/* Reads a scene again, even if it is loaded already: the one asked for (`asked`), or the one of the
    settings. */
 static void read_again(struct view *view, bool asked)
 {
@@ -180,7 +180,7 @@ bool scenes_refuse(struct view *view)
     settings->reload = back->reload;
     memcpy(settings->environment, back->environment, sizeof settings->environment);
     view->dirty = true;
-    if (view->camera_known) /* it was only read again, and keeps its camera */
+    if (view->camera_known) /* the same scene was read again: its camera stays */
         return true;
     memcpy(settings->scene, back->scene, sizeof settings->scene);
     memcpy(settings->camera, back->camera, sizeof settings->camera);

@@ -12,22 +12,22 @@ struct scene_ref {
     atomic_uint refs;
     whit_scene *scene;
     whit_scene_info info;
-    struct settings settings; /* that it was loaded for */
+    struct settings settings; /* settings that it was loaded for */
     double load_ms;
 };
 struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
-void scene_ref_drop(struct scene_ref *ref);              /* likewise */
+void scene_ref_drop(struct scene_ref *ref);              /* NULL is fine */
 
 /* A compiled shader (a user's file). Sessions, and whatever shows its sliders, hold references. */
 struct shader_ref {
     atomic_uint refs;
     whit_shader *shader;
     whit_shader_info info;
-    struct settings settings; /* that it was compiled for */
+    struct settings settings; /* settings that it was compiled for */
     double compile_ms;        /* from GLSL to SPIR-V */
 };
 struct shader_ref *shader_ref_take(struct shader_ref *ref); /* NULL is fine */
-void shader_ref_drop(struct shader_ref *ref);               /* likewise */
+void shader_ref_drop(struct shader_ref *ref);               /* NULL is fine */
 /* The index of the shader's aov `name`; UINT32_MAX: there is none. */
 uint32_t shader_ref_find_aov(const struct shader_ref *ref, const char *name);
 
@@ -48,7 +48,7 @@ enum { SESSION_ERROR = 1100, SESSION_ERRORS = 34 * SESSION_ERROR };
 struct session {
     void (*step)(void *user, const whit_step *step); /* gets steps of a picture; or NULL */
     void *step_user;
-    struct settings settings; /* of scene, trees and kernel, and of the last picture */
+    struct settings settings; /* those of its scene, trees and kernel, and of its last picture */
     struct scene_ref *scene;
     struct shader_ref *shader; /* NULL: none */
     whit_accel *accel;
@@ -56,7 +56,7 @@ struct session {
     whit_renderer *renderer;
     volatile bool cancel; /* stops what the session is doing */
     whit_log log;         /* log of all its parts */
-    void *owner;          /* belongs to its maker, as does `error` */
+    void *owner;          /* belongs to the session's maker, as `error` does */
     char error[512];
     char errors[SESSION_ERRORS]; /* all errors of the shader, one a line; "": none */
     /* Folder of a file that the scene names but may not read; "": none. */

@@ -27,7 +27,7 @@ struct shaders_counts {
 };
 
 struct shaders {
-    struct watch *watch;      /* of the file and its includes; NULL: not possible */
+    struct watch *watch;      /* watches the file and its includes; NULL: not possible */
     struct shader_ref *shown; /* shader of the picture that is shown; NULL: none */
     /* Why the current file is not shown, an error a line; "": it is shown, or may still be. */
     char errors[SESSION_ERRORS];

@@ -19,7 +19,7 @@ static void put_text(json_t *object, const char *name, const char *text)
 {
     char shown[4096];
     json_t *value = json_string(text ? text : "");
-    if (!value) /* it is no UTF-8 */
+    if (!value) /* the text is no UTF-8 */
         value = json_string(whit_text_show(text, shown, sizeof shown));
     json_object_set_new(object, name, value);
 }

@@ -20,7 +20,7 @@ struct ui;
    file, read during this call only; NULL: Dear ImGui's own font. Errors are logged. */
 WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, const uint8_t *font,
                                  size_t font_bytes, struct ui **out);
-void ui_destroy(struct ui *ui); /* before the swapchain; NULL is fine */
+void ui_destroy(struct ui *ui); /* call it before destroying the swapchain; NULL is fine */
 
 /* Input of the user since the last frame. Keys are those of ui_key. */
 enum ui_key {
@@ -72,7 +72,7 @@ WHIT_CHECK whit_result ui_result(const struct ui *ui);
    there is no room it is invisible, and not in ui_panel. */
 enum ui_panel {
     UI_PANEL_PLAIN = 0, /* no title, lets the mouse through; long text is wrapped */
-    UI_PANEL_STAYS = 1, /* likewise, but visible even without room */
+    UI_PANEL_STAYS = 1, /* as UI_PANEL_PLAIN, but visible even without room */
     /* Visible even without room; has a title, takes the mouse, scrolls if the window is too
        small. */
     UI_PANEL_HOLD = 2,

@@ -18,7 +18,7 @@
 
 static const double MOVING_MS = 160.0; /* time after the last move until a whole picture is drawn */
 static const double TOAST_MS = 4000.0;
-static const double REST_MS = 1000.0; /* after such a pause the frame rate is counted anew */
+static const double REST_MS = 1000.0; /* a pause that begins the count of the frame rate anew */
 static const double PROGRESS_S = 0.1; /* time between looks at the engine's status */
 /* Time between drawings of a progress bar: on a CPU device each takes time of the cores that
    draw. */
@@ -226,7 +226,7 @@ static whit_result fit_window(struct view *view)
         (picture->width != info.width || picture->height != info.height)) {
         picture->width = info.width;
         picture->height = info.height;
-        view->dirty = true; /* so that another picture is asked for */
+        view->dirty = true; /* so that a picture of the new size is asked for */
     }
     return result;
 }
@@ -389,7 +389,7 @@ static whit_result step(struct view *view)
     shaders_step(view);
     ask(view); /* settings that failed may have been undone */
     if (view->params->frames > 0 && view->picture_set)
-        view->dirty = true; /* until so many were shown */
+        view->dirty = true; /* draws on until params->frames pictures were shown */
     if (result == WHIT_OK && view->dirty)
         result = draw_window(view);
     return result;

@@ -29,7 +29,7 @@ struct view_clock { /* time of the animation */
 struct view_rate {
     double shown_ms[32]; /* ring buffer, since the last pause */
     uint32_t count;
-    double fps; /* 0: there was one picture */
+    double fps; /* 0: not known after one picture alone */
 };
 
 /* The viewer's clock: it says how long messages stay, when a moved picture is at rest, and how far
@@ -38,7 +38,7 @@ struct view_rate {
 struct view_time {
     bool turned;
     double now_ms;   /* the time, while a replay moves the clock (`turned`) */
-    double ahead_ms; /* otherwise: how far it is ahead of the system's clock */
+    double ahead_ms; /* not `turned`: how far the time is ahead of the system's clock */
 };
 
 struct view {
@@ -50,13 +50,13 @@ struct view {
     struct ui *ui;
     struct engine *engine;
 
-    struct settings settings; /* that are asked for */
+    struct settings settings; /* the settings that are asked for */
     /* The settings of the last picture, or at the start: a failed request goes back to them. */
     struct settings fallback;
     struct view_camera camera; /* settings.camera as numbers */
     bool camera_known;         /* false: the scene's camera was not read yet */
     int file_camera;           /* index of the scene's camera; -1: moved by hand */
-    uint32_t scene_index;      /* in params->scenes */
+    uint32_t scene_index;      /* index of the scene in params->scenes */
 
     struct engine_frame frame;
     struct engine_status status;
@@ -65,7 +65,7 @@ struct view {
     bool picked;               /* the panel of the pixel is open */
     double pick_x, pick_y;     /* the pixel that was asked for last */
     uint64_t pick_frame;       /* number of the picture for which it was last asked again */
-    bool focus;                /* frame what is there once the probe has come */
+    bool focus;                /* the camera frames the hit once the probe is there */
     struct scene_ref *scene;   /* scene of `frame` */
 
     struct prices *prices;               /* NULL: none are measured */
@@ -90,15 +90,15 @@ struct view {
     bool help, hint;
     char toast[TOAST_BYTES];
     double toast_until_ms;
-    double progress_ms; /* by the system's clock: when progress was shown last */
+    double progress_ms; /* when the progress bar was last drawn, by the system's clock */
     bool dirty;         /* the window has to be drawn again */
     bool resized;       /* the images of the window have to be made again */
     bool quit;
     uint32_t shown; /* number of pictures shown */
     bool picture_set;
 
-    struct watch *watch;            /* of the shown scene's files; NULL: not possible */
-    struct watch *watch_asked;      /* of `asked`, until that is shown; likewise */
+    struct watch *watch;            /* watches the shown scene's files; NULL: not possible */
+    struct watch *watch_asked;      /* watches `asked` until it is shown; NULL: not possible */
     char asked[SETTING_PATH_BYTES]; /* the scene that was last opened, or read again */
     char refused[ENGINE_MESSAGE];   /* why `asked` is not shown; "": it is, or may still be */
     /* The last folder of status.refused that the user has answered about. */
@@ -125,7 +125,7 @@ void view_moved(struct view *view);
 struct settings view_drawn(const struct view *view, const struct settings *settings);
 /* Whether quick pictures are wanted, since something moves. */
 bool view_is_moving(const struct view *view);
-/* When that ends if nothing is moved any more, by view_now_ms. */
+/* When quick pictures end if nothing is moved any more, by view_now_ms. */
 double view_stands_ms(const struct view *view);
 /* Goes back to the settings of the shown picture if another kernel or tree was asked for and is not
    there yet; false: it was not. */

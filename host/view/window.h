@@ -17,7 +17,7 @@ struct window_params {
 /* WHIT_ERROR_NO_DEVICE, logged, if there is no display, or no Vulkan for its windows. */
 WHIT_CHECK whit_result window_create(const whit_log *log, const struct window_params *params,
                                      struct window **out);
-void window_destroy(struct window *window); /* after the device; NULL is fine */
+void window_destroy(struct window *window); /* call it after destroying the device; NULL is fine */
 
 /* For device_params; borrowed from the window. */
 const struct device_surface *window_surface(const struct window *window);
@@ -39,6 +39,6 @@ bool window_is_fullscreen(const struct window *window);
 /* Whether the window has the size that was asked for last. */
 bool window_is_settled(const struct window *window);
 void window_set_minimised(struct window *window, bool minimised);
-void window_copy(struct window *window, const char *text); /* to the clipboard */
+void window_copy(struct window *window, const char *text); /* copies it to the clipboard */
 
 #endif

@@ -173,7 +173,7 @@ static void take_figures(struct view *view)
         return;
     if (state.report && state.report->complete) {
         wish->figures->report = *state.report;
-        wish->figures->report.reference = NULL; /* it belongs to the prices */
+        wish->figures->report.reference = NULL; /* owned by wish->prices */
         save(view);
         choose(view);
     } else {
@@ -201,7 +201,7 @@ static void try_choice(struct view *view)
         choose(view);
         if (wish->stage == WISH_TRIES && !settings_same(&frame->settings, &view->settings))
             return;
-        wish->took_ms = took_ms; /* no other choice is nearer */
+        wish->took_ms = took_ms; /* there are no other settings to try */
         wish->stage = WISH_CHOSEN;
     }
     save(view);

@@ -11,7 +11,7 @@ enum wish_stage {
     WISH_WAITS,     /* waits for the first whole picture */
     WISH_MEASURES,  /* costs are being measured */
     WISH_TRIES,     /* the chosen settings are drawn for the first time */
-    WISH_CHOSEN,    /* they were drawn */
+    WISH_CHOSEN,    /* the chosen settings were drawn */
     WISH_NO_CHOICE, /* no settings meet the wish */
     WISH_FAILED,    /* measuring failed */
 };
@@ -20,7 +20,7 @@ const char *wish_stage_name(enum wish_stage stage); /* "measures" */
 enum { WISH_TEXT = 256 };
 struct wish {
     enum wish_stage stage;
-    struct scene_ref *scene;           /* that was measured; only compared by address */
+    struct scene_ref *scene;           /* the scene that was measured; only compared by address */
     struct prices *prices;             /* NULL: nothing was measured */
     struct cost_kept_figures *figures; /* costs to choose by; owned; NULL: none yet */
     struct settings place;             /* settings of the picture that `figures` belong to */
