@@ -20,7 +20,7 @@ WHIT_CHECK whit_result hooks_find_material(struct renderer *renderer);
 /* Clears the words of the status buffer about loops without fuel and wrong answers of
    intersect(). */
 WHIT_CHECK whit_result hooks_clear_status(const struct target *target);
-/* Appends to the text which user's file the picture has functions of; nothing without one. */
+/* Appends the name of the user's file whose functions the picture has; nothing if there is none. */
 void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes);
 /* Describes the loop that ran out of iterations, as the status buffer names it. */
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);

@@ -23,7 +23,7 @@ struct probe_ray {
     /* What exact arithmetic finds (oracle/rational.h). Not known: the ray was not traced, or too
        many surfaces let it pass. */
     bool exact_known;
-    float exact_t; /* a key; infinity: no hit */
+    float exact_t; /* the key, as in oracle/rational.h; infinity: no hit */
     uint32_t exact_instance, exact_primitive;
     bool exact_equal; /* the device has the same ids (shadow rays: the same answer); EXACT: t too */
 };

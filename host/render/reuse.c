@@ -74,8 +74,8 @@ bool reuse_is_possible(const struct renderer *renderer)
     return renderer->params.reuse_rays && keeps_view(renderer);
 }
 
-/* A picture of one sample writes each pixel once. In the same view that is the value which is there
-   already. */
+/* A picture of one sample writes each pixel once, in the same view with the value that the pixel
+   has already. */
 bool reuse_outlives(const struct renderer *renderer)
 {
     return keeps_view(renderer) && renderer->params.sampling.count == 1 &&

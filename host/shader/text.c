@@ -235,7 +235,7 @@ static whit_result at(struct reading *r, uint32_t file, uint32_t line, const cha
     return WHIT_ERROR_INPUT;
 }
 
-/* Why a directive is refused, which only whit's own text may use; NULL: it is not. */
+/* Why a directive is refused that only whit's own text may use; NULL: it is not refused. */
 static const char *refused_directive(const char *name)
 {
     static const char *const pairs[][2] = {

@@ -186,8 +186,8 @@ static whit_result finish_round(struct session *session, struct engine_refine *r
 }
 
 /* Keeps the samples that were added: a new whole picture has the same pixels as the one that
-   refining began with. *frame then shows as many samples as the picture before. False: it
-   cannot. */
+   refining began with. *frame then shows as many samples as the picture before. False: they
+   cannot be kept. */
 static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
                  struct session *session, struct engine_frame *frame)
 {

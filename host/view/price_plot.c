@@ -13,7 +13,7 @@ static const uint32_t COLOR_USUAL = 0xFF4C8CFFu, COLOR_BEST = 0xFFE9B456u, COLOR
 static const float MARGIN = 0.07f; /* margin on each side, as a share of the box */
 static const double ALL_TICKS = 100.0;
 
-/* A row and its point. */
+/* A row of the price list, and its point in the plot. */
 struct place {
     const struct cost_row *row;
     double ms, flip;

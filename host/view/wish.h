@@ -43,7 +43,7 @@ void wish_step(struct view *view);
 void wish_again(struct view *view);
 /* Whether there is nothing to wait for. */
 bool wish_is_still(const struct view *view);
-void wish_draw(const struct view *view); /* draws its lines of the figures */
+void wish_draw(const struct view *view); /* draws the wish's lines of the HUD */
 void wish_finish(struct view *view);
 
 #endif
