@@ -96,7 +96,7 @@ static bool shows_it(const struct engine *engine, const struct engine_lane *lane
            !lane->stale && lane->frames > 0 && settings_same(&lane->last, &lane->settings);
 }
 
-/* What to draw for a lane now; false: nothing. With the lock. */
+/* What to draw for a lane now; false: nothing. Called with engine->lock held. */
 static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     if (engine_is_done(lane))
@@ -133,7 +133,7 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
 }
 
 /* Notes what a whole picture changed. Returns whether it is the same bytes as the one before.
-   Without the lock. */
+   Called without engine->lock. */
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
     struct engine_change change = engine->change; /* which no other thread writes */
@@ -257,7 +257,7 @@ void engine_show_preview(struct engine *engine, struct engine_job *job)
     job->preview = (struct engine_frame){0};
 }
 
-/* With the lock. Out of memory is often not logged, so a text is made up here. */
+/* Called with engine->lock held. Out of memory is often not logged, so a text is made up here. */
 static void say_failure(struct engine *engine, whit_result result)
 {
     engine->result = result;

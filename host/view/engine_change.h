@@ -17,8 +17,8 @@ struct engine_kept {
 };
 
 /* Measures the last change, which takes a while, unless something else comes first. `late`: there
-   is nothing left to refine. False: there was nothing to do. Called with the lock, which is
-   released while it draws. */
+   is nothing left to refine. False: there was nothing to do. Called with engine->lock held, which
+   is released while it draws. */
 bool engine_change_step(struct engine *engine, bool late);
 void engine_change_stop(struct engine *engine);
 bool engine_change_waits(const struct engine *engine); /* the last change is still to be measured */

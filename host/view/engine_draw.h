@@ -24,14 +24,14 @@ struct engine_task {
 /* Plans quality and size of the next picture of a lane. */
 void engine_plan(const struct engine *engine, const struct engine_lane *lane,
                  struct engine_task *task);
-/* Draws a picture. On the drawing thread, without the lock. The caller calls
+/* Draws a picture. Called on the drawing thread, without engine->lock. The caller calls
    engine_frame_finish. */
 WHIT_CHECK whit_result engine_draw(const struct engine_task *task, struct engine_frame *frame);
 /* Makes a frame of a step of the picture. WHIT_ERROR_MEMORY: there is nothing to show. */
 WHIT_CHECK whit_result engine_draw_step(const struct engine_task *task, const whit_step *step,
                                         struct engine_frame *frame);
-/* Draws the picture of a task again, to measure its time. On the drawing thread, without the
-   lock. */
+/* Draws the picture of a task again, to measure its time. Called on the drawing thread, without
+   engine->lock. */
 WHIT_CHECK whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats);
 
 #endif

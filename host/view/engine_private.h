@@ -104,7 +104,7 @@ struct engine {
     struct engine_kept single[ENGINE_LANES];
 };
 
-/* With the lock. */
+/* Called with engine->lock held. */
 void engine_wake(struct engine *engine);
 bool engine_is_done(const struct engine_lane *lane);
 

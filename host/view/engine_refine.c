@@ -204,7 +204,7 @@ static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
 
 /* Draws one part. After the last part of a round *frame is a picture of four times the samples,
    without hit identities; otherwise it is zeroed. `kept`: the picture that refining began with.
-   Without the lock. */
+   Called without engine->lock. */
 static whit_result draw_next(struct session *session, struct engine_refine *refine,
                              const struct engine_kept *kept, struct engine_frame *frame)
 {

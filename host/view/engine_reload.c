@@ -43,8 +43,8 @@ void engine_flip_destroy(struct engine_flip *flip)
 }
 
 /* Starts a thread that compares the pictures before and after a reload by FLIP. The thread works on
-   copies, so that drawing does not wait for it. Call it with the lock, which is released while the
-   picture is copied. */
+   copies, so that drawing does not wait for it. Call it with engine->lock held, which is released
+   while the picture is copied. */
 static void start_flip(struct engine *engine)
 {
     struct engine_flip *flip = calloc(1, sizeof *flip);

@@ -1,5 +1,5 @@
-/* Compares pictures of a new version of the shader and the version before. Functions are called
-   with the lock; note and step on the drawing thread. */
+/* Compares pictures of a new version of the shader and the version before. The functions are called
+   with engine->lock held; note and step on the drawing thread. */
 #ifndef VIEW_ENGINE_RELOAD_H
 #define VIEW_ENGINE_RELOAD_H
 
@@ -34,7 +34,7 @@ void engine_reload_note(struct engine *engine, struct engine_kept *before,
 /* Measures a reload if there is something to measure and nothing else to do; releases the lock
    meanwhile. False: nothing was done. */
 bool engine_reload_step(struct engine *engine);
-/* As engine_stop_reload, but called with the lock. */
+/* As engine_stop_reload, but called with engine->lock held. */
 void engine_reload_stop(struct engine *engine);
 /* Waits for the thread, and frees; NULL is fine. */
 void engine_flip_destroy(struct engine_flip *flip);

@@ -88,7 +88,7 @@ static void run_job(void *context)
     pthread_mutex_unlock(&engine->lock);
 }
 
-/* Without the lock. */
+/* Called without engine->lock. */
 void engine_drop_session(struct engine *engine, struct session *session)
 {
     uint32_t messages = session_close(session);

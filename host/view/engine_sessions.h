@@ -1,5 +1,5 @@
-/* The sessions of the engine, and the one being made. For the drawing thread, with the lock except
-   for drop and destroy. */
+/* The sessions of the engine, and the one being made. Called on the drawing thread with
+   engine->lock held, but engine_job_destroy and engine_drop_session without it. */
 #ifndef VIEW_ENGINE_SESSIONS_H
 #define VIEW_ENGINE_SESSIONS_H
 

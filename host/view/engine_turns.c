@@ -28,7 +28,7 @@ bool engine_is_idle(const struct engine *engine)
     return !engine->quit && !engine->job && !engine->probe_wanted;
 }
 
-/* Draws one picture of one side; with the lock, which is released meanwhile. */
+/* Draws one picture of one side; called with engine->lock held, which is released meanwhile. */
 static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
 {
     const struct turn *turn = user;

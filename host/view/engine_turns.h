@@ -1,5 +1,5 @@
 /* Draws two pictures with the same camera, time and size in turns, while there is nothing else to
-   do. Call with the lock. */
+   do. Its functions are called with engine->lock held. */
 #ifndef VIEW_ENGINE_TURNS_H
 #define VIEW_ENGINE_TURNS_H
 
