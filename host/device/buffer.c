@@ -13,9 +13,10 @@
 enum { TEXEL_BYTES = 16, POISON = 0xa5, LARGE_PAGE_BYTES = 2 << 20 };
 
 enum placement {
-    PLACE_DEVICE,  /* fast for the device, out of the host's reach */
-    PLACE_UNIFIED, /* one memory for both */
-    PLACE_HOST,    /* written, and above all read, by the host, or by copies alone */
+    PLACE_DEVICE,  /* memory of the device, not mapped */
+    PLACE_UNIFIED, /* memory of the device, mapped for the host */
+    PLACE_HOST, /* memory of the host, cached where there is such a type, so that the host reads it
+                   fast */
 };
 
 /* Wanted properties of a memory type, best first. Vulkan promises every buffer a type that is
@@ -33,7 +34,7 @@ static const VkMemoryPropertyFlags wanted[][4] = {
                     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT},
 };
 
-/* Types with other properties than these need features that were not asked for. */
+/* A memory type with any other property needs a device feature that whit does not enable. */
 static const VkMemoryPropertyFlags understood =
     VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
     VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
@@ -58,8 +59,9 @@ static bool find_memory_type(const struct device *device, uint32_t type_bits,
     return false;
 }
 
-/* A device with a memory of its own reaches the host's through a bus of some 25 GB/s: kernels have
-   nothing there, and what the host reads or writes is copied by way of the staging buffer. */
+/* A device with a memory of its own reaches the host's memory through a bus of some 25 GB/s. So
+   buffers that its kernels use lie in its own memory, and the host reads and writes them by copies
+   through the staging buffer. */
 static enum placement placement_for(const struct device *device, uint32_t uses)
 {
     bool one_memory =
@@ -70,7 +72,7 @@ static enum placement placement_for(const struct device *device, uint32_t uses)
     return uses & BUFFER_HOST ? PLACE_HOST : PLACE_UNIFIED;
 }
 
-/* "128 MiB", or bytes where that would not be exact. */
+/* Writes whole MiB as "128 MiB", all other sizes in bytes. */
 static void describe_size(uint64_t bytes, char *text, size_t text_bytes)
 {
     if (bytes >= 1 << 20 && bytes % (1 << 20) == 0)
@@ -107,10 +109,10 @@ static whit_result check_limits(const struct buffer *buffer, uint64_t size_bytes
     return result;
 }
 
-/* Bytes of a buffer in Vulkan. lavapipe compiles a kernel again for texel buffers that it takes for
-   images of another kind: those whose bytes are a power of two, and those whose bits 8 to 15 of the
-   bytes are zero, which it reads as a number of levels. Small scenes have all kinds, and a few more
-   bytes make them one. */
+/* The size that the Vulkan buffer gets. lavapipe compiles a kernel anew for each kind of texel
+   buffer, and takes those for kinds of their own whose size is a power of two, or has zeros in bits
+   8 to 15, which it reads as a number of mipmap levels. Buffers of small scenes have all these
+   kinds; padding by a few bytes makes them one kind. */
 static uint64_t vulkan_bytes(const struct buffer *buffer)
 {
     const struct device_limits *limits = &buffer->device->limits;
@@ -127,9 +129,9 @@ static uint64_t vulkan_bytes(const struct buffer *buffer)
                : buffer->size_bytes;
 }
 
-/* Memory of a CPU device is the process's own. A page of 4 KiB that is touched for the first time
-   takes longer to come by than to fill, and a kernel walks through many; so what is large starts
-   and ends with a large page. */
+/* Memory of a CPU device is the process's own. The first touch of a page of 4 KiB takes longer than
+   filling it, and a kernel touches many; so a large buffer starts and ends at a boundary of a large
+   page (2 MiB). */
 static bool is_large(const struct device *device, enum placement placement, uint64_t size_bytes)
 {
     return device->info.kind == WHIT_DEVICE_CPU && placement != PLACE_DEVICE &&

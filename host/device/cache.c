@@ -1,4 +1,4 @@
-/* The pipeline cache and what is kept of it, for each driver build apart. */
+/* The pipeline cache and its file, one for each build of a driver. */
 #include "device/cache.h"
 
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "base/store.h"
 
-/* Whether the driver may be given it: not all look before they trust it. */
+/* Whether the data is from this driver: not every driver checks that itself. */
 static bool is_of_driver(const struct device *device, const uint8_t *data, size_t data_bytes)
 {
     VkPipelineCacheHeaderVersionOne driver;

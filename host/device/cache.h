@@ -5,6 +5,6 @@
 #include "device/vulkan.h"
 
 whit_result cache_open(struct device *device);
-void cache_close(struct device *device); /* saves, destroys */
+void cache_close(struct device *device); /* saves the cache, then destroys it */
 
 #endif

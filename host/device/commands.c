@@ -87,7 +87,7 @@ void commands_destroy(struct commands *commands)
     if (!commands)
         return;
     VkDevice vk = commands->device->vk;
-    /* Also after a loss: a wait then returns at once, and nothing in use is destroyed. */
+    /* Waits for a lost device too: that returns at once, and nothing in use is destroyed. */
     if (commands->state == COMMANDS_IN_FLIGHT)
         (void)vkWaitForFences(vk, 1, &commands->fence, VK_TRUE, UINT64_MAX);
     vkDestroyQueryPool(vk, commands->queries, NULL);
@@ -96,7 +96,7 @@ void commands_destroy(struct commands *commands)
     free(commands);
 }
 
-/* Logs once a recording; commands_submit returns it. */
+/* Logs the first error of a recording, which commands_submit returns. */
 #define RECORDING_FAILS(commands, code, ...)                                                       \
     do {                                                                                           \
         if ((commands)->recording == WHIT_OK) {                                                    \
@@ -143,7 +143,7 @@ whit_result commands_begin(struct commands *commands)
                                       .pLabelName = commands->name};
         LAYERS_BESIDE(device->begin_label(commands->vk, &label));
     }
-    commands_barrier(commands); /* sees what earlier submissions wrote */
+    commands_barrier(commands); /* makes what earlier submissions wrote visible */
 fail:
     return result;
 }
@@ -275,7 +275,8 @@ void commands_copy(struct commands *commands, struct buffer *from, uint64_t from
     vkCmdCopyBuffer(commands->vk, from->vk, to->vk, 1, &region);
 }
 
-/* Both stamps wait for all earlier work, so that spans add up to the time of the submission. */
+/* Both time stamps of a span wait for all earlier work, so that spans add up to the time of the
+   submission. */
 static void stamp(struct commands *commands, uint32_t query)
 {
     if (commands->queries)
@@ -387,7 +388,7 @@ whit_result commands_wait(struct commands *commands, double timeout_ms)
     return read_spans(commands);
 fail:
     if (result != WHIT_ERROR_TIME_LIMIT) {
-        /* Whoever gives up now and destroys what was used must find it idle. */
+        /* The caller may now destroy what these commands use, so the device must be idle. */
         (void)vkDeviceWaitIdle(device->vk);
         commands->state = COMMANDS_IDLE;
     }

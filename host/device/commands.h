@@ -14,21 +14,24 @@ void commands_dispatch(struct commands *commands, uint32_t groups_x, uint32_t gr
                        uint32_t groups_z);
 void commands_dispatch_indirect(struct commands *commands, struct buffer *buffer,
                                 uint64_t offset_bytes);
-/* Everything before is visible to everything after: shader, transfer, indirect, host. */
+/* Makes all earlier writes visible to all later accesses by shaders, transfers, indirect dispatches
+   and the host. */
 void commands_barrier(struct commands *commands);
 void commands_fill(struct commands *commands, struct buffer *buffer, uint64_t offset_bytes,
                    uint64_t size_bytes, uint32_t word);
 void commands_copy(struct commands *commands, struct buffer *from, uint64_t from_offset_bytes,
                    struct buffer *to, uint64_t to_offset_bytes, uint64_t size_bytes);
-/* A labelled stretch whose time is measured; at most COMMANDS_SPANS a recording, not nested. */
+/* A labelled span of commands whose device time is measured; at most COMMANDS_SPANS in one
+   recording, not nested. */
 enum { COMMANDS_SPANS = 256 };
 void commands_span_begin(struct commands *commands, const char *label);
 void commands_span_end(struct commands *commands);
-/* A recording error (out of memory) surfaces here. */
+/* Returns the first error of the recording, such as out of memory, without submitting. */
 WHIT_CHECK whit_result commands_submit(struct commands *commands);
-/* Waits up to `timeout_ms` (< 0: for ever). WHIT_ERROR_TIME_LIMIT leaves it in flight. */
+/* Waits up to `timeout_ms` (< 0: for ever). After WHIT_ERROR_TIME_LIMIT the submission is still in
+   flight. */
 WHIT_CHECK whit_result commands_wait(struct commands *commands, double timeout_ms);
-/* Device time of span i of the last finished submission; < 0 without timestamps. */
+/* Device time of span number `span` of the last finished submission; < 0 without timestamps. */
 double commands_span_ms(const struct commands *commands, uint32_t span);
 uint32_t commands_span_count(const struct commands *commands);
 

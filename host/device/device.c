@@ -39,8 +39,8 @@ static bool has_extension(struct device *device, const char *name)
     return found;
 }
 
-/* lavapipe starts a thread a core, and a few more, and waits for ever for one that did not start.
- */
+/* lavapipe starts one thread per core and a few more, and waits for ever if one of them cannot
+   start. */
 static whit_result check_room(const struct device *device)
 {
     enum { OTHER_THREADS = 4 };
@@ -214,7 +214,7 @@ uint64_t device_pipelines_made(const struct device *device)
     return device->pipelines_made;
 }
 
-/* The subgroup size is part of it, which kept pipelines may depend on. */
+/* The name contains the subgroup size, since kept pipelines may depend on it. */
 char *device_kept_name(const struct device *device, const char *what)
 {
     char uuid[2 * VK_UUID_SIZE + 1];

@@ -23,19 +23,20 @@ struct device_limits {
     uint64_t max_texel_elements; /* of one texel buffer view */
     uint64_t max_allocation_bytes;
     uint32_t max_group_count_x;
-    /* What kernels may ask of floats of 32 bits: sums rounded to nearest; NaN, infinity and the
-       sign of 0 kept; denormals kept. */
+    /* Whether kernels may request these of 32-bit floats (float controls): rounding to nearest;
+       NaN, infinity and the sign of 0 kept; denormals kept. */
     bool asked_nearest, asked_special, asked_denormals;
-    bool loop_limited; /* a driver that may end shaders after 65535 iterations (old lavapipe) */
+    bool loop_limited; /* the driver may end shaders after 65535 iterations of loops (old lavapipe)
+                        */
 };
 
 /* All physical devices, usable or not; *infos is one block, free() it. No loader or driver at all
    is WHIT_ERROR_NO_DEVICE, logged with what to install. */
 WHIT_CHECK whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t *count);
 
-/* A window that a device shows pictures in, for device_params. Who makes windows knows which
-   instance extensions that takes, and makes the surface: `create` gets a VkInstance and the address
-   of a VkSurfaceKHR, and returns a VkResult. The device destroys the surface. */
+/* A window that a device shows pictures in, for device_params. The maker of the window names the
+   instance extensions that it needs, and makes the surface: `create` gets a VkInstance and the
+   address of a VkSurfaceKHR, and returns a VkResult. The device destroys the surface. */
 struct device_surface {
     const char *const *extensions;
     uint32_t extension_count; /* at most 8 */
@@ -44,7 +45,7 @@ struct device_surface {
 };
 
 struct device_params {
-    const char *selector; /* as of whit_device_params */
+    const char *selector; /* as in whit_device_params */
     bool validation;      /* Khronos layer with GPU-assisted and synchronization checks; its
                              absence is an error. WHIT_VALIDATION=1 in the environment turns it on
                              for every device; WHIT_VALIDATION=sync without the GPU-assisted
@@ -53,7 +54,7 @@ struct device_params {
                                              device that cannot present to it is not usable. */
 };
 
-/* A selector that no device answers is WHIT_ERROR_NO_DEVICE, logged with the devices there are.
+/* A selector that matches no device gives WHIT_ERROR_NO_DEVICE, logged with the devices there are.
    Compiled pipelines are kept from one run to the next (base/store.h), unless WHIT_NO_CACHE=1 is in
    the environment. */
 WHIT_CHECK whit_result device_create(const whit_log *log, const struct device_params *params,
@@ -61,21 +62,22 @@ WHIT_CHECK whit_result device_create(const whit_log *log, const struct device_pa
 void device_destroy(struct device *device);
 const whit_device_info *device_get_info(const struct device *device);
 const struct device_limits *device_get_limits(const struct device *device);
-/* How many threads may make pipelines of the device at once, as threads_for takes it: 0 is as many
-   as there are cores. 1 while validation layers check, since those of Debian 12 crash where threads
-   make devices at once and were not tried with pipelines; and while WHIT_FAULT counts calls. */
+/* How many threads may make pipelines of the device at once, in the form that threads_for takes: 0
+   for as many as there are cores. 1 while WHIT_FAULT counts calls, and under validation layers:
+   those of Debian 12 crash when threads create devices at once, and were not tried with pipelines.
+   */
 uint32_t device_compile_threads(const struct device *device);
-/* Pipelines that the driver has been asked for so far, those of the device's own cache included;
-   none that device_keep_pipelines gave again. From any thread. */
+/* How many pipelines the driver was asked for so far. Those that it found in its own cache count,
+   those that device_keep_pipelines made unnecessary do not. From any thread. */
 uint64_t device_pipelines_made(const struct device *device);
-/* `what` and by which device and driver it was found, for store_read; free() it. NULL: no memory.
- */
+/* The name under which store_read finds `what` of this device and driver; free() it. NULL: no
+   memory. */
 char *device_kept_name(const struct device *device, const char *what);
-/* Warnings and errors of the validation layers so far (each was logged). */
+/* Number of warnings and errors of the validation layers so far (each was logged). */
 uint32_t device_validation_messages(const struct device *device);
 
-/* From here on the device keeps pipelines, and gives who asks for one of the same params the one
-   that it has. */
+/* From here on the device keeps its pipelines, and pipeline_create returns a kept one where the
+   params are the same. */
 void device_keep_pipelines(struct device *device);
 
 #endif

@@ -12,7 +12,7 @@ void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word)
         e->failed = e->starved = true;
 }
 
-/* 0, which is nobody's, when it cannot be had. */
+/* A new output id; 0, which is no valid id, when there are too many ids or memory runs out. */
 static uint32_t new_id(struct evaluation *e)
 {
     const struct result_id fresh = {0};
@@ -115,7 +115,7 @@ static bool is_word(const struct evaluation *e, uint32_t type)
     return spv_op(at) == OP_TYPE_BOOL || (spv_op(at) == OP_TYPE_INT && at[2] == 32);
 }
 
-/* False: one of the operands is not known, or the operation not worth it. */
+/* Computes an operation. False: an operand is not known, or spirv_fold does not handle it. */
 static bool fold(const struct evaluation *e, uint32_t op, uint32_t type, const uint32_t *operands,
                  uint32_t count, uint32_t *value)
 {
@@ -141,7 +141,8 @@ static uint32_t spec_value(const struct evaluation *e, const uint32_t *instructi
     return op == OP_SPEC_CONSTANT ? instruction[3] : op == OP_SPEC_CONSTANT_TRUE;
 }
 
-/* Types, constants and global variables, which keep their ids. `values`: of each id that is set. */
+/* Writes a type, constant or global variable, which keeps its id. values[id]: the caller's value of
+   a specialization constant, where is_set. */
 static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t *values)
 {
     uint32_t op = spv_op(at), value;
@@ -167,13 +168,13 @@ static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t
     default:
         push_words(e, &e->globals, spv_length(at), at);
         if (op == OP_TYPE_INT && is_word(e, at[1]))
-            e->uint_type = at[1]; /* or int */
+            e->uint_type = at[1]; /* or int: either will do */
         if (op >= OP_CONSTANT_TRUE && op <= OP_CONSTANT && is_word(e, at[1]))
             know(e, at[2], at[1], op == OP_CONSTANT ? at[3] : op == OP_CONSTANT_TRUE);
     }
 }
 
-/* The type of pointers to variables of a function that hold `type`. */
+/* The type of pointers to `type` in storage class Function; added where it is missing. */
 static uint32_t pointer_type(struct evaluation *e, uint32_t type)
 {
     for (uint32_t at = 0; at < e->globals.count; at += spv_length(e->globals.words + at)) {
@@ -189,7 +190,7 @@ static uint32_t pointer_type(struct evaluation *e, uint32_t type)
 
 /* ---- Blocks ---- */
 
-/* The last block goes on in another one. */
+/* Writes the branch to the delayed block, if there is one. */
 static void end_delayed(struct evaluation *e)
 {
     if (e->delayed)
@@ -197,7 +198,8 @@ static void end_delayed(struct evaluation *e)
     e->delayed = 0;
 }
 
-/* What is returned goes to a variable, since there are several returns, or blocks follow. */
+/* Ends a waiting return by a branch, with its value in a variable: other returns or blocks follow.
+ */
 static void end_return(struct evaluation *e, struct instance *in)
 {
     if (!in->return_waits)
@@ -229,7 +231,7 @@ static void begin_block(struct evaluation *e, struct instance *in, uint32_t labe
         return;
     if (block->reached && e->delayed == label && block->incoming == 1 && !block->begins_loop &&
         !block->is_merge && !block->is_continue) {
-        e->delayed = 0; /* goes on in the block in hand */
+        e->delayed = 0; /* continues the current output block */
         block->visited = true;
         return;
     }
@@ -249,10 +251,11 @@ static void enter(struct evaluation *e, uint32_t label)
     block->reached = true;
     ++block->incoming;
     if (block->visited && !block->begins_loop)
-        e->failed = true; /* backwards, but not to a loop */
+        e->failed = true; /* a branch backwards, but not to a loop header */
 }
 
-/* The merge instruction that waits, whose blocks are then needed whether reached or not. */
+/* Writes the waiting merge instruction. The blocks that it names are then needed, reached or not.
+ */
 static void put_merge(struct evaluation *e, struct instance *in)
 {
     if (!in->merge)
@@ -288,7 +291,7 @@ static void branch_to(struct evaluation *e, struct instance *in, uint32_t target
 static void branch_either(struct evaluation *e, struct instance *in, const uint32_t *at)
 {
     const struct result_id *condition = &e->results[evaluate_id(e, at[1])];
-    /* Loops keep their way back, taken or not. */
+    /* A branch back to a loop's header stays, even where it is never taken. */
     bool back = e->source[at[2]].visited || e->source[at[3]].visited;
     if (condition->known && !back) {
         branch_to(e, in, condition->value ? at[2] : at[3]);
@@ -301,7 +304,7 @@ static void branch_either(struct evaluation *e, struct instance *in, const uint3
     enter(e, at[3]);
 }
 
-/* All ways stay, even where the selector is known: blocks leave a switch from within. */
+/* All cases stay, even where the selector is known: blocks nested in them may leave the switch. */
 static void branch_among(struct evaluation *e, struct instance *in, const uint32_t *at)
 {
     e->source[in->label].end_label = e->label;
@@ -343,7 +346,7 @@ static void walk_phi(struct evaluation *e, struct instance *in, const uint32_t *
         same = same && is_same_value(e, first, value);
     }
     if (ways != e->source[in->label].incoming || ways == 0 || e->source[in->label].begins_loop) {
-        e->failed = true; /* from blocks that come later */
+        e->failed = true; /* it takes values from blocks that come later */
         return;
     }
     if (same) {
@@ -367,8 +370,8 @@ static void walk_function(struct evaluation *e, struct instance *in, uint32_t fu
 
 enum { WRAP_WORDS = 8, CALLS_DEEP = 64 };
 
-/* Several returns: the function becomes the only case of a switch, which they break out of. Taken
-   back where only one of them is reached. */
+/* For functions with several returns: wraps the function into the only case of a switch, which the
+   returns break out of. take_back_wrap undoes this where only one of them is reached. */
 static void begin_wrap(struct evaluation *e, struct instance *in)
 {
     uint32_t selector = e->uint_type ? constant_id(e, e->uint_type, 0) : 0;
@@ -388,7 +391,7 @@ static void take_back_wrap(struct evaluation *e, const struct instance *in)
     e->results[in->wrap_label].same_as = in->label_before;
 }
 
-/* Ends an inlined call behind its last block. Gives the id of the returned value, or 0. */
+/* Ends an inlined call behind its last block. Returns the id of the call's value, or 0. */
 static uint32_t end_call(struct evaluation *e, struct instance *in)
 {
     if (e->failed || in->returns == 0) {
@@ -409,7 +412,7 @@ static uint32_t end_call(struct evaluation *e, struct instance *in)
     return value;
 }
 
-/* Ids of the function are free for what this call makes of them. */
+/* Forgets what an earlier inlining made of the function's ids. */
 static void forget(struct evaluation *e, uint32_t function_at)
 {
     const uint32_t *at = e->words + function_at;
@@ -453,7 +456,7 @@ static void walk_return(struct evaluation *e, struct instance *in, const uint32_
         EMIT(e, &e->body, OP_RETURN, );
         return;
     }
-    if (in->loop_depth > 0) { /* no way out of a loop but by its merge block */
+    if (in->loop_depth > 0) { /* SPIR-V lets control leave a loop by its merge block only */
         e->failed = true;
         return;
     }
@@ -464,7 +467,7 @@ static void walk_return(struct evaluation *e, struct instance *in, const uint32_
 
 /* ---- Instructions ---- */
 
-/* Folds a logical and, or, or select that one known operand decides. True: it was folded. */
+/* Folds LogicalAnd, LogicalOr or Select where one known operand decides. True: it was folded. */
 static bool decide(struct evaluation *e, const uint32_t *at)
 {
     uint32_t op = spv_op(at);
@@ -477,7 +480,7 @@ static bool decide(struct evaluation *e, const uint32_t *at)
             e->source[at[2]].to = evaluate_id(e, first.value ? at[4] : at[5]);
         return first.known;
     }
-    uint32_t deciding = op == OP_LOGICAL_OR; /* of the two values */
+    uint32_t deciding = op == OP_LOGICAL_OR; /* the operand value that decides the result */
     if (!first.known && !second.known)
         return false;
     bool decided =
@@ -506,7 +509,7 @@ static void walk_variable(struct evaluation *e, const uint32_t *at)
 {
     uint32_t id = add_variable(e, at[1]);
     e->source[at[2]].to = id;
-    if (spv_length(at) > 4) /* each time, not once in the kernel */
+    if (spv_length(at) > 4) /* an initializer counts at each call, not once in the kernel */
         EMIT(e, &e->body, OP_STORE, id, evaluate_id(e, at[4]));
 }
 
@@ -553,7 +556,7 @@ static void walk_instruction(struct evaluation *e, struct instance *in, const ui
     }
 }
 
-/* The first block of a call goes on in the block of the caller. */
+/* A call's first block continues the caller's current block. */
 static void walk_function(struct evaluation *e, struct instance *in, uint32_t function_at)
 {
     const uint32_t *at = e->words + function_at;
@@ -597,7 +600,7 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
         walk_function(e, &in, e->source[e->entry].at);
 }
 
-/* False: it is no module, or memory runs out. */
+/* False: the words are no SPIR-V module, or memory runs out. */
 static bool begin(struct evaluation *e)
 {
     if (e->count <= SPV_HEADER_WORDS || e->words[0] != SPV_MAGIC || e->words[3] == 0 ||
@@ -626,7 +629,8 @@ whit_result spirv_evaluate(const uint32_t *words, size_t word_count, const uint3
             walk_module(&e, spec_of, spec, spec_count);
             bool refused = e.failed;
             *out = refused ? NULL : evaluate_write(&e, out_words);
-            e.starved = e.starved || (!refused && !*out); /* writing takes memory alone */
+            e.starved =
+                e.starved || (!refused && !*out); /* writing fails for want of memory only */
         }
     }
     free(spec_of);

@@ -1,4 +1,4 @@
-/* What variables hold. GLSL compilers hand every argument over in a variable of its own, so that
+/* Follows what variables hold. GLSL compilers pass every argument in a variable of its own, so that
    most loads read what was stored a few instructions before. */
 #include "device/evaluate_memory.h"
 
@@ -16,7 +16,7 @@ static uint32_t root_of(const struct evaluation *e, uint32_t pointer)
     return pointer;
 }
 
-/* Saturates at 2, so that passes over calls come to an end. True: it was less. */
+/* The count saturates at 2, so that the passes over calls come to an end. True: it grew. */
 static bool add_writes(struct evaluation *e, uint32_t pointer, uint32_t writes)
 {
     struct source_id *root = &e->source[root_of(e, pointer)];
@@ -25,7 +25,7 @@ static bool add_writes(struct evaluation *e, uint32_t pointer, uint32_t writes)
     return root->writes != before;
 }
 
-/* Whether an argument of `call` is found to be written to. */
+/* Counts what the called function writes through its parameters. True: a count grew. */
 static bool count_call(struct evaluation *e, const uint32_t *call)
 {
     const uint32_t *at = e->words + e->source[call[3]].at;
@@ -59,7 +59,7 @@ void evaluate_count_writes(struct evaluation *e)
     }
 }
 
-/* What `pointer` (source) is known to point to; 0: not known. */
+/* The output id of the value behind `pointer`, an input id; 0: not known. */
 static uint32_t held_by(const struct evaluation *e, uint32_t pointer)
 {
     const struct source_id *source = &e->source[pointer];
@@ -71,7 +71,7 @@ static uint32_t held_by(const struct evaluation *e, uint32_t pointer)
                : 0;
 }
 
-/* A part of a value that is known, in place of a load of that part. */
+/* Replaces the load of a part by an extract from the whole value, where that is known. */
 static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t *chain)
 {
     uint32_t whole = held_by(e, chain[3]), length = spv_length(chain);
@@ -118,13 +118,13 @@ void evaluate_store(struct evaluation *e, const uint32_t *store)
     struct result_id *variable = &e->results[e->results[to].base];
     variable->stored = value;
     variable->block = e->results[to].base == to ? e->block : 0;
-    /* Written nowhere else, so there is nothing else to read. */
+    /* The variable is written nowhere else, so every load of it gives this value. */
     if (op_at(e, store[1]) == OP_VARIABLE && e->source[store[1]].writes == 1 &&
         e->results[value].known)
         e->source[store[1]].holds = value;
 }
 
-/* Whether the call hands over the same variable twice. */
+/* Whether another argument of the call points into the same variable. */
 static bool is_shared(struct evaluation *e, const uint32_t *call, uint32_t argument)
 {
     uint32_t base = e->results[evaluate_id(e, call[argument])].base;

@@ -1,4 +1,4 @@
-/* The module that goes out: what nothing uses is left out. */
+/* Writes the output module, and leaves out what nothing uses. */
 #include "device/evaluate.h"
 
 #include <stdlib.h>
@@ -34,8 +34,8 @@ static bool is_wanted(const struct evaluation *e, const uint32_t *at)
     return shape.effects || op == OP_LABEL || e->results[at[2]].live;
 }
 
-/* Backwards until nothing more is found: loops, and variables that are read before they are
-   written. */
+/* Marks what the body uses. It goes backwards over the body until a pass finds nothing new: loops
+   may read a variable above the place where they write it. False: no memory. */
 static bool mark_body(struct evaluation *e)
 {
     uint32_t *at = NULL, count = 0, capacity = 0;
@@ -198,7 +198,7 @@ static void mark_roots(struct evaluation *e, const uint32_t *function)
 
 /* ---- Numbers of ids ---- */
 
-/* The number of an id by the one that it had, 0 where it was not met yet, and the next number. */
+/* numbers[id]: the new number of an id, 0 where it was not met yet. `next`: the next new number. */
 struct renumbering {
     uint32_t *numbers, next;
 };

@@ -1,7 +1,8 @@
-/* Where everything is in a module, and that it is whole: all else goes by what is found here. */
+/* Finds where everything is in a module, and checks that it is whole: the rest of the evaluation
+   relies on both. */
 #include "device/evaluate.h"
 
-/* The number of words of an instruction that are read at fixed positions, at the least. */
+/* The least number of words of an instruction: as many as are read at fixed positions. */
 static uint32_t min_words(uint32_t op)
 {
     return op == OP_SELECT                                                 ? 6
@@ -16,7 +17,8 @@ static uint32_t min_words(uint32_t op)
                                                                            : 1;
 }
 
-/* What an instruction of a function is, and whether all its ids are ids. */
+/* Notes where an instruction of a function is. False: it is too short, unknown, or names an id that
+   is out of bounds. */
 static bool read_instruction(struct evaluation *e, uint32_t at, uint32_t *function, uint32_t *label)
 {
     const uint32_t *words = e->words + at;
@@ -49,7 +51,8 @@ static bool read_instruction(struct evaluation *e, uint32_t at, uint32_t *functi
     return true;
 }
 
-/* Kept as they are, or remarks that are left out. */
+/* Instructions in front of the types that are kept as they are, or are debug information, which is
+   left out. */
 static bool is_head(uint32_t op)
 {
     return op == OP_CAPABILITY || op == OP_EXTENSION || op == OP_MEMORY_MODEL ||
@@ -57,7 +60,8 @@ static bool is_head(uint32_t op)
            op == OP_NO_LINE || op == OP_MODULE_PROCESSED;
 }
 
-/* Decorations, types, constants and global variables: where each id is, and what is exact. */
+/* Notes where a type, constant or global variable is, and what decorations say of an id. False: the
+   instruction is broken or unknown. */
 static bool read_global(struct evaluation *e, uint32_t at, uint32_t *spec_of)
 {
     const uint32_t *words = e->words + at;

@@ -69,7 +69,8 @@ fail:
     return result;
 }
 
-/* What is not found for want of memory or descriptors may be there. */
+/* Logs that `what` was not found. Where memory or file descriptors are short, that is the reason
+   given, and not `why`: a driver or layer that is installed then fails to load too. */
 static whit_result refuse(struct device *device, const char *what, const char *why,
                           whit_result result)
 {
@@ -307,7 +308,7 @@ static uint64_t device_memory(VkPhysicalDevice physical)
 }
 
 /* Mesa 22.3.6 ends the loops of an invocation after 65,535 iterations in all, 25.0.7 does not. A
-   version that cannot be read counts as one that does. */
+   version that cannot be read counts as one that ends them. */
 static bool lavapipe_ends_loops(const char *driver_info)
 {
     const char *mesa = strstr(driver_info, "Mesa ");
@@ -393,7 +394,7 @@ static bool contains_any_case(const char *text, const char *part)
     return false;
 }
 
-/* How well a device answers the selector; lower is better, negative not at all. */
+/* How well a device matches the selector: lower is better, negative is no match. */
 static int rank(const whit_device_info *info, const char *selector)
 {
     bool numeric = selector[strspn(selector, "0123456789")] == '\0';
@@ -406,7 +407,7 @@ static int rank(const whit_device_info *info, const char *selector)
     return info->usable ? 0 : 1;
 }
 
-/* The first of those that answer best; WHIT_NONE: none does. */
+/* Index of the first of the best matches; WHIT_NONE: none matches. */
 static uint32_t best_of(const whit_device_info *infos, uint32_t count, const char *selector)
 {
     uint32_t best = WHIT_NONE;

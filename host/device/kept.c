@@ -1,5 +1,5 @@
-/* Pipelines that a device keeps, so that who asks for the same one again gets it at once: a driver
-   takes long for one, even out of its cache. */
+/* Pipelines that a device keeps, so that asking for the same one again takes no time: a driver
+   takes long to make one, even from its cache. */
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,7 +69,7 @@ struct pipeline *kept_take_code(struct pipeline *made, const struct pipeline_par
     return take(made->device, offsetof(struct pipeline, code_key), made->code_key);
 }
 
-/* Takes out of the list, and gives, the oldest one without a user. */
+/* Removes the oldest pipeline without users from the list and returns it; NULL: there is none. */
 static struct pipeline *take_oldest(struct device *device)
 {
     struct pipeline **at = &device->kept, **oldest = NULL;

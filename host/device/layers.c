@@ -4,8 +4,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* A thread that creates a device goes before threads that call Vulkan: else it would wait as long
-   as these go on. Nobody is blocked for ever, since no call of Vulkan waits for a call in another
+/* Writers come first: a thread that creates a device would else wait as long as other threads go on
+   calling Vulkan. Nobody is blocked for ever, since no call of Vulkan waits for a call in another
    thread. */
 static pthread_rwlock_t lock = PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP;
 static atomic_bool expected;

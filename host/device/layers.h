@@ -1,9 +1,9 @@
-/* Calls of Vulkan beside the creation of devices in other threads, which Vulkan allows and
+/* A lock for calls of Vulkan while other threads create devices. Vulkan allows that, but
    VK_LAYER_KHRONOS_validation does not: it looks each call's device up in a table without a lock,
    into which vkCreateInstance and vkCreateDevice write (Vulkan-ValidationLayers, issue 4391; seen
-   as a segmentation fault with 1.3.239 of Debian 12). So while layers check, what creates or
-   destroys an instance or a device runs alone; every other call shares the lock. Without
-   validation nothing is locked. Included by device/vulkan.h. */
+   as a segmentation fault with 1.3.239 of Debian 12). So while layers check, calls that create or
+   destroy an instance or a device run alone; all other calls share the lock. Without validation
+   nothing is locked. Included by device/vulkan.h. */
 #ifndef DEVICE_LAYERS_H
 #define DEVICE_LAYERS_H
 
@@ -15,7 +15,8 @@ extern "C" {
 
 /* Turns the locking on; call it before the first instance with validation is created. */
 void layers_expect(void);
-/* Take the lock, shared or alone. True where it was taken, as layers_leave asks. Not recursive. */
+/* Take the lock, shared or alone. They return whether it was taken, which layers_leave gets. Not
+   recursive. */
 bool layers_enter(void);
 bool layers_enter_alone(void);
 void layers_leave(bool entered);

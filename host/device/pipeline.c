@@ -10,9 +10,9 @@
 
 /* A kernel as the driver gets it. */
 struct kernel_words {
-    uint32_t *whole; /* owned; NULL: as it came */
+    uint32_t *whole; /* owned, the rewritten kernel; NULL: it is not rewritten */
     size_t whole_count;
-    uint32_t *specialized; /* owned; NULL: it cannot be */
+    uint32_t *specialized; /* owned; NULL: the kernel cannot be specialized */
     size_t word_count;
     struct spirv_info info;
 };
@@ -106,8 +106,8 @@ fail:
     return result;
 }
 
-/* What the driver gets in place of the kernel; `whole` where it is not specialized, and NULL where
-   it is not rewritten. */
+/* Calls params->rewrite, if there is one. out->whole stays NULL where the kernel is not rewritten.
+ */
 static whit_result rewrite_kernel(const struct pipeline_params *params, struct kernel_words *out,
                                   char why[REWRITE_WHY_BYTES])
 {
@@ -145,7 +145,7 @@ static bool specializing_is_off(void)
     return value && *value && strcmp(value, "0") != 0;
 }
 
-/* Fills constants in, and leaves of the pipeline's bindings those that are used then. */
+/* Fills the constants in, and drops those of the pipeline's bindings that are not used then. */
 static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeline_params *params,
                                   struct kernel_words *kernel)
 {
@@ -187,7 +187,8 @@ static whit_result prepare_kernel(struct pipeline *pipeline, const struct pipeli
     return WHIT_OK;
 }
 
-/* False: it cannot be. Finished by kernel_words_finish either way. */
+/* Specializes a kernel without a pipeline. False: it cannot be specialized. Either way the caller
+   calls kernel_words_finish. */
 static bool specialize_alone(const struct pipeline_params *params, struct kernel_words *kernel)
 {
     char why[REWRITE_WHY_BYTES];
@@ -299,7 +300,7 @@ static bool copy_bindings(struct pipeline *pipeline, const struct pipeline_param
     return true;
 }
 
-/* `same`: a kept pipeline of the same code, in whose place none is made. */
+/* *same: a kept pipeline of the same code, where there is one; then none is made. */
 static whit_result fill_pipeline(struct pipeline *pipeline, const struct pipeline_params *params,
                                  struct pipeline **same)
 {

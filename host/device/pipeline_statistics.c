@@ -12,7 +12,7 @@ struct statistics {
     uint32_t count;
 };
 
-/* `executable`: its name, where there are several; NULL else. */
+/* `executable`: name of the executable; NULL where the pipeline has only one. */
 static void add(struct statistics *to, const char *executable, const char *name, double value)
 {
     if (to->count == WHIT_STATISTICS_MAX)
@@ -39,7 +39,8 @@ static double value_of(const VkPipelineExecutableStatisticKHR *statistic)
     }
 }
 
-/* A driver with more to tell than there is room for answers VK_INCOMPLETE, which is no failure. */
+/* A driver with more statistics than there is room for answers VK_INCOMPLETE, which is no failure.
+ */
 static whit_result read_executable(const struct pipeline *pipeline, uint32_t index,
                                    const char *name, struct statistics *to)
 {

@@ -8,7 +8,8 @@
 
 #include "base/spirv.h"
 
-/* Words of an instruction's head: the length and number, and with a result its type and id. */
+/* Words of an instruction's head: the word of length and opcode, and with a result also its type
+   and id. */
 enum { HEAD_WORDS = 1, HEAD_WORDS_RESULT = 3 };
 
 /* The operands of an instruction within a function. `ids`: bit i is set if word i behind the head
@@ -16,7 +17,7 @@ enum { HEAD_WORDS = 1, HEAD_WORDS_RESULT = 3 };
 struct spirv_shape {
     bool known;
     bool result;  /* has a type and an id */
-    bool effects; /* of more than its result */
+    bool effects; /* does more than give a result */
     uint32_t ids;
 };
 

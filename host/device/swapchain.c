@@ -1,5 +1,5 @@
-/* The window's images and all that pictures need to come onto them, made and dropped; what shows
-   them is in swapchain_show.c. */
+/* Creates and destroys the window's images and what is needed to draw on them; swapchain_show.c
+   shows pictures. */
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -193,7 +193,7 @@ static VkPresentModeKHR choose_mode(const struct swapchain *swapchain)
 {
     VkPresentModeKHR modes[16];
     uint32_t count = sizeof modes / sizeof *modes;
-    VkPresentModeKHR best = VK_PRESENT_MODE_FIFO_KHR; /* the one that is always there */
+    VkPresentModeKHR best = VK_PRESENT_MODE_FIFO_KHR; /* Vulkan promises this one */
     if (swapchain->vsync ||
         vkGetPhysicalDeviceSurfacePresentModesKHR(swapchain->device->physical,
                                                   swapchain->device->surface, &count, modes) < 0)
@@ -314,7 +314,7 @@ whit_result swapchain_resize(struct swapchain *swapchain, uint32_t width, uint32
     whit_result result = swapchain_wait(swapchain);
     if (result != WHIT_OK)
         return result;
-    VK_TRY(device, vkQueueWaitIdle(device->queue)); /* semaphores of the last present */
+    VK_TRY(device, vkQueueWaitIdle(device->queue)); /* the last present may still use semaphores */
     drop_views(swapchain);
     swapchain->captured = false;
     swapchain->stale = false;

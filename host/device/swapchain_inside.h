@@ -1,4 +1,4 @@
-/* What is behind struct swapchain; only swapchain.c and swapchain_show.c see it. */
+/* The fields of struct swapchain; only swapchain.c and swapchain_show.c see them. */
 #ifndef DEVICE_SWAPCHAIN_INSIDE_H
 #define DEVICE_SWAPCHAIN_INSIDE_H
 
@@ -16,7 +16,7 @@ struct window_image {
 
 struct swapchain {
     struct device *device;
-    bool swaps; /* the format has blue lowest */
+    bool swaps; /* blue is the format's first byte */
     bool vsync, captures, captured, in_flight, stale;
     VkSurfaceFormatKHR format;
     VkExtent2D extent; /* 0 x 0: no images */
@@ -31,9 +31,9 @@ struct swapchain {
     VkQueryPool queries; /* null without timestamps */
     VkRenderPass pass;
 
-    struct buffer *picture; /* bytes in the window's order, of the host */
+    struct buffer *picture; /* in host memory, with bytes in the order of `format` */
     uint32_t picture_width, picture_height;
-    VkImage canvas; /* the picture, where it is stretched to the window */
+    VkImage canvas; /* a copy of the picture, for stretching it to the window */
     VkDeviceMemory canvas_memory;
     VkExtent2D canvas_extent;
     struct buffer *capture;

@@ -1,10 +1,10 @@
 /* Shows pictures in the window. One picture is in flight at a time: the host is never more than one
-   ahead of the screen. */
+   picture ahead of the screen. */
 #include "device/swapchain_show.h"
 #include "base/clock.h"
 #include "device/buffer.h"
 
-enum { COPY_PIXELS = 4096 }; /* that are put in the window's order at a time */
+enum { COPY_PIXELS = 4096 }; /* reordered at a time */
 
 /* ---- The picture ---- */
 
@@ -147,7 +147,7 @@ static void copy_picture(const struct swapchain *swapchain, VkImage image)
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
 }
 
-/* Between the four nearest pixels. */
+/* Scales the picture to the image bilinearly. */
 static whit_result stretch_picture(struct swapchain *swapchain, VkImage image)
 {
     VkExtent2D from = {swapchain->picture_width, swapchain->picture_height}, to = swapchain->extent,
@@ -180,7 +180,7 @@ static whit_result record_picture(struct swapchain *swapchain, VkImage image)
     VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     whit_result result = WHIT_OK;
     if (swapchain->picture_width == 0)
-        layout = VK_IMAGE_LAYOUT_UNDEFINED; /* what is drawn over it fills the window */
+        layout = VK_IMAGE_LAYOUT_UNDEFINED; /* without a picture, the overlay fills the window */
     else if (fits(swapchain))
         copy_picture(swapchain, image);
     else
@@ -205,7 +205,8 @@ static void record_overlay(struct swapchain *swapchain, const struct window_imag
     vkCmdEndRenderPass(swapchain->commands);
 }
 
-/* The image is in layout COLOR_ATTACHMENT_OPTIMAL; *layout tells in which it is left. */
+/* Expects the image in layout COLOR_ATTACHMENT_OPTIMAL; *layout is the one that it has afterwards.
+ */
 static whit_result record_capture(struct swapchain *swapchain, const struct window_image *image,
                                   VkImageLayout *layout)
 {
@@ -302,7 +303,7 @@ fail:
 
 /* ---- Showing ---- */
 
-/* Suboptimal and out-of-date are no errors: *usable and swapchain->stale tell. */
+/* Suboptimal and out-of-date are no errors: *usable and swapchain->stale report them. */
 static whit_result window_result(struct swapchain *swapchain, VkResult vk, const char *call,
                                  bool *usable)
 {

@@ -25,12 +25,12 @@
 
 enum { STAGING_BYTES = 16 << 20, OBJECT_NAME_BYTES = 64 };
 
-/* WHIT_FAULT=CALL:N[:RESULT]: the N-th of these calls gives a VkResult in place of its own. One
-   that is no error is given by a call that was made. */
+/* WHIT_FAULT=CALL:N[:RESULT]: the N-th of these calls returns the VkResult RESULT in place of its
+   own. An error is returned without making the call; any other RESULT after making it. */
 struct fault {
     char call[64]; /* "" for none, "*" for any */
     uint32_t at, seen;
-    int32_t result; /* 0: memory ran out, or the device is lost where that can show */
+    int32_t result; /* 0: out of memory, or device lost in calls that submit or wait */
 };
 
 struct device {
@@ -39,14 +39,15 @@ struct device {
     bool validation, staged, poisons;
     bool validation_of_shaders; /* GPU-assisted checks too */
     atomic_bool lost;           /* every later call fails at once, in every thread */
-    bool abandoned;             /* a library broke off: what it left behind is not complained of */
+    bool abandoned; /* a library that calls Vulkan failed; later messages of the validation layers
+                       are ignored */
     atomic_uint validation_messages;
 
     VkInstance instance;
     const struct device_surface *surface_source; /* during device_create alone */
     VkSurfaceKHR surface;                        /* null: shows nothing */
     VkDebugUtilsMessengerEXT messenger;
-    bool debug_utils; /* the instance extension is on */
+    bool debug_utils; /* VK_EXT_debug_utils is on */
 
     VkPhysicalDevice physical;
     VkPhysicalDeviceProperties properties;
@@ -59,17 +60,17 @@ struct device {
     uint32_t queue_family;
     uint64_t timestamp_mask; /* 0: the queue has none */
     VkPipelineCache cache;
-    uint64_t cache_hash; /* of what the cache file holds; 0: no usable file */
+    uint64_t cache_hash; /* of the cache file's contents; 0: no usable file */
 
     PFN_vkSetDebugUtilsObjectNameEXT set_object_name; /* these three are NULL without debug_utils */
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;
-    /* Both NULL where the driver tells nothing of its kernels. */
+    /* Both NULL without VK_KHR_pipeline_executable_properties. */
     PFN_vkGetPipelineExecutablePropertiesKHR get_executables;
     PFN_vkGetPipelineExecutableStatisticsKHR get_executable_statistics;
 
-    _Atomic(uint64_t) pipelines_made; /* that the driver was asked for */
-    bool keeps;                       /* pipelines: see kept.c */
+    _Atomic(uint64_t) pipelines_made; /* see device_pipelines_made */
+    bool keeps;                       /* keeps pipelines, see kept.c */
     pthread_mutex_t kept_lock;
     struct pipeline *kept; /* the youngest first */
     uint32_t kept_count;
@@ -95,8 +96,8 @@ struct pipeline {
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkPipeline vk;
-    enum binding_kind *bindings; /* NONE: the caller's gaps, and what the kernel does not use */
-    bool *offered;               /* not one of the caller's gaps */
+    enum binding_kind *bindings; /* NONE: a gap of the caller's, or not used by the kernel */
+    bool *offered;               /* [i]: binding i is no gap of the caller's */
     uint32_t binding_count, storage_count, texels_count;
     struct pipeline_info info;
     uint32_t push_bytes;
@@ -105,7 +106,7 @@ struct pipeline {
     /* These are set in a pipeline that the device keeps: */
     bool kept;
     uint32_t users;
-    uint64_t key[2], code_key[2]; /* of params; of what they make of the kernel, 0 where unknown */
+    uint64_t key[2], code_key[2]; /* of its params; of its specialized code, 0 where unknown */
     struct pipeline *next;
 };
 
@@ -116,11 +117,12 @@ struct binding_set {
 };
 
 void device_read_fault(struct device *device);
-/* False when the call may not be made: *vk is then its result. Else *vk is what to give in place of
-   VK_SUCCESS. */
+/* False when the call is not to be made: *vk is then its result. Else *vk is the result to use
+   where the call gives VK_SUCCESS. */
 bool device_may_call(struct device *device, const char *expression, VkResult *vk);
-/* Logs a failure once and maps it; VK_TIMEOUT is WHIT_ERROR_TIME_LIMIT and not logged. What fails
-   with less left than a driver with its compiler takes fails for want of memory or descriptors. */
+/* Logs a failure once and maps it; VK_TIMEOUT is WHIT_ERROR_TIME_LIMIT and not logged. A failure
+   counts as one of memory or descriptors where less is left than DRIVER_ROOM_BYTES, as much as a
+   driver with its compiler takes. */
 #define DRIVER_ROOM_BYTES ((uint64_t)512 << 20)
 whit_result device_check(struct device *device, VkResult vk, const char *expression,
                          const char *file, int line);
