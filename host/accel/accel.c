@@ -1,4 +1,5 @@
-/* The trees of a scene: one a mesh, concatenated behind room for the tree over instances. */
+/* The trees of a scene: one for each mesh, all in one array, behind room for the tree over
+   instances. */
 #include <stdlib.h>
 
 #include "accel/bvh8.h"
@@ -25,13 +26,13 @@ struct span {
 
 struct creation {
     struct accel *accel;
-    struct bvh *trees; /* one a mesh */
+    struct bvh *trees; /* one for each mesh */
     struct material_bits *materials;
     struct span *spans;
     uint32_t span_count, span_capacity;
     uint32_t *small; /* meshes below MESH_LARGE */
     uint32_t small_count;
-    whit_result *results; /* one a mesh */
+    whit_result *results; /* one for each mesh */
 };
 
 /* ---- Mesh trees ---- */
@@ -88,7 +89,7 @@ static void build_small(void *context, uint32_t index)
     creation->results[mesh] = mesh_build(creation, mesh, 1);
 }
 
-/* Large meshes one after the other by all threads, small ones side by side. */
+/* Builds large meshes one after the other, each by all threads, and small ones side by side. */
 static whit_result meshes_build(struct creation *creation)
 {
     struct accel *accel = creation->accel;
@@ -122,7 +123,7 @@ static bool spans_add(struct creation *creation, uint32_t mesh, uint32_t count)
     return true;
 }
 
-/* Gives every mesh its place; the totals must fit the bits of a ref. */
+/* Gives every mesh its place in the arrays; the totals must fit the bits of a ref. */
 static whit_result meshes_place(struct creation *creation)
 {
     struct accel *accel = creation->accel;
@@ -227,7 +228,7 @@ static whit_result creation_run(struct creation *creation)
     if (result != WHIT_OK)
         return no_memory(creation->accel, result);
     material_bits_scan(creation->accel->scene, creation->materials);
-    result = meshes_build(creation); /* says itself why it fails */
+    result = meshes_build(creation); /* logs why it fails */
     if (result != WHIT_OK)
         return result;
     result = meshes_place(creation);

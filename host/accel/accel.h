@@ -1,4 +1,5 @@
-/* The trees of a scene, as flat arrays that go to the device as they are. */
+/* The trees of a scene, as flat arrays that go to the device as they are. A ref names a node in 32
+   bits: see BVH_EMPTY_REF in abi/bvh.h. */
 #ifndef ACCEL_ACCEL_H
 #define ACCEL_ACCEL_H
 
@@ -14,7 +15,7 @@ struct accel_mesh {
     uint32_t first_node, node_count;
     uint32_t first_triangle, record_count; /* in the triangle array */
     uint32_t triangle_count;               /* below record_count where triangles were split */
-    uint32_t shade_base;                   /* primitive 0 in arrays indexed by primitive */
+    uint32_t shade_base; /* place of primitive 0 in arrays with one element per primitive */
     uint32_t depth;
     double sah_cost, build_ms;
     struct bvh_box box;
@@ -22,25 +23,24 @@ struct accel_mesh {
 
 enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
 
-/* The most primitives over all instances with WHIT_BUILD_NONE, and the most loop iterations of one
-   ray: lavapipe grants an invocation 65,535. */
+/* With WHIT_BUILD_NONE: the most primitives over all instances, and the most loop iterations of one
+   ray. lavapipe grants an invocation 65,535. */
 enum { ACCEL_BARE_MAX = 40000, ACCEL_ITERATIONS_MAX = 65000 };
 
 struct accel_params {
     struct bvh_params mesh, instances; /* instances.leaf_limit is always 1 */
-    /* What accel_pose does with the tree over instances when it has one: a new one, or new boxes
-       for the one it has. */
+    /* Whether accel_pose builds a new tree over instances, or gives the present one new boxes. */
     enum accel_update update;
     bool validate;
     bool flatten; /* one tree for the whole scene, in world space */
 };
 
-/* The same trees with up to eight children a node, for kernels of which each lane tests one child.
-   Node i is nodes[8 i] to nodes[8 i + 7]; `first` of an inner child is the number of its node, and
-   empty children come last. Mesh trees first, that over instances behind them. */
+/* The same trees with up to eight children per node, for kernels in which each lane tests one
+   child. Node i is nodes[8 i] to nodes[8 i + 7]; `first` of an inner child is the number of its
+   node, and empty children come last. The mesh trees come first, then the tree over instances. */
 struct accel_bvh8 {
     struct gpu_bvh_node *nodes;
-    uint32_t *mesh_roots; /* refs, as instance_root: BVH_EMPTY_REF where nothing is */
+    uint32_t *mesh_roots; /* refs, as instance_root is: BVH_EMPTY_REF for an empty tree */
     uint32_t node_count, mesh_node_count, capacity;
     uint32_t instance_root;
     uint32_t mesh_depth, instance_depth; /* inner nodes on the longest path */
@@ -57,23 +57,25 @@ struct accel {
     struct gpu_instance *instances; /* in the order of the scene */
     struct accel_mesh *meshes;      /* in the order of the scene */
     uint32_t node_count, instance_count, mesh_count;
-    uint32_t record_count, triangle_count; /* in `triangles`; of all meshes, with their spheres */
+    uint32_t record_count,
+        triangle_count; /* length of `triangles`; primitives of all meshes, spheres included */
     uint32_t instance_node_count, instance_node_capacity;
     uint32_t instance_root;  /* ref, or BVH_EMPTY_REF */
     uint32_t instance_depth; /* of the tree over instances */
     uint32_t mesh_depth;     /* deepest mesh tree */
     bool single_identity;    /* one instance, not moved: traversal may start at meshes[..].root */
     bool clipped;            /* some mesh tree holds clipped triangles */
-    bool flat;     /* one tree over the triangles of all instances: meshes[0], the only mesh, is the
-                      world; accel_pose builds it anew. Instances say mesh and shade_base of the
-                      scene's meshes, but root, centre and reach of the world */
-    bool no_trees; /* WHIT_BUILD_NONE: rays that meet the box of everything test every primitive */
-    uint32_t
-        iterations; /* of loops, at most, that one ray takes then: up to ACCEL_ITERATIONS_MAX */
+    bool flat; /* one tree over the primitives of all instances: meshes[0], the only mesh, is the
+                  whole world, which accel_pose builds anew. In `instances`, mesh and shade_base are
+                  those of the scene's mesh; root, centre and reach are those of the world */
+    bool no_trees; /* WHIT_BUILD_NONE: a ray that hits a tree's root box tests all of its primitives
+                    */
+    uint32_t iterations; /* with no_trees: the most loop iterations of one ray; at most
+                            ACCEL_ITERATIONS_MAX */
     double build_ms, instance_build_ms;
     struct accel_bvh8 bvh8;      /* after accel_widen */
     struct accel_posing *posing; /* buffers of accel_pose */
-    struct accel_flat *world;    /* flat: what its builds share */
+    struct accel_flat *world;    /* with `flat`: what is kept from build to build */
 };
 
 /* Builds the mesh trees and poses the instances at time 0. `scene` is frozen and outlives *out. */

@@ -23,7 +23,7 @@ static bool give(const struct walk *walk, const struct gpu_bvh_node *node, uint3
     return walk->fn(walk->user, &box);
 }
 
-/* The depth of trees is bounded: BVH_DEPTH_MAX. */
+/* The recursion is bounded by the depth of trees, BVH_DEPTH_MAX. */
 static bool visit(const struct walk *walk, uint32_t index, uint32_t level)
 {
     const struct gpu_bvh_node *node = &walk->accel->nodes[index];

@@ -1,6 +1,6 @@
-/* Trees of up to eight children a node, out of the finished ones of two: Wald, Benthin and Boulos
-   2008, "Getting rid of packets", 3.2: the child with the largest area is opened until there are
-   eight. Leaves stay as they are. */
+/* Makes trees with up to eight children per node from finished binary trees: Wald, Benthin and
+   Boulos 2008, "Getting rid of packets", 3.2: of a node's children, the one with the largest area
+   is replaced by its own two children until there are eight. Leaves stay as they are. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,13 +8,13 @@
 #include "accel/bvh8.h"
 #include "base/array.h"
 
-/* A node of eight still to be made: the one at `at`, `depth` levels down (root: 1), out of the two
-   children at `pair` and `pair` + 1 of the tree of two. */
+/* An eight-wide node still to be made: its number `at`, its `depth` (root: 1), and the two children
+   at `pair` and `pair` + 1 of the binary tree that it starts from. */
 struct opening {
     uint32_t pair, at, depth;
 };
 
-/* -1: all of them are leaves. */
+/* Index of the inner child with the largest area; -1: all children are leaves. */
 static int largest_inner(const struct gpu_bvh_node *children, int count)
 {
     int largest = -1;
@@ -41,7 +41,8 @@ static int open_children(const struct gpu_bvh_node *nodes, uint32_t pair,
     return count;
 }
 
-/* A point that no ray meets, which ends a traversal if it did. */
+/* An empty child: its box is a point that no ray hits, and its ref would end the traversal of a ray
+   that did. */
 static const struct gpu_bvh_node none = {.lo = {3e38f, 3e38f, 3e38f},
                                          .first = BVH_FIRST_MASK,
                                          .hi = {3e38f, 3e38f, 3e38f},
@@ -64,7 +65,8 @@ static bool reserve_node(struct accel_bvh8 *out, uint32_t *at)
     return true;
 }
 
-/* Appends the tree at `ref`; *root: what it is among nodes of eight. False: out of memory. */
+/* Appends an eight-wide copy of the binary tree at `ref`; *root is the copy's ref. False: out of
+   memory. */
 static bool widen(const struct gpu_bvh_node *nodes, uint32_t ref, struct accel_bvh8 *out,
                   uint32_t *root, uint32_t *depth)
 {
@@ -92,7 +94,7 @@ static bool widen(const struct gpu_bvh_node *nodes, uint32_t ref, struct accel_b
                     .pair = children[i].first, .at = at, .depth = opening.depth + 1};
                 children[i].first = at;
             }
-            children[i].count = own; /* without the bits of pairs */
+            children[i].count = own; /* without the axis bits of a pair */
             out->nodes[(size_t)opening.at * 8 + (size_t)i] = children[i];
         }
     }

@@ -1,4 +1,4 @@
-/* The boxes of primitives, and of boxes that are placed. */
+/* Boxes of primitives, and boxes of transformed boxes. */
 #ifndef ACCEL_EXTENT_H
 #define ACCEL_EXTENT_H
 
@@ -19,8 +19,8 @@ static inline struct bvh_box accel_triangle_box(const float a[3], const float b[
     return box;
 }
 
-/* sphere_box of shaders/lib/sphere.glsl, bit for bit: what the test of a sphere looks at, so boxes
-   of nodes hold no less. */
+/* The same bits as sphere_box of shaders/lib/sphere.glsl. The sphere test looks for hits within
+   this box, so boxes of nodes must hold all of it. */
 static inline struct bvh_box accel_sphere_box(const float center[3], float radius)
 {
     struct bvh_box box;
@@ -56,8 +56,8 @@ static inline uint32_t accel_node_ref(const struct gpu_bvh_node *node)
     return bvh_count(node) << BVH_COUNT_SHIFT | node->first;
 }
 
-/* The record of a mesh with a tree of its own. Its first node and first record are 0: they are set
-   when the arrays of all meshes are put together. */
+/* The accel_mesh of a mesh with a tree of its own. Its first node and first record are 0 here: they
+   are set when the arrays of all meshes are put together. */
 static inline struct accel_mesh accel_mesh_over(const struct bvh *tree)
 {
     return (struct accel_mesh){
@@ -72,8 +72,8 @@ static inline struct accel_mesh accel_mesh_over(const struct bvh *tree)
     };
 }
 
-/* A box under an affine map, row-major 3x4 in double. `size` bounds the magnitudes that enter the
-   sums, which is what rounding them is relative to. */
+/* A box under an affine map, row-major 3x4 in double. `size` bounds the magnitudes of the terms
+   that are summed: rounding errors are relative to it. */
 struct accel_extent {
     double lo[3], hi[3], size[3];
 };

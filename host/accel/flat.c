@@ -1,6 +1,6 @@
 /* One tree over the primitives of all instances, in world space: the scene without instancing. Each
-   vertex is placed in double and rounded once, and so are a sphere's centre and radius, where the
-   transform leaves it a sphere that is not turned: moved, and scaled alike along all axes. */
+   vertex is transformed in double and rounded once. So are a sphere's centre and radius, where the
+   transform moves the sphere and scales it alike along all axes, without turning it. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,10 +21,10 @@ enum { SPAN = 4096 }; /* triangles or vertices handled by one call */
 
 /* What stays from pose to pose. */
 struct accel_flat {
-    struct accel_mesh *meshes; /* of the scene: what instances say of theirs */
+    struct accel_mesh *meshes; /* of the scene; triangle_count and shade_base only */
     struct material_bits *materials;
     uint32_t *first_triangle, *first_vertex; /* of each instance, and the total */
-    struct affine *placed;                   /* where instances are in the tree that there is */
+    struct affine *placed;                   /* transforms of the instances in the present tree */
     bool has_tree;
     struct flat_span *spans;
     uint32_t span_count, span_capacity;
@@ -337,7 +337,7 @@ static whit_result world_write(struct flattening *f)
     return WHIT_OK;
 }
 
-/* Nothing fails from here on. The tree's nodes and the records change hands. */
+/* Hands the tree's nodes and the records over to `accel`. Nothing fails from here on. */
 static void world_commit(struct flattening *f)
 {
     struct accel *accel = f->accel;

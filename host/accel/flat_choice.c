@@ -1,4 +1,4 @@
-/* Which scenes are one tree in world space where nobody says. */
+/* Decides which scenes get one tree in world space, where the user does not say. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,8 +44,9 @@ static bool is_one_ball(const struct scene_mesh *mesh)
     return mesh->sphere_count == 1 && mesh->triangle_count == 0;
 }
 
-/* A mesh that is there twice would be in the tree twice. A single ball may be: its record takes no
-   more than its instance did. */
+/* Whether each mesh has only one instance, since the tree would contain a mesh once for each
+   instance. A mesh of a single sphere may have more: its record takes no more memory than the
+   instance did. */
 static whit_result find_repeated(const struct scene *scene, bool *each_once)
 {
     uint8_t *seen = array_alloc_zeroed(scene->mesh_count, 1);

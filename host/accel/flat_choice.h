@@ -4,13 +4,14 @@
 
 #include "accel/accel.h"
 
-/* Whether `forward` leaves spheres spheres, and does not turn them. */
+/* Whether `forward` only moves spheres and scales them alike along all axes, without turning them.
+ */
 bool accel_flat_keeps_spheres(const struct affine *forward);
 
-/* Whether `flatten` suits a frozen scene, which stands at `pose`: no mesh but a single ball is
-   there twice, nothing moves, vertices are rounded by next to nothing when they are placed, and
-   memory is enough. It is no news for one instance that is where its mesh is. The same on every
-   machine, but for memory. WHIT_ERROR_MEMORY, logged. */
+/* Whether `flatten` suits a frozen scene that is posed at `pose`: each mesh but single spheres has
+   one instance, nothing moves, transforming vertices loses next to no precision, and there is
+   enough memory. False for a single instance without a transform, which gains nothing. The answer
+   is the same on every machine, but for memory. WHIT_ERROR_MEMORY, logged. */
 WHIT_CHECK whit_result accel_flat_suits(const struct scene *scene, const struct scene_pose *pose,
                                         bool *out);
 

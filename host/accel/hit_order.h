@@ -5,16 +5,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A hit, as far as its order is concerned: t is the ray's parameter, in lengths of its direction.
- */
+/* What orders a hit. t is the ray's parameter, in lengths of its direction. */
 struct hit_place {
     double t;
     uint32_t instance, primitive;
 };
 
-/* Equal t goes to the smaller instance, then to the smaller primitive: so a hit depends neither on
-   the tree nor on the order in which it is walked, whoever walks it. False for the same place, and
-   where a t is NaN. shaders/bind/traverse.glsl has the same rule in is_nearer and is_behind. */
+/* Of hits with equal t, the smaller instance comes first, then the smaller primitive. So a ray's
+   hit depends neither on the tree nor on the order of its traversal, on the device or the CPU.
+   False if both are the same place, or a t is NaN. shaders/bind/traverse.glsl has the same rule in
+   is_nearer and is_behind. */
 static inline bool hit_comes_before(struct hit_place a, struct hit_place b)
 {
     return a.t < b.t || (a.t == b.t && (a.instance < b.instance ||

@@ -1,4 +1,4 @@
-/* What materials mean to traversal, and triangle records that say it. */
+/* Derives from materials the flags that traversal needs, and writes them into triangle records. */
 #include <math.h>
 #include <string.h>
 
@@ -22,9 +22,10 @@ static bool has_texture(const struct scene_material *m, enum scene_slot slot)
     return m->textures[slot].texture != SCENE_NONE;
 }
 
-/* What a straight shadow ray keeps: 1 - opacity passes beside the surface, the rest through it.
-   Where textures, vertex colours or absorption have a say, the kernel tells it at each place (see
-   bind/filter.glsl); `shadow` is then that of plain white ones, and nothing absorbed. */
+/* Sets how much light a straight shadow ray keeps: 1 - opacity passes beside the surface, the rest
+   through the material. Where it depends on textures, vertex colours or absorption, the kernel
+   computes it at each hit (see bind/filter.glsl); `shadow` is then the value for white textures and
+   colours and no absorption. */
 static void filter_bits(const struct scene_material *m, bool colors, struct material_bits *bits)
 {
     bool metal_rough = m->model == WHIT_MODEL_METAL_ROUGH, filters = false;
@@ -60,11 +61,11 @@ static struct material_bits material_bits(const struct scene_material *m, bool a
     if (bits.masked && (m->opacity < m->alpha_cutoff || colors ||
                         has_texture(m, SCENE_SLOT_OPACITY) || has_texture(m, SCENE_SLOT_DIFFUSE)))
         bits.flags |= TRIANGLE_CUTOUT;
-    /* Surfaces that scene_freeze makes lights of; others that glow are ordinary ones. */
+    /* scene_freeze makes area lights of these surfaces; other surfaces that emit cast shadows. */
     if (area_lights && any_channel(m->emission) && m->model != WHIT_MODEL_UNLIT &&
         !has_texture(m, SCENE_SLOT_EMISSION))
         bits.flags |= TRIANGLE_NO_SHADOW;
-    if (m->shadow_catcher) /* is not there but for shadows that fall on it */
+    if (m->shadow_catcher) /* a shadow catcher only shows the shadows of others */
         bits.flags |= TRIANGLE_NO_SHADOW;
     if (m->one_sided && !any_channel(m->transmission))
         bits.flags |= TRIANGLE_ONE_SIDED;

@@ -15,12 +15,13 @@
 
 enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
 
-/* Traversal takes rays into object space in float. That moves a hit by a few roundings (2^-24 each)
-   of the coordinates involved; boxes in world space are wider by 16 of them. */
+/* Traversal transforms rays into object space in float. That moves a hit by a few roundings (2^-24
+   each) of the coordinates involved, so boxes in world space are widened by 16 of them. */
 static const double WIDENING = 0x1p-20;
 
-/* A point p reaches object space as inverse * (p - origin): errors relative to |p - origin| on one
-   world axis come back on the others as |forward| * |inverse|. */
+/* The world-space box of an instance, widened. A point p reaches object space as inverse * (p -
+   origin): errors relative to |p - origin| on one world axis come back on the others multiplied by
+   |forward| * |inverse|. */
 static struct bvh_box world_box(const struct affine *forward, const struct affine *inverse,
                                 const struct bvh_box *box)
 {
@@ -47,7 +48,7 @@ static bool row_store(float out[3], const double *row)
     return isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]);
 }
 
-/* Half the longest side; 0 for an empty box. */
+/* Half the longest side of the box; 0 for an empty one. */
 static float box_reach(const struct bvh_box *box)
 {
     float reach = 0.0f;
@@ -58,7 +59,7 @@ static float box_reach(const struct bvh_box *box)
     return reach;
 }
 
-/* The tree that the instance's rays enter. */
+/* Sets the tree that the instance's rays enter. */
 static void instance_enter(struct gpu_instance *out, const struct accel_mesh *mesh)
 {
     out->root = mesh->root;
@@ -68,7 +69,7 @@ static void instance_enter(struct gpu_instance *out, const struct accel_mesh *me
     out->reach = box_reach(&mesh->box);
 }
 
-/* False when floats cannot hold it. */
+/* False when floats cannot hold the transform. */
 static bool instance_fill(const struct affine *forward, const struct affine *inverse,
                           const struct accel_mesh *mesh, uint32_t mesh_index,
                           struct gpu_instance *out)
@@ -94,11 +95,11 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
 /* Kept from pose to pose: at ten thousand instances, fresh memory costs as much as filling it. */
 struct accel_posing {
     struct gpu_instance *instances; /* exchanged with accel->instances */
-    struct bvh_box *boxes;          /* of instances that are not empty, by rank */
-    uint32_t *ranks;                /* of each instance among these; UINT32_MAX: empty */
-    uint32_t *indices;              /* the instance of each rank */
+    struct bvh_box *boxes;          /* [rank]: of instances that are not empty */
+    uint32_t *ranks;                /* [instance]: its rank; UINT32_MAX: it is empty */
+    uint32_t *indices;              /* [rank]: its instance */
     uint32_t *bad;                  /* of each chunk: the first without an inverse, or UINT32_MAX */
-    uint32_t count;                 /* ranks */
+    uint32_t count;                 /* of ranks */
     bool has_tree;
 };
 
@@ -135,7 +136,7 @@ static struct accel_posing *posing_create(uint32_t count)
     return NULL;
 }
 
-/* Numbers the instances that are not empty. True: as they were numbered before. */
+/* Gives each instance that is not empty a rank. True: all ranks are as before. */
 static bool rank_instances(const struct accel *accel, struct accel_posing *posing)
 {
     bool same = true;
@@ -202,7 +203,7 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
     return WHIT_OK;
 }
 
-/* Leaves name instances, not ranks. */
+/* Copies the tree to accel->nodes; its leaves then name instances instead of ranks. */
 static void tree_place(struct accel *accel, const struct bvh *tree, const uint32_t *indices)
 {
     memset(accel->nodes + tree->node_count, 0,
@@ -228,7 +229,7 @@ static whit_result tree_build(struct accel *accel, const struct accel_posing *po
     return result;
 }
 
-/* New boxes from the leaves up: exact unions, so that parents hold their children. */
+/* Sets new boxes from the leaves up; they are exact unions, so that parents hold their children. */
 static void subtree_refit(struct gpu_bvh_node *nodes, uint32_t node,
                           const struct accel_posing *posing)
 {
@@ -272,7 +273,7 @@ static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
     return WHIT_OK;
 }
 
-/* Nothing is changed unless all goes well. */
+/* Changes nothing on failure. */
 static whit_result pose_instances(struct accel *accel, const struct scene_pose *pose)
 {
     struct accel_posing *posing = accel->posing;

@@ -1,5 +1,5 @@
-/* Is this a tree, and is it the tree of these primitives? Nothing read here is trusted: every index
-   is checked before it is followed, and no node is entered twice. */
+/* Checks that a tree is sound, and that it is the tree of these primitives. Nothing read here is
+   trusted: every index is checked before it is followed, and no node is entered twice. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,11 +17,12 @@ struct view {
     const char *name;
     const struct gpu_bvh_node *nodes; /* the whole array */
     uint32_t first_node, node_count;  /* those of this tree; the first is the root */
-    uint32_t first_slot, slot_count;  /* what its leaves may refer to */
-    uint32_t primitive_count;         /* in the leaves; each once, or where `split` at least once */
-    bool split;                       /* every slot is used, several by one primitive */
+    uint32_t first_slot, slot_count;  /* the slots that its leaves may name */
+    uint32_t primitive_count; /* each is in the leaves once, or at least once with `split` */
+    bool split;               /* primitives may have several slots; every slot is used */
     uint32_t leaf_limit;
-    /* Primitive in a slot, and its box; false: no box to compare with. */
+    /* The primitive in a slot, and the box of the record there; false: there is no box to compare
+       with. */
     uint32_t (*primitive)(const void *user, uint32_t slot);
     bool (*box)(const void *user, uint32_t slot, struct bvh_box *box);
     const void *user;
@@ -35,7 +36,7 @@ struct visit {
 struct walk {
     struct visit *stack;
     uint8_t *pair_seen, *slot_seen, *primitive_seen;
-    struct bvh_box *parts; /* where split: of each primitive, the union of what its leaves hold */
+    struct bvh_box *parts; /* with `split`: for each primitive, the union of its parts in leaves */
     uint32_t top, pairs, slots, primitives;
     uint32_t depth, leaf_count, leaf_largest;
 };
@@ -112,7 +113,7 @@ static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot
     return true;
 }
 
-/* The boxes of all parts of a primitive unite to its own. */
+/* Checks that the parts of each primitive together cover its box. */
 static bool check_parts(const struct view *view, const struct walk *walk)
 {
     struct bvh_box box;
@@ -221,7 +222,7 @@ static bool walk_run(const struct view *view, struct walk *walk)
 
 static bool walk_alloc(const struct view *view, struct walk *walk)
 {
-    /* A pair enters the stack once, so the nodes bound it. */
+    /* Each pair enters the stack once, so node_count bounds the stack. */
     *walk = (struct walk){
         .stack = array_alloc((size_t)view->node_count + 2, sizeof *walk->stack),
         .pair_seen = array_alloc_zeroed(view->node_count / 2 + 1, 1),
@@ -248,7 +249,7 @@ static void walk_finish(struct walk *walk)
     free(walk->parts);
 }
 
-/* *found holds the counts on success. */
+/* Checks the tree of `view`. On success *found holds what was counted. */
 static whit_result view_check(const struct view *view, struct walk *found)
 {
     *found = (struct walk){0};
@@ -281,7 +282,7 @@ static bool stated(const struct view *view, const char *what, uint32_t said, uin
     return false;
 }
 
-/* The same, and what is stated of the tree elsewhere. */
+/* Calls view_check, and checks the depth and root that are stated for the tree. */
 static whit_result tree_check(const struct view *view, uint32_t depth, uint32_t root)
 {
     struct walk found;
@@ -378,7 +379,7 @@ static bool record_matches(const struct scene_mesh *mesh, const struct gpu_trian
     return same;
 }
 
-/* Among all triangles; out of range: names none. */
+/* The record's primitive, numbered through all instances; UINT32_MAX: the record names none. */
 static uint32_t flat_primitive(const void *user, uint32_t slot)
 {
     const struct accel *accel = ((const struct mesh_user *)user)->accel;
@@ -392,7 +393,8 @@ static uint32_t flat_primitive(const void *user, uint32_t slot)
     return accel_flat_first(accel->world, instance) + t->primitive;
 }
 
-/* Records are placed in double, and instances know their matrix in float: 8 roundings apart. */
+/* Whether `v` is `p` under the instance's transform, within 8 roundings: the record was computed in
+   double, but the instance has its matrix in float. */
 static bool is_placed(const struct gpu_instance *in, const float *p, const float v[3])
 {
     const float *rows[3] = {in->forward0, in->forward1, in->forward2};
@@ -410,8 +412,7 @@ static bool is_placed(const struct gpu_instance *in, const float *p, const float
     return placed;
 }
 
-/* Whether a record of the tree over all instances is its triangle or sphere, placed in the world.
- */
+/* Whether a record of the world tree is its triangle or sphere under its instance's transform. */
 static bool record_is_placed(const struct accel *accel, const struct gpu_triangle *t)
 {
     const struct gpu_instance *in = &accel->instances[t->flags >> TRIANGLE_INSTANCE_SHIFT];
@@ -533,7 +534,7 @@ static whit_result validate_flat(const struct accel *accel)
 
 struct instance_user {
     const struct accel *accel;
-    const uint32_t *dense; /* of each instance: its number among those that are not empty */
+    const uint32_t *dense; /* [instance]: its number among those that are not empty */
 };
 
 static uint32_t instance_primitive(const void *user, uint32_t slot)
@@ -577,7 +578,7 @@ static bool instances_number(const struct accel *accel, uint32_t *dense, uint32_
     return true;
 }
 
-/* Leaves name instances, and the empty ones are not in the tree. */
+/* Checks the tree over instances. Its leaves name instances; empty ones are not in the tree. */
 static whit_result validate_instances(const struct accel *accel)
 {
     uint32_t *dense = array_alloc(accel->instance_count, sizeof *dense);

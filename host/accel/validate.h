@@ -14,7 +14,7 @@ WHIT_CHECK whit_result accel_validate_parts(const whit_log *log, const char *nam
                                             uint32_t (*primitive)(const void *user, uint32_t slot),
                                             const void *user);
 
-/* bvh_validate over everything. */
+/* Checks all trees of a scene. */
 WHIT_CHECK whit_result accel_validate(const struct accel *accel);
 
 /* Every primitive once, parents contain children, indices in range and paired, no cycle, leaf

@@ -1,5 +1,6 @@
-/* Split triangles: is all of each in the leaves that hold it, and is it the same triangle in each
-   of them? By points on it, and without the clipper that made the parts. */
+/* Checks split triangles: each must lie in its leaves with all of its area, and be the same
+   triangle in each of them. It tests sample points, and does not use the clipper that made the
+   parts. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +8,8 @@
 #include "accel/validate.h"
 #include "base/array.h"
 
-/* Corners, middles of edges and inside, in sixths: one bit each. */
+/* The sample points: the triangle's points whose barycentric coordinates are multiples of 1/6,
+   corners included; one bit each. */
 enum { STEPS = 6, POINTS = (STEPS + 1) * (STEPS + 2) / 2 };
 
 /* A coordinate of sample point (i, j), clamped to the triangle's box against rounding. */
@@ -45,7 +47,8 @@ static uint32_t points_inside(const struct gpu_triangle *t, const struct gpu_bvh
     return inside;
 }
 
-/* For one primitive: a bit per sample point inside its leaves; 1 + its first slot, 0: none yet. */
+/* For one primitive: a bit for each sample point that is inside its leaves; and 1 + its first slot,
+   0: none yet. */
 struct seen {
     uint32_t points, slot;
 };

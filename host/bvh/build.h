@@ -1,4 +1,4 @@
-/* Inside of the builders: what bvh.c hands to them, and topdown.c to split_*.c. */
+/* Types and functions that the builders share, and that no file outside of bvh/ includes. */
 #ifndef BVH_BUILD_H
 #define BVH_BUILD_H
 
@@ -11,9 +11,10 @@
 #include "bvh/bvh.h"
 #include "bvh/f4.h"
 
-/* Builders, called by bvh_build with at least one box and parameters in which no 0 stands for a
-   default, but for `bins` of WHIT_BUILD_BINNED: 0 lets the number follow the size of the node. They
-   fill *out up to build_complete; on failure the caller releases what is in it. */
+/* The builders, called by bvh_build with at least one box. `resolved` has no 0 that stands for a
+   default, except `bins` of WHIT_BUILD_BINNED, where 0 lets the number follow the size of the node.
+   They fill in *out, but for what build_complete computes; on failure the caller frees what is in
+   it. */
 whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
@@ -21,12 +22,12 @@ whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32
 whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                           const struct bvh_params *resolved, struct bvh *out);
 
-/* In `flags` of a record. */
+/* Bits of `flags` of a record. */
 #define SPATIAL_WHOLE 1u /* must not be split */
 #define SPATIAL_PART  2u /* was split: the box is that of a part */
 
-/* A box with the primitive it belongs to: a reference. Records are moved, not indices to them, so
-   that a subtree is one run of memory. */
+/* A primitive reference: a box and the primitive that it belongs to. Builders move the records
+   themselves, not indices to them, so that a subtree is one run of memory. */
 struct build_record {
     alignas(32) float lo[3];
     uint32_t primitive;
@@ -46,16 +47,16 @@ struct build_bounds {
 
 /* ---- Top-down building (topdown.c) ---- */
 
-/* Records [first, first + count) with room for `spare` more behind them, and where their subtree
-   goes: node `node`, and pairs of children from pair slot `pair` on, of which it may use count +
-   spare - 1. */
+/* A subtree to build: over the records [first, first + count), behind which there is room for
+   `spare` more. Its root is node `node`; its pairs of children start at pair slot `pair`, of which
+   it may use count + spare - 1. */
 struct build_range {
     struct build_bounds bounds;
     uint32_t node, pair, first, count, spare, depth;
 };
 
 /* The two runs that the records of a range were split into, the second behind the first. A record
-   that was split itself is in both: together they are at most count + spare. */
+   that was split itself has a part in both: together they are at most count + spare. */
 struct build_halves {
     struct build_bounds bounds[2];
     uint32_t count[2];
@@ -67,27 +68,29 @@ enum build_choice {
     BUILD_NONE,  /* no plane separates anything */
 };
 
-/* The depth from which nodes are split at the median: 28 more levels for 2^28 primitives. */
+/* From this depth on nodes are split at the median, which takes 28 more levels for 2^28 primitives.
+ */
 enum { BUILD_DEPTH_OF_MEDIANS = 96 };
 
-/* The nodes while a tree grows. Pair slot s is nodes 2 + 2 s and 3 + 2 s. */
+/* The nodes of a growing tree. Pair slot s is nodes 2 + 2 s and 3 + 2 s. */
 struct build_output {
     struct gpu_bvh_node *nodes;
-    uint32_t *slots; /* 1: in use; later its place when squeezed */
+    uint32_t *slots; /* of each pair slot: 1 if in use; then its number in the finished tree */
 };
 
-/* What differs between builders. Ranges that do not overlap are given to several threads at once.
-   `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
+/* What differs between builders. Several threads call these functions at once, for ranges that do
+   not overlap. `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
 struct builder {
     const struct bvh_params *params;
     struct build_record *records;
     void *context; /* the builder's own */
-    /* With thread_count > 1, which only a `threaded` one meets, the work on this one range is to be
-       spread over threads. NULL: always `halve`. */
+    /* Chooses a split and makes it. thread_count is above 1 only where `threaded` is set: then the
+       work on this one range is to be spread over threads. NULL: always `halve`. */
     enum build_choice (*split)(const struct builder *builder, const struct build_range *range,
                                uint32_t thread_count, void *scratch, struct build_halves *halves);
     bool threaded;
-    /* The same without a choice, and without fail: for BUILD_NONE above the leaf limit. */
+    /* Makes a split, whatever it costs: called where `split` gives BUILD_NONE and the range is
+       above the leaf limit. */
     void (*halve)(const struct builder *builder, const struct build_range *range, void *scratch,
                   struct build_halves *halves);
     /* Builds the whole subtree of a range of at most small_count records. */
@@ -96,7 +99,8 @@ struct builder {
     uint32_t small_count;
 };
 
-/* builder->halve: along the axis of the widest centroids; equal centroids by primitive. */
+/* A function for builder->halve: splits at the median centroid, on the axis where centroids are
+   spread widest. Equal centroids are in the order of their primitives. */
 void split_median(const struct builder *builder, const struct build_range *range, void *scratch,
                   struct build_halves *halves);
 
@@ -141,7 +145,7 @@ static inline f4 build_centroid(struct build_box box)
     return f4_add(f4_mul(box.lo, quarter), f4_mul(box.hi, quarter));
 }
 
-/* The same of one axis. */
+/* build_centroid along one axis. */
 static inline float build_centroid_along(const struct build_record *record, uint32_t axis)
 {
     return record->lo[axis] * 0.25f + record->hi[axis] * 0.25f;
@@ -162,8 +166,8 @@ static inline void build_bounds_add(struct build_bounds *b, const struct build_r
 
 /* ---- Costs ---- */
 
-/* A power of two that brings the largest extent into [0.5, 1], or near it at the ends of the range
-   of floats: areas neither overflow nor vanish, whatever the scene's unit. */
+/* A power of two that scales the largest extent into [0.5, 1], or near it at the ends of the range
+   of floats, so that areas neither overflow nor vanish, whatever the scene's unit. */
 static inline f4 build_scale(struct build_box box)
 {
     alignas(16) float e[4];
@@ -180,7 +184,7 @@ static inline float build_area(struct build_box box, f4 scale)
     return f4_half_area(f4_sub(f4_mul(box.hi, scale), f4_mul(box.lo, scale)));
 }
 
-/* build_area of each of the three, in the first three lanes. */
+/* The build_area of each of three boxes, in the first three lanes. */
 static inline f4 build_areas(const struct build_box box[3], f4 scale)
 {
     f4 d[3];
@@ -203,10 +207,10 @@ static inline uint32_t build_widest_axis(const float extent[3])
     return extent[2] > extent[axis] ? 2 : axis;
 }
 
-/* Floats in the order of unsigned integers. */
+/* Maps floats to unsigned integers of the same order. */
 static inline uint32_t build_ordered_bits(float value)
 {
-    uint32_t bits = float_bits(value + 0.0f); /* one zero */
+    uint32_t bits = float_bits(value + 0.0f); /* turns -0 into +0 */
     return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 

@@ -1,4 +1,4 @@
-/* What is common to all builders: their parameters, and which of them is called. */
+/* Checks the parameters of all builders, and calls the one that is asked for. */
 #include <float.h>
 #include <stdlib.h>
 
@@ -21,7 +21,7 @@ static bool builder_known(whit_build builder)
     return false;
 }
 
-/* 0 becomes the default. */
+/* Replaces every 0 by its default. */
 static void params_resolve(const struct bvh_params *in, struct bvh_params *out)
 {
     *out = in ? *in : (struct bvh_params){0};
@@ -65,7 +65,7 @@ static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint3
     case WHIT_BUILD_SPATIAL:
         return spatial_build(log, boxes, count, params, out);
     }
-    return WHIT_ERROR_USAGE; /* params_check knows better */
+    return WHIT_ERROR_USAGE; /* not reached: params_check has refused all others */
 }
 
 whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,

@@ -1,4 +1,4 @@
-/* One tree over boxes: builders, and what every one of them leaves. */
+/* One tree over boxes, from any of the builders. */
 #ifndef BVH_BVH_H
 #define BVH_BVH_H
 
@@ -13,7 +13,7 @@ struct bvh_box {
     float lo[3], hi[3];
 };
 
-/* The triangles that the boxes are of. */
+/* The triangles that the boxes bound. */
 struct bvh_triangles {
     const float *positions;  /* 3 a vertex */
     const uint32_t *indices; /* 3 a triangle */
@@ -60,7 +60,7 @@ static inline uint32_t bvh_count(const struct gpu_bvh_node *node)
     return node->count & BVH_COUNT_MASK;
 }
 
-/* Half the area of its box. */
+/* Half the surface area of the node's box. */
 static inline double bvh_half_area(const struct gpu_bvh_node *node)
 {
     double x = (double)node->hi[0] - (double)node->lo[0];

@@ -17,7 +17,7 @@ static void polygon_cross(const double a[3], const double b[3], int axis, double
     p[axis] = plane;
 }
 
-/* What lies on one side of a plane, or in it. */
+/* Keeps what lies in the plane or on one side of it. */
 static void polygon_clip(const struct clip_polygon *in, int axis, double plane, bool above,
                          struct clip_polygon *out)
 {

@@ -1,4 +1,4 @@
-/* The box of what a box leaves of a triangle. */
+/* Clips a triangle to a box, and bounds what is left. */
 #ifndef BVH_CLIP_H
 #define BVH_CLIP_H
 
@@ -20,27 +20,29 @@ static inline struct clip_triangle clip_fetch(const struct bvh_triangles *triang
                                    &triangles->positions[3 * (size_t)corner[2]]}};
 }
 
-/* Each of six planes adds a corner to the three, or more if rounding bends it. */
+/* Six planes add a corner each to the triangle's three; more where rounding makes the polygon bend.
+ */
 enum { CLIP_CORNERS_MAX = 16 };
 struct clip_polygon {
     double at[CLIP_CORNERS_MAX][3];
     uint32_t count;
 };
 
-/* What the closed box leaves of the triangle, which is one of the two; NULL: nothing. In double:
-   points of edges are off by less than a float can tell. */
+/* Clips the triangle to the closed box. The result is room[0] or room[1]; NULL: nothing is left. It
+   is computed in double: points on edges are off by less than a float can tell. */
 const struct clip_polygon *clip_triangle(const struct clip_triangle *triangle,
                                          const struct bvh_box *cell, struct clip_polygon room[2]);
 
-/* The bounds of the part of the triangle in `cell`, rounded outwards to floats, within the cell.
-   They hold that part but for what doubles round: some 2^-50 of the coordinates. False when nothing
-   is left, or no more than that. */
+/* The bounds of the triangle's part within `cell`, rounded outwards to floats, but not beyond the
+   cell. They hold the part up to the rounding of doubles, some 2^-50 of the coordinates. False when
+   nothing is left, or nothing above that rounding. */
 bool clip_triangle_box(const struct clip_triangle *triangle, const struct bvh_box *cell,
                        struct bvh_box *out);
 
-/* For leaves: the part's box with a margin around it, within the triangle's `own` box. The margin
-   is more than what clipping rounds (an extent that is not 0 is at least 2^-24 of its coordinates),
-   and leaves room for what the triangle test rounds: docs/numerics.md, "Clipped triangles". */
+/* For leaf boxes: the part's box with a margin around it, within the triangle's `own` box. The
+   margin is more than what clipping rounds (an extent that is not 0 is at least 2^-24 of its
+   coordinates), and leaves room for the rounding of the triangle test: docs/numerics.md, "Clipped
+   triangles". */
 #define CLIP_PART_MARGIN (1.0 / 4096.0) /* of the triangle's largest extent */
 struct bvh_box clip_widen(const struct bvh_box *part, const struct bvh_box *own);
 

@@ -1,4 +1,4 @@
-/* What is computed of a finished tree, whatever built it. */
+/* Computes the axis bits and figures of a finished tree, whichever builder made it. */
 #include <math.h>
 
 #include "base/threads.h"
@@ -21,7 +21,8 @@ void bvh_set_axis(struct gpu_bvh_node *first)
 }
 
 struct tally {
-    double area_inner, area_leaves; /* of leaves: times primitives */
+    double area_inner,
+        area_leaves; /* sums of half areas; each leaf's times its number of primitives */
     uint32_t leaf_count, leaf_largest;
 };
 
@@ -48,7 +49,8 @@ static uint32_t subtree_depth(const struct gpu_bvh_node *nodes, uint32_t node)
     return 1 + (a > b ? a : b);
 }
 
-/* Sums of chunks are summed up in the order of the chunks, whoever made them. */
+/* Each chunk of nodes has its own sums. They are added in the order of the chunks, whichever
+   threads made them, so that the total has the same bits for any number of threads. */
 enum { CHUNK_NODES = 16384, CHUNKS_MAX = 512 };
 
 struct chunks {

@@ -1,11 +1,11 @@
-/* What finished nodes get. */
+/* Axis bits and figures of finished trees. */
 #ifndef BVH_COMPLETE_H
 #define BVH_COMPLETE_H
 
 #include "bvh/bvh.h"
 
-/* Completes finished nodes: sets the axis bits of every pair, sah_cost, leaf_count, leaf_largest
-   and depth. Whatever builds a tree ends with it. */
+/* Sets the axis bits of every pair of nodes, and sah_cost, leaf_count, leaf_largest and depth of
+   the tree. Every builder ends with it. */
 void bvh_complete(struct bvh *bvh, double traversal_cost);
 /* bvh_complete by several threads: the same bits for any number of them. */
 void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count);

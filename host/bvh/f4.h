@@ -70,7 +70,7 @@ static inline float f4_half_area(f4 d)
     f4 y = _mm_shuffle_ps(p, p, _MM_SHUFFLE(1, 1, 1, 1));
     return _mm_cvtss_f32(_mm_add_ss(_mm_add_ss(p, y), _mm_movehl_ps(p, p)));
 }
-/* Masks: f4_less makes one, f4_select and f4_both take them. */
+/* Masks: f4_less returns one, f4_both and f4_select take them. */
 static inline f4 f4_less(f4 a, f4 b)
 {
     return _mm_cmplt_ps(a, b);
@@ -83,12 +83,12 @@ static inline f4 f4_select(f4 mask, f4 yes, f4 no)
 {
     return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
 }
-/* Four counts below 2^31. */
+/* Converts four counts below 2^31. */
 static inline f4 f4_from_counts(const uint32_t p[4])
 {
     return _mm_cvtepi32_ps(_mm_load_si128((const __m128i *)(const void *)p));
 }
-/* f4_half_area of each of the three, in the first three lanes. */
+/* The f4_half_area of each of three vectors, in the first three lanes. */
 static inline f4 f4_half_areas(f4 a, f4 b, f4 c)
 {
     f4 low = _mm_unpacklo_ps(a, b), high = _mm_unpackhi_ps(a, b);

@@ -1,10 +1,10 @@
 /* Moves subtrees of a finished tree to where they cost less. After Meister and Bittner 2018,
-   "Parallel reinsertion for bounding volume hierarchy optimization": the best place of each
-   candidate is searched in parallel, by branch and bound over the tree as it stands; then the moves
-   are made one by one, those that gain most first. By then the tree has changed: each gain is
-   computed anew, and a move that would raise the cost is taken back.
+   "Parallel reinsertion for bounding volume hierarchy optimization": threads search the best place
+   of each node by branch and bound over the tree as it stands; then the moves are made one by one,
+   those that gain most first. Earlier moves have changed the tree by then, so each gain is computed
+   anew, and a move that would raise the cost is undone.
 
-   Leaves stay what they are, so that the areas of inner nodes are all that changes of the cost. */
+   Leaves stay as they are, so that only the areas of inner nodes change the cost. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,11 +19,11 @@
 enum {
     ROUNDS_MAX = 10,
     SEARCH_CHUNK = 256, /* searches made by one call */
-    SEARCH_MAX = 1024,  /* nodes looked at by one search: bounds what odd trees cost */
+    SEARCH_MAX = 1024,  /* nodes visited by one search: bounds its time in degenerate trees */
     STACK_SIZE = BVH_DEPTH_MAX + 2,
 };
 
-/* A round that lowers the cost by less than this is the last. */
+/* A round that lowers the cost by less than this share of it is the last. */
 static const double ROUND_MIN = 0.001;
 
 struct move {
@@ -34,14 +34,14 @@ struct move {
 struct optimizer {
     struct gpu_bvh_node *nodes; /* a copy; without axis bits */
     uint32_t *parents;          /* of each pair: the node above it */
-    struct move *moves;         /* one a node that is not the root */
+    struct move *moves;         /* one for each node but the root */
     uint32_t node_count, thread_count;
     f4 scale;
 };
 
 /* ---- Boxes ---- */
 
-/* True: the box is another one now. */
+/* Sets the node's box. True: it was another one before. */
 static bool node_set_box(struct gpu_bvh_node *node, struct build_box box)
 {
     alignas(16) float lo[4], hi[4];
@@ -63,7 +63,8 @@ struct candidate {
     struct move best;
 };
 
-/* Everything below `root`, with what is gained before the candidate is put there. */
+/* Searches `root` and all nodes below it for a better place. `gained`: the area that the tree loses
+   by taking the candidate out, before it is put anywhere. */
 static void search_subtree(const struct optimizer *o, struct candidate *c, uint32_t root,
                            float gained)
 {
@@ -95,14 +96,15 @@ static void search_subtree(const struct optimizer *o, struct candidate *c, uint3
     }
 }
 
-/* Up the path to the root: what hangs beside it, and above which of its nodes. */
+/* The best place for `node`. Goes up the path from it to the root, and tries the subtrees beside
+   the path and the places above the nodes of the path. */
 static struct move search(const struct optimizer *o, uint32_t node)
 {
     struct candidate c = {.extent = build_node_box(&o->nodes[node]), .node = node};
     c.area = build_area(c.extent, o->scale);
     uint32_t at = o->parents[node / 2];
     struct build_box left =
-        build_node_box(&o->nodes[node ^ 1]); /* of the path without the candidate */
+        build_node_box(&o->nodes[node ^ 1]); /* box of the path's node without the candidate */
     float gained = build_area(build_node_box(&o->nodes[at]), o->scale);
     search_subtree(o, &c, node ^ 1, gained);
     while (at != 0 && c.visits < SEARCH_MAX) {
@@ -134,7 +136,8 @@ static void adopt(struct optimizer *o, uint32_t node)
         o->parents[o->nodes[node].first / 2] = node;
 }
 
-/* Boxes from the pair of `node` upwards; what the area of inner nodes grows by. */
+/* Computes the boxes of all nodes above `node` anew. Returns by how much the area of inner nodes
+   grows. */
 static double refit(struct optimizer *o, uint32_t node)
 {
     double grown = 0.0;
@@ -151,7 +154,8 @@ static double refit(struct optimizer *o, uint32_t node)
     return grown;
 }
 
-/* The sibling takes the place above; the pair's other half stays for attach. */
+/* Takes `from` out: its sibling takes their parent's place. `from` and the node beside it are kept
+   for attach. Returns by how much the area of inner nodes grows. */
 static double detach(struct optimizer *o, uint32_t from)
 {
     uint32_t above = o->parents[from / 2];
@@ -181,7 +185,7 @@ static bool is_below(const struct optimizer *o, uint32_t node, uint32_t above)
     return node == above;
 }
 
-/* Makes the move if it lowers the cost. Gives by how much the cost falls, else 0. */
+/* Makes the move if it lowers the cost. Returns by how much the cost falls, or 0. */
 static double move_make(struct optimizer *o, const struct move *move)
 {
     uint32_t from = move->from, to = move->to, above = o->parents[from / 2];
@@ -192,7 +196,7 @@ static double move_make(struct optimizer *o, const struct move *move)
     if (grown < 0.0)
         return -grown;
     (void)detach(o, from);
-    /* The former place, unless it is the pair's free half: then what was there is above. */
+    /* `above` holds the former sibling again, so this restores the former place. */
     (void)attach(o, from, above);
     return 0.0;
 }
@@ -205,7 +209,7 @@ static int larger_gain_first(const void *a, const void *b)
     return x->from < y->from ? -1 : x->from > y->from;
 }
 
-/* Runs one round of moves. Gives by how much the cost falls. */
+/* Runs one round of moves. Returns by how much the cost falls. */
 static double round_run(struct optimizer *o)
 {
     uint32_t count = o->node_count - 2, kept = 0;
@@ -265,7 +269,8 @@ static bool is_within_depth(const struct gpu_bvh_node *nodes, uint32_t node, uin
            is_within_depth(nodes, nodes[node].first + 1, left - 1);
 }
 
-/* Pairs depth first, primitives in the order of the leaves. */
+/* Writes the tree to `bvh`: pairs of nodes in depth-first order, primitives in the order of the
+   leaves. */
 static void emit(const struct optimizer *o, struct bvh *bvh, uint32_t *order)
 {
     struct {

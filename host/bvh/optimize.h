@@ -1,4 +1,4 @@
-/* Finished trees, improved. */
+/* Improves finished trees. */
 #ifndef BVH_OPTIMIZE_H
 #define BVH_OPTIMIZE_H
 

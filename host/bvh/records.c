@@ -1,4 +1,4 @@
-/* Builders that move records as they split them: binned and median; and the one that splits
+/* Builders that move records as they split them: binned, median, and WHIT_BUILD_NONE, which splits
    nothing. */
 #include <stdlib.h>
 
@@ -10,7 +10,7 @@
 
 enum {
     RECORD_CHUNK = 16384, /* records made by one call */
-    SMALL_OF_BINS = 8,    /* where the number of bins is given, larger nodes have that many */
+    SMALL_OF_BINS = 8,    /* with a given number of bins: nodes of more records use bins */
 };
 
 struct record_chunk {
@@ -44,7 +44,7 @@ static void make_chunk(void *user, uint32_t index)
         struct build_record *record = &context->records[i];
         chunk.bad |= !box_is_good(box);
         for (int a = 0; a < 3; ++a) {
-            /* + 0: one zero, so that bounds do not depend on the order of their parts. */
+            /* + 0 turns -0 into +0, so that bounds do not depend on the order of their parts. */
             record->lo[a] = box->lo[a] + 0.0f;
             record->hi[a] = box->hi[a] + 0.0f;
         }
@@ -110,8 +110,8 @@ void records_bound(const struct build_record *records, uint32_t count, struct bu
 
 /* ---- Builders ---- */
 
-/* Without trees: the records stay where they are, in leaves that are full but for the last, and
-   every box is that of everything. */
+/* For WHIT_BUILD_NONE: the records stay in their order, in leaves that are all full except the
+   last, and every node has the root's box. */
 static void halve_nothing(const struct builder *builder, const struct build_range *range,
                           void *scratch, struct build_halves *halves)
 {

@@ -22,11 +22,12 @@ static double extent_area(struct build_box box)
 /* ---- Splits ---- */
 
 struct spatial {
-    double overlap_min; /* of the halves, from which spatial splits are tried */
+    double overlap_min; /* half area of the overlap of both halves, above which spatial splits are
+                           tried */
 };
 
-/* Whether a spatial split may pay: there is room, and the halves of the best object split overlap.
-   Where there is no object split all lie on each other. */
+/* Whether a spatial split may pay: there is room for more references, and the halves of the best
+   object split overlap. Without an object split all references count as overlapping. */
 static bool spatial_worthwhile(const struct builder *builder, const struct build_range *range,
                                const struct object_plane *object)
 {
@@ -67,7 +68,8 @@ static enum build_choice split(const struct builder *builder, const struct build
 
 /* ---- The finished tree ---- */
 
-/* The record's box; parts get their margin here: until now costs were those of the parts alone. */
+/* The record's box in a leaf. Parts of triangles get their margin only here: costs until now are
+   those of the parts without it. */
 static struct build_box leaf_box(const struct build_record *record, const struct bvh_box *boxes)
 {
     struct build_record wide = *record;
@@ -82,7 +84,7 @@ static struct build_box leaf_box(const struct build_record *record, const struct
     return build_record_box(&wide);
 }
 
-/* Brings the references of the leaves together. */
+/* Fills `order` with the leaves' references, without gaps, and sets the boxes of the leaves. */
 static void leaves_place(const struct build_record *records, const struct bvh_box *boxes,
                          struct bvh *out)
 {
@@ -102,7 +104,7 @@ static void leaves_place(const struct build_record *records, const struct bvh_bo
     }
 }
 
-/* Children come after their parents. */
+/* Sets the boxes of inner nodes. From the end: children come after their parents. */
 static void refit(struct bvh *bvh)
 {
     for (uint32_t i = bvh->node_count; i-- > 0;) {
@@ -115,7 +117,7 @@ static void refit(struct bvh *bvh)
     }
 }
 
-/* References that may be added; all must be within what a node can address. */
+/* How many references may be added: this share of `count`, and no more than a node can address. */
 static uint32_t budget(uint32_t count, float share)
 {
     double max = floor((double)count * (double)share);

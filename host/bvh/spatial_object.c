@@ -1,4 +1,4 @@
-/* Object splits: every reference in one half, as it is. */
+/* Object splits: every reference goes whole to one half. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 
 enum { BINS = 16 };
 
-/* Equal centroids by primitive, which are all different. */
+/* Finds the plane for few references. They are put in the order of their primitives first, which
+   all differ, so that the order of equal centroids is fixed. */
 static void few_find(const struct build_record *records, uint32_t count, f4 scale,
                      struct object_plane *plane)
 {

@@ -1,24 +1,25 @@
-/* Object splits of references that may have been split. */
+/* Object splits, for references to triangles or parts of triangles. */
 #ifndef BVH_SPATIAL_OBJECT_H
 #define BVH_SPATIAL_OBJECT_H
 
 #include "bvh/split_binned.h"
 #include "bvh/sweep_small.h"
 
-/* Over all positions of up to BUILD_SMALL references, else over equal bins. */
+/* The plane of an object split: `small` and `cut` hold it for up to BUILD_SMALL references, `bins`
+   for more. */
 struct object_plane {
     float cost; /* relative to one primitive of the node's scaled area */
     struct build_box side[2];
     struct bin_plane bins;
     struct small small;
     struct small_cut cut;
-    uint8_t index[BUILD_SMALL]; /* in the node, of each box of `small` */
+    uint8_t index[BUILD_SMALL]; /* [i]: index in the node of box i of `small` */
 };
 
 /* The best plane, of infinite cost where none separates anything. */
 void object_find(const struct build_record *records, const struct build_range *range, f4 scale,
                  struct object_plane *plane);
-/* Moves the references on its left to the front. */
+/* Moves the references on the plane's left to the front. */
 void object_apply(struct build_record *records, uint32_t count, const struct object_plane *plane,
                   struct build_halves *halves);
 

@@ -1,4 +1,4 @@
-/* Planes that split references: the choice of one, and what it does to them. */
+/* Spatial splits: chooses a plane, and splits references at it. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +16,8 @@ struct span {
 
 /* ---- Bins of a reference ---- */
 
-/* Few references are cut into fewer bins: more would cost more than they find. */
+/* Nodes of few references have fewer bins: more would take more time than the better planes save.
+ */
 static int bins_for(uint32_t count)
 {
     return count < 12 ? 4 : count < 48 ? 8 : SPATIAL_BINS;
@@ -45,8 +46,8 @@ static inline f4 grid_position(const struct spatial_grid *grid, f4 x)
     return f4_min(position, f4_splat((float)(grid->bins - 1)));
 }
 
-/* What ends on the border of two bins is in the lower one. References that must stay whole are
-   where their centre is. */
+/* The bins that a box overlaps. A box that ends on the border of two bins ends in the lower one. A
+   reference that must stay whole is in the bin of its centre. */
 static inline struct span span_of(const struct spatial_grid *grid, struct build_box box,
                                   uint32_t flags)
 {
@@ -68,9 +69,9 @@ static inline struct span span_of(const struct spatial_grid *grid, struct build_
 
 /* ---- Chopping ---- */
 
-/* A triangle whose coordinates along `axis` are apart from the rest. */
+/* A triangle prepared to be cut by planes across `axis`; `at`: its coordinates along that axis. */
 struct chopped {
-    f4 v[3], slope[3]; /* of the edge from v[i] to v[i + 1], by the coordinate */
+    f4 v[3], slope[3]; /* of the edge from v[i] to v[i + 1], per unit along `axis` */
     float at[3];
     uint32_t axis;
 };
@@ -91,7 +92,7 @@ static struct chopped chopped_make(const struct clip_triangle *triangle, uint32_
     return c;
 }
 
-/* Where the triangle's border passes the plane. */
+/* Adds the points where the triangle's edges cross the plane to *out. */
 static inline void chopped_cut(const struct chopped *c, float plane, struct build_box *out)
 {
     for (int i = 0; i < 3; ++i) {
@@ -103,8 +104,8 @@ static inline void chopped_cut(const struct chopped *c, float plane, struct buil
     }
 }
 
-/* Grows bins [first, last] of one axis by what each holds of the reference. Good to a rounding:
-   only costs come of it. */
+/* Grows each of the bins [first, last] of one axis by the part of the reference in it. The boxes
+   have rounding errors, since only costs are computed from them. */
 static void chop(const struct clip_triangle *triangle, const struct spatial_grid *grid,
                  uint32_t axis, int first, int last, struct build_box box, struct build_box *bins)
 {
@@ -215,8 +216,9 @@ bool spatial_find(const struct build_record *records, const struct build_range *
 
 enum side { SIDE_LEFT = 1, SIDE_RIGHT = 2, SIDE_BOTH = 3 };
 
-/* Stich et al. 2009, 4.4, with the counts and boxes that the plane was chosen for: so the order of
-   references does not matter. */
+/* Which halves a reference goes to (reference unsplitting, Stich et al. 2009, 4.4). It uses the
+   counts and boxes that the plane was chosen for, so that the order of references does not matter.
+   */
 static enum side side_of(const struct spatial_plane *plane, const struct build_record *record)
 {
     const struct build_box *side = plane->side, box = build_record_box(record);
@@ -237,7 +239,7 @@ static enum side side_of(const struct spatial_plane *plane, const struct build_r
     return left_cost <= right_cost ? SIDE_LEFT : SIDE_RIGHT;
 }
 
-/* The half of a reference below or above the plane; false: there is none. */
+/* The part of a reference below or above the plane; false: nothing of it is there. */
 static bool record_half(const struct build_record *record, const struct spatial_plane *plane,
                         bool above, const struct bvh_triangles *triangles, struct build_record *out)
 {
@@ -284,7 +286,7 @@ bool spatial_apply(struct build_record *records, const struct build_range *range
         if (side == SIDE_BOTH) {
             bool has_low = record_half(&records[i], plane, false, triangles, &low);
             bool has_high = record_half(&records[i], plane, true, triangles, &high);
-            /* What rounding leaves nothing of on one side is whole on the other. */
+            /* Where rounding leaves no part on one side, the whole reference goes to the other. */
             if (!has_high || (has_low && end == range->count + range->spare))
                 side = SIDE_LEFT;
             else if (!has_low)

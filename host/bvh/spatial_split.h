@@ -6,33 +6,34 @@
 
 enum { SPATIAL_BINS = 16 };
 
-/* Bin of a coordinate: (x / 2 - origin) * bins_per_half, so that no extent overflows. */
+/* The bin of a coordinate x is (x / 2 - origin) * bins_per_half; halved, so that no extent
+   overflows. */
 struct spatial_grid {
     f4 origin, bins_per_half;
-    float start[3], width[3]; /* of bins; 0: the axis has one */
+    float start[3], width[3]; /* of bins; width 0: the axis has only one bin */
     int bins;
 };
 
-/* A plane, and what is expected of it. */
+/* A plane, with its expected cost and the counts and boxes of both sides. */
 struct spatial_plane {
     struct spatial_grid grid;
     uint32_t axis, bin; /* references that start in bins below `bin` go left */
     float at;           /* coordinate */
     float cost;         /* relative to one primitive of the node's scaled area */
-    uint32_t count[2];  /* of both sides, and their boxes */
+    uint32_t count[2];  /* of both sides */
     struct build_box side[2];
     f4 scale;
 };
 
-/* The best plane among bins that lets at most range->spare references be in both halves; false:
-   none. Bins hold what they cut out of the triangles (Stich, Friedrich and Dietrich 2009, "Spatial
-   splits in bounding volume hierarchies", 4.2: chopped binning). */
+/* The best plane between bins for which both halves have at most range->spare references more than
+   the range; false: there is none. Each bin bounds what it cuts out of the triangles (chopped
+   binning: Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies",
+   4.2). */
 bool spatial_find(const struct build_record *records, const struct build_range *range,
                   const struct bvh_triangles *triangles, f4 scale, struct spatial_plane *plane);
 
-/* Splits the records at the plane. A reference that would cost less whole stays whole (4.4:
-   reference unsplitting). False: a half would be empty; then no record has changed, but for its
-   place. */
+/* Splits the records at the plane. A reference that costs less unsplit stays whole (reference
+   unsplitting, 4.4). False: a half would be empty; then records have at most changed places. */
 bool spatial_apply(struct build_record *records, const struct build_range *range,
                    const struct spatial_plane *plane, const struct bvh_triangles *triangles,
                    struct build_halves *halves);

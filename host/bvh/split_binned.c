@@ -10,7 +10,7 @@
 
 enum {
     BINS_MAX = 256,
-    FREE_BINS_MIN = 8, /* where their number is free */
+    FREE_BINS_MIN = 8, /* for a number of bins that follows the size of the node */
     FREE_BINS_MAX = 32,
     CHUNKS_MAX = 16,
     CHUNK_MIN = 4096,
@@ -22,7 +22,7 @@ struct bins {
     alignas(16) uint32_t count[BINS_MAX][4];
 };
 
-/* Extents too small to be inverted count as none: that axis has one bin. */
+/* Bins per unit of length. Extents too small to be inverted count as 0: that axis has one bin. */
 static float axis_scale(float extent, uint32_t bins)
 {
     return extent > 1e-35f ? (float)bins * (1.0f - 1e-5f) / extent : 0.0f;
@@ -120,9 +120,10 @@ static inline void bins_sum(struct build_box sums[3], const struct build_box row
         sums[a] = build_box_unite(sums[a], row[a]);
 }
 
-/* Where centroids differ, the smallest is in the first bin and the largest in the last, so neither
-   side is ever empty; bins without records change nothing. An axis on which they do not differ has
-   everything in the first bin: empty boxes to the right of it make its costs infinite. */
+/* Finds the best plane between bins. Where centroids differ along an axis, the smallest is in the
+   first bin and the largest in the last, so neither side is ever empty; bins without records change
+   nothing. Where they do not differ, all are in the first bin: the boxes right of it are empty, and
+   the axis's costs infinite. */
 static void sweep_axes(const struct bins *bins, uint32_t bin_count, f4 scale,
                        struct bin_plane *best)
 {
@@ -194,8 +195,8 @@ static void centroids_add(struct build_box *centroids, const struct build_record
     *centroids = build_box_unite(*centroids, (struct build_box){centroid, centroid});
 }
 
-/* Both sides keep their order. No branch depends on the side, which cannot be foreseen: every
-   record is written to both, and one of the two is written over. */
+/* Both sides keep their order. No branch depends on the side, which a processor could not predict:
+   every record is written to both sides, and one of the two copies is overwritten. */
 static void partition(struct build_record *records, uint32_t count, const struct bin_plane *plane,
                       struct build_record *scratch, struct build_bounds halves[2])
 {

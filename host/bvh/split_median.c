@@ -1,11 +1,12 @@
-/* The object median: no cost, no failure. Also what remains when SAH sees nothing to separate, and
-   what bounds the depth. */
+/* Splits at the object median, which looks at no cost and always succeeds. Other builders use it
+   where SAH finds no plane that separates anything, and to bound the depth. */
 #include <string.h>
 
 #include "bvh/build.h"
 #include "bvh/records.h"
 
-/* All keys differ, so the median is the same whatever the order of the records. */
+/* The key that records are ordered by. All keys differ, so the median does not depend on the order
+   of the records. */
 static uint64_t record_key(const struct build_record *record, uint32_t axis)
 {
     return (uint64_t)build_ordered_bits(build_centroid_along(record, axis)) << 32 |
@@ -24,7 +25,7 @@ static void insertion_sort(struct build_record *records, uint32_t count, uint32_
     }
 }
 
-/* The key with `rank` smaller ones, digit by digit: linear for every input. */
+/* The key that has `rank` smaller ones, found digit by digit: in linear time for every input. */
 static uint64_t select_key(const struct build_record *records, uint32_t count, uint32_t axis,
                            uint32_t rank)
 {

@@ -12,11 +12,11 @@
 #include "bvh/sweep_small.h"
 #include "bvh/topdown.h"
 
-enum { THREADED_MIN = 4096 }; /* records from which the axes of one node are given to threads */
+enum { THREADED_MIN = 4096 }; /* in nodes of so many records the three axes are swept by threads */
 
 struct sweep {
-    const struct build_record *records; /* by primitive */
-    uint32_t *list[3];                  /* primitives by centroid, equal ones by primitive */
+    const struct build_record *records; /* index: primitive */
+    uint32_t *list[3]; /* primitives in the order of their centroids, equal ones by number */
     /* For each primitive: 1 if it goes left, else 0; in a small subtree, its index there. */
     uint8_t *mark;
 };
@@ -60,7 +60,7 @@ static void items_scatter(const uint64_t *from, uint64_t *to, uint32_t count, ui
         to[histogram[digit_of(from[i], digit)]++] = from[i];
 }
 
-/* Least digit first: stable. */
+/* Radix sort, least significant digit first: stable. */
 static void sort_axis(void *user, uint32_t axis)
 {
     struct sorting *sorting = user;
@@ -100,7 +100,7 @@ struct node_sweep {
     struct cut best[3];
 };
 
-/* A plane cannot part equal centroids. */
+/* Finds the best plane along one axis; there is none between equal centroids. */
 static void sweep_axis(void *user, uint32_t axis)
 {
     struct node_sweep *n = user;
@@ -134,7 +134,7 @@ struct parting {
     uint32_t *right[3];
 };
 
-/* Both runs of a list keep their order. */
+/* Parts one axis's list into a left and a right run, which keep their order. */
 static void part_axis(void *user, uint32_t axis)
 {
     const struct parting *p = user;
@@ -153,7 +153,7 @@ static void part_axis(void *user, uint32_t axis)
     memcpy(list + left_count, right, right_count * sizeof *list);
 }
 
-/* `scratch` is free again after sweeping. */
+/* `scratch` may be overwritten: the costs that sweeping left in it are no longer needed. */
 static void part(const struct sweep *sweep, const struct build_range *range, uint32_t axis,
                  uint32_t left_count, uint32_t thread_count, void *scratch,
                  struct build_halves *halves)
@@ -169,7 +169,8 @@ static void part(const struct sweep *sweep, const struct build_range *range, uin
     halves->count[1] = range->count - left_count;
 }
 
-/* The box of positions [begin, end) of the range along an axis; no centroids are wanted. */
+/* The box of positions [begin, end) of the range along an axis. Bounds of centroids stay empty, as
+   they are not used. */
 static struct build_bounds run_bounds(const struct sweep *sweep, const struct build_range *range,
                                       uint32_t axis, uint32_t begin, uint32_t end)
 {

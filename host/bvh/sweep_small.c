@@ -1,13 +1,13 @@
-/* Whole subtrees over so few boxes that bins would cost more than the boxes in them: surface area
-   heuristic over every position. Sorted once; the three axes are the lanes of one sweep. Most nodes
-   of a tree are made here. */
+/* Builds whole subtrees over few boxes, for which bins would cost more than sweeping over every
+   position (surface area heuristic). The boxes are sorted once; the three axes are the lanes of one
+   sweep. Most nodes of a tree are made here. */
 #include "bvh/sweep_small.h"
 
 struct small_range {
     struct build_box box;
     uint32_t node, pair, first, count,
         depth;     /* `first` counts from the first record that small_grow was given */
-    uint32_t side; /* of `order` */
+    uint32_t side; /* which side of `order` holds its lists */
 };
 
 void small_put(struct small *small, uint32_t index, const struct build_record *record)
@@ -21,7 +21,7 @@ void small_sort(struct small *small, uint32_t count)
     f4 one = f4_splat(1.0f);
     for (uint32_t i = 0; i < count; ++i) {
         f4 own = f4_load(small->centroid[i]), rank = f4_splat(0.0f);
-        for (uint32_t j = 0; j < i; ++j) /* not above: before */
+        for (uint32_t j = 0; j < i; ++j) /* before i unless above it */
             rank = f4_add(
                 rank, f4_select(f4_less(own, f4_load(small->centroid[j])), f4_splat(0.0f), one));
         for (uint32_t j = i + 1; j < count; ++j)
@@ -34,7 +34,7 @@ void small_sort(struct small *small, uint32_t count)
     }
 }
 
-/* For each axis the union of the boxes met so far along it. */
+/* Adds the box at position i of each axis to that axis's union. */
 static inline void sides_add(struct build_box sides[3], const struct small *s,
                              const uint8_t *order[3], uint32_t i)
 {
@@ -48,7 +48,8 @@ static inline f4 keys_at(const struct small *s, const uint8_t *order[3], uint32_
                   s->centroid[order[2][i]][2], 0.0f);
 }
 
-/* A plane cannot part equal centroids: only where `equal_too` may a cut be between them. */
+/* Sweeps all three axes at once. No plane separates equal centroids; with `equal_too` a cut may
+   still lie between them, on an axis where not all are equal. */
 static void sweep_all(const struct small *s, const struct small_range *r, f4 scale, bool equal_too,
                       struct small_cut *best)
 {
@@ -83,7 +84,8 @@ static void sweep_all(const struct small *s, const struct small_range *r, f4 sca
     }
 }
 
-/* What sweep_all finds for two: the same cost on every axis that parts them. */
+/* Finds what sweep_all would find for two boxes: the cost is the same on every axis that separates
+   them. */
 static void sweep_two(const struct small *s, const struct small_range *r, f4 scale,
                       struct small_cut *best)
 {
@@ -118,7 +120,7 @@ static uint32_t widest_axis(const struct small *s, const struct small_range *r)
     return build_widest_axis(extent);
 }
 
-/* False: a leaf. */
+/* Chooses a cut. False: the range is to be a leaf. */
 static bool choose(const struct small *s, const struct small_range *r,
                    const struct bvh_params *params, struct small_cut *cut)
 {
@@ -142,7 +144,7 @@ static bool choose(const struct small *s, const struct small_range *r,
     return true;
 }
 
-/* Both runs of every list keep their order. */
+/* Parts the lists of all axes into left and right runs, which keep their order. */
 static void lists_part(struct small *s, const struct small_range *r, uint32_t left_set,
                        uint32_t left_count)
 {
@@ -158,7 +160,7 @@ static void lists_part(struct small *s, const struct small_range *r, uint32_t le
     }
 }
 
-/* Returns the set of its boxes. */
+/* Sets the half's box. Returns the set of its boxes: bit i for box i. */
 static uint32_t half_unite(const struct small *s, const uint8_t *order, struct small_range *half)
 {
     uint32_t set = 1u << order[0];
@@ -188,7 +190,7 @@ static void part(struct small *s, const struct small_range *r, const struct smal
     lists_part(s, r, left_set, left);
 }
 
-/* Two boxes that come apart: two leaves. */
+/* Makes two leaves of a range of two boxes. */
 static void part_two(struct small *s, const struct small_range *r, const struct small_cut *cut,
                      struct gpu_bvh_node *pair, uint32_t first)
 {

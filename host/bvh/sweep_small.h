@@ -1,4 +1,4 @@
-/* Small subtrees. */
+/* Subtrees over few boxes. */
 #ifndef BVH_SWEEP_SMALL_H
 #define BVH_SWEEP_SMALL_H
 
@@ -10,7 +10,7 @@ struct small {
     struct build_box box[BUILD_SMALL];
     alignas(16) float centroid[BUILD_SMALL][4];
     uint8_t order[2][3]
-                 [BUILD_SMALL];  /* nodes read one side and write the other for their children */
+                 [BUILD_SMALL];  /* nodes read one side; they write the other for their children */
     uint8_t leaves[BUILD_SMALL]; /* the result: boxes leaf by leaf */
 };
 
@@ -22,10 +22,10 @@ struct small_cut {
 void small_put(struct small *small, uint32_t index, const struct build_record *record);
 /* Fills order[0]: by centroid, equal ones by position. */
 void small_sort(struct small *small, uint32_t count);
-/* The best cut of `count` boxes, not at infinite cost, at any position of order[0] on an axis along
-   which not all are equal. */
+/* The best cut of `count` boxes at any position of order[0], along axes where not all centroids are
+   equal. Its cost is infinite where there is none. */
 struct small_cut small_find(const struct small *small, uint32_t count, f4 scale);
-/* Grows the subtree over the boxes of `range` by sweeping over every position along order[0] that
+/* Grows the subtree over the boxes of `range`. Sweeps over every position along order[0] that
    separates centroids. */
 void small_grow(struct small *small, const struct builder *builder,
                 const struct build_output *output, const struct build_range *range);

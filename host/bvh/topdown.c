@@ -1,9 +1,9 @@
-/* Top-down building, whatever chooses the splits. While it grows, a subtree over n records owns a
-   run of memory: their places and pair slots in depth-first order, and as much more as the
-   references that splits of records may add to it. What is left of these after a split is shared by
-   the halves in proportion to their records; what is not used is squeezed out at the end. So
-   subtrees can be built by any thread at any time, the nodes are the same for any number of
-   threads, and the spare references are never exceeded. */
+/* Top-down building, for any way to choose splits. While the tree grows, a subtree over n records
+   owns a run of memory: places for its records and pair slots in depth-first order, and spare ones
+   for the references that splitting records may add. The spare places that a split leaves are
+   shared by the halves in proportion to their records; unused pair slots are squeezed out at the
+   end. So any thread can build any subtree at any time, the nodes are the same for any number of
+   threads, and there are never more references than spare places. */
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,12 +17,12 @@ enum {
     TASKS_MAX = 4096,
 };
 
-/* Subtrees that wait for a thread. The one that has waited longest is about the largest, and goes
-   first. */
+/* A queue of subtrees that wait for a thread. The one that has waited longest goes first, as it is
+   about the largest. */
 struct build_queue {
-    struct build_range *ranges; /* TASKS_MAX, around */
+    struct build_range *ranges; /* ring buffer of TASKS_MAX */
     uint32_t first, count;
-    uint32_t working; /* threads that may still add some */
+    uint32_t working; /* threads that may still add subtrees */
     pthread_mutex_t lock;
     pthread_cond_t changed;
 };
@@ -36,7 +36,7 @@ struct build {
 
 /* ---- Subtrees ---- */
 
-/* Gives each half its memory. */
+/* Gives each half its run of memory. */
 static void halves_place(const struct build *build, const struct build_range *range,
                          const struct build_halves *split, struct build_range halves[2])
 {
@@ -45,7 +45,8 @@ static void halves_place(const struct build *build, const struct build_range *ra
     uint32_t left_spare = (uint32_t)((uint64_t)spare * left / (left + right));
     uint32_t room = left + left_spare;
     struct build_record *from = build->builder->records + range->first + left;
-    if (left_spare > 0) { /* order is kept only as far as it must be */
+    if (left_spare >
+        0) { /* moves as few records of the right half as possible; their order may change */
         uint32_t moved = left_spare < right ? left_spare : right;
         memmove(from + (left_spare < right ? right : left_spare), from, moved * sizeof *from);
     }
@@ -56,7 +57,7 @@ static void halves_place(const struct build *build, const struct build_range *ra
         spare - left_spare, depth};
 }
 
-/* True: *range became an inner node with the two halves below it. False: it is a leaf now. */
+/* True: the range became an inner node with *halves below it. False: it became a leaf. */
 static bool range_split(struct build *build, const struct build_range *range, uint32_t thread_count,
                         struct build_range halves[2])
 {
@@ -81,7 +82,7 @@ static bool range_split(struct build *build, const struct build_range *range, ui
     return true;
 }
 
-/* False: it has no room. */
+/* False: the queue is full. */
 static bool queue_add(struct build_queue *queue, const struct build_range *range)
 {
     pthread_mutex_lock(&queue->lock);
@@ -93,7 +94,7 @@ static bool queue_add(struct build_queue *queue, const struct build_range *range
     return room;
 }
 
-/* Waits for the next one. False: nothing is left, and nothing will come. */
+/* Waits for the next subtree. False: the queue is empty, and nothing more will come. */
 static bool queue_take(struct build_queue *queue, struct build_range *range)
 {
     pthread_mutex_lock(&queue->lock);
@@ -118,7 +119,7 @@ static void queue_done(struct build_queue *queue)
     pthread_mutex_unlock(&queue->lock);
 }
 
-/* Leaves to other threads what is worth it. */
+/* Builds a subtree, and queues those of its parts for other threads that are large enough. */
 static void build_subtree(struct build *build, struct build_range range)
 {
     const struct builder *builder = build->builder;
@@ -195,7 +196,8 @@ static void node_link(struct gpu_bvh_node *node, const uint32_t *slots)
         node->first = 2 + 2 * slots[(node->first - 2) / 2];
 }
 
-/* Slots are in depth-first order, and pairs only move down. Returns the number of nodes. */
+/* Removes unused pair slots. Slots are in depth-first order, so that pairs only move to lower ones.
+   Returns the number of nodes. */
 static uint32_t squeeze(const struct build_output *output, uint32_t slot_count)
 {
     struct gpu_bvh_node *nodes = output->nodes;

@@ -4,14 +4,16 @@
 
 #include "bvh/build.h"
 
-/* Grows the tree over `count` records within `bounds`, with room for `spare` more behind them.
-   Allocates out->order, for all of them, and gives out->nodes, of which leaves name runs of
-   records: the order, and what follows from nodes, are the builder's to fill in. */
+/* Grows a tree over `count` records within `bounds`, with room for `spare` more behind them. Fills
+   in out->nodes, whose leaves name runs of the builder's records, and node_count; allocates
+   out->order for count + spare. The builder then fills in the order, and what is derived from
+   nodes. */
 whit_result topdown_grow(const whit_log *log, const struct builder *builder,
                          const struct build_bounds *bounds, uint32_t count, uint32_t spare,
                          struct bvh *out);
 
-/* Not zeroed: slots that stay empty should cost no memory. */
+/* Allocates memory aligned to cache lines of 64 bytes; not zeroed, so that slots that stay unused
+   take no memory. */
 void *build_alloc_lines(size_t count, size_t element_bytes);
 
 #endif
