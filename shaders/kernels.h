@@ -22,26 +22,26 @@ struct kernel_code {
 
 extern const struct kernel_code kernels[KERNEL_COUNT];
 
-/* Kernels with room for functions of users, in the order of HOOK_KERNEL of hook/prelude.glsl: with
-   the names of all functions, and those that nothing calls, for host/shader/link.c. */
+/* Kernels into which host/shader/link.c puts functions of users, in the order of HOOK_KERNEL of
+   hook/prelude.glsl. They keep the names of all functions, and those that nothing calls. */
 enum hook_kernel {
     HOOK_KERNEL_CLOSEST,
     HOOK_KERNEL_SHADE,
     HOOK_KERNEL_SHADOW,
-    HOOK_KERNEL_RESOLVE, /* without room */
-    HOOK_KERNEL_MISS,    /* of a user's function alone */
-    HOOK_KERNEL_SHAPE,   /* likewise */
-    HOOK_KERNEL_HIT,     /* likewise */
-    HOOK_KERNEL_AOV,     /* likewise */
-    HOOK_KERNEL_POST,    /* likewise */
+    HOOK_KERNEL_RESOLVE, /* takes no functions: whit's own kernel is used */
+    HOOK_KERNEL_MISS,    /* used with a user's function only */
+    HOOK_KERNEL_SHAPE,   /* the same */
+    HOOK_KERNEL_HIT,     /* the same */
+    HOOK_KERNEL_AOV,     /* the same */
+    HOOK_KERNEL_POST,    /* the same */
     HOOK_KERNEL_TEST,    /* runs tests of the user's file */
     HOOK_KERNEL_COUNT
 };
 
 extern const struct kernel_code hook_kernels[HOOK_KERNEL_COUNT];
 
-/* The functions of lib/portable.glsl with their names, all of them, and an entry point that answers
-   one for cases in a buffer (abi/portable.h). */
+/* All functions of lib/portable.glsl with their names, and an entry point that computes one of them
+   for cases in a buffer (abi/portable.h). */
 extern const struct kernel_code portable_kernel;
 
 #endif

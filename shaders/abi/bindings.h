@@ -2,7 +2,8 @@
 #ifndef ABI_BINDINGS_H
 #define ABI_BINDINGS_H
 
-/* Every kernel. Storage and texel views of the same memory; SPEC_LOAD_PATH says which is read. */
+/* Bindings of every kernel. A buffer and its texels are views of the same memory; SPEC_LOAD_PATH
+   says which one is read. */
 #define BIND_NODES            0
 #define BIND_NODE_TEXELS      1
 #define BIND_TRIANGLES        2
@@ -15,12 +16,12 @@
 
 /* The ray batch kernel. */
 #define BIND_RAYS         9
-#define BIND_BATCH_TEXELS 10 /* the same */
+#define BIND_BATCH_TEXELS 10 /* of BIND_RAYS */
 #define BIND_HITS         11
 #define BIND_TRACE_COSTS  12
 #define BIND_TRACE_COUNT  13 /* bindings of that kernel */
 
-/* The stages of a picture, and what one stage leaves to the next. */
+/* Bindings of the stages of a picture, with the queues between them. */
 #define BIND_SHADING             9
 #define BIND_SHADING_TEXELS      10
 #define BIND_TEXELS              11

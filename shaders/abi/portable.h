@@ -1,4 +1,4 @@
-/* Which function kernel/portable.comp answers for, by its specialization constant 1. */
+/* Which function kernel/portable.comp computes: the values of its specialization constant 1. */
 #ifndef ABI_PORTABLE_H
 #define ABI_PORTABLE_H
 
@@ -23,9 +23,9 @@
 #define PORTABLE_UINT        18u
 #define PORTABLE_RELATIONS   22u /* bits: less, at most, equal, unequal, more, at least, step */
 #define PORTABLE_ABS         23u
-/* These tell whether portable kernels run on a device (host/render/portable.c). */
-#define PORTABLE_SUM      19u /* the device's own */
-#define PORTABLE_PRODUCT  20u /* the same */
+/* With these host/render/portable.c finds out whether portable kernels run on a device. */
+#define PORTABLE_SUM      19u /* of the device's own arithmetic */
+#define PORTABLE_PRODUCT  20u /* likewise */
 #define PORTABLE_COMPARED 21u /* see compare() of kernel/portable.comp */
 
 #define COMPARED_ROOTS     (1u << 24)

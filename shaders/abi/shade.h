@@ -1,5 +1,5 @@
-/* What shading reads, and the state of a pixel's ray tree. Materials, texture uses, lights and
-   per-triangle records lie in one buffer, the shading rows, each from a row that the frame names. */
+/* What shading reads, and the state of a pixel's ray tree. One buffer, the shading rows, holds
+   materials, texture uses, lights and data per triangle; gpu_frame names the first row of each. */
 #ifndef ABI_SHADE_H
 #define ABI_SHADE_H
 
@@ -9,8 +9,8 @@
 #define MATERIAL_ROWS 10u
 #define TEXTURE_ROWS  3u
 #define LIGHT_ROWS    6u
-/* Three normals of three floats, zeros where the mesh is flat, with the material in each w; where
-   all meshes are flat only one row, for its w. */
+/* Three normals of three floats, zeros where the mesh is flat; w of each row is the material. Where
+   all meshes are flat there is only one row, for its w. */
 #define TRIANGLE_SHADE_ROWS 3u
 #define TRIANGLE_FLAT_ROWS  1u
 /* u and v of three vertices, then two unused words. */
@@ -28,7 +28,7 @@
 #define MATERIAL_THIN           2u
 #define MATERIAL_MASK           4u
 #define MATERIAL_BLEND          8u
-#define MATERIAL_OPACITY_ALPHA  16u /* opacity is the alpha of its texture, not its red */
+#define MATERIAL_OPACITY_ALPHA  16u /* opacity is the alpha of its texture, not the red */
 #define MATERIAL_CATCHER        32u /* shows nothing but the shadows that fall on it */
 #define MATERIAL_PRIORITY_SHIFT 8u  /* bits 8..15: of the medium inside */
 
@@ -52,7 +52,7 @@ struct gpu_material {
     gpu_float alpha_cutoff;
     gpu_float specular_level;
     gpu_uint tex_specular_level;
-    gpu_uint tex_diffuse; /* uses, or TEXTURE_NONE */
+    gpu_uint tex_diffuse; /* index of a gpu_texture, or TEXTURE_NONE */
     gpu_uint tex_specular;
     gpu_uint tex_emission;
     gpu_uint tex_normal;
@@ -70,26 +70,26 @@ GPU_ASSERT_AT(gpu_material, tex_diffuse, 128)
 #define WRAP_CLAMP  1u
 #define WRAP_MIRROR 2u
 
-/* Texels are one word each, RGBA of 8 bits as in the file, behind this many words: the linear
-   values (float bits) of the 256 sRGB codes, and the pieces of mip_level, two floats each. Of a
-   texture with smaller levels (host/picture/mipmap.h) level 0 comes first, then a word for each of
-   the others that says where its first texel is, then these. */
+/* Texels are one word each, 8-bit RGBA as in the file. In front of them stand TEXEL_TABLE_WORDS:
+   the linear values (float bits) of the 256 sRGB codes, then the LEVEL_PIECES pieces of mip_level,
+   two floats each. A texture with mipmap levels (host/picture/mipmap.h) has level 0 first, then a
+   word for each other level, the place of its first texel, then these levels. */
 #define TEXEL_TABLE_WORDS 288u
 #define TEXEL_CODES       256u
 #define LEVEL_PIECES      16u
 
 #define TEXTURE_LEVELS_SHIFT 4u
 
-/* A use of a texture. */
+/* A use of a texture by a material. */
 struct gpu_texture {
     gpu_vec4 matrix; /* uv' = (x u + y v, z u + w v) + offset */
     gpu_vec2 offset;
     gpu_uint first; /* word of its first texel */
     gpu_uint size;  /* width | height << 16 */
-    gpu_uint wrap;  /* u | v << 2 | levels behind level 0 << TEXTURE_LEVELS_SHIFT */
+    gpu_uint wrap;  /* WRAP_* of u | of v << 2 | levels besides level 0 << TEXTURE_LEVELS_SHIFT */
     gpu_uint nearest;
     gpu_uint uv_set;
-    gpu_uint srgb; /* red, green and blue go through the table */
+    gpu_uint srgb; /* 1: red, green and blue are decoded by the table */
 };
 GPU_ASSERT_SIZE(gpu_texture, 48)
 GPU_ASSERT_AT(gpu_texture, offset, 16)
@@ -99,22 +99,22 @@ GPU_ASSERT_AT(gpu_texture, offset, 16)
 #define LIGHT_SPOT        2u
 #define LIGHT_AREA_SAMPLE 3u /* Lambertian emitter around `direction` */
 /* Flat emitters of radiance `color`: corner `position`, edges `edge_u` and `edge_v`, unit normal
-   `direction`. They take as many iterations of the loop over lights as the frame has light_samples. */
+   `direction`. Each takes frame.light_samples iterations of the loop over lights. */
 #define LIGHT_RECTANGLE 4u
 #define LIGHT_TRIANGLE  5u
 #define LIGHT_FLAT_BITS (1u << LIGHT_RECTANGLE | 1u << LIGHT_TRIANGLE)
 
-/* World space. */
+/* A light, in world space. */
 struct gpu_light {
     gpu_vec3 position;
     gpu_uint kind;
-    gpu_vec3 direction; /* unit, the way the light travels */
+    gpu_vec3 direction; /* unit, the direction in which the light travels */
     gpu_float range;    /* infinity: no limit */
     gpu_vec3 color;
     gpu_uint falloff; /* 1: 1 / distance^2 */
     gpu_float cos_inner;
     gpu_float cos_outer;
-    gpu_uint two_sided; /* emitters */
+    gpu_uint two_sided; /* of emitters */
     gpu_float area_share; /* of a flat emitter: area / (pi * light_samples) */
     gpu_vec3 edge_u;
     gpu_uint pad0;
@@ -126,8 +126,9 @@ GPU_ASSERT_AT(gpu_light, cos_inner, 48)
 GPU_ASSERT_AT(gpu_light, edge_u, 64)
 
 /* What all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
-   picture plane) and goes along forward + x * right + y * up, x and y in -1..1. All three are of
-   unit length for a panorama, where x is pi of longitude and y pi / 2 of latitude. */
+   picture plane) and goes along forward + x * right + y * up, with x and y in -1..1. For a panorama
+   all three vectors have unit length, x is the longitude in units of pi, and y the latitude in
+   units of pi / 2. */
 struct gpu_frame {
     gpu_vec3 eye;
     gpu_uint width;
@@ -140,40 +141,40 @@ struct gpu_frame {
     gpu_vec3 zenith;
     gpu_uint root; /* ref where traversal starts */
     gpu_vec3 horizon;
-    gpu_uint shade_base; /* without instances */
+    gpu_uint shade_base; /* of the only mesh, without instances */
     gpu_vec3 ground;
     gpu_uint depth; /* most bounces */
     gpu_vec3 ambient;
     gpu_uint use_row; /* of the shading rows: first texture use; materials are at 0 */
-    gpu_float texel_area; /* that the middle pixel asks for, across its ray at distance 1 from the
-                             eye: camera_pixel_area by MIPMAP_PIXEL_TEXELS */
+    gpu_float texel_area; /* area of a texel for the middle pixel, across its ray at distance 1 from
+                             the eye: camera_pixel_area / MIPMAP_PIXEL_TEXELS */
     gpu_float bailout;   /* rays that can add less than this to a pixel are not traced */
-    gpu_uint light_row;  /* first light */
-    gpu_uint triangle_row; /* first triangle: TRIANGLE_SHADE_ROWS or TRIANGLE_FLAT_ROWS each */
-    gpu_uint uv0_row;   /* first triangle of uv set 0: TRIANGLE_UV_ROWS each */
+    gpu_uint light_row;  /* first row of the lights */
+    gpu_uint triangle_row; /* of triangle 0: TRIANGLE_SHADE_ROWS or TRIANGLE_FLAT_ROWS each */
+    gpu_uint uv0_row;   /* of triangle 0, uv set 0: TRIANGLE_UV_ROWS each */
     gpu_uint uv1_row;   /* of uv set 1; uv0_row where there is none */
-    gpu_uint color_row; /* first triangle: TRIANGLE_COLOR_ROWS each */
-    gpu_float contact;  /* surfaces of two media within this distance are one */
+    gpu_uint color_row; /* of triangle 0: TRIANGLE_COLOR_ROWS each */
+    gpu_float contact;  /* surfaces of two media within this distance touch */
     gpu_uint eye_media0, eye_media1; /* gpu_media that camera rays start in */
     gpu_uint eye_media2, eye_media3;
-    gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is made from it */
+    gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is computed from it */
     gpu_float focus_distance; /* along `forward` */
     gpu_uint light_samples;   /* of a flat emitter: 1, 4, 16 or 64; 1 where there is none */
     gpu_uint nested;          /* 1: media of the scene may meet or overlap */
     gpu_float inv_width, inv_height; /* 1 / width, 1 / height: so that no kernel divides by them */
-    gpu_uint root8;     /* of eight children a node, see accel_bvh8 */
+    gpu_uint root8;     /* root of the tree with eight children per node, see accel_bvh8 */
     gpu_uint shape_material; /* of a user's shape; SHAPE_IS_GLASS: light passes through it */
-    gpu_float shape_error; /* how far from it answers may be */
-    gpu_uint slot_shift; /* of the state of a queued ray */
-    gpu_float bailout_shadow; /* shadow rays that can add no more than this share of what their light sends
-                                 are not traced */
+    gpu_float shape_error; /* how far from the user's shape answers may be, world units */
+    gpu_uint slot_shift; /* where the pixel's slot starts in the state of a queued ray */
+    gpu_float bailout_shadow; /* shadow rays that can add no more than this share of their light are
+                                 not traced */
     gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_frame, 224)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
-/* What a frame has of its own in each of many views (SPEC_VIEWS). The views of a picture lie one
-   below the other, each in as many rows of blocks as it needs. */
+/* The fields of gpu_frame that differ between the views of a picture (SPEC_VIEWS). Its views lie
+   one below the other, each in as many rows of 8x8 pixel blocks as it needs. */
 struct gpu_view {
     gpu_vec3 eye;
     gpu_float texel_area;
@@ -182,9 +183,9 @@ struct gpu_view {
     gpu_vec3 up;
     gpu_uint camera; /* CAMERA_* */
     gpu_vec3 forward;
-    gpu_float lens_radius; /* lens_xy is made from it */
+    gpu_float lens_radius; /* lens_xy is computed from it */
     gpu_uint eye_media0, eye_media1, eye_media2, eye_media3;
-    gpu_vec2 lens_xy; /* of the sample in hand, as gpu_chunk has it */
+    gpu_vec2 lens_xy; /* of the current sample, as in gpu_chunk */
     gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_view, 96)
@@ -195,21 +196,22 @@ GPU_ASSERT_AT(gpu_view, lens_xy, 80)
 /* Behind the frame stand the values of the sliders of a user's file, as floats. */
 #define SLIDERS_MAX 64u
 
-/* Tests of a user's file: seeds of each, as pixels in rows of so many. */
+/* Tests of a user's file run for TEST_SEEDS seeds each, which count as pixels in rows of TEST_ROW.
+   */
 #define TEST_SEEDS 4096u
 #define TEST_ROW   64u
 
-/* The media that a ray is in, two to a word, low half first: material + 1, 0: none more. Lowest
-   priority first, of equal ones the one entered first: the last entry is what the ray is in. Lies
-   one for each ray. */
+/* The media that a ray is in, two to a word, the low half first. Each is material + 1; 0: no more
+   follow. Lowest priority first, and of equal priorities the one entered first: the last entry is
+   the medium that counts. There is one for each ray. */
 #define MEDIA_MAX 8u
 struct gpu_media {
     gpu_uint words0, words1, words2, words3;
 };
 GPU_ASSERT_SIZE(gpu_media, 16)
 
-/* The state of a queued ray: surfaces passed unseen in the low bits, above them bounces so far, and
-   above these, from frame.slot_shift on, the slot of its pixel. */
+/* The state of a queued ray: number of surfaces passed unseen in the low bits, above them the
+   bounces so far, and above these, from frame.slot_shift on, the slot of its pixel. */
 #define STATE_BOUNCES_SHIFT 8u
 
 /* Push constants of the stages: a chunk is a run of 8x8 pixel blocks of a band of rows. */
@@ -218,32 +220,34 @@ struct gpu_chunk {
     gpu_uint block_count;
     gpu_uint band_y;    /* first row of the band that the pixel buffers hold */
     gpu_uint band_rows;
-    gpu_vec2 sample_xy; /* from the middle of the pixel, in halves of it: -1..1 */
-    gpu_uint sample_index; /* of the sequence */
+    gpu_vec2 sample_xy; /* from the middle of the pixel, in half pixels: -1..1 */
+    gpu_uint sample_index; /* in the sequence */
     gpu_float sample_weight;
     gpu_vec2 lens_xy; /* CAMERA_LENS: the ray starts at eye + focus_distance * (x * right +
                          y * up) */
-    gpu_uint listed;  /* camera rays of so many slots, which are listed; 0: of all */
-    gpu_uint deferred; /* 1: of what is on the list of deferred rays */
-    gpu_uint light;   /* that the dispatch is for; of sums: the generation that must be empty, or
-                         GENERATION_NONE */
-    gpu_uint generation;                 /* of rays */
+    gpu_uint listed;  /* number of listed slots that have camera rays; 0: all slots have */
+    gpu_uint deferred; /* 1: the dispatch works on the list of deferred rays */
+    gpu_uint light;   /* that the dispatch is for; in resolve.comp: the generation that must be
+                         empty, or GENERATION_NONE */
+    gpu_uint generation;                 /* of the dispatch's rays */
     gpu_uint ray_capacity, lit_capacity; /* of the queues between stages */
     gpu_uint list;                       /* LIST_* that the dispatch works on */
-    gpu_uint light_index; /* of the sequence: the sample's first point of flat emitters */
-    gpu_uint summed, samples; /* of a pixel in this pass: before this one, and all */
-    gpu_uint sums_row, sums_step; /* of the pixels: slot 0's first partial sum, from one to the next */
-    gpu_uint blocks_x; /* in a row of what is drawn */
-    gpu_uint lattice;  /* LATTICE_*: of the picture's pixels, those that are drawn */
-    gpu_uint before_post; /* HOOK_POST: of the pixels, the first one as it is without post() */
-    gpu_uint aovs_alone;  /* 1: of pixels, what is beside the colour and nothing else */
+    gpu_uint light_index; /* in the sequence: the sample's first point on flat emitters */
+    gpu_uint summed, samples; /* of a pixel in this pass: samples summed already, and all */
+    gpu_uint sums_row, sums_step; /* in the pixel buffer: slot 0's first partial sum, and the step
+                                     to its next */
+    gpu_uint blocks_x; /* blocks in a row of the drawn part */
+    gpu_uint lattice;  /* LATTICE_*: which of the picture's pixels are drawn */
+    gpu_uint before_post; /* HOOK_POST: in the pixel buffer, the first pixel as it is before post()
+                             */
+    gpu_uint aovs_alone;  /* 1: writes the aovs of pixels, no colours */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 104)
 
 #define GENERATION_NONE 0xffffffffu
 
-/* Every so-many-th pixel of rows, in the low bits, and of columns, as powers of two, and the first
-   one; 0: all. */
+/* Which pixels are drawn: log2 of the step between pixels of a row, in the low bits; log2 of the
+   step between rows; x and y of the first pixel. 0: all pixels. */
 #define LATTICE_SHIFT_MASK  15u
 #define LATTICE_ROWS_SHIFT  4u
 #define LATTICE_X_SHIFT     8u
@@ -252,21 +256,24 @@ GPU_ASSERT_SIZE(gpu_chunk, 104)
 
 /* ---- The rays of one pixel (SPEC_PROBE) ---- */
 
-#define PROBE_RAYS_MAX 16383u /* records; as a number: none */
+#define PROBE_RAYS_MAX 16383u /* records; as the number of a record: none */
 
-/* In front of the records. */
+/* Counts in front of the records. */
 struct gpu_probe {
-    gpu_uint rays, others; /* traced; shadow rays and what is not traced. May be more than records */
+    gpu_uint rays, others; /* rays traced; shadow rays and rays not traced. Both may exceed the
+                              number of records */
     gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_probe, 16)
 
-/* gpu_probe_ray.kind: RAY_*, and why it goes on in the direction of the ray before it. */
+/* gpu_probe_ray.kind: RAY_*, and these bits, of which two say why a ray goes on in the direction of
+   the one before it. */
 #define PROBE_KIND_MASK 3u
-#define PROBE_STRAIGHT  4u /* behind what blends, or a shadow catcher */
-#define PROBE_THROUGH   8u /* behind a surface with the same medium on both sides */
-#define PROBE_INSIDE    16u /* it meets its surface from inside */
-#define PROBE_CATCHER   32u /* as the device leaves it: `added` is what a shadow catcher shows */
+#define PROBE_STRAIGHT  4u /* it goes on behind a surface that blends, or a shadow catcher */
+#define PROBE_THROUGH   8u /* it goes on behind a surface with the same medium on both sides */
+#define PROBE_INSIDE    16u /* it hits its surface from inside */
+#define PROBE_CATCHER   32u /* until the host has read it: `added` is the share that a shadow
+                               catcher shows */
 
 /* gpu_probe_ray.end */
 #define PROBE_DEFERRED    0u /* not known yet */
@@ -275,7 +282,7 @@ GPU_ASSERT_SIZE(gpu_probe, 16)
 #define PROBE_HIT      3u
 #define PROBE_DEPTH    4u /* not traced: --depth */
 #define PROBE_BAILOUT  5u /* not traced: --bailout */
-#define PROBE_REACHED  6u /* shadow rays: the light, `added` tells how much of it passes */
+#define PROBE_REACHED  6u /* shadow rays: it reached the light; `added` is the share that passes */
 #define PROBE_BLOCKED  7u
 
 /* A ray of the pixel's first sample. Rays that were not traced have no origin. */
@@ -284,13 +291,14 @@ struct gpu_probe_ray {
     gpu_uint kind;
     gpu_vec3 dir; /* unit */
     gpu_uint end;
-    gpu_vec3 weight; /* of what it brings; shadow rays: of the surface that they start from */
+    gpu_vec3 weight; /* of the light it brings; shadow rays: of the surface that they start from */
     gpu_uint parent; /* record of the ray it comes from; PROBE_RAYS_MAX: none, a camera ray */
-    gpu_vec3 added;  /* radiance, to the sample; shadow rays: the share of the light that passes */
+    gpu_vec3 added;  /* radiance added to the sample; shadow rays: the share of the light that
+                        passes */
     gpu_float t_max;
-    gpu_vec3 point; /* where it met `primitive`, world */
+    gpu_vec3 point; /* where it hit `primitive`, world space */
     gpu_float t;    /* NUMERICS_EXACT: the key */
-    gpu_vec3 normal; /* unit, interpolated, to the ray's side; without bump maps */
+    gpu_vec3 normal; /* unit, interpolated, on the ray's side; without bump maps */
     gpu_uint material;
     gpu_float u, v;
     gpu_uint primitive, instance; /* HIT_NONE: none, or (blocked without trees) not known */
@@ -305,18 +313,19 @@ GPU_ASSERT_AT(gpu_probe_ray, skip_primitive, 112)
 /* ---- What dbg(x) of a user's functions is, for that pixel ---- */
 
 #define DBG_CALLS  64u /* in a file */
-#define DBG_VALUES 64u /* that are kept of a call; it is counted how many there are */
+#define DBG_VALUES 64u /* kept for each call; further ones are only counted */
 
-/* gpu_dbg.type: one of these, and 1, 2, 3 where it is a vector of two, three, four */
+/* gpu_dbg.type: one of these, plus 1, 2 or 3 for a vector of two, three or four */
 #define DBG_FLOAT 0u
 #define DBG_INT   4u
 #define DBG_UINT  8u
 #define DBG_BOOL  12u
 
 struct gpu_dbg {
-    gpu_uvec4 bits; /* of each component; 0 or 1 of a bool */
+    gpu_uvec4 bits; /* of each component; a bool has 0 or 1 */
     gpu_uint id;    /* of the ray that the function is called for */
-    gpu_uint order; /* of what is called for one ray: the kernel above bit 24, below what was recorded before */
+    gpu_uint order; /* orders the records of one ray: the kernel from bit 24 up, below it the number
+                       of earlier records */
     gpu_uint generation;
     gpu_uint type;
 };

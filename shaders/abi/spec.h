@@ -1,5 +1,5 @@
-/* Specialization constants: one list, read by both compilers. Always passed whole. A constant that
-   is 0 takes its code out of the pipeline. */
+/* Specialization constants: one list, read by both compilers. The host always passes all of them. A
+   constant that is 0 takes its code out of the pipeline. */
 #ifndef ABI_SPEC_H
 #define ABI_SPEC_H
 
@@ -13,25 +13,26 @@
 /* Which camera rays start at the lens. */
 #define CAMERA_PERSPECTIVE  0u
 #define CAMERA_ORTHOGRAPHIC 1u
-#define CAMERA_LENS         2u /* thin lens, of a perspective camera */
+#define CAMERA_LENS         2u /* perspective with a thin lens */
 #define CAMERA_PANORAMA     3u /* equirectangular, all around */
 #define CAMERA_EACH         4u /* SPEC_VIEWS: each view has a kind of its own */
 
 #define FRESNEL_NONE    0u
 #define FRESNEL_EXACT   1u
-#define FRESNEL_SCHLICK 2u /* Schlick's approximation in its place */
+#define FRESNEL_SCHLICK 2u /* Schlick's approximation */
 
 /* Media. */
 #define MEDIA_NONE  0u
-#define MEDIA_ALONE 1u /* surfaces of two bodies are nowhere at one place */
-#define MEDIA_TOUCH 2u /* surfaces of several may be at one place */
+#define MEDIA_ALONE 1u /* surfaces of two media touch nowhere */
+#define MEDIA_TOUCH 2u /* surfaces of several media may touch */
 
-/* What the triangle records of all meshes are. */
+/* Whether triangle records of the meshes hold spheres. */
 #define SPHERES_NONE 0u
 #define SPHERES_SOME 1u
 #define SPHERES_ONLY 2u /* no triangle at all */
 
-/* What has textures: bits 1 << SCENE_SLOT_*. Opacity may be the alpha of a diffuse one. */
+/* Which properties have textures: bits 1 << SCENE_SLOT_*. Opacity may come from the alpha of a
+   diffuse texture. */
 #define TEXTURES_DIFFUSE        1u
 #define TEXTURES_SPECULAR       2u
 #define TEXTURES_EMISSION       4u
@@ -41,7 +42,7 @@
 #define TEXTURES_SPECULAR_LEVEL 256u
 #define TEXTURES_ALL            511u
 
-/* How textures are sampled, where not all in one way: SCENE_SAMPLING_*. */
+/* The ways in which textures are sampled: SCENE_SAMPLING_*. What no texture needs is left out. */
 #define SAMPLING_FILTERED 1u
 #define SAMPLING_REPEAT   2u
 #define SAMPLING_CLAMP    4u
@@ -52,12 +53,12 @@
 #define CLASS_PLAIN 0u
 #define CLASS_GLASS 1u /* light passes through it */
 
-/* What a hit that lights are asked for has besides the parts that all have. */
-#define LIT_HAS_NG         1u /* a normal that is not the shading normal */
+/* Optional parts of the record of a lit hit (struct Lit). */
+#define LIT_HAS_NG         1u /* a geometric normal apart from the shading normal */
 #define LIT_HAS_HIGHLIGHT  2u
-#define LIT_HAS_ABSORPTION 4u /* of the media around */
+#define LIT_HAS_ABSORPTION 4u /* of the media around the point */
 
-/* SPEC_PACKET_STACK at most. */
+/* The largest SPEC_PACKET_STACK. */
 #define PACKET_STACK_MAX 32u
 
 /* Which point all rays of a packet share. */
@@ -65,12 +66,12 @@
 #define BEAM_STARTS 1u /* the point where they start */
 #define BEAM_ENDS   2u /* the light that they end at, or pass by within rounding */
 
-/* Filters whose depth is not that of their record alone. */
+/* What the optical depth of shadow filters depends on, besides the record. */
 #define FILTERS_PLAIN     0u
 #define FILTERS_ABSORB    1u
-#define FILTERS_PATTERNED 2u /* by textures or vertex colours, too */
+#define FILTERS_PATTERNED 2u /* textures or vertex colours, too */
 
-/* Functions of users in the place of whit's, in kernels that are made for them. */
+/* Functions of a user's file that replace whit's, in kernels that have room for them. */
 #define HOOK_CAMERA  1u
 #define HOOK_SURFACE 2u
 #define HOOK_SHADE   4u
@@ -80,10 +81,10 @@
 #define HOOK_AOV     64u
 #define HOOK_INTERSECT 128u
 
-/* What the kernel of surface() and shade() does. */
+/* What kernel/hit.comp, the kernel of a user's surface() and shade(), does. */
 #define HIT_PART_ALL   0u
-#define HIT_PART_FETCH 1u /* of a hit what shade() is told, into rows: whit's alone */
-#define HIT_PART_CALL  2u /* shade(), of such rows: small, so that it is soon made */
+#define HIT_PART_FETCH 1u /* stores what shade() gets of a hit in rows; only whit's code */
+#define HIT_PART_CALL  2u /* calls shade() with these rows; small, so that it compiles fast */
 
 /* What decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u
@@ -96,14 +97,14 @@
     X(1, SPEC_LOAD_PATH, 0)           /* LOAD_* */                                                 \
     X(2, SPEC_STACK_SIZE, 64)         /* node stack entries, from the depth of the built trees */  \
     X(3, SPEC_INSTANCED, 1)           /* 0: one mesh, not moved: no instance tree, no transform */ \
-    X(4, SPEC_ANY_HIT, 0)             /* of the ray batch kernel */                                \
-    X(5, SPEC_INTERLEAVE, 0)          /* even workgroups first: lavapipe splits ids in halves */   \
+    X(4, SPEC_ANY_HIT, 0)             /* ray batch kernel: any hit instead of the closest */       \
+    X(5, SPEC_INTERLEAVE, 0)          /* workgroups interleaved: lavapipe halves their ids */      \
     X(6, SPEC_SECONDARY, 1)           /* rays call for further rays */                             \
     X(7, SPEC_SHADOWS, 1)                                                                          \
     X(8, SPEC_REFLECTION, 1)                                                                       \
     X(9, SPEC_REFRACTION, 1)                                                                       \
     X(10, SPEC_ABSORPTION, 1)                                                                      \
-    X(11, SPEC_CUTOUTS, 1)            /* opacity textures decide hits, or light passes straight */ \
+    X(11, SPEC_CUTOUTS, 1)            /* opacity decides hits, or lets light pass straight */      \
     X(12, SPEC_TEXTURES, 511)         /* TEXTURES_*; normal and bump maps are SPEC_NORMAL_MAPS */  \
     X(13, SPEC_NORMAL_MAPS, 1)                                                                     \
     X(14, SPEC_ENVIRONMENT_MAP, 1)                                                                 \
@@ -113,49 +114,49 @@
     X(18, SPEC_HIGHLIGHTS, 1)                                                                      \
     X(19, SPEC_LIGHTS, 255)           /* bit k: lights of kind k, LIGHT_* */                       \
     X(20, SPEC_CAMERA, 0)             /* CAMERA_* */                                               \
-    X(21, SPEC_FILTERS, 1)            /* shadow rays pass tinted through glass */                  \
+    X(21, SPEC_FILTERS, 1)            /* shadow rays pass through glass, tinted */                 \
     X(22, SPEC_SHORT_STACK, 0)        /* top of the node stack in registers: for lavapipe */       \
     X(23, SPEC_ORDER, 0)              /* ORDER_* */                                                \
-    X(24, SPEC_COUNT, 0)              /* count what traversals cost */                             \
+    X(24, SPEC_COUNT, 0)              /* counters of traversal */                                  \
     X(25, SPEC_CLIPPED, 0)            /* leaves hold clipped triangles: boxes need a margin */     \
     X(26, SPEC_FLAT, 0)               /* one tree over all instances, in world space */            \
-    X(27, SPEC_MEDIA, 2)              /* MEDIA_*: rays carry a stack of what they are in */        \
+    X(27, SPEC_MEDIA, 2)              /* MEDIA_*: rays carry a stack of their media */             \
     X(28, SPEC_SPHERES, 1)            /* SPHERES_* */                                              \
     X(29, SPEC_FRESNEL, 1)            /* FRESNEL_* */                                              \
-    X(30, SPEC_FILTER_DETAIL, 2)      /* FILTERS_*: whose depth is a matter of the place */        \
+    X(30, SPEC_FILTER_DETAIL, 2)      /* FILTERS_* */                                              \
     X(31, SPEC_CULLING, 1)            /* one-sided triangles are not hit from behind */            \
     X(32, SPEC_CATCHERS, 1)           /* surfaces that show nothing but shadows */                 \
     X(33, SPEC_TERMINATOR, 1)         /* shadow rays start on the smooth surface */                \
     X(34, SPEC_EMISSION, 1)                                                                        \
-    X(35, SPEC_LISTED, 1)             /* camera rays may be those of listed pixels alone */        \
+    X(35, SPEC_LISTED, 1)             /* camera rays may be limited to listed pixels */            \
     X(36, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
     X(37, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
-    X(38, SPEC_SETTLES, 1)              /* NUMERICS_EXACT: 0: rays that floats leave open wait */    \
-    X(39, SPEC_PACKETS, 0)            /* the rays of a subgroup of 8 lanes walk together */        \
+    X(38, SPEC_SETTLES, 1)              /* NUMERICS_EXACT: 0: open rays are deferred */              \
+    X(39, SPEC_PACKETS, 0)            /* rays of a subgroup of 8 lanes form a packet */            \
     X(40, SPEC_EIGHT_LANES, 0)        /* subgroups have 8 lanes, and are slow to add them up */    \
-    X(41, SPEC_PACKET_RAYS, 1)        /* rays of a lane */                                         \
-    X(42, SPEC_PACKET_STACK, 16)      /* nodes on the stack of a packet */                         \
-    X(43, SPEC_BEAM, 0)               /* BEAM_*, of packets */                                     \
-    X(44, SPEC_LIT_RAYS, 1)           /* SPEC_PACKET_RAYS of shadow rays where camera rays are */  \
+    X(41, SPEC_PACKET_RAYS, 1)        /* rays per lane */                                          \
+    X(42, SPEC_PACKET_STACK, 16)      /* stack entries of a packet */                              \
+    X(43, SPEC_BEAM, 0)               /* BEAM_*: what point the rays of packets share */           \
+    X(44, SPEC_LIT_RAYS, 1)           /* SPEC_PACKET_RAYS of shadow rays, camera hits */           \
     X(45, SPEC_GENERATIONS, 3)        /* bit 0: camera rays; bit 1: later generations */           \
-    X(46, SPEC_CLASSES, 1)            /* kernels for what materials call for */                    \
+    X(46, SPEC_CLASSES, 1)            /* number of material classes: 1 or 2 */                     \
     X(47, SPEC_CROSSINGS, 1)          /* surfaces of the class bound media */                      \
     X(48, SPEC_LIT_PARTS, 7)          /* LIT_HAS_* */                                              \
-    X(49, SPEC_SEGMENTS, 1)           /* of lists: 1 or 2 */                                       \
+    X(49, SPEC_SEGMENTS, 1)           /* segments of lists: 1 or 2 */                              \
     X(50, SPEC_SAMPLING, 31)          /* SAMPLING_* */                                             \
-    X(51, SPEC_WIDE_ROWS, 0)          /* rows are written in words of 64 bits: for lavapipe */       \
-    X(52, SPEC_PRIORITIES, 1)         /* some media go before others where they overlap */         \
-    X(53, SPEC_MINIFICATION, 1)       /* textures have smaller levels, for what is far away */     \
-    X(54, SPEC_HOOKS, 0)              /* HOOK_*: functions that are a user's */                    \
-    X(55, SPEC_FUEL, 0)               /* iterations of loops that a call of one may take */        \
-    X(56, SPEC_CHECK_WORDS, 1)        /* that have a bit for each check of a test */             \
-    X(57, SPEC_AOVS, 0)               /* values of a user's functions beside the colour */        \
+    X(51, SPEC_WIDE_ROWS, 0)          /* writes rows as 64-bit words: for lavapipe */                \
+    X(52, SPEC_PRIORITIES, 1)         /* media have priorities where they overlap */               \
+    X(53, SPEC_MINIFICATION, 1)       /* textures have mipmap levels */                            \
+    X(54, SPEC_HOOKS, 0)              /* HOOK_*: which functions are a user's */                   \
+    X(55, SPEC_FUEL, 0)               /* loop iterations granted to a call of these */             \
+    X(56, SPEC_CHECK_WORDS, 1)        /* words with a bit for each check of a test */            \
+    X(57, SPEC_AOVS, 0)               /* number of a user's aov functions */                      \
     X(58, SPEC_VIEWS, 0)              /* views of many cameras, one below the other */             \
-    X(59, SPEC_HIT_PART, 0)           /* HIT_PART_*, of the kernel of surface() and shade() */
+    X(59, SPEC_HIT_PART, 0)           /* HIT_PART_* */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;
-/* One word a constant, in the order of their ids. */
+/* One word for each constant, in the order of their ids. */
 struct gpu_spec {
     GPU_SPEC_LIST(GPU_SPEC_FIELD)
 };

@@ -1,4 +1,4 @@
-// What of a light arrives at a lit hit, and what the surface sends on of it.
+// The light that arrives at a lit hit from a light, and what the surface reflects of it.
 #ifndef BIND_ARRIVAL_GLSL
 #define BIND_ARRIVAL_GLSL
 
@@ -6,18 +6,18 @@
 #include "filter.glsl"
 #include "lit.glsl"
 
-// What arrives from one point of a light at one lit hit, and the shadow ray there.
+// The light from one point of a light at one lit hit, and the shadow ray to that point.
 struct Arrival {
     bool faces, wanted;
-    bool above; // the light is on the side of the triangle's normal too
+    bool above; // the light is also on the side of the triangle's own normal
     float cos_light, strength;
     vec3 highlight, reflected, arriving;
     vec3 dir; // of the shadow ray, unit
     float distance;
 };
 
-// Aims the shadow ray. What is lifted off the triangle may be met by light from below the triangle's
-// plane, which then must pass beside the triangle itself.
+// Aims the shadow ray. A point that is lifted off its triangle may get light from below the
+// triangle's plane; the shadow ray then must not skip the triangle.
 void aim_at_light(Lit lit, LightSample light, inout Arrival a)
 {
     a.dir = light.to_light;
@@ -52,14 +52,14 @@ Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
                                   : lit.highlight * blinn_highlight(cos_half, lit.gloss);
         a.reflected += a.highlight;
     }
-    // NaN is wanted too: it must be seen in the picture.
+    // NaN counts as wanted too, since it must show in the picture.
     a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= frame.bailout_shadow);
     aim_at_light(lit, at, a);
     return a;
 }
 
-// The share of light that passes along a shadow ray of length `t_max`. `blocker`: what TRAVERSE_SHADOW has
-// met; `absorption`: of the media where the ray starts.
+// The share of light that passes along a shadow ray of length `t_max`. `blocker`: its hit by
+// TRAVERSE_SHADOW; `absorption`: of the media where the ray starts.
 vec3 passing_share(Hit blocker, vec3 absorption, float t_max)
 {
     if (blocker.primitive != HIT_NONE)
@@ -73,16 +73,16 @@ vec3 passing_share(Hit blocker, vec3 absorption, float t_max)
     return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
 }
 
-// What the points of a flat emitter add up to. Its diffuse light is that of the whole polygon, of
-// which the points only tell the visible share, weighted by what each of them would send.
+// Sums over the points of a flat emitter. Its diffuse light is computed for the whole polygon; the
+// points only give the visible share, each weighted by the light that it would send.
 struct EmitterSum {
     float weight;  // cos cos / distance^2
-    vec3 visible;  // the same, times the share that passes
+    vec3 visible;  // weight times the share that passes
     vec3 highlight;
 };
 
-// The highlight is not scaled up where points miss most of what is above the horizon. `open`: the
-// diffuse light without shadows.
+// The light of a flat emitter, with shadows. The highlight is not scaled up where the points miss
+// most of what is above the horizon. `open`: the diffuse light without shadows.
 vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
 {
     open = vec3(0.0);

@@ -1,30 +1,30 @@
-// Packets whose rays all start, or all end, at one point (SPEC_BEAM), in trees without instances. Where they
-// end there, as shadow rays do, boxes are tested from that point, triangles and spheres from each ray's own
-// origin.
+// Packets whose rays all start, or all end, at one point (SPEC_BEAM), in trees without instances.
+// For shadow rays, which end at it, boxes are tested from that point, but triangles and spheres
+// from each ray's own origin.
 #ifndef BIND_BEAM_GLSL
 #define BIND_BEAM_GLSL
 
 #include "packet_rays.glsl"
 
-// Rays whose directions have the same dominant axis and the same signs walk together, one such group after
-// the other. Boxes are tested in the space of the group: that axis last, all directions upward, the rays'
-// origin at 0.
+// A group of rays whose directions have the same dominant axis and the same signs. A packet's
+// groups are traversed one after the other. Boxes are tested in the group's space: the dominant
+// axis comes last, all directions point upward, and the common point is at 0.
 struct Beam {
     bvec2 dominant;
     bvec3 negative;              // axes that are reversed
-    vec3 eye;                    // that point, turned so that the dominant axis is last
-    vec2 inverse_lo, inverse_hi; // that all of its rays lie in
+    vec3 eye;                    // the common point, turned so that the dominant axis is last
+    vec2 inverse_lo, inverse_hi; // bounds of beam_inverse over the group's rays
 };
 Beam beam;
 vec3 beam_inv_dir[SPEC_PACKET_RAYS]; // turned likewise
 vec3 beam_origin[SPEC_PACKET_RAYS];  // where the rays start, likewise
 vec2 beam_inverse[SPEC_PACKET_RAYS]; // last component of a ray's direction by the others, upwards
-bool beam_left[SPEC_PACKET_RAYS];    // rays whose group is yet to walk
-bool beam_walks[SPEC_PACKET_RAYS];   // rays of the group that walks
-vec3 beam_aside[SPEC_PACKET_RAYS];   // t, lo and hi of the hits of those that are not
+bool beam_left[SPEC_PACKET_RAYS];    // rays whose group is still to be traversed
+bool beam_walks[SPEC_PACKET_RAYS];   // rays of the current group
+vec3 beam_aside[SPEC_PACKET_RAYS];   // t, lo and hi of the hits of all other rays, saved
 
-// A ray of the group, its dominant axis last. What the group has in common is taken from one place: then
-// compilers compute once what depends on that alone.
+// A ray of the group, its dominant axis last. What all of the group share is taken from `beam`, so
+// that compilers compute once what depends on it alone.
 RaySetup beam_ray(uint r)
 {
     RaySetup ray = packet_rays[r];
@@ -63,7 +63,8 @@ void bound_beam()
     beam.inverse_hi = -min_of_lanes2(hi);
 }
 
-// Takes one group of the rays that are left; the others are done until it has walked. False: none is left.
+// Makes one group of the remaining rays the current one; other rays count as done until it has been
+// traversed. False: no rays remain.
 bool begin_beam(vec3 eye)
 {
     uint own = GROUP_NONE;
@@ -83,7 +84,7 @@ bool begin_beam(vec3 eye)
     return group != GROUP_NONE;
 }
 
-// Whether another group is left.
+// Ends the current group, and restores the hits of the other rays. True: another group remains.
 bool end_beam()
 {
     bool left = false;
@@ -97,8 +98,8 @@ bool end_beam()
     return any_lane(left);
 }
 
-// Takes a box of this lane to the group's space, and widens it. True where some ray of the group may come
-// through the box.
+// Transforms this lane's box to the group's space and widens it. True where some ray of the group
+// may hit it.
 bool bring_to_beam(inout vec3 lo, inout vec3 hi)
 {
     vec3 margin = vec3(box_margin(lo, hi)), eye = beam.eye;
@@ -112,8 +113,8 @@ bool bring_to_beam(inout vec3 lo, inout vec3 hi)
     return max(max(near.x, near.y), max(near.z, 0)) <= min(far.x, min(far.y, far.z));
 }
 
-// When the first ray of this lane enters a box, which bring_to_beam has taken to the group's space: as bits,
-// see NEVER.
+// The least t, as bits, at which a ray of this lane enters a box in the group's space
+// (bring_to_beam); NEVER where none does.
 int enter_beam_box(vec3 lo, vec3 hi)
 {
     int first = NEVER;

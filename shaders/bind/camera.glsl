@@ -1,11 +1,11 @@
-// Where the ray tree of a pixel starts.
+// Makes camera rays.
 #ifndef BIND_CAMERA_GLSL
 #define BIND_CAMERA_GLSL
 
 #include "../lib/angles.glsl"
 #include "ray.glsl"
 
-// Which camera it is.
+// The kind of the camera, CAMERA_*.
 uint camera_kind()
 {
     return SPEC_CAMERA == CAMERA_EACH ? view.camera : SPEC_CAMERA;
@@ -41,19 +41,20 @@ void camera_line(vec2 at, vec2 lens, out vec3 origin, out vec3 dir)
     }
 }
 
-// Samples of neighbours are mirror images of each other, so that what is off in one is made good by the next.
+// Mirrors the sample's position differently in neighbouring pixels, so that the errors of
+// neighbours compensate.
 vec2 mirror_sample(vec2 xy, uvec2 pixel)
 {
     return uintBitsToFloat(floatBitsToUint(xy) ^ (uvec2(pixel.x ^ pixel.y, pixel.x) << 31));
 }
 
 #ifdef HOOKS
-// Lets the user's function have its say.
+// Calls the user's camera().
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir);
 #endif
 
-// camera_ray of picture/camera.c is this in C, bit for bit: sums, differences and products alone, which
-// all devices round alike.
+// camera_ray of picture/camera.c is this in C, bit for bit. It uses sums, differences and products
+// alone, which all devices round alike.
 Ray camera_ray(uvec2 pixel)
 {
     vec2 lens_xy = SPEC_VIEWS != 0u ? view.lens_xy : chunk.lens_xy;
@@ -74,7 +75,7 @@ Ray camera_ray(uvec2 pixel)
     ray.weight = vec3(1.0);
 #ifdef HOOKS
     if ((SPEC_HOOKS & HOOK_CAMERA) != 0u && !is_usable(origin, unit))
-        ray.weight = vec3(uintBitsToFloat(0x7fc00000u)); // which makes an error of the picture
+        ray.weight = vec3(uintBitsToFloat(0x7fc00000u)); // NaN, which makes the picture an error
 #endif
     ray.steps = 0u;
     ray.media = SPEC_MEDIA != 0u ? uvec4(frame.eye_media0, frame.eye_media1, frame.eye_media2,
@@ -87,16 +88,17 @@ Ray camera_ray(uvec2 pixel)
     return ray;
 }
 
-// The share of a pixel that the sample stands for: mipmap_sample_share of host/picture/mipmap.c.
+// The share of the pixel's area that the sample stands for: mipmap_sample_share of
+// host/picture/mipmap.c.
 float sample_share()
 {
     uint halvings = chunk.sample_index == 0u ? 0u : uint(findMSB(chunk.sample_index)) / 2u + 1u;
     return uintBitsToFloat((127u - 2u * halvings) << 23);
 }
 
-// The area of a texel that a sample of the pixel asks for, across its camera ray `way` from the eye. A
-// pinhole's pixels are as large in the picture plane, the more aslant the farther from the middle; those of a
-// panorama get narrow towards its poles.
+// The area that a texel should have for a sample of the pixel, across its camera ray at distance
+// `way` from the eye. Pixels of a pinhole camera are equally large in the picture plane, which its
+// rays cross at a flatter angle far from the middle; those of a panorama narrow towards its poles.
 float texel_area(uvec2 pixel, float way)
 {
     float area = frame.texel_area * sample_share();

@@ -1,5 +1,5 @@
-// What a ray goes from and to at a surface that bounds a medium: nested dielectrics, and surfaces of
-// two media that touch.
+// The media on both sides of a surface that a ray crosses: nested dielectrics, and surfaces of two
+// media that touch.
 #ifndef BIND_CROSSING_GLSL
 #define BIND_CROSSING_GLSL
 
@@ -7,14 +7,14 @@
 #include "ray.glsl"
 #include "surface.glsl"
 
-// Surfaces that may be crossed at one place.
+// The most surfaces that are crossed at one place.
 const uint CROSSED_MAX = 4u;
 
 struct Crossing {
     uvec4 before, after; // media on both sides, struct gpu_media
-    float eta;           // index of the ray's side over that of the other
+    float eta;           // index of refraction of the ray's side over that of the other
     bool seen;           // false: both sides are the same medium, so there is nothing to see
-    // Where what passes goes on: the last of the surfaces that are crossed here.
+    // Where light that passes goes on: at the last of the surfaces that are crossed here.
     vec3 p, error, ng;
     uint instance, record;
 };
@@ -39,9 +39,10 @@ float largest_of(vec3 v)
     return max(v.x, max(v.y, v.z));
 }
 
-// How far apart, along the ray, hits at one place may be. Each `t` of the intersection test is off by a
-// few roundings of the coordinates that enter it, across the surface; along the ray that is more by
-// the cosine, which is bounded so that rays along a surface do not gather all that is near it.
+// How far apart along the ray two hits of one place may be. Each t of the intersection test is off
+// by a few roundings of the coordinates that enter it, across the surface. Along the ray this is
+// divided by the cosine, which is bounded, so that rays along a surface do not gather all that is
+// near it.
 float crossing_slack(Surface s, Ray ray, float t)
 {
     float size = largest_of(abs(ray.origin)) + largest_of(abs(s.p)) + largest_of(abs(s.e1)) +
@@ -49,7 +50,7 @@ float crossing_slack(Surface s, Ray ray, float t)
     return rounding_bound(8.0) * size / max(abs(dot(ray.dir, s.ng)), 1.0 / 1024.0);
 }
 
-// frame.contact along the ray: it is meant across the surface.
+// frame.contact, a distance across the surface, measured along the ray.
 float crossing_contact(Surface s, Ray ray)
 {
     return frame.contact / max(abs(dot(ray.dir, s.ng)), 1.0 / 16.0);
@@ -63,7 +64,7 @@ struct Crossed {
     uint count;
 };
 
-// Which of the crossed surfaces is the last one of the same body; CROSSED_MAX: none.
+// Index of the last crossed surface of the same body; CROSSED_MAX: there is none.
 uint find_crossed(Crossed crossed, uint entry, uint instance)
 {
     uint found = CROSSED_MAX;
@@ -75,8 +76,9 @@ uint find_crossed(Crossed crossed, uint entry, uint instance)
     return found;
 }
 
-// Enters all that is entered, then leaves: rounding may swap surfaces that touch. What is left
-// without having been entered (an open mesh) was around the ray so far.
+// Enters all media that are entered, then leaves those that are left, since rounding may swap
+// surfaces that touch. A medium that is left without having been entered (an open mesh) was around
+// the ray so far.
 void cross_all(Crossed crossed, inout Crossing c, inout uint status)
 {
     uint i = 0u;
@@ -99,11 +101,11 @@ void cross_all(Crossed crossed, inout Crossing c, inout uint status)
     } while (i < crossed.count);
 }
 
-// Adds the surfaces of other media that the ray crosses at the place of `hit`, and makes `s` and
-// `inside` those of the surface that is seen there: of the material with the highest priority, of
-// equal ones one that is entered. A body that is entered twice on end has been met at an edge, by
-// both its neighbours. One that is left again has no thickness but for rounding, or else is thinner
-// than the contact distance, which does not mean it.
+// Adds the surfaces of other media that the ray crosses at the place of `hit`. Sets `s` and
+// `inside` to the surface that is seen there: the one whose material has the highest priority, and
+// of equal ones one that is entered. A body that is entered twice in a row was hit at an edge, in
+// both triangles. A body that is entered and left has no thickness but for rounding, or is thinner
+// than the contact distance, which is not meant for it.
 void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout Crossing c,
                      inout Surface s, inout bool inside, inout uint status)
 {
@@ -113,7 +115,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
     bool more = frame.nested != 0u;
     do {
         if (more) {
-            Hit known = hit; // what is seen there keeps the t it has
+            Hit known = hit; // the surface seen there keeps its t
             if (SPEC_NUMERICS == NUMERICS_EXACT)
                 finish_hit(ray.origin, ray.dir, known);
             status |= known.status;
@@ -122,7 +124,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
             hit = traverse(TRAVERSE_NEXT, ray.origin, ray.dir, 0.0, reach, frame.root,
                            hit.instance, hit.primitive);
             if (SPEC_COUNT != 0u)
-                traversal_cost.rays = 0u; // it is no further ray
+                traversal_cost.rays = 0u; // not a new ray of the pixel
             add_cost(slot, RAY_REFRACTED);
             status |= hit.status;
             more = hit.primitive != HIT_NONE;
@@ -148,7 +150,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
                 uint other_rank = medium_priority(other.material + 1u) * 2u + uint(!leaves);
                 if (other_rank > rank) {
                     rank = other_rank;
-                    other.p = s.p; // what is reflected stays before the first surface
+                    other.p = s.p; // reflected rays start in front of the first surface
                     other.error = s.error;
                     s = other;
                     inside = leaves;
@@ -159,15 +161,16 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
     } while (more);
 }
 
-// Whether a hit is the surface that the ray has just crossed once more: the neighbour of a primitive at
-// whose edge it was crossed, entered a second time or left a second time.
+// Whether a hit is the surface that the ray has just crossed: the neighbour of a triangle that was
+// crossed at its edge, which would be entered or left a second time.
 bool is_crossed_already(Ray ray, Hit hit, Surface s, bool inside)
 {
     return hit.instance == ray.skip_instance && hit.t <= crossing_slack(s, ray, hit.t) &&
            media_have(ray.media, s.material + 1u) != inside;
 }
 
-// `s` faces the ray; so it does afterwards, when it is another one.
+// Finds the media on both sides of a hit. `s` faces the ray; it may become another surface at the
+// same place, which then faces the ray too.
 Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_material m,
                        bool inside, inout uint status)
 {

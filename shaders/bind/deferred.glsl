@@ -1,6 +1,7 @@
-// NUMERICS_EXACT: the items of a dispatch whose rays are deferred, for floats do not decide their hits. A
-// dispatch without SPEC_SETTLES lists them and does nothing else for them; one with SPEC_SETTLES behind it
-// takes them from the list. So what hardly any ray needs is in a kernel of its own, which only they pay for.
+// NUMERICS_EXACT: the list of deferred items, those with rays whose hits floats do not decide. A
+// dispatch without SPEC_SETTLES lists them and does nothing else for them; a later one with
+// SPEC_SETTLES takes them from the list. So the integer arithmetic, which few rays need, is in a
+// kernel of its own.
 #ifndef BIND_DEFERRED_GLSL
 #define BIND_DEFERRED_GLSL
 

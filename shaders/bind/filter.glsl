@@ -1,6 +1,6 @@
-// What light loses on its way through filters whose weight is a matter of the place: those that
-// textures or vertex colours pattern, and bodies that absorb. In 1/64 stops, as integers, whose sum
-// does not depend on the order in which a ray meets them.
+// Light that shadow rays lose in filters that vary over their surface: filters with textures or
+// vertex colours, and bodies that absorb. In 1/64 stops, as integers, whose sum does not depend on
+// the order in which a ray hits the filters.
 #ifndef BIND_FILTER_GLSL
 #define BIND_FILTER_GLSL
 
@@ -14,7 +14,7 @@
 // Open meshes: a ray that enters and never leaves is absorbed up to the light, as is a camera ray, which
 // stays in the medium; one that leaves without having entered gets a sum below 0, which counts as 0.
 const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
-const float DEPTH_MAX = 1073741824.0;        // 2^30; sums wrap around, and back
+const float DEPTH_MAX = 1073741824.0;        // 2^30; sums may wrap around and back
 
 ivec3 absorption_depth(vec3 absorption, float way)
 {
@@ -22,8 +22,8 @@ ivec3 absorption_depth(vec3 absorption, float way)
     return ivec3(floor(clamp(depth, vec3(-DEPTH_MAX), vec3(DEPTH_MAX)) + 0.5));
 }
 
-// The sum of the absorption of all media that a place is in. Where they overlap each of them absorbs light
-// on its way here; for rays that the eye sees only the medium of the highest priority does.
+// The sum of the absorption of all media around a point. Where media overlap, each of them absorbs
+// light of shadow rays; for rays that the eye sees only the medium with the highest priority does.
 vec3 surrounding_absorption(uvec4 media)
 {
     vec3 sum = vec3(0.0);
@@ -38,15 +38,16 @@ vec3 surrounding_absorption(uvec4 media)
     return sum;
 }
 
-// The optical depth, in 1/64 stops, of what lets the share `kept` pass; for a share of 0 nothing passes.
+// The optical depth, in 1/64 stops, of a filter that lets the share `kept` pass; for a share of 0
+// nothing passes.
 ivec3 filter_depth(vec3 kept)
 {
     vec3 depth = floor(-64.0 * log2(max(kept, vec3(1e-30))) + 0.5);
     return ivec3(mix(max(depth, vec3(0.0)), vec3(65535.0), lessThanEqual(kept, vec3(0.0))));
 }
 
-// The optical depth of a filter at a point (see traverse.glsl). What passes is as in surface_optics, for the
-// straight and the refracted ray, without Fresnel.
+// The optical depth of a filter at a point (see traverse.glsl). The share that passes is that of
+// surface_optics for the straight and the refracted ray, without Fresnel.
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front, ivec3 own)
 {
     if (SPEC_FILTER_DETAIL == 0u)

@@ -1,4 +1,4 @@
-// What stages and hooks tell each other: functions that a user may put in the place of whit's (hook/).
+// What stages tell hooks, the functions that a user may put in the place of whit's (hook/).
 #ifndef BIND_HOOK_GLSL
 #define BIND_HOOK_GLSL
 
@@ -7,7 +7,7 @@
 // The ray that a hook is called for.
 Ray hook_ray;
 
-// The way that ray goes: unit, world space.
+// The ray's direction: unit, world space.
 vec3 ray_dir()
 {
     return hook_ray.dir;

@@ -1,4 +1,4 @@
-// Where light comes from: environment and lights.
+// Light of the environment and of lights.
 #ifndef BIND_LIGHT_GLSL
 #define BIND_LIGHT_GLSL
 
@@ -34,7 +34,7 @@ vec3 environment(vec3 dir)
     return mix(frame.horizon, dir.y >= 0.0 ? frame.zenith : frame.ground, min(abs(dir.y), 1.0));
 }
 
-const float LIGHT_MAX = 1e24; // so that sums of what arrives cannot overflow
+const float LIGHT_MAX = 1e24; // bounds radiance, so that sums of light cannot overflow
 
 // One iteration of the loop over lights: a light, or one point of a flat emitter.
 struct LightSample {
@@ -49,14 +49,14 @@ bool is_flat(gpu_light light)
     return (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && ((LIGHT_FLAT_BITS >> light.kind) & 1u) != 0u;
 }
 
-// Turns of each light. Only flat emitters take more than the first of them.
+// The number of points of each light; only flat emitters use more than the first.
 uint turns_each()
 {
     return (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u ? frame.light_samples : 1u;
 }
 
-// Point `index` of a flat emitter: of the sequence those behind what the samples before this one take,
-// the same for all pixels.
+// Point `index` on a flat emitter, from the sequence of points behind those of earlier samples; the
+// same for all pixels.
 vec3 emitter_point(gpu_light light, uint index)
 {
     uvec2 at = sequence_point(chunk.light_index + index);
@@ -70,20 +70,22 @@ vec3 emitter_point(gpu_light light, uint index)
     return light.position + light.edge_u * u + light.edge_v * v;
 }
 
-// The point that sample `index` of a light comes from. A directional light has none: its result means nothing.
+// The point of a light that sample `index` comes from; undefined for a directional light.
 vec3 light_point(gpu_light light, uint index)
 {
     return is_flat(light) ? emitter_point(light, index) : light.position;
 }
 
-// Form factor of a flat emitter at `p`, off by up to `error`, with shading normal `n`, without shadows.
+// Form factor of a flat emitter at `p`, which may be off by `error`, with shading normal `n`,
+// without shadows.
 float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
 {
     vec3 c0 = light.position - p;
     vec3 c1 = c0 + light.edge_u, c3 = c0 + light.edge_v;
     vec3 c2 = light.kind == LIGHT_TRIANGLE ? c3 : c1 + light.edge_v;
     float height = -dot(c0, light.direction);
-    // In the emitter's own plane, but for rounding: of the point too, or it would light itself.
+    // Zero in the emitter's own plane, within the rounding of the point: else it would light
+    // itself.
     if (abs(height) <= dot(rounding_bound(4.0) * abs(c0) + error, abs(light.direction)))
         return 0.0;
     float factor = polygon_form_factor(n, c0, c1, c2, c3);
@@ -132,7 +134,7 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
     from.arriving = min(from.arriving, vec3(LIGHT_MAX));
     if (from.distance > light.range)
         return false;
-    // What lies in one plane with an emitter, as a ceiling may, casts no shadow of its light.
+    // Shortened: a surface in one plane with the emitter, as a ceiling may be, casts no shadow.
     if (flat_emitter)
         from.distance *= 1.0 - 1.0 / 4096.0;
     return max(from.arriving.r, max(from.arriving.g, from.arriving.b)) > 0.0;

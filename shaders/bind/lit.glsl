@@ -1,4 +1,4 @@
-// A lit hit: what the shadow kernel needs to know of its surface to add the light that reaches it.
+// Lit hits: what the shadow kernel needs of a hit's surface to add the light that reaches it.
 #ifndef BIND_LIT_GLSL
 #define BIND_LIT_GLSL
 
@@ -15,16 +15,17 @@ const uint LIT_LIFTED = 1u, LIT_METAL_ROUGH = 2u, LIT_CATCHER = 4u;
 const uint LIT_FLAGS_SHIFT = 29u, LIT_ID_MASK = (1u << 29) - 1u;
 
 struct Lit {
-    vec3 p, origin; // of the surface; where shadow rays start
-    float error;    // of p, on any axis; with flat emitters
-    vec3 ns, ng;    // on the side that light is received on
+    vec3 p, origin; // point on the surface; where shadow rays start
+    float error;    // bound of the error of p on each axis; with flat emitters
+    vec3 ns, ng;    // on the side that receives light
     vec3 view;      // to where the ray came from
     vec3 diffuse, highlight; // weighted
     float gloss;    // alpha of GGX, or shininess
     vec3 absorption; // of the media around
     uint flags;     // LIT_*
     uint id, skip_instance, skip_primitive;
-    uint record; // of the primitive; set for store_lit alone: fetch_lit gives skip_instance and skip_primitive
+    uint record; // of the primitive; set only for store_lit: fetch_lit gives skip_instance and
+                 // skip_primitive
 };
 
 uvec4 fetch_lit_row(uint row)
@@ -34,7 +35,7 @@ uvec4 fetch_lit_row(uint row)
     return lit_rows[row];
 }
 
-// Which list a light takes its hits from.
+// The list from which a light takes its hits.
 uint list_of_light(uint light)
 {
     return frame.light_count <= LIGHT_LISTS ? light : 0u;
@@ -52,8 +53,8 @@ bool lit_has(uint part)
     return (SPEC_LIT_PARTS & part) != 0u;
 }
 
-// Where the optional rows of a lit hit are, behind the four that each has: the normal of the triangle, the
-// highlight, the absorption.
+// Places of the optional rows of a lit hit, behind the four that each has: the triangle's normal,
+// the highlight, the absorption.
 uint lit_highlight_row()
 {
     return 4u + uint(lit_has(LIT_HAS_NG));
@@ -120,7 +121,7 @@ void store_lit(uint index, Lit lit)
                    floatBitsToUint(vec4(lit.origin, lit.gloss)));
     store_lit_rows(row + 2u, floatBitsToUint(vec4(lit.ns, lit.error)),
                    uvec4(floatBitsToUint(lit.diffuse), lit.record));
-    // The optional rows that this kernel has, without gaps.
+    // The optional rows that this kernel uses, without gaps.
     uvec4 fourth = lit_has(LIT_HAS_NG) ? ng : lit_has(LIT_HAS_HIGHLIGHT) ? highlight : absorption;
     uvec4 fifth = lit_has(LIT_HAS_NG) && lit_has(LIT_HAS_HIGHLIGHT) ? highlight : absorption;
     if (SPEC_LIT_PARTS != 0u)
@@ -129,7 +130,7 @@ void store_lit(uint index, Lit lit)
         store_lit_rows(row + 6u, absorption, uvec4(0u));
 }
 
-// Which of the lights that have lists of their own may reach it: bit i: light i.
+// Which lights with lists of their own may reach the lit hit: bit i for light i.
 uint reaching_lights(Lit lit)
 {
     uint reaching = 0u, i = 0u;

@@ -1,4 +1,4 @@
-// The lit hit that a surface is.
+// Makes the lit hit of a surface.
 #ifndef BIND_LIT_SURFACE_GLSL
 #define BIND_LIT_SURFACE_GLSL
 
@@ -7,8 +7,8 @@
 #include "optics.glsl"
 #include "terminator.glsl"
 
-// What the shadow kernel needs of a surface whose light counts with `weight`; `media`: around it. Without
-// what names the ray: view, id, record, and what the shadow ray is to skip.
+// The record of a surface for the shadow kernel. `weight`: of its light; `media`: around it. The
+// caller sets what belongs to the ray: view, id, record, and what the shadow ray skips.
 Lit lit_surface(Surface s, Optics o, vec3 weight, uvec4 media)
 {
     vec3 lift = smooth_lift(s);

@@ -1,17 +1,17 @@
-// What a ray travels through: the media it has entered and not left, by priority (after Schmidt and
-// Budge 2002, "Simple Nested Dielectrics in Ray Traced Images"). Where several are at one place, the
-// one with the highest priority is there, of equal ones the one entered last. So the list is kept in
-// this order, and its last entry is what the ray is in.
+// The media that a ray has entered and not left, by priority (after Schmidt and Budge 2002, "Simple
+// Nested Dielectrics in Ray Traced Images"). Where several overlap, the one with the highest
+// priority counts, of equal ones the one entered last. So the list is kept in this order, and its
+// last entry is the medium that the ray is in.
 #ifndef BIND_MEDIA_GLSL
 #define BIND_MEDIA_GLSL
 
 #include "shading.glsl"
 
-// Entries come in fours of even and odd numbers: the low and the high halves of the words.
+// Numbers of the entries in the low and in the high halves of the four words.
 const uvec4 MEDIA_EVEN = uvec4(0u, 2u, 4u, 6u);
 const uvec4 MEDIA_ODD = uvec4(1u, 3u, 5u, 7u);
 
-// Entry `at`; 0 from the number of entries on.
+// Entry `at`; 0 behind the last entry.
 uint media_entry(uvec4 media, uint at)
 {
     uvec2 pair = at < 4u ? media.xy : media.zw;
@@ -39,7 +39,7 @@ uint medium_priority(uint entry)
     return (flags >> MATERIAL_PRIORITY_SHIFT) & 255u;
 }
 
-// Index of refraction; of air 1.
+// Index of refraction of a medium; 1 for air.
 float medium_ior(uint entry)
 {
     if (entry == 0u)
@@ -52,7 +52,7 @@ uvec4 pack_media(uvec4 even, uvec4 odd)
     return even | odd << 16;
 }
 
-// With `entry` behind all of no higher priority.
+// Adds `entry` behind all entries of the same or a lower priority.
 uvec4 media_with(uvec4 media, uint entry, inout uint status)
 {
     uint count = media_count(media);
@@ -80,7 +80,7 @@ bool media_have(uvec4 media, uint entry)
     return any(equal(media & 0xffffu, uvec4(entry))) || any(equal(media >> 16, uvec4(entry)));
 }
 
-// Without the last occurrence of `entry`, which must be there.
+// Removes the last occurrence of `entry`, which must be there.
 uvec4 media_without(uvec4 media, uint entry)
 {
     uvec4 even = media & 0xffffu, odd = media >> 16;
@@ -92,8 +92,7 @@ uvec4 media_without(uvec4 media, uint entry)
                       mix(odd_moved, odd, lessThan(MEDIA_ODD, uvec4(at))));
 }
 
-// Whether light passes from the surface into a medium of its own. A texture may still let nothing
-// through.
+// Whether the surface of a material bounds a medium. A texture may still let no light through.
 bool bounds_medium(gpu_material m)
 {
     return SPEC_MEDIA != 0u && (m.flags & MATERIAL_THIN) == 0u && m.model != MATERIAL_MODEL_UNLIT &&

@@ -5,14 +5,14 @@
 #include "../lib/optics.glsl"
 #include "surface.glsl"
 
-// Share of light that a smooth face between two media reflects; see fresnel_dielectric().
+// The share of light that a smooth interface of two media reflects; see fresnel_dielectric().
 float reflected_share(float cos_in, float eta)
 {
     return SPEC_FRESNEL == FRESNEL_SCHLICK ? schlick_dielectric(cos_in, eta)
                                            : fresnel_dielectric(cos_in, eta);
 }
 
-// `eta`: index of the side the ray comes from over that of the other.
+// `eta`: index of refraction of the side that the ray comes from over that of the other.
 Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
 {
     Optics o;
@@ -64,7 +64,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     o.reflected = SPEC_REFLECTION != 0u ? mirror : vec3(0.0);
     o.alpha = 1.0;
     bool fresnel = SPEC_FRESNEL != FRESNEL_NONE && (m.flags & MATERIAL_FRESNEL) != 0u;
-    float gloss = 1.0; // share of the mirror ray that roughness leaves
+    float gloss = 1.0; // share that roughness leaves of the mirror ray
     if (o.metal_rough) {
         float r0 = (m.ior - 1.0) / (m.ior + 1.0);
         vec3 f0 = min(o.highlight * (r0 * r0), vec3(1.0)) * specular_level;

@@ -1,8 +1,9 @@
-// Traversal by the rays of a subgroup of 8 lanes together, SPEC_PACKET_RAYS of each lane: one node of eight
-// children, one record at a time for all of them. Each lane fetches one child, and the others get it by
-// shuffles, which lavapipe has single instructions for; the stack is a few registers whose lanes are
-// children. Rays of a packet are tested against more records than alone, and hits do not depend on that
-// (docs/numerics.md). All lanes must be here; rays that are none are not `alive`.
+// Traversal by ray packets: the rays of a subgroup of 8 lanes, SPEC_PACKET_RAYS in each, visit one
+// node of eight children, or one record, at a time. Each lane fetches one child, and the others get
+// it by shuffles, which lavapipe has single instructions for; the stack is a few registers whose
+// lanes are children. Rays of a packet are tested against more records than alone, and hits do not
+// depend on that (docs/numerics.md). All lanes must take part; lanes without a ray have
+// packet_alive false.
 #ifndef BIND_PACKET_GLSL
 #define BIND_PACKET_GLSL
 
@@ -12,26 +13,28 @@ layout(set = 0, binding = BIND_NODE8_TEXELS) uniform usamplerBuffer node8_texels
 
 RaySetup packet_world[SPEC_PACKET_RAYS]; // packet_rays in the space of the tree over instances
 
-// The same rays as boxes are tested with: t in units of the largest component of the direction, so that
-// `inverse` is at least 1; and at most BOX_INVERSE_MAX, see box_margin.
+// The packet's rays in the form in which boxes are tested: t is in units of the largest component
+// of the direction, so that `inverse` is at least 1; and at most BOX_INVERSE_MAX, see box_margin.
 struct BoxRay {
     vec3 origin, inverse, size; // size: |inverse|
 };
 BoxRay packet_box_rays[SPEC_PACKET_RAYS], packet_world_box_rays[SPEC_PACKET_RAYS];
 
-// What is left to visit of the children of the node in hand, nearest first, the lanes behind them REF_DONE;
-// then the same of the nodes above, the lowest first.
+// packet_top: the children of the current node that are left to visit, one in each lane, nearest
+// first, REF_DONE behind them. packet_stack: the same for the nodes above, from the root down.
 uint packet_top;
 uint packet_stack[SPEC_PACKET_STACK];
 uint packet_height;
 
-// Intervals of origins and directions that all rays lie in. Shadow rays to a point are taken from there.
+// Bounds of the origins and directions of all rays. A shadow ray to a point counts from that point,
+// with its direction reversed.
 struct PacketBounds {
     vec3 origin_lo, origin_hi;
-    vec3 to_up, to_down; // 1 / most upward component; 1 / most downward one; infinite where none is
-    vec3 last;           // 1 / least component of rays that all go one way; else infinite
-    bvec3 up;            // that way
-    float size;          // what margins are relative to, beside the distance of a box
+    vec3 to_up, to_down; // 1 / the largest upward component; 1 / the largest downward one; infinite
+                         // where there is none
+    vec3 last;           // 1 / the least component where all rays go one way; else infinite
+    bvec3 up;            // they go upwards there
+    float size;          // size that margins are relative to, besides the distance of a box
     float t_max;
 };
 PacketBounds packet_bounds;
@@ -79,7 +82,8 @@ void make_packet_bounds(const uint mode)
     packet_bounds = b;
 }
 
-// Makes the box rays and the bounds of packet_rays, which are in the space of the tree to traverse.
+// Makes the box rays and the bounds from packet_rays, which are in the space of the tree to
+// traverse.
 void make_box_rays(const uint mode)
 {
     EACH_RAY {
@@ -94,7 +98,7 @@ void make_box_rays(const uint mode)
     make_packet_bounds(mode);
 }
 
-// Whether some ray within the bounds may come through the box.
+// Whether some ray within the bounds may hit the box.
 bool may_be_met(vec3 box_lo, vec3 box_hi)
 {
     PacketBounds b = packet_bounds;
@@ -106,7 +110,7 @@ bool may_be_met(vec3 box_lo, vec3 box_hi)
     vec3 ahead = mix(-hi * b.to_down, lo * b.to_up, greaterThan(lo, vec3(0.0)));
     bvec3 apart = bvec3(lo.x > 0.0 || hi.x < 0.0, lo.y > 0.0 || hi.y < 0.0, lo.z > 0.0 || hi.z < 0.0);
     vec3 near = mix(vec3(0.0), ahead, apart);
-    vec3 far = max(mix(-lo, hi, b.up), vec3(0.0)) * b.last; // a box behind is too far by `near`
+    vec3 far = max(mix(-lo, hi, b.up), vec3(0.0)) * b.last; // `near` excludes boxes behind the rays
     float start = max(near.x, max(near.y, near.z));
     float end = b.t_max;
     end = far.x < end ? far.x : end; // false for NaN
@@ -115,14 +119,15 @@ bool may_be_met(vec3 box_lo, vec3 box_hi)
     return start <= end * (1.0 + BOUNDS_MARGIN);
 }
 
-// Whether a stack entry holds a ref, by its lane 0. Compilers do not know gl_WorkGroupID.y to be 0 (see
-// turn.glsl): of a lane that they know lavapipe makes a scalar, and a jump of every selection by it.
+// Whether a stack entry holds a ref, by its lane 0. The lane is gl_WorkGroupID.y, which compilers
+// do not know to be 0 (see turn.glsl): of a lane that they know lavapipe would make a scalar, and a
+// jump of every selection by it.
 bool is_filled(uint entry)
 {
     return subgroupShuffle(entry, gl_WorkGroupID.y) != REF_DONE;
 }
 
-// Puts another entry on top, if there is anything in it.
+// Puts another entry on top, if it holds any refs (`some`).
 void push_packet(uint entry, bool some)
 {
     bool keep = some && is_filled(packet_top);
@@ -164,8 +169,8 @@ int enter_box(vec3 middle, vec3 half_size)
     return first;
 }
 
-// Each lane gives the box of one child, and gets the least t, as bits, at which a ray of the packet enters
-// it; NEVER where none does.
+// Each lane passes the box of one child. It gets the least t, as bits, at which a ray of the packet
+// enters that box; NEVER where none does.
 int enter_children(vec3 lo, vec3 hi, bool wanted)
 {
     uint lane = gl_SubgroupInvocationID;
@@ -199,7 +204,8 @@ uint sort_stage(uint key, uint span, bool ascending)
     return lower == ascending ? min(key, other) : max(key, other);
 }
 
-// The children of a node that rays come to, nearest first; REF_DONE behind them.
+// Sorts the children of a node that rays enter, nearest first, over the lanes; REF_DONE behind
+// them.
 uint sort_children(uint ref, int entered)
 {
     uint lane = gl_SubgroupInvocationID;
@@ -253,8 +259,8 @@ uint next_packet_ref(const uint mode, uint ref, uint base)
     return ends && !any_lane(going) ? REF_DONE : ref;
 }
 
-// Traverses a mesh tree from `ref` on until REF_DONE, or until the record at `ref` is `deferred` for some
-// ray. Only packets of one ray a lane defer records.
+// Traverses a mesh tree from `ref` on until REF_DONE, or until the record at `ref` is `deferred`
+// for some ray. Only packets with one ray per lane defer records.
 void walk_packet(const uint mode, float t_min, uint instance, uint base, inout uint ref,
                  out bool lane_deferred, out bool deferred)
 {
@@ -292,7 +298,7 @@ void look_at_packet_leaf(const uint mode, float t_min, uint instance, uint base,
 {
     uint record = ref & BVH_FIRST_MASK;
     RecordRows rows = fetch_packet_record(record);
-    Hit looked = packet_hits[0]; // all lanes look: what is fetched for all is fetched by some
+    Hit looked = packet_hits[0]; // all lanes do it, since each fetches a part for all
     bool over = look_at_rows(mode, packet_rays[0], packet_origin[0], packet_dir[0], t_min, record,
                              rows, instance, packet_skip[0].x, packet_skip[0].y, looked);
     if (lane_deferred)
@@ -376,7 +382,7 @@ void packet_instances(const uint mode, float t_min, uint root)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// Rays that start at `eye` or end there, one group of directions after the other.
+// Traverses packets of rays that start or end at `eye`, one group of directions after the other.
 void packet_beams(const uint mode, float t_min, uint root, vec3 eye)
 {
     bool more = false;
@@ -393,8 +399,8 @@ void packet_beams(const uint mode, float t_min, uint root, vec3 eye)
         packet_status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// traverse() for all rays of the subgroup, from packet_origin and the like into packet_hits. With
-// SPEC_BEAM all alive rays start at `eye` or end there.
+// traverse() for all rays of the subgroup: reads packet_origin and the like, and writes
+// packet_hits. With SPEC_BEAM all alive rays start or end at `eye`.
 void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 eye)
 {
     if (SPEC_PACKETS == 0u) {
@@ -405,7 +411,7 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 
         }
         return;
     }
-    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // behind the origin nothing is hit
+    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // nothing is hit behind the origin
         t_min = 0.0;
     packet_status = 0u;
     packet_height = 0u;

@@ -1,4 +1,4 @@
-// Rays that walk together, and their lanes: SPEC_PACKET_RAYS of each lane of a subgroup of 8.
+// The rays of a packet: SPEC_PACKET_RAYS in each lane of a subgroup of 8.
 #ifndef BIND_PACKET_RAYS_GLSL
 #define BIND_PACKET_RAYS_GLSL
 
@@ -6,31 +6,35 @@
 
 #define EACH_RAY [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++)
 
-// Where the lane's ray `r` is among those of its workgroup: those of a subgroup follow each other.
+// The place of the lane's ray `r` among the rays of its workgroup; the rays of a subgroup are
+// contiguous.
 uint lane_place(uint r)
 {
     uint lane = gl_LocalInvocationID.x;
     return SPEC_PACKET_RAYS == 1u ? lane : (lane / 8u * SPEC_PACKET_RAYS + r) * 8u + lane % 8u;
 }
 
-// What the caller asks for, and gets.
+// The caller's rays, and the hits that it gets.
 bool packet_alive[SPEC_PACKET_RAYS];
 vec3 packet_origin[SPEC_PACKET_RAYS], packet_dir[SPEC_PACKET_RAYS];
 float packet_t_max[SPEC_PACKET_RAYS];
 uvec2 packet_skip[SPEC_PACKET_RAYS]; // instance, primitive
 Hit packet_hits[SPEC_PACKET_RAYS];
-uint packet_status; // of the walk, for all rays
+uint packet_status; // of the traversal, for all rays
 
-RaySetup packet_rays[SPEC_PACKET_RAYS]; // in the space of the tree in hand
+RaySetup packet_rays[SPEC_PACKET_RAYS]; // in the space of the current tree
 int packet_end[SPEC_PACKET_RAYS];       // bits of the t behind which nothing counts, in units of
-float packet_unit[SPEC_PACKET_RAYS];    // the largest component of the direction
-float packet_reach[SPEC_PACKET_RAYS];   // BEAM_ENDS: from there to the ray's start, in the same units
-float packet_size; // largest coordinate of an origin, and what clipped triangles take
+                                        // packet_unit
+float packet_unit[SPEC_PACKET_RAYS];    // largest component of the direction
+float packet_reach[SPEC_PACKET_RAYS];   // BEAM_ENDS: distance from the common point to the ray's
+                                        // start, in the same units
+float packet_size; // largest coordinate of an origin, and a part for clipped triangles
 
 const float BOX_INVERSE_MAX = 16777216.0; // 2^24
 #define INFINITE uintBitsToFloat(0x7f800000u)
-// Far more than the roundings of a ray, its bounds and the test of a box, each a few 2^-24 of the distances
-// from the ray's ends; and than the slack of that test (SLAB_FAR_SCALE, SLAB_NEAR_SCALE).
+// Relative margin of boxes: far more than the roundings of a ray, its bounds and the test of a box,
+// each a few 2^-24 of the distances from the ray's ends; and more than the slack of that test
+// (SLAB_FAR_SCALE, SLAB_NEAR_SCALE).
 const float BOUNDS_MARGIN = 1.0 / 131072.0;
 
 int min_of_lanes(int value)
@@ -40,7 +44,7 @@ int min_of_lanes(int value)
     return min(value, subgroupShuffleXor(value, 4u));
 }
 
-// A compare and a selection. min takes lavapipe an instruction more, for the sake of NaN.
+// A comparison and a selection; min() takes lavapipe one more instruction, because of NaN.
 float lesser(float a, float b)
 {
     return a < b ? a : b;
@@ -80,7 +84,7 @@ vec3 from_lane(vec3 value, uint lane)
                 subgroupShuffle(value.z, lane));
 }
 
-// A ray that is done meets nothing more.
+// Sets how far ray `r` may still go; with `over` it is done, and hits nothing more.
 void end_ray(bool over, uint r)
 {
     packet_hits[r].t = over ? -1.0 : packet_hits[r].t;
@@ -94,7 +98,7 @@ void end_ray(bool over, uint r)
     packet_end[r] = floatBitsToInt(end);
 }
 
-// How far a ray passes by `eye`, near which it ends: BEAM_ENDS.
+// BEAM_ENDS: how far from `eye` a ray passes that should end there.
 float distance_to_eye(RaySetup ray, vec3 eye)
 {
     vec3 origin = turn_dominant(ray.dominant, ray.origin), dir = turn_dominant(ray.dominant, ray.dir);
@@ -104,7 +108,7 @@ float distance_to_eye(RaySetup ray, vec3 eye)
     return distance < INFINITE ? distance : INFINITE; // NaN: anywhere
 }
 
-// What all boxes of the tree are wider by, beside their own share (box_margin).
+// Sets packet_size: the part of box_margin that is the same for all boxes of the tree.
 void size_rays(vec3 eye)
 {
     float least = 0.0; // negated
@@ -119,10 +123,10 @@ void size_rays(vec3 eye)
     packet_size = -min_of_lanes(least);
 }
 
-// Boxes are widened by more than all roundings of their tests, of transforms to instances and of the tests
-// of what is inside, each of which is a few 2^-24 of the coordinates that go into it. So wide, a box that a
-// ray runs along is met: with BOX_INVERSE_MAX in place of infinity it is left 2^7 times as far away as it
-// is large.
+// The margin by which a box is widened: more than all roundings of its test, of transforms to
+// instances and of the tests of its contents, each a few 2^-24 of the coordinates that go into it.
+// So widened, a box that a ray runs along is hit: with BOX_INVERSE_MAX in place of infinity, rays
+// miss a box only from 2^7 times its size away.
 float box_margin(vec3 lo, vec3 hi)
 {
     return (max(largest_size(lo), largest_size(hi)) + packet_size) * BOUNDS_MARGIN;

@@ -1,4 +1,4 @@
-// What a dispatch is told, and the buffers of the pixels it works on.
+// Push constants of a dispatch, and the buffers of the pixels that it works on.
 #ifndef BIND_PICTURE_GLSL
 #define BIND_PICTURE_GLSL
 
@@ -13,19 +13,20 @@ layout(set = 0, binding = BIND_LISTED, std430) readonly buffer ListedBuffer
     uint listed_slots[]; // with chunk.listed
 };
 
-// RAY_KIND_COUNT per slot of the chunk, for the sample in the making; with SPEC_COUNT.
+// With SPEC_COUNT: RAY_KIND_COUNT per slot of the chunk, for the current sample.
 layout(set = 0, binding = BIND_COSTS, std430) buffer CostBuffer { gpu_cost costs[]; };
 
 layout(set = 0, binding = BIND_VIEWS, std430) readonly buffer ViewBuffer { gpu_view views[]; };
 layout(set = 0, binding = BIND_DISTANCES, std430) writeonly buffer DistanceBuffer
 {
-    float distances[]; // with SPEC_VIEWS: from where the first sample's camera ray starts to what it meets
+    float distances[]; // with SPEC_VIEWS: t of the hit of the first sample's camera ray
 };
-gpu_view view; // of the slot in hand
+gpu_view view; // of the current slot
 
 const uint BLOCK_PIXELS = 64u; // 8 x 8
 
-// Which item of the work this invocation takes; the last ones may be past its end.
+// The number of the work item that this invocation takes. The last ones may be past the end of the
+// work.
 uint invocation_slot()
 {
     uint group = gl_WorkGroupID.x;
@@ -36,12 +37,13 @@ uint invocation_slot()
     return group * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
 }
 
-// Place of a slot: blocks row by row over what is drawn of the picture; within a block 4 x 2 pixels a subgroup of 8.
+// The place of a slot in the drawn part of the picture, which 8x8 blocks cover row by row. Within a
+// block a subgroup of 8 has 4 x 2 pixels.
 uvec2 slot_place(uint slot)
 {
     uint blocks_x = chunk.blocks_x, first_y = chunk.first_block / blocks_x;
-    // From the start of that row less than 2^14 blocks on: floats divide them right, and lavapipe divides
-    // integers lane by lane.
+    // The place is less than 2^14 blocks from the start of that row. Floats divide such numbers
+    // exactly enough, while lavapipe divides integers lane by lane.
     uint place = chunk.first_block - first_y * blocks_x + slot / BLOCK_PIXELS;
     uint row = uint((float(place) + 0.5) / float(blocks_x));
     uvec2 block = uvec2(place - row * blocks_x, first_y + row);
@@ -53,13 +55,13 @@ uvec2 slot_place(uint slot)
     return ((block * 8u + uvec2(x, y)) << shift) + (first & LATTICE_FIRST_MASK);
 }
 
-// Rows that one of many views takes.
+// The number of rows that each of many views takes.
 uint view_rows()
 {
     return (frame.height + 7u) & ~7u;
 }
 
-// Pixel of a slot: its place, in its view where there are many.
+// The pixel of a slot: its place within its view.
 uvec2 slot_pixel(uint slot)
 {
     if (SPEC_VIEWS == 0u)
@@ -76,8 +78,8 @@ bool is_in_picture(uvec2 at)
     return at.x < frame.width && at.y < min(frame.height, chunk.band_y + chunk.band_rows);
 }
 
-// Puts the camera of the slot's view into the frame, with SPEC_VIEWS. Slots of a subgroup are in one block, and
-// so in one view.
+// With SPEC_VIEWS: copies the camera of the slot's view into the frame. Slots of a subgroup lie in
+// one block, and so in one view.
 void load_view(uint slot)
 {
     view = views[slot_place(slot).y / view_rows()];
@@ -93,7 +95,8 @@ void load_view(uint slot)
     frame.eye_media3 = view.eye_media3;
 }
 
-// Adds what the last traverse() cost to the pixel's rays of `kind`. HIT_NONE: of no pixel.
+// Adds the counters of the last traverse() to those of the slot's rays of `kind`. Slot HIT_NONE:
+// they are dropped.
 void add_cost(uint slot, uint kind)
 {
     if (SPEC_COUNT == 0u || slot == HIT_NONE)

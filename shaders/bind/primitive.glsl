@@ -1,4 +1,4 @@
-// One record and a ray: what a hit is, and where the ray meets the triangle or the sphere of the record.
+// Tests one record against a ray: where the ray hits the record's triangle or sphere.
 // twin/traverse.c is this in C.
 #ifndef BIND_PRIMITIVE_GLSL
 #define BIND_PRIMITIVE_GLSL
@@ -10,13 +10,14 @@
 #include "../lib/moller.glsl"
 #include "trees.glsl"
 
-// What may end a traversal; always a constant, so that each use is compiled for its own.
+// Modes of traversal: what it looks for. Always a constant, so that each use is compiled for its
+// own mode.
 const uint TRAVERSE_CLOSEST = 0u;
 const uint TRAVERSE_ANY = 1u;    // any hit will do
-const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; filters add up
-// The closest hit behind one that is known, in the order of (t, instance, primitive): the ray's own
-// numbers for that hit are hit_before, skip_instance and skip_primitive, and t_min is what it was; at
-// NUMERICS_EXACT also whether it was the far end of a sphere.
+const uint TRAVERSE_SHADOW = 2u; // any opaque hit will do; depths of filters add up
+// The closest hit behind a known one, in the order of (t, instance, primitive). The known hit is
+// given in hit_before, skip_instance and skip_primitive, with t_min as it was; at NUMERICS_EXACT
+// hit_before_at_exit tells whether it was the far end of a sphere.
 const uint TRAVERSE_NEXT = 3u;
 float hit_before;
 bool hit_before_at_exit;
@@ -29,13 +30,13 @@ bool finds_closest(const uint mode)
 const float FLOAT_LARGEST = 3.402823466e+38;
 
 struct Hit {
-    float t; // largest t that still counts, then that of the hit
+    float t; // the largest t that counts until there is a hit, then its t
     float lo, hi; // NUMERICS_EXACT: bounds of the hit's key, see lib/exact.glsl
     float u, v;     // of a sphere: square_from_dir of the normal, object space
-    bool at_exit;   // NUMERICS_EXACT: it is the far end of a sphere
+    bool at_exit;   // NUMERICS_EXACT: the far end of a sphere
     uint triangle;  // record
     bool glass;     // light passes through it
-    uint primitive; // of its mesh, or HIT_NONE
+    uint primitive; // index in its mesh, or HIT_NONE
     uint instance;
     ivec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
     uint status;
@@ -59,12 +60,12 @@ Hit make_hit(float t_max)
     return hit;
 }
 
-// A triangle or a sphere as it stands in its record.
+// A triangle or a sphere, from its record.
 struct Primitive {
     uvec4 r0, r1, r2;
     uint index, flags, instance;
     bool self; // the ray starts on it
-    bool known; // NUMERICS_EXACT: a sphere, and one of its ends is the hit that is known
+    bool known; // NUMERICS_EXACT: a sphere, one of whose ends is the known hit
     bool is_sphere;
 };
 
@@ -88,7 +89,7 @@ RecordRows fetch_record(uint record)
     return rows;
 }
 
-// With SPEC_FLAT the record names its instance.
+// With SPEC_FLAT the instance is taken from the record.
 Primitive make_primitive(const uint mode, RecordRows rows, uint instance, uint skip_instance,
                          uint skip_primitive)
 {
@@ -102,19 +103,19 @@ Primitive make_primitive(const uint mode, RecordRows rows, uint instance, uint s
     p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
     p.self = p.index == skip_primitive && p.instance == skip_instance;
     p.known = SPEC_NUMERICS == NUMERICS_EXACT && mode == TRAVERSE_NEXT && p.self && p.is_sphere;
-    if (mode == TRAVERSE_NEXT) // a triangle is not met behind itself
+    if (mode == TRAVERSE_NEXT) // a triangle has no second hit; a sphere has
         p.self = p.self && !p.is_sphere;
     return p;
 }
 
-// Where a ray meets a primitive.
+// A candidate hit: where a ray meets a primitive.
 struct Candidate {
     bool met;
     float t, u, v;
     bool front; // met from outside
-    bool owned; // of several triangles that share the point one owns it
-    // NUMERICS_EXACT: bounds of the key. Not `sure`: it may be met, and settle() finds out; until then
-    // t, u and v are good where `rounded`.
+    bool owned; // one of several triangles that share the point owns it
+    // NUMERICS_EXACT: bounds of the key. Unless `sure`, it is open whether the primitive is hit,
+    // and settle() decides; until then t, u and v are valid where `rounded`.
     float lo, hi;
     bool sure, rounded;
 };
@@ -159,7 +160,7 @@ Candidate meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
         return m;
     }
     vec3 lo, hi;
-    if (SPEC_PACKET_RAYS > 1u) // the same for all rays of a packet that share their signs
+    if (SPEC_PACKET_RAYS > 1u) // these are shared by all rays of a packet with the same signs
         bound_points(v0, v1, v2, lo, hi);
     else
         bound_points(a, b, c, lo, hi);
@@ -176,8 +177,8 @@ Candidate meet_triangle(RaySetup ray, float t_min, uvec4 r0, uvec4 r1, uvec4 r2)
     return m;
 }
 
-// Sets what float arithmetic tells of a candidate hit at one end of a chord. Where it does not decide
-// whether the near end is at t_min or behind it, the hit may be at the far end.
+// Sets what float arithmetic knows of a candidate hit at one end of a chord. Where it leaves open
+// whether the near end is before t_min, the hit may be at the far end.
 void bound_end(SphereBounds bounds, bool inward, float t_min, bool at_exit, bool self,
                inout Candidate m)
 {
@@ -248,7 +249,8 @@ Chord chord_of(RaySetup ray, float t_min, Primitive p)
     return chord;
 }
 
-// Whether the near end of the chord cannot be hit: it is before t_min, or the ray starts on the sphere.
+// Whether the near end of the chord cannot be hit, since it is before t_min or the ray starts on
+// the sphere.
 bool starts_at_exit(const uint mode, Primitive p, Chord chord, float t_min)
 {
     bool before = !(chord.t_near >= t_min);

@@ -1,5 +1,6 @@
-// The ray tree of one pixel's first sample: a record for each ray. Rays of the queues have the record with
-// the number of their id; shadow rays and rays that are cut follow behind. For kernels with SPEC_PROBE alone.
+// The ray tree of one pixel's first sample, with a record for each ray. The record of a queued ray
+// has the number of its id; those of shadow rays and of cut rays follow behind. Only for kernels
+// with SPEC_PROBE.
 #ifndef BIND_PROBE_GLSL
 #define BIND_PROBE_GLSL
 
@@ -69,8 +70,8 @@ gpu_probe_ray with_hit(gpu_probe_ray from, Hit hit)
     return from;
 }
 
-// Ray `id` has been traced. `weight`: of it where it starts; `after`: what is left where it has come to;
-// `sky`: what it adds where it meets nothing.
+// Records that ray `id` has been traced. `weight`: its weight where it starts; `after`: what is
+// left of it at the hit; `sky`: the light that it adds where it hits nothing.
 void probe_traced(uint id, vec3 origin, vec3 dir, uvec2 skip, vec3 weight, vec3 after, vec3 sky,
                   uvec4 media, Hit hit)
 {
@@ -85,11 +86,12 @@ void probe_traced(uint id, vec3 origin, vec3 dir, uvec2 skip, vec3 weight, vec3 
     gpu_probe_ray ray = with_hit(
         make_probe_ray(kind, end, parent, origin, dir, FLOAT_LARGEST, weight, skip, id), hit);
     ray.medium = SPEC_MEDIA != 0u ? media_top(media) : 0u;
-    ray.added = hit.primitive != HIT_NONE ? after : sky; // of a hit until it is known
+    ray.added = hit.primitive != HIT_NONE ? after : sky; // for a hit: its weight, until its light
+                                                         // is known
     probe_rays[id] = ray;
 }
 
-// Ray `sent` was called for by ray `id`.
+// Records that ray `id` called for ray `sent`.
 void probe_sent(uint id, uint sent, uint kind)
 {
     if (!is_recorded(sent))
@@ -118,14 +120,15 @@ void probe_shadow_ray(uint id, uint light_sample, vec3 origin, vec3 dir, float d
                       Hit blocker, vec3 share)
 {
     uint end = blocker.primitive != HIT_NONE ? PROBE_BLOCKED : PROBE_REACHED;
-    vec3 weight = is_recorded(id) ? probe_rays[id].added : vec3(0.0); // of its surface
+    vec3 weight = is_recorded(id) ? probe_rays[id].added : vec3(0.0); // of its surface's light
     gpu_probe_ray ray = with_hit(
         make_probe_ray(RAY_SHADOW, end, id, origin, dir, distance, weight, skip, light_sample), blocker);
     ray.added = share;
     probe_other(ray);
 }
 
-// What ray `id` adds by itself; of a shadow catcher the share of what lies behind it that it shows.
+// Records the light that ray `id` adds by itself; for a shadow catcher the share of what lies
+// behind it that it shows.
 void probe_added(uint id, vec3 added, bool catcher)
 {
     if (!is_recorded(id))

@@ -1,5 +1,5 @@
-// What one stage of a picture leaves to the next: rays, hits, sums (abi/queues.h). Written through storage
-// buffers, read in later dispatches through texel buffers where SPEC_LOAD_PATH says so.
+// The queues between the stages of a picture: rays, hits, sums (abi/queues.h). Stages write them as
+// storage buffers; later dispatches read them as texel buffers where SPEC_LOAD_PATH says so.
 #ifndef BIND_QUEUES_GLSL
 #define BIND_QUEUES_GLSL
 
@@ -23,38 +23,42 @@ layout(set = 0, binding = BIND_HIT_TEXELS) uniform usamplerBuffer hit_texels;
 layout(set = 0, binding = BIND_SUM_TEXELS) uniform usamplerBuffer sum_texels;
 layout(set = 0, binding = BIND_SUMS, std430) buffer SumBuffer
 {
-    vec4 sums[]; // radiance that a ray brings, weighted; SUM_*
+    vec4 sums[]; // of each ray: the weighted radiance that it brings; in w SUM_*
 };
 layout(set = 0, binding = BIND_SUMS, std430) buffer WideSumBuffer { u64vec2 wide_sums[]; };
 layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit_list[]; };
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
 layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
 {
-    vec2 cut_sums[]; // of a pixel: weights that are not traced of all samples so far
+    vec2 cut_sums[]; // of each pixel: weights of cut rays, for --depth and --bailout, over all
+                     // samples so far
 };
 layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
 {
-    uint cuts[]; // of a slot: weights that are not traced for --depth, and for --bailout, in CUT_PARTS
+    uint cuts[]; // two for each slot: weights of rays cut by --depth and by --bailout, in 1 /
+                 // CUT_PARTS
 };
 layout(set = 0, binding = BIND_AOVS, std430) buffer AovBuffer
 {
-    vec4 aovs[]; // SPEC_AOVS of each slot, of the sample in hand; behind all slots those of each pixel, of all so far
+    vec4 aovs[]; // SPEC_AOVS for each slot, of the current sample; behind all slots SPEC_AOVS for
+                 // each pixel, of all samples so far
 };
 layout(set = 0, binding = BIND_SHAPE_SHADOWS, std430) buffer ShapeShadowBuffer { uint shape_shadows[]; };
 layout(set = 0, binding = BIND_RAY_KINDS, std430) buffer RayKindBuffer
 {
-    uint ray_kinds[]; // RAY_* in the low bits, with SPEC_COUNT or SPEC_PROBE, under ray.way
+    uint ray_kinds[]; // RAY_* in the low bits (with SPEC_COUNT or SPEC_PROBE), ray.way above
 };
 
 // Whether rays have a word in ray_kinds.
 const bool HAS_KINDS = SPEC_COUNT != 0u || SPEC_PROBE != 0u || SPEC_MINIFICATION != 0u;
 const uint KIND_BITS = 3u;
 
-// Whether surfaces call for rays, be they traced or not.
+// Whether surfaces call for rays, traced or not.
 const bool CALLS_RAYS = SPEC_REFLECTION != 0u || SPEC_REFRACTION != 0u || SPEC_CUTOUTS != 0u ||
                         SPEC_CATCHERS != 0u;
 
-// Cut weights are added up as integers, in 1 / CUT_PARTS, so that their sum does not depend on the order.
+// Weights of cut rays are summed as integers, in units of 1 / CUT_PARTS, so that the order of
+// summation does not matter.
 const float CUT_PARTS = 16777216.0;
 
 uvec4 fetch_ray_row(uint row)
@@ -78,7 +82,8 @@ vec4 fetch_sum(uint id)
     return sums[id];
 }
 
-// Ids of the refracted, the straight and the reflected ray that sums[].w tells of, or HIT_NONE.
+// Ids of the refracted, the straight and the reflected ray that sums[].w names; HIT_NONE where
+// there is none.
 uvec3 child_ids(uint has)
 {
     bvec3 some = notEqual(uvec3(has) & uvec3(SUM_REFRACTED, SUM_STRAIGHT, SUM_REFLECTED), uvec3(0u));
@@ -86,14 +91,14 @@ uvec3 child_ids(uint has)
     return mix(uvec3(HIT_NONE), (has & SUM_ID_MASK) + place, some);
 }
 
-// Rows that a hit has. The second one holds its instance, which records of a flat tree name themselves,
-// and at NUMERICS_EXACT the bounds of its key.
+// Number of rows of a hit. The second row holds the instance, which a record of a flat tree names
+// itself, and at NUMERICS_EXACT the bounds of the hit's key.
 const uint HIT_ROWS = SPEC_NUMERICS == NUMERICS_EXACT || SPEC_FLAT == 0u ? 2u : 1u;
 
-// Instance and primitive of a record; `instance`: where SPEC_INSTANCED.
+// Instance and primitive of a record. `instance`: the hit's, used with SPEC_INSTANCED.
 uvec2 fetch_record_ids(uint record, uint instance)
 {
-    bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && record == HIT_SHAPE; // it is in no tree
+    bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && record == HIT_SHAPE; // the shape has no record
     uint row = (on_shape ? 0u : record) * TRIANGLE_ROWS;
     if (SPEC_FLAT != 0u)
         instance = fetch_triangle_row(row + 1u).w >> TRIANGLE_INSTANCE_SHIFT;
@@ -108,7 +113,8 @@ uint word_of_row(uvec4 row, uint item)
     return (item & 1u) != 0u ? pair.y : pair.x;
 }
 
-// Whether a queue of the tile is full: then nothing more is made of it, and it is drawn in smaller ones.
+// Whether a queue of the tile is full: then the rest of its work is skipped, and the tile is drawn
+// again in smaller ones.
 bool is_queue_full()
 {
     return (status_word & STATUS_QUEUE_FULL) != 0u;
@@ -125,14 +131,15 @@ uint camera_ray_count()
     return SPEC_LISTED != 0u && chunk.listed != 0u ? chunk.listed : chunk.block_count * BLOCK_PIXELS;
 }
 
-// The first id of the back segment; those of the front segment are below. Camera rays are all in front.
+// The first id of the back segment; ids of the front segment are below it. Camera rays are all in
+// front.
 uint middle_id()
 {
     return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + chunk.block_count * BLOCK_PIXELS) / 2u
                                : chunk.ray_capacity;
 }
 
-// `firsts` of a generation.
+// `firsts` of a generation: x and y alone.
 uvec2 fetch_firsts(uint generation)
 {
     if (SPEC_LOAD_PATH == LOAD_TEXEL) {
@@ -148,14 +155,14 @@ uint generation_capacity()
     return chunk.ray_capacity / 4u;
 }
 
-// Where a ray of a generation is in the buffer of rays. Only the stages of its own generation read a ray,
-// so even generations share one half of the buffer and odd ones the other: a small buffer stays in caches.
+// The place of a ray in the buffer of rays. Only stages of its own generation read a ray, so even
+// generations share one half of the buffer and odd ones the other: a small buffer stays in caches.
 uint ray_place(uint id, uint generation)
 {
     uvec2 firsts = fetch_firsts(generation);
     bool back = SPEC_SEGMENTS == 2u && id >= middle_id();
     uint at = back ? generation_capacity() - (chunk.ray_capacity - firsts.y - id) : id - firsts.x;
-    // An invocation without a ray asks for id 0, which is of another generation.
+    // An invocation without a ray asks for id 0, which may belong to another generation.
     return min(at, generation_capacity() - 1u) + (generation & 1u) * generation_capacity();
 }
 
@@ -180,7 +187,7 @@ Ray queued_ray(uint id, out uint slot)
     return ray;
 }
 
-// Whether the dispatch is that of camera rays.
+// Whether the dispatch works on camera rays.
 bool is_primary()
 {
     return SPEC_GENERATIONS == 1u || (SPEC_GENERATIONS == 3u && chunk.generation == 0u);
@@ -258,7 +265,7 @@ uvec2 fetch_hit_ids(uint id, uint record)
     return fetch_record_ids(record, instance);
 }
 
-// Puts a user's shape in the place of what a ray has met. `square`: of the normal, by square_from_dir().
+// Makes a user's shape the hit of a ray. `square`: its normal, by square_from_dir().
 void put_shape_in(inout Hit hit, float t, vec2 square)
 {
     hit.t = hit.lo = hit.hi = t;
@@ -270,13 +277,14 @@ void put_shape_in(inout Hit hit, float t, vec2 square)
     hit.glass = (frame.shape_material & SHAPE_IS_GLASS) != 0u;
 }
 
-// Until a ray has been through the trees, its hit is where it meets a user's shape.
+// Stores the ray's hit with the user's shape. closest.comp reads it and stores the closer of this
+// and the hit in the trees.
 void store_shape(uint id, Hit hit)
 {
     store_hit_row(id * HIT_ROWS, uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), hit.triangle));
 }
 
-// Keeps the shape where the ray meets that before what it has met in the trees.
+// Makes the stored hit with the shape the ray's hit where it is closer than the one in the trees.
 void add_stored_shape(uint id, inout Hit hit)
 {
     uvec4 row = fetch_hit_row(id * HIT_ROWS);
@@ -285,8 +293,8 @@ void add_stored_shape(uint id, inout Hit hit)
         put_shape_in(hit, t, uintBitsToFloat(row.yz));
 }
 
-// Bit `point` of two words: a user's shape is in the way of that point of the light in hand. `place`: in the
-// list of hits that the light may reach.
+// Two words for each item of the light's list, at `place`: bit `point` is set where the user's
+// shape blocks that point of the light.
 void store_shape_shadows(uint place, uint word, uint bits)
 {
     shape_shadows[place * 2u + word] = bits;
@@ -316,7 +324,7 @@ Hit fetch_hit(uint id)
     return hit;
 }
 
-// Items of a list in front and at the back.
+// Numbers of items of a list in its front and back segments.
 uvec2 fetch_counts(uint generation, uint list)
 {
     if (SPEC_LOAD_PATH == LOAD_TEXEL) {
@@ -327,7 +335,7 @@ uvec2 fetch_counts(uint generation, uint list)
     return uvec2(items.front, items.back);
 }
 
-// Whether the generation behind the last one that was traced has no rays.
+// Whether the last generation that was traced called for no more rays.
 bool is_tile_done()
 {
     if (chunk.light == GENERATION_NONE)
@@ -336,21 +344,22 @@ bool is_tile_done()
     return left.x + left.y == 0u;
 }
 
-// Items of the lists of hits of the generation. Those of camera rays have no more room than they need: later
-// generations list theirs behind them.
+// The room of the generation's lists of hits. Camera rays get no more than they need: later
+// generations list their hits behind.
 uint hit_capacity()
 {
     return is_primary() ? camera_ray_count() : chunk.ray_capacity;
 }
 
-// The place of an item of the dispatch's generation among those of all generations of the tile.
+// The place of an item of the dispatch's generation among those of all generations of the tile,
+// which is the ray's id.
 uint place_in_tile(uint item)
 {
     uvec2 firsts = fetch_firsts(chunk.generation);
     return SPEC_SEGMENTS == 2u && item >= middle_id() ? item - firsts.y : item + firsts.x;
 }
 
-// The id of a ray with a hit, of the material class that the dispatch works on.
+// The id of the ray at `item` of the list of hits of the dispatch's material class.
 uint fetch_listed_hit(uint item)
 {
     uint at = (chunk.list - LIST_HITS) * chunk.ray_capacity + place_in_tile(item);
@@ -360,11 +369,12 @@ uint fetch_listed_hit(uint item)
 
 const uint ITEM_NONE = 0xffffffffu;
 
-// Which segment the invocation takes its items from, and appends to.
+// Whether the invocation takes its items from back segments, and appends to them.
 bool is_back = false;
 
-// The item at `place` of the workgroup's, each of which has `each`, in the list that the dispatch works on: where it
-// is in front, or beyond `capacity` - 1 back from the end.
+// The item at `place` among the `each` items of the workgroup, in the list that the dispatch works
+// on: its place in the front segment or, in the back segment, counted down from `capacity` - 1.
+// ITEM_NONE: there is none.
 uint listed_item(uint place, uint each, uint capacity)
 {
     uint group = gl_WorkGroupID.x;
@@ -377,14 +387,14 @@ uint listed_item(uint place, uint each, uint capacity)
     return is_back ? capacity - 1u - at : at;
 }
 
-// The invocation's item `r` of that list.
+// The invocation's item `r` of the dispatch's list.
 uint invocation_item(uint r, uint capacity)
 {
     return listed_item(lane_place(r), SPEC_GROUP_SIZE * SPEC_PACKET_RAYS, capacity);
 }
 
-// The invocation's item of the list of deferred items. `is_back` is right where items are ids of rays; kernels
-// with other items, such as shadow.comp, append nothing and do not read it.
+// The invocation's item of the deferred list. is_back is right only where items are ids of rays;
+// kernels with other items, such as shadow.comp, append nothing and do not read it.
 uint deferred_item(uint r)
 {
     uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
@@ -402,7 +412,8 @@ uint camera_item(uint r)
     return !is_queue_full() && at < camera_ray_count() ? at : ITEM_NONE;
 }
 
-// The id of a ray of the generation, of a dispatch over all of them; ITEM_NONE: there is none.
+// The id of ray `r` of the invocation, in a dispatch over all rays of the generation; ITEM_NONE:
+// there is none.
 uint traced_item(uint r)
 {
     if (is_primary())
@@ -411,8 +422,8 @@ uint traced_item(uint r)
     return item == ITEM_NONE ? ITEM_NONE : place_in_tile(item);
 }
 
-// The sum of `wanted` over the invocations of the subgroup before this one; `all`: over all of them. All
-// invocations must be here.
+// The sum of `wanted` over the subgroup's invocations before this one; `all`: over all of them. All
+// invocations must take part.
 uint count_before(uint wanted, out uint all)
 {
     uint sum = wanted;
@@ -437,8 +448,8 @@ uint from_first(uint value)
     return SPEC_EIGHT_LANES != 0u ? subgroupShuffle(value, 0u) : subgroupBroadcastFirst(value);
 }
 
-// Reserves room for `all` items of the subgroup in a segment of a list: the place of the first. `back` is
-// the same for all its invocations.
+// Reserves room for `all` items of the subgroup in a segment of a list; returns the place of the
+// first. `back` must be the same in all its invocations.
 uint extend_segment(uint generation, uint list, uint all, uint each, bool back)
 {
     uint at = 0u;
@@ -458,8 +469,8 @@ uint append_segment(uint generation, uint list, uint wanted, uint each, bool bac
     return extend_segment(generation, list, all, each, back) + before;
 }
 
-// Reserves room for `wanted` items of the invocation in a list of a generation: the place of the first in its
-// segment. `each`: how many items a workgroup that works on the list takes.
+// Reserves room for `wanted` items of the invocation in a list of a generation; returns the place
+// of the first in its segment. `each`: how many items a workgroup over that list takes.
 uint append_items(uint generation, uint list, uint wanted, uint each)
 {
     if (SPEC_SEGMENTS == 2u && SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u) {
@@ -471,13 +482,15 @@ uint append_items(uint generation, uint list, uint wanted, uint each)
     return append_segment(generation, list, wanted, each, is_back);
 }
 
-// The place in a list of `capacity` items of item `at` of the invocation's segment.
+// The place in a list of `capacity` items of item `at` of the invocation's segment: back segments
+// run downwards.
 uint item_place(uint at, uint capacity)
 {
     return is_back ? capacity - 1u - at : at;
 }
 
-// Lists the hits of the invocation's rays, class by class; in each list a subgroup's rays `r` follow `r` - 1.
+// Lists the hits of the invocation's rays, class by class. In each list the subgroup's rays `r`
+// come behind its rays `r` - 1.
 void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint ids[SPEC_PACKET_RAYS])
 {
     uint before[SPEC_PACKET_RAYS];
@@ -500,7 +513,8 @@ void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint
     }
 }
 
-// Ids of `wanted` rays of the next generation, one after the other; HIT_NONE where there is no room.
+// Reserves `wanted` consecutive ids of the next generation; returns the first, or HIT_NONE where
+// there is no room.
 uint reserve_rays(uint wanted, inout uint status)
 {
     uint next = chunk.generation + 1u;
@@ -518,7 +532,7 @@ uint reserve_rays(uint wanted, inout uint status)
     return is_back ? chunk.ray_capacity - at - wanted : at;
 }
 
-// The maximum over the invocations of the subgroup, all of which must be here.
+// The maximum over the subgroup's invocations, all of which must take part.
 uint max_of_lanes(uint value)
 {
     if (SPEC_EIGHT_LANES == 0u)
@@ -528,14 +542,15 @@ uint max_of_lanes(uint value)
     return max(value, subgroupShuffleXor(value, 4u));
 }
 
-// Few files trace: of others `rays` is known to be 0, and nothing of this is in the kernel.
+// Counts rays that a user's functions traced. In files that trace none, compilers know `rays` to be
+// 0 and drop this.
 void tally_traced(uint rays)
 {
     if (rays != 0u)
         atomicAdd(tally.by_functions, rays);
 }
 
-// The sum over the subgroup, for the tally. `value` may hold two counters whose sums are below 2^16.
+// The sum over the subgroup. `value` may hold two counters of 16 bits whose sums stay below 2^16.
 uint add_up_lanes(uint value)
 {
     if (SPEC_EIGHT_LANES == 0u)

@@ -7,15 +7,16 @@
 struct Ray {
     vec3 origin, dir, weight;
     uvec4 media; // struct gpu_media
-    uint steps;  // ray_bounces() and, below them, surfaces that were passed unseen
+    uint steps;  // ray_bounces(), and in the low bits the number of surfaces passed unseen
     uint skip_primitive, skip_instance;
-    uint skip_record; // of that primitive, where it is to be queued
+    uint skip_record; // record of that primitive; set where the ray is to be queued
     uint kind; // RAY_*; with SPEC_COUNT or SPEC_PROBE
-    float way; // from the eye to its origin along the rays before it; with SPEC_MINIFICATION
+    float way; // distance from the eye to its origin along the rays before it; with
+               // SPEC_MINIFICATION
 };
 
-// Where a ray passes more surfaces unseen than the steps of one bounce, it counts as one: so every
-// ray tree ends.
+// Steps that count as one bounce. So a ray that passes that many surfaces unseen has made a bounce,
+// and every ray tree ends.
 const uint STEPS_OF_BOUNCE = 1u << STATE_BOUNCES_SHIFT;
 
 uint ray_bounces(uint steps)

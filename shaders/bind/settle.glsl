@@ -1,12 +1,13 @@
-// NUMERICS_EXACT: settles by integer arithmetic (lib/exact.glsl) what floats do not decide about a record.
-// twin/traverse.c is this in C.
+// NUMERICS_EXACT: decides by integer arithmetic (lib/exact.glsl) what floats leave undecided about
+// a record. twin/traverse.c is this in C.
 #ifndef BIND_SETTLE_GLSL
 #define BIND_SETTLE_GLSL
 
 #include "primitive.glsl"
 
-// The exact hit of a record's triangle; with `hit` it is known to be met, and only the key is wanted.
-// Without SPEC_SETTLES there is no integer arithmetic: a ray that float-float leaves open is deferred.
+// The exact hit of a record's triangle. `hit`: it is known that it is hit, and only the key is
+// wanted. Without SPEC_SETTLES there is no integer arithmetic: a ray that float-float leaves
+// undecided is deferred.
 ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
     vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
@@ -32,7 +33,7 @@ struct Ends {
     bool only_far, self;
 };
 
-// The exact hit of a record's sphere, likewise.
+// The exact hit of a record's sphere; a ray may be deferred as above.
 ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
 {
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
@@ -76,7 +77,7 @@ ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends
     return m;
 }
 
-// Replaces the bounds of a candidate by what is exact.
+// Replaces the bounds of a candidate by the exact result.
 void settle_candidate(float t_min, ExactMeeting exact, inout Candidate m)
 {
     m.met = m.met && exact.met && exact.key >= t_min;
@@ -88,7 +89,8 @@ void settle_candidate(float t_min, ExactMeeting exact, inout Candidate m)
     m.hi = exact.key;
 }
 
-// Sets what shading and filters need besides of a hit triangle: `owned`, and in a flat tree `front`.
+// Sets the fields of a hit triangle that shading and filters also need: `owned`, and in a flat tree
+// `front`.
 void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Candidate m)
 {
     precise vec3 a = row_vec3(p.r0) - ray.origin;
@@ -113,9 +115,9 @@ void take_to_instance(uint instance, inout vec3 origin, inout vec3 dir)
     }
 }
 
-// NUMERICS_EXACT: computes the key of a candidate hit, and that of the hit so far where it takes both to tell
-// which comes first. `origin`, `dir`: the ray in world space. `at_exit`: whether the candidate is the far end
-// of a sphere, before and after.
+// NUMERICS_EXACT: computes the key of a candidate hit, and also that of the hit so far where only
+// both tell which comes first. `origin`, `dir`: the ray in world space. `at_exit`: in and out,
+// whether the candidate is the far end of a sphere.
 void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primitive p,
             inout bool at_exit, inout Candidate m, inout Hit hit)
 {
@@ -147,8 +149,8 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// NUMERICS_EXACT: sets the t of a hit to its key, and computes that where it is not known yet. Shading does
-// not call it: it needs less, and would pay for it on every ray.
+// NUMERICS_EXACT: sets the t of a hit to its key, which it computes where it is not known yet.
+// Shading does without it: it needs less, and would pay for it on every ray.
 void finish_hit(vec3 origin, vec3 dir, inout Hit hit)
 {
     bool loose = hit.lo < hit.hi;

@@ -8,16 +8,16 @@
 #include "../abi/spec.h"
 #include "../lib/load.glsl"
 
-// A storage buffer: lavapipe compiles the values of uniform buffers that branches read into the
-// kernel, along with push constants, and would compile anew for every dispatch.
+// A storage buffer, since lavapipe compiles values of uniform buffers that branches depend on into
+// the kernel, as it does with push constants, and would compile anew for every dispatch.
 layout(set = 0, binding = BIND_FRAME, std430) readonly buffer FrameBuffer
 {
     gpu_frame stored_frame;
     float stored_sliders[SLIDERS_MAX];
 };
 
-// Every kernel's first act is to take it from there: within branches and loops lavapipe loads what is the
-// same for all lanes lane by lane.
+// A copy that every kernel makes first (load_frame): within branches and loops lavapipe loads even
+// uniform values lane by lane.
 gpu_frame frame;
 
 void load_frame()
@@ -99,7 +99,7 @@ void fetch_uvs(uint shade_index, uint uv_set, out vec2 uv0, out vec2 uv1, out ve
     uv2 = uintBitsToFloat(r1.xy);
 }
 
-// Four words share a row.
+// One word of the texels; a row has four.
 uint fetch_texel_word(uint word)
 {
     uvec4 row = SPEC_LOAD_PATH == LOAD_TEXEL ? texelFetch(texel_texels, int(word >> 2))
@@ -108,7 +108,7 @@ uint fetch_texel_word(uint word)
     return (word & 1u) != 0u ? pair.y : pair.x;
 }
 
-// Linear: a table decodes sRGB exactly, where pow() would be off by tens of ulp.
+// A texel in linear colour. A table decodes sRGB exactly, where pow() would be off by tens of ulp.
 vec4 fetch_texel(uint word, bool srgb)
 {
     uint texel = fetch_texel_word(word);
@@ -121,7 +121,8 @@ vec4 fetch_texel(uint word, bool srgb)
     return linear;
 }
 
-// Whether there are textures that wrap so, and this is one. The only way that there is need not be asked for.
+// Whether this texture, of wrap mode `wrap`, wraps by mode `way`. A constant where all textures
+// have one mode.
 bool wraps(uint way, uint wrap)
 {
     const uint ways = SPEC_SAMPLING & (SAMPLING_REPEAT | SAMPLING_CLAMP | SAMPLING_MIRROR);
@@ -141,7 +142,7 @@ int wrap_texel(int at, int size, uint wrap)
     return clamp(chosen, 0, size - 1);
 }
 
-// Whole periods taken off first, so that far coordinates keep their fraction and cannot overflow
+// Takes off whole periods, so that coordinates far from 0 keep their fraction and cannot overflow
 // an int.
 float reduce_coordinate(float x, uint wrap)
 {
@@ -149,7 +150,7 @@ float reduce_coordinate(float x, uint wrap)
     return abs(reduced) <= 2.0 ? reduced : 0.0;
 }
 
-// Where `uv` of the use's set is in the picture, whose sides are 1: whole periods are taken off.
+// The place of `uv` in the texture's image, whose sides are 1: whole periods are taken off.
 vec2 place_in_picture(gpu_texture t, vec2 uv)
 {
     vec2 at = vec2(t.matrix.x * uv.x + t.matrix.y * uv.y, t.matrix.z * uv.x + t.matrix.w * uv.y) +
@@ -157,7 +158,8 @@ vec2 place_in_picture(gpu_texture t, vec2 uv)
     return vec2(reduce_coordinate(at.x, t.wrap & 3u), reduce_coordinate(at.y, (t.wrap >> 2) & 3u));
 }
 
-// Texture `t`, of so many texels from word `first` on, at a place in the picture.
+// Samples a level of texture `t`, which has `size` texels from word `first` on, at a place in its
+// image.
 vec4 sample_texels(gpu_texture t, uint first, ivec2 size, vec2 at)
 {
     uvec2 wrap = uvec2(t.wrap & 3u, (t.wrap >> 2) & 3u);
@@ -184,14 +186,15 @@ ivec2 texture_size(gpu_texture t)
     return ivec2(int(t.size & 0xffffu), int(t.size >> 16));
 }
 
-// At level 0.
+// Samples level 0 of a texture.
 vec4 sample_texture(gpu_texture t, vec2 uv)
 {
     return sample_texels(t, t.first, texture_size(t), place_in_picture(t, uv));
 }
 
-// The level whose texels are as large as `texels` of level 0: half their binary logarithm, by a table of
-// straight pieces, since drivers' own logarithms differ. mipmap_level of host/picture/mipmap.c.
+// The mipmap level whose texels cover `texels` of level 0: half the binary logarithm, by a table of
+// straight pieces, since drivers' own logarithms differ. It is mipmap_level of
+// host/picture/mipmap.c.
 float mip_level(float texels)
 {
     uint bits = floatBitsToUint(texels);
@@ -203,7 +206,7 @@ float mip_level(float texels)
     return texels > 1.0 ? 0.5 * exponent + (start + slope * along) : 0.0;
 }
 
-// Between the two levels that have about one texel where level 0 has so many.
+// Interpolates between the two levels whose texels cover about `texels` of level 0.
 vec4 sample_minified(gpu_texture t, vec2 uv, float texels)
 {
     ivec2 size = texture_size(t);
@@ -214,8 +217,8 @@ vec4 sample_minified(gpu_texture t, vec2 uv, float texels)
     uint table = t.first + uint(size.x * size.y) - 1u;
     vec4 color = vec4(0.0);
     bool more = true, second = false;
-    // A loop, so that lavapipe reads a second level only where some lane of a subgroup wants one. It goes on
-    // for the others too, whose values must not change then.
+    // A loop, so that lavapipe reads a second level only where some lane of a subgroup needs one.
+    // The other lanes run through it too, and must keep their values.
     do {
         uint first = k == 0u ? t.first : fetch_texel_word(table + k);
         vec4 texel = sample_texels(t, first, max(size >> int(k), ivec2(1)), at);

@@ -25,7 +25,7 @@ vec4 vertex_color(uint shade_index, float u, float v)
     vec4 first = vec4(unpackUnorm2x16(ab.x), unpackUnorm2x16(ab.y));
     vec4 second = vec4(unpackUnorm2x16(ab.z), unpackUnorm2x16(ab.w));
     vec4 third = vec4(unpackUnorm2x16(c.x), unpackUnorm2x16(c.y));
-    // By differences: three equal colours give just that colour.
+    // In differences, so that three equal colours give exactly that colour.
     return first + (second - first) * u + (third - first) * v;
 }
 
@@ -41,7 +41,7 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v)
     return opacity * vertex_color(index, u, v).a >= material.alpha_cutoff;
 }
 
-// Zero where the mesh is flat.
+// The interpolated vertex normal; zero where the mesh is flat.
 vec3 smooth_normal(uint shade_index, float u, float v)
 {
     uint row = frame.triangle_row + shade_index * TRIANGLE_SHADE_ROWS;
@@ -59,7 +59,8 @@ vec3 normalize_or(vec3 v, vec3 otherwise)
     return normalize(v / size);
 }
 
-// Point and error bound to world space; the bound covers the way back by the inverse too.
+// Transforms a point and its error bound to world space. The bound also covers a later transform
+// back by the inverse.
 void place_point(InstanceFrame inverse, vec3 f0, vec3 f1, vec3 f2, inout vec3 p, inout vec3 error)
 {
     vec3 turned = rotate_rows(f0, f1, f2, p);
@@ -73,7 +74,7 @@ void place_point(InstanceFrame inverse, vec3 f0, vec3 f1, vec3 f2, inout vec3 p,
             rounding_bound(2.0) * abs(p);
 }
 
-// By the inverse transpose.
+// Transforms a normal to world space, by the inverse transpose.
 vec3 place_normal(InstanceFrame inverse, vec3 n)
 {
     vec3 c0 = vec3(inverse.inverse0.x, inverse.inverse1.x, inverse.inverse2.x);
@@ -82,7 +83,7 @@ vec3 place_normal(InstanceFrame inverse, vec3 n)
     return rotate_rows(c0, c1, c2, n);
 }
 
-// In the space of the record; normals not of unit length.
+// Fills in the surface of a hit triangle, in the record's space; normals are not of unit length.
 void fetch_on_triangle(Hit hit, inout Surface s)
 {
     uint row = hit.triangle * TRIANGLE_ROWS;
@@ -103,12 +104,12 @@ void fetch_on_triangle(Hit hit, inout Surface s)
     s.ns = SPEC_SMOOTH_NORMALS != 0u ? smooth_normal(s.shade_index, s.u, s.v) : s.ng;
 }
 
-// The point is put on the sphere along its normal n, not where the ray's t says: p = c + r n. The
-// normal of a length that rounding left (three products and sums, of which the root halves the
-// error, then root and division: 13 roundings with Vulkan's precision for the last two) and the
-// product put p off by at most gamma(14) r |n|, the sum by one rounding of p.
-// u and v are texture coordinates, and the edges are the point's derivatives by them: rows of
-// texture coordinates of spheres are (0, 0), (1, 0), (0, 1).
+// Fills in the surface of a hit sphere. The point is put on the sphere along its normal n, not at
+// the ray's t: p = c + r n. The rounded length of n (three products and sums, whose error the root
+// halves, then root and division: 13 roundings with Vulkan's precision for the last two) and the
+// product put p off by at most gamma(14) r |n|, the sum by one rounding of p. u and v are texture
+// coordinates, and the edges are the derivatives of p by them: rows of texture coordinates of
+// spheres are (0, 0), (1, 0), (0, 1).
 void fetch_on_sphere(Hit hit, inout Surface s)
 {
     const float pi = 3.14159265;
@@ -137,10 +138,11 @@ bool is_on_sphere(Hit hit)
            (fetch_triangle_row(hit.triangle * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u;
 }
 
-// The ray of the hit that fetch_surface() is called for: what a user's shape, which is in no tree, is met by.
+// The ray of the hit that fetch_surface() is called for: needed where it hit a user's shape, which
+// has no record.
 vec3 met_origin, met_dir;
 
-// Puts the surface where a user's shape is met; `square`: of the normal, by square_from_dir().
+// Sets the surface of a hit on a user's shape at `t`; `square`: its normal, by square_from_dir().
 void put_on_shape(float t, vec2 square, inout Surface s)
 {
     s.p = met_origin + met_dir * t;
@@ -155,7 +157,7 @@ void put_on_shape(float t, vec2 square, inout Surface s)
     s.color_alpha = 1.0;
     s.shade_index = 0u;
     s.instance = HIT_SHAPE;
-    s.on_sphere = true; // nothing of a mesh's vertices counts
+    s.on_sphere = true; // as on spheres, no vertices count
     s.material = frame.shape_material & ~SHAPE_IS_GLASS;
     s.u = 0.0;
     s.v = 0.0;
@@ -166,7 +168,7 @@ Surface fetch_surface(Hit hit)
     Surface s;
     Hit own = hit;
     bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && hit.triangle == HIT_SHAPE;
-    if (on_shape) // what is fetched below is any primitive's
+    if (on_shape) // what is fetched below is not used; any primitive will do
         hit.triangle = hit.instance = hit.primitive = 0u;
     uint row = hit.triangle * TRIANGLE_ROWS;
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
@@ -175,7 +177,7 @@ Surface fetch_surface(Hit hit)
     s.material = fetch_material_index(s.shade_index);
     if (SPEC_SPHERES != SPHERES_ONLY)
         fetch_on_triangle(hit, s);
-    if (SPEC_SPHERES == SPHERES_ONLY || is_on_sphere(hit)) // constant where there are none
+    if (SPEC_SPHERES == SPHERES_ONLY || is_on_sphere(hit)) // a constant where there are no spheres
         fetch_on_sphere(hit, s);
     vec3 ng = s.ng, ns = s.ns;
     if (SPEC_INSTANCED != 0u) {
@@ -192,7 +194,7 @@ Surface fetch_surface(Hit hit)
             s.e2 = rotate_rows(f0, f1, f2, s.e2);
         }
     }
-    // Vertices are in world space already; normals of vertices are not.
+    // Vertices of a flat tree are in world space; vertex normals are in object space.
     if (SPEC_FLAT != 0u) {
         bool mirrored = (fetch_triangle_row(row + 1u).w & TRIANGLE_MIRRORED) != 0u;
         ng = mirrored ? -ng : ng;
@@ -209,8 +211,8 @@ Surface fetch_surface(Hit hit)
     return s;
 }
 
-// Texture `t` at `uv` of its set, as large as the footprint is there: the mean of the squares of its two axes,
-// in texels.
+// Samples texture `t` at `uv`, at the level of the footprint there: the mean of the squares of its
+// two axes, in texels.
 vec4 sample_footprint(Surface s, gpu_texture t, vec2 uv)
 {
     if (SPEC_MINIFICATION == 0u)
@@ -231,15 +233,15 @@ vec4 sample_use(Surface s, uint use)
     return sample_footprint(s, t, interpolate_uv(s.shade_index, t.uv_set, s.u, s.v));
 }
 
-// Gives the opacity of a surface whose material blends.
+// The opacity of a surface whose material blends.
 float sample_cover(Surface s, gpu_material material)
 {
     vec4 texel = sample_use(s, material.tex_opacity);
     return opacity_of(material, texel);
 }
 
-// Directions in which u and v of a texture's picture grow, in world space, not unit; zero where the
-// texture is a point or a line on the triangle.
+// The directions in which u and v of a texture's image grow, in world space, not unit; zero where
+// the texture is a point or a line on the triangle.
 void texture_frame(Surface s, gpu_texture t, out vec3 tangent, out vec3 bitangent)
 {
     vec2 uv0, uv1, uv2;
@@ -254,10 +256,11 @@ void texture_frame(Surface s, gpu_texture t, out vec3 tangent, out vec3 bitangen
     bitangent = (s.e2 * d1.x - s.e1 * d2.x) * inv;
 }
 
-// Sets s.footprint for a ray along `dir` that is `area` across where it meets the surface. A ray beside it,
-// moved by `a`, meets the plane of e1 and e2 at dot(along1, a) e1 + dot(along2, a) e2 from there; a texture that
-// moves by d1 and d2 along these edges is moved by J a then, and half the trace of J transposed J is the mean
-// of the squares of the ellipse's axes: the sum of the three parts times d1 d1, d1 d2 and d2 d2.
+// Sets s.footprint for a ray along `dir` with the cross section `area` where it hits the surface. A
+// parallel ray at offset `a` hits the plane of e1 and e2 at dot(along1, a) e1 + dot(along2, a) e2
+// from there. A texture that moves by d1 and d2 along these edges then moves by J a, and half the
+// trace of J transposed J is the mean of the squares of the ellipse's axes: the sum of the three
+// parts times d1 d1, d1 d2 and d2 d2.
 void take_footprint(inout Surface s, vec3 dir, float area)
 {
     vec3 along1 = cross(s.e2, dir), along2 = cross(dir, s.e1);
@@ -266,7 +269,7 @@ void take_footprint(inout Surface s, vec3 dir, float area)
     s.footprint = parts * (0.5 * area / (seen * seen));
 }
 
-// Bends s.ns by a tangent-space map or by the slope of a height map.
+// Bends s.ns by a normal map in tangent space, or by the slope of a height map.
 void bend_normal(inout Surface s, gpu_material material)
 {
     bool is_map = material.tex_normal != TEXTURE_NONE;
@@ -286,7 +289,7 @@ void bend_normal(inout Surface s, gpu_material material)
         map.xy *= material.normal_scale;
         bent = t * map.x - b * map.y + s.ns * map.z;
     } else {
-        // One texel on, in the picture's own directions.
+        // The heights one texel further, along the image's own axes.
         vec2 size = vec2(float(picture.size & 0xffffu), float(picture.size >> 16));
         gpu_texture right = picture, below = picture;
         right.offset.x += 1.0 / size.x;

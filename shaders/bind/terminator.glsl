@@ -1,12 +1,12 @@
-// Where shadow rays start on smooth meshes of few triangles, which would shade themselves along the
-// edges of their triangles.
+// Moves the start of shadow rays on smooth meshes of few triangles, which would otherwise shade
+// themselves along the edges of their triangles (the shadow terminator).
 #ifndef BIND_TERMINATOR_GLSL
 #define BIND_TERMINATOR_GLSL
 
 #include "surface.glsl"
 
-// Cosine to the triangle's normal from which a vertex normal is that of a smooth surface. A box whose
-// normals are averaged at its corners is none: there the surface would be far outside.
+// The least cosine between a vertex normal and the triangle's normal on a smooth surface. A box
+// with normals averaged at its corners is not smooth: the smooth surface would be far outside it.
 const float SMOOTH_COSINE = 0.70710678;
 
 vec3 vertex_normal(Surface s, uint corner)
@@ -18,8 +18,8 @@ vec3 vertex_normal(Surface s, uint corner)
     return normalize_or(n, vec3(0.0));
 }
 
-// How far a point, `from` away from a vertex, is below the tangent plane there, along the plane's
-// normal on the side of ng. `slack`: what rounding may do to flat meshes.
+// How far a point at `from` relative to a vertex is below the tangent plane there, as a vector
+// along the plane's normal on the side of ng. `slack`: what rounding may do to flat meshes.
 vec3 lift_to_plane(vec3 from, vec3 n, vec3 ng, float slack, inout bool smooth_mesh)
 {
     float cosine = dot(n, ng);
@@ -28,10 +28,10 @@ vec3 lift_to_plane(vec3 from, vec3 n, vec3 ng, float slack, inout bool smooth_me
     return n * max(-dot(from, n) - slack, 0.0);
 }
 
-// From the hit point to the smooth surface, outwards only: to the mean of its projections on the
-// tangent planes at the vertices (Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II,
-// chapter 4). Zero on flat meshes, on hollow sides and on spheres. `s` faces the ray; where media
-// touch it may be another surface than the one that was hit first.
+// The vector from the hit point to the smooth surface, outwards only: to the mean of the point's
+// projections on the tangent planes at the vertices (Hanika 2021, "Hacking the Shadow Terminator",
+// Ray Tracing Gems II, chapter 4). Zero on flat meshes, on concave sides and on spheres. `s` faces
+// the ray; where media touch it may be another surface than the one that was hit first.
 vec3 smooth_lift(Surface s)
 {
     if (SPEC_TERMINATOR == 0u || SPEC_SMOOTH_NORMALS == 0u || SPEC_SPHERES == SPHERES_ONLY)

@@ -1,7 +1,6 @@
-// Stackful traversal: the one traversal source for every order of children (SPEC_ORDER). Two loops
-// side by side, one over nodes and one over records, both do-while: on lavapipe an `if` costs both
-// its sides and only the end of a loop branches (docs/performance.md). twin/traverse.c is this file
-// in C.
+// Traversal with a stack, for every order of children (SPEC_ORDER). It has two nested do-while
+// loops, over nodes and over records: on lavapipe an `if` costs both its sides, and only the end of
+// a loop branches (docs/performance.md). twin/traverse.c is this file in C.
 #ifndef BIND_TRAVERSE_GLSL
 #define BIND_TRAVERSE_GLSL
 
@@ -19,7 +18,7 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own);
 
-// Whether a hit comes behind the one that is known; at NUMERICS_EXACT it goes by keys.
+// Whether a hit comes behind the known one (TRAVERSE_NEXT); at NUMERICS_EXACT keys are compared.
 bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint known_primitive)
 {
     return t > hit_before ||
@@ -27,8 +26,8 @@ bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint
                                                               primitive > known_primitive)));
 }
 
-// The bitwise or over the 8 lanes of a packet, which all must be here. Shuffles are single instructions on
-// lavapipe, ballots and the like loops over lanes.
+// The bitwise or over the 8 lanes of a packet, all of which must take part. On lavapipe shuffles
+// are single instructions, while ballots and the like are loops over lanes.
 uint gather_lanes(uint bits)
 {
     bits |= subgroupShuffleXor(bits, 1u);
@@ -50,14 +49,14 @@ float farthest(Hit hit)
     return SPEC_NUMERICS == NUMERICS_EXACT ? hit.hi : hit.t;
 }
 
-// The node stack. In memory alone (SPEC_SHORT_STACK 0) it is node_stack[base..in_memory). Short, its
-// top entries are the registers, and only the outer loop of walk_mesh moves entries between
-// them and memory: on lavapipe a store to a private array costs as much as half a box test, even
-// where nothing is stored, while registers cost a few selects.
+// The node stack. With SPEC_SHORT_STACK 0 it is node_stack[base..in_memory). A short stack has its
+// top entries in registers, and only the outer loop of walk_mesh moves entries between them and
+// memory: on lavapipe a store to a private array costs as much as half a box test, even where
+// nothing is stored, while registers cost a few selects.
 uint node_stack[SPEC_STACK_SIZE];
 
-// What the last traverse() cost; with SPEC_COUNT only, and then without a short stack, so that all
-// refs are in node_stack. node_levels goes with it: how deep in the tree each entry is.
+// Counters of the last traverse(); with SPEC_COUNT only, and then without a short stack, so that
+// all refs are in node_stack. node_levels has the level in the tree of each of its entries.
 gpu_cost traversal_cost;
 uint node_levels[SPEC_STACK_SIZE];
 
@@ -65,11 +64,12 @@ const uint STACK_REGISTERS = 6u;
 
 struct NodeStack {
     uint base, in_memory, in_registers;
-    uint level; // of the ref in hand; with SPEC_COUNT
+    uint level; // of the current ref; with SPEC_COUNT
     uint r0, r1, r2, r3, r4, r5; // r0: top
 };
 
-// What pop_ref gives when the registers are empty and memory is not: refill_stack answers it.
+// pop_ref returns this when the registers are empty but memory is not; refill_stack then fetches
+// the ref.
 const uint REF_PENDING = 0xfffffffeu;
 
 NodeStack make_stack(uint base, uint level)
@@ -153,7 +153,7 @@ bool has_room(NodeStack stack)
     return SPEC_SHORT_STACK == 0u || stack.in_registers < STACK_REGISTERS;
 }
 
-// Makes room in full registers, and answers a pending pop.
+// Makes room in full registers, and completes a pop that gave REF_PENDING.
 uint refill_stack(uint ref, inout NodeStack stack, inout uint status)
 {
     if (SPEC_SHORT_STACK == 0u)
@@ -167,12 +167,14 @@ uint refill_stack(uint ref, inout NodeStack stack, inout uint status)
     return ref;
 }
 
-// Extra room for boxes whose rays are transformed below: float error of the transform, relative to
-// t. 1.0 in mesh trees, whose boxes and triangles are tested with one and the same ray, unless the t
-// that boxes are held against is exact and they are not.
+// Scales the near t of boxes in the tree over instances, whose rays are transformed below: room for
+// the float error of the transform, relative to t. Mesh trees use 1.0: their boxes and triangles
+// are tested with the same ray, unless the t that boxes are compared with is exact and they are
+// not.
 const float SLAB_NEAR_SCALE = 1.0 - 1.0 / 524288.0;
 
-// Whether the ray comes to the second node of a pair first, by `bits` of the first node's count.
+// Whether the ray reaches the second node of a pair first, by the axis `bits` in the first node's
+// count.
 bool second_first(RaySetup ray, uint bits)
 {
     uint axis = (bits >> BVH_AXIS_SHIFT) & BVH_AXIS_MASK;
@@ -180,8 +182,8 @@ bool second_first(RaySetup ray, uint bits)
     return down != ((bits & BVH_SECOND_LOW) != 0u);
 }
 
-// One step down: both children of `pair` are tested, the first to visit is returned, the other
-// pushed. With SPEC_CLIPPED boxes of mesh trees are wider by the ray's margin.
+// One step down: tests both nodes of `pair`, returns the one to visit first, and pushes the other.
+// With SPEC_CLIPPED boxes of mesh trees are widened by the ray's margin.
 uint step_siblings(RaySetup ray, float t_min, float near_scale, uint pair, inout NodeStack stack,
                inout Hit hit)
 {
@@ -227,7 +229,8 @@ bool has_integers()
     return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u;
 }
 
-// Filters that need not be looked at: what they add is told by the record, or by it and the distance.
+// Whether filters can be added without a closer look: their depth follows from the record, or from
+// it and the distance.
 bool filters_in_passing()
 {
     return SPEC_FILTER_DETAIL != FILTERS_PATTERNED && SPEC_CUTOUTS == 0u && !has_integers();
@@ -238,15 +241,15 @@ bool looks_at_filters(const uint mode)
     return mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && !filters_in_passing();
 }
 
-// Whether rays may go on through a sphere's near end where nothing is marked at it.
+// Whether rays may pass through the near end of a sphere that has no flag for it.
 bool goes_through(const uint mode)
 {
     return SPEC_CUTOUTS != 0u || looks_at_filters(mode) ||
            mode == TRAVERSE_NEXT || (mode == TRAVERSE_CLOSEST && SPEC_CULLING != 0u);
 }
 
-// Whether a candidate is met, and nearer than the hit so far or as near with smaller ids. At NUMERICS_EXACT:
-// whether it may be, unless both keys are known.
+// Whether a candidate is hit, and nearer than the hit so far, or as near with smaller ids. At
+// NUMERICS_EXACT: whether that is possible, unless both keys are known.
 bool is_nearer(Candidate m, uint instance, uint primitive, Hit hit)
 {
     float t = SPEC_NUMERICS == NUMERICS_EXACT ? m.lo : m.t;
@@ -255,7 +258,8 @@ bool is_nearer(Candidate m, uint instance, uint primitive, Hit hit)
                                        (instance == hit.instance && primitive < hit.primitive))));
 }
 
-// Whether a candidate is met, is nearer than the hit so far, and can be hit by rays of this kind at all.
+// Whether a candidate is hit, is nearer than the hit so far, and can be hit by rays of this kind at
+// all.
 bool is_reached(const uint mode, Candidate m, uint flags, uint instance, uint primitive,
                 uint skip_instance, uint skip_primitive, Hit hit)
 {
@@ -275,15 +279,16 @@ void add_filter(Candidate m, vec2 uv, uint flags, uint shadow, uint instance, ui
                 inout Hit hit)
 {
     ivec3 depth = ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
-    float end = hit.t < FLOAT_LARGEST ? hit.t : 0.0; // of the ray: so far it met nothing that ends it
+    float end = hit.t < FLOAT_LARGEST ? hit.t : 0.0; // end of the ray: no hit has shortened it yet
     if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
         depth = filter_detail(instance, primitive, uv.x, uv.y, end - m.t, m.front, depth);
-    if (m.owned) // an edge within glass counts once
+    if (m.owned) // an edge that two triangles share counts once
         hit.filter_depth += depth;
 }
 
-// Whether a candidate becomes the hit: it is reached, and not cut out there. Filters add up their depth and
-// are not hits. `uv`: where textures are read. `refused`: the ray goes on through the point.
+// Whether a candidate becomes the hit: it is reached, and not cut out there. Filters add their
+// depth and are no hits. `uv`: where textures are read. `refused`: the ray goes on through the
+// point.
 bool accept_candidate(const uint mode, Candidate m, vec2 uv, uint flags, uint shadow, uint instance,
                     uint primitive, uint skip_instance, uint skip_primitive, inout Hit hit,
                     out bool refused)
@@ -315,13 +320,14 @@ void keep_hit(Candidate m, bool at_exit, uint record, Primitive p, inout Hit hit
     hit.instance = p.instance;
 }
 
-// NUMERICS_EXACT: whether floats cannot tell if the candidate is met, or which of the two hits comes first.
+// NUMERICS_EXACT: whether floats leave open if the candidate is hit, or which of the two hits comes
+// first.
 bool is_unsure(const uint mode, Candidate m, Hit hit)
 {
     return !m.sure || m.hi >= hit.lo || (mode == TRAVERSE_NEXT && m.lo <= hit_before);
 }
 
-// Whether some record may have to be looked at before it counts: see look_at_record.
+// Whether some records may need look_at_record before they count.
 bool settles(const uint mode)
 {
     return has_integers() || SPEC_CUTOUTS != 0u ||
@@ -335,7 +341,8 @@ bool is_over(const uint mode, bool accepted, Hit hit)
     return (accepted && !finds_closest(mode)) || must_wait(hit.status);
 }
 
-// NUMERICS_EXACT without SPEC_SETTLES: defers the ray, and gives true, where floats leave a candidate open.
+// NUMERICS_EXACT without SPEC_SETTLES: defers the ray and returns true where floats leave a
+// candidate undecided.
 bool leaves_open(const uint mode, bool reached, Candidate m, inout Hit hit)
 {
     bool open = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES == 0u && reached &&
@@ -344,7 +351,8 @@ bool leaves_open(const uint mode, bool reached, Candidate m, inout Hit hit)
     return open;
 }
 
-// Adds the depth of a filter that is met, at both ends of a sphere. False: the primitive is no filter.
+// Adds the depth of a filter that is hit, at both ends of a sphere. False: the primitive is no
+// filter.
 bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_exit, Candidate m,
                  inout Hit hit)
 {
@@ -361,8 +369,8 @@ bool pass_filter(RaySetup ray, float t_min, Primitive p, Chord chord, bool at_ex
     return true;
 }
 
-// Tests one record and keeps it when it is nearer, or as near with smaller ids. True: the traversal
-// may end. `deferred`: it is met, but look_at_record has to be called for it first.
+// Tests one record and makes it the hit if it is nearer, or as near with smaller ids. True: the
+// traversal may end. `deferred`: it is hit, but look_at_record has to be called for it first.
 bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRows rows,
                uint instance, uint skip_instance, uint skip_primitive, inout Hit hit,
                out bool deferred)
@@ -402,15 +410,16 @@ bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint i
                      skip_primitive, hit, deferred);
 }
 
-// Whether a loop has another iteration: in a packet for all lanes alike, for lavapipe 22.3 added a filter
-// twice there in lanes that had left the loop before others.
+// Whether a loop has another iteration; in a packet the same for all lanes, since lavapipe 22.3
+// added a filter twice in lanes that had left the loop before others.
 bool goes_on(bool again)
 {
     return another_iteration(SPEC_PACKETS != 0u ? any_lane(again) : again);
 }
 
-// Tests a record whose test was deferred, with all that may let the ray through: cut-outs, filters, and the far end
-// of a sphere behind an end that does. `origin`, `dir`: of the ray in world space.
+// Tests a record whose test was deferred, including all that may let the ray through: cut-outs,
+// filters, and the far end of a sphere whose near end lets it through. `origin`, `dir`: the ray in
+// world space.
 bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record,
                   RecordRows rows, uint instance, uint skip_instance, uint skip_primitive,
                   inout Hit hit)
@@ -494,7 +503,7 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// Looks at the record at `ref`, and goes on to the next.
+// Calls look_at_record for the record at `ref`, and goes on to the next ref.
 void look_at_leaf(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min, uint instance,
                   uint skip_instance, uint skip_primitive, inout uint ref, inout NodeStack stack,
                   inout Hit hit)
@@ -505,9 +514,9 @@ void look_at_leaf(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
     ref = refill_stack(ref, stack, hit.status);
 }
 
-// Traverses the only mesh tree. A ray with a deferred record stands still until all others of its subgroup are done
-// or have one too: looking at a record costs more than many tests, and on lavapipe it costs that wherever it
-// stands, needed or not.
+// Traverses the only mesh tree. A ray with a deferred record waits until all others of its subgroup
+// are done or have one too: look_at_record costs more than many tests, and on lavapipe it costs
+// that wherever it stands, needed or not.
 void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint skip_instance,
                    uint skip_primitive, inout Hit hit)
 {
@@ -525,7 +534,7 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 
-// The ray of an instance, ready for its mesh tree.
+// Transforms a ray to an instance's object space, ready for its mesh tree.
 RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
 {
     InstanceFrame frame = fetch_instance_frame(instance);
@@ -535,8 +544,9 @@ RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
     return local;
 }
 
-// Goes on through the tree over instances at `ref`, each leaf of which is one, until REF_DONE, or until a record is
-// deferred. `inside`: first through the rest, at `mesh_ref`, of the mesh tree of that leaf.
+// Goes on through the tree over instances at `ref`, whose leaves hold one instance each, until
+// REF_DONE or until a record is deferred. `inside`: it first finishes the mesh tree of that leaf,
+// at `mesh_ref`.
 void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min,
                     uint skip_instance, uint skip_primitive, inout uint ref,
                     inout NodeStack stack, inout RaySetup local, inout uint mesh_ref,
@@ -582,7 +592,7 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
         bool deferred;
         walk_instances(mode, ray, origin, dir, t_min, skip_instance, skip_primitive, ref, stack,
                        local, mesh_ref, mesh_stack, inside, hit, deferred);
-        inside = settles(mode); // of those that wait
+        inside = settles(mode); // the rays that wait are in a mesh tree
         if (settles(mode) && deferred)
             look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
                          skip_primitive, mesh_ref, mesh_stack, hit);
@@ -598,11 +608,11 @@ bool is_usable(vec3 origin, vec3 dir)
     return bounded.x + bounded.y + bounded.z == 0.0 && dir != vec3(0.0);
 }
 
-// Hits with t_min <= t <= t_max, but for primitive `skip_primitive` of instance `skip_instance`, where
-// the ray starts: a sphere is met again by rays that go inwards, at its far side.
-// Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance tree, or
-// without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene). Not
-// finite rays hit nothing.
+// Finds a hit with t_min <= t <= t_max. Primitive `skip_primitive` of instance `skip_instance`,
+// where the ray starts, does not count; but a sphere is hit again, at its far side, by a ray that
+// goes inwards. Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance
+// tree, or without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene).
+// Rays that are not finite hit nothing.
 Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, uint root,
              uint skip_instance, uint skip_primitive)
 {

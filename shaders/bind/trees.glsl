@@ -1,4 +1,4 @@
-// Descriptors of the trees, with accessors. Traversal sits on these alone.
+// Descriptors of the trees, with accessors: all that traversal reads.
 #ifndef BIND_TREES_GLSL
 #define BIND_TREES_GLSL
 
@@ -23,7 +23,7 @@ layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer
 {
     uint status_word;
     uint status_waits; // items listed by list_deferred() so far
-    uint status_loop;  // with STATUS_FUEL: the largest number of such a loop
+    uint status_loop;  // with STATUS_FUEL: the largest number of a loop that ran out
     uint status_shape; // with STATUS_SHAPE: the largest SHAPE_* with a pixel
 };
 
@@ -51,7 +51,7 @@ uvec4 fetch_instance_row(uint row)
 const uint TRIANGLE_ROWS = 3u; // of 16 bytes, in a gpu_triangle
 const uint INSTANCE_ROWS = 8u; // in a gpu_instance
 
-// World to object: directions, and points relative to the instance's origin.
+// World to object space, for directions and for points relative to the instance's origin.
 struct InstanceFrame {
     vec3 inverse0, inverse1, inverse2, origin;
 };
@@ -69,8 +69,8 @@ InstanceFrame fetch_instance_frame(uint instance)
     return frame;
 }
 
-// The center of the box of an instance's mesh, in object space; without SPEC_INSTANCED all instances have
-// that of the only tree.
+// The centre of the box of an instance's mesh, in object space; without SPEC_INSTANCED all
+// instances have that of the only tree.
 vec3 fetch_mesh_center(uint instance)
 {
     uint row = instance * INSTANCE_ROWS + 4u;

@@ -3,7 +3,7 @@
 //@ slider reach 0.01 10 1 "world units"
 //@ slider rays 1 64 16 "per sample of a pixel"
 
-// Around n, with a density of cosine over pi.
+// A random direction around n, with density cosine / pi; u and v are random numbers.
 vec3 cosine_direction(vec3 n, float u, float v)
 {
     float turn = 6.2831853 * u, z = 2.0 * v - 1.0, r = sqrt(max(1.0 - z * z, 0.0));

@@ -10,7 +10,7 @@ vec3 cosine_direction(vec3 n, float u, float v)
     return dot(dir, dir) > 1e-6 ? normalize(dir) : n;
 }
 
-// Direct light as whit's own, without what is said to come from everywhere: rays find that.
+// Whit's own direct light, without the ambient term: the rays bring that light.
 vec3 shade(Surface s, Optics o, vec3 to_eye)
 {
     Optics direct = o;
@@ -26,7 +26,7 @@ void scatter(Surface s, Optics o, inout Rays rays)
     float sum = mirror + diffuse;
     if (o.unlit || !(diffuse > 0.0))
         return;
-    // One ray stands for both, as often as each brings light.
+    // One ray stands for both, chosen in proportion to the light that each brings.
     if (random(0u) * sum < diffuse) {
         rays.reflected = o.diffuse * (bounce * (1.0 - o.straight) * sum / diffuse);
         rays.reflected_dir = cosine_direction(s.ns, random(1u), random(2u));

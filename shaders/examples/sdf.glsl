@@ -7,7 +7,7 @@
 
 const vec3 MIDDLE = vec3(0.05, 0.9, 0.8);
 
-// How far p is from the shape, or less; below 0 inside.
+// The distance of p from the shape, or less; below 0 inside.
 float shape(vec3 p)
 {
     p -= MIDDLE;
@@ -19,7 +19,7 @@ float shape(vec3 p)
         angle += 3.14159265;
     }
     float round_one = length(p) - 0.7;
-    return 0.5 * mix(tube, round_one, ball); // the strand is steeper than a distance
+    return 0.5 * mix(tube, round_one, ball); // halved, as the strand's value grows faster than the distance
 }
 
 vec3 normal_of(vec3 p)

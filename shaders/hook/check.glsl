@@ -1,16 +1,18 @@
-// What tests of a user's file find. SPEC_CHECK_WORDS: words that have a bit for each check of a test.
+// Results of the tests of a user's file. SPEC_CHECK_WORDS: words with a bit for each check of a
+// test.
 #ifndef HOOK_CHECK_GLSL
 #define HOOK_CHECK_GLSL
 
 #include "../abi/bindings.h"
 
-// For each test, word and seed: bits of checks that were reached, and of those that failed.
+// For each test, word and seed: bits of the checks that were reached, and of those that failed.
 layout(set = 0, binding = BIND_PROBE, std430) writeonly buffer CheckBuffer { uvec2 check_rows[]; };
 
 uint checks_reached[SPEC_CHECK_WORDS], checks_failed[SPEC_CHECK_WORDS];
 
-// Whether what a test says holds. In a file it is written check(holds): whit puts the check's word and bit
-// in front, as numbers, so that the driver keeps them in registers: it takes long to make what writes.
+// Records whether a test's statement holds. In a file it is written check(holds); whit adds the
+// check's word and bit as constants, so that the driver keeps the arrays in registers: kernels that
+// write them to memory take long to compile.
 void check(uint word, uint bit, bool holds)
 {
     checks_reached[word] |= bit;

@@ -1,5 +1,6 @@
-// dbg(x) for a pixel that is looked at: x, which is recorded under the number of the call. In a file it is
-// written dbg(x), and host/shader/dbg.c puts the number in front; kernels of pictures have x in its place.
+// dbg(x) in the kernels of a probed pixel: returns x, and records it under the number of the call.
+// In a file it is written dbg(x), and host/shader/dbg.c adds the number; in other kernels x stands
+// in its place.
 #ifndef HOOK_DBG_GLSL
 #define HOOK_DBG_GLSL
 
@@ -25,7 +26,8 @@
         return x;                                                                                            \
     }
 
-// DBG_FLOAT, DBG_INT, DBG_UINT, DBG_BOOL of abi/shade.h, whose other names a file may have for itself.
+// The numbers are DBG_FLOAT, DBG_INT, DBG_UINT and DBG_BOOL of abi/shade.h, which is not included,
+// so that a user's file may use its names.
 DBG_OF(0u, float, vec2, vec3, vec4, floatBitsToUint)
 DBG_OF(4u, int, ivec2, ivec3, ivec4, uint)
 DBG_OF(8u, uint, uvec2, uvec3, uvec4, uint)

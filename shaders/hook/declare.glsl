@@ -1,5 +1,5 @@
-// The functions that a user's file may have, as whit has them. What a file has takes their place in the
-// compiled kernel (host/shader/link.c), where SPEC_HOOKS then says so.
+// Whit's own versions of the functions that a user's file may define. Those that the file has
+// replace them in the compiled kernel (host/shader/link.c), and SPEC_HOOKS has their bits.
 #ifndef HOOK_DECLARE_GLSL
 #define HOOK_DECLARE_GLSL
 
@@ -54,13 +54,13 @@ vec3 post(ivec2 at, vec3 color)
     return whit_post(at, color);
 }
 
-// Value `index` of what the user has beside the colour.
+// The value of the user's aov function number `index`; whit has none.
 vec4 aov(uint index, Surface s)
 {
     return vec4(0.0);
 }
 
-// Whether a ray meets the user's shape, which is at `t` then. Whit has no shape.
+// Whether a ray meets the user's shape, at `t`; whit has none.
 bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)
 {
     t = 0.0;
@@ -68,7 +68,7 @@ bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)
     return false;
 }
 
-// The box of that shape, and how far from it answers may be.
+// The box of that shape, and how far from the shape answers may be, in world units.
 void shape_box(out vec3 lo, out vec3 hi, out float error)
 {
     lo = hi = vec3(0.0);
@@ -77,14 +77,14 @@ void shape_box(out vec3 lo, out vec3 hi, out float error)
 
 #include "shape.glsl"
 
-// Sets the user's global variables to what they begin with.
+// Sets the user's global variables to their initial values.
 void begin_user()
 {
 }
 
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir)
 {
-    if (!is_in_picture(pixel)) // of a tile's edge: nothing of it counts
+    if (!is_in_picture(pixel)) // beyond the picture's edge: the ray is not used
         return;
     hook_pixel = pixel;
     hook_ray.dir = dir;

@@ -1,7 +1,7 @@
-// What functions of a user's file may use besides each other and what GLSL has: declared here, with bodies that
-// nothing runs; in the compiled kernel those of hook/prelude.glsl stand in their place (host/shader/link.c).
-// Lengths are in world units, angles in radians, directions unit vectors of world space, light is radiance in
-// linear RGB.
+// What functions of a user's file may call besides each other and GLSL's own functions. The bodies
+// here never run; in the compiled kernel those of hook/prelude.glsl stand in their place
+// (host/shader/link.c). Lengths are in world units, angles in radians, directions unit vectors of
+// world space; light is radiance in linear RGB.
 #ifndef HOOK_INTERFACE_GLSL
 #define HOOK_INTERFACE_GLSL
 
@@ -19,48 +19,53 @@ uint whit_fuel_loop = 0u;
 
 // ---- The ray ----
 
-// The way it goes.
+// The ray's direction.
 vec3 ray_dir() ELSEWHERE(vec3)
-// Where it starts.
+// Where the ray starts.
 vec3 ray_origin() ELSEWHERE(vec3)
-// How far the surface is from there.
+// The distance from there to the surface.
 float ray_distance() ELSEWHERE(float)
-// Surfaces between the camera and this one that have called for rays; 0: the camera sees it.
+// Number of surfaces between the camera and this one that sent the ray on; 0: the camera sees this
+// one.
 uint bounces() ELSEWHERE(uint)
 
 // ---- The picture ----
 
-// From 0, 0 at the top left.
+// The pixel, counted from 0, 0 at the top left.
 uvec2 pixel() ELSEWHERE(uvec2)
 uvec2 picture_size() ELSEWHERE(uvec2)
-// Which of the pixel's samples.
+// Number of the sample within the pixel, from 0.
 uint sample_number() ELSEWHERE(uint)
-// Where the camera is.
+// Position of the camera.
 vec3 eye() ELSEWHERE(vec3)
-// A number from 0 to just below 1: another one for each k, pixel, sample and ray, the same in every run.
+// A random number from 0 to just below 1: it differs for each k, pixel, sample and ray, and is the
+// same in every run.
 float random(uint k) ELSEWHERE(float)
-// Gives a hash of all bits of x.
+// A hash of all bits of x.
 uint hash(uint x) ELSEWHERE(uint)
 // Value of slider `index` of the file.
 float slider(uint index) ELSEWHERE(float)
 
 // ---- Light ----
 
-// Light that comes from everywhere.
+// The scene's ambient light, which comes from everywhere.
 vec3 ambient() ELSEWHERE(vec3)
-// What the scene's sky sends from there.
+// The light that the scene's sky sends from direction `dir`.
 vec3 environment(vec3 dir) ELSEWHERE(vec3)
 uint light_count() ELSEWHERE(uint)
-// Points of the light that are tested: --light-samples of an area light, 1 of all others.
+// Number of points of the light that are tested: --light-samples for an area light, 1 for all
+// others.
 uint light_points(uint index) ELSEWHERE(uint)
-// Point `point` of a light, as a surface has it; behind the last light that.
+// Point `point` of a light, as it is seen from a surface; an index beyond the last light means the
+// last.
 Light light(uint index, uint point, Surface s) ELSEWHERE(Light)
 
 // ---- Rays ----
 
 #ifdef HAS_INTERSECT
 bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal);
-// What traces calls it, so that the compiler finds where it would come to call itself.
+// Functions that trace rays call it here, so that the compiler finds an intersect() that would call
+// itself.
 #define TRACES(type)                                                                                         \
     {                                                                                                        \
         type none;                                                                                           \
@@ -73,14 +78,15 @@ bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal);
 #define TRACES ELSEWHERE
 #endif
 
-// Just off the surface, on the side that `dir` goes to: where a ray from it starts.
+// A point just off the surface, on the side that `dir` goes to, from which to start a ray.
 vec3 off_surface(Surface s, vec3 dir) ELSEWHERE(vec3)
-// How much light comes along a way of length `distance` from a surface, which is not in its own way: 1 where
-// nothing is in it, 0 behind something opaque.
+// The share of light that comes to a surface from the distance `distance` along `dir`: 1 where
+// nothing is in between, 0 behind something opaque. The surface does not block itself.
 vec3 visible(Surface s, vec3 dir, float distance) TRACES(vec3)
-// What a ray meets, and after which distance. False: nothing; `met` then means nothing.
+// Finds the surface that a ray hits first, and its distance. False: it hits nothing, and `met` is
+// undefined.
 bool trace(vec3 origin, vec3 dir, out Surface met, out float distance) TRACES(bool)
-// What a light, with its shadows, lets a surface send to `to_eye`.
+// The light that a surface sends to `to_eye` because of one light, with shadows.
 vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye) TRACES(vec3)
 
 // ---- Tests ----
@@ -90,16 +96,17 @@ void check(uint word, uint bit, bool holds) {}
 void run_test(uint test, uint seed);
 #endif
 
-// ---- Values that are looked at ----
+// ---- Values of a probed pixel ----
 
-// dbg(x) is x, a number, a bool or a vector of these, and for a pixel that is looked at it is shown, with the
-// file, the line and what stands in its brackets. It may stand wherever x may, but for macros and tests.
+// dbg(x) returns x, a number, a bool or a vector of these. For a probed pixel its value is shown,
+// with the file, the line and the text in its brackets. It may stand wherever x may, except in
+// macros and tests.
 #ifdef HAS_DBG
 void whit_record(uint call, uint type, uvec4 bits) {}
 #include "dbg.glsl"
 #endif
 
-// ---- Whit's own functions in the place of which those of the file stand ----
+// ---- Whit's own functions, which those of the file replace ----
 
 void whit_camera(vec2 at, inout vec3 origin, inout vec3 dir) {}
 void whit_surface(inout Surface s) {}
@@ -108,7 +115,7 @@ void whit_scatter(Surface s, Optics o, inout Rays rays) {}
 vec3 whit_miss(vec3 dir) ELSEWHERE(vec3)
 vec3 whit_post(ivec2 at, vec3 color) ELSEWHERE(vec3)
 
-// What the file has not is whit's own by either name.
+// Where the file lacks a function, both names mean whit's own.
 #ifdef HAS_CAMERA
 void camera(vec2 at, inout vec3 origin, inout vec3 dir);
 #else

@@ -1,13 +1,13 @@
-// A shape of your own, in a box that `//@ box` names by its least and largest corner, world space. Behind the
-// corners stands how far from the shape an answer may be, and if you like the name of a material of the scene.
-// The box is in the scene beside its meshes: what is met is shaded, mirrored and throws shadows as they do.
+// A shape of your own, in a box that `//@ box` gives by its least and largest corner, world space. After the
+// corners comes how far from the shape an answer may be, and optionally the name of a material of the scene.
+// The shape is in the scene beside its meshes: it is shaded, is mirrored and casts shadows as they do.
 //
 // origin, dir: the ray, from where it enters the box or starts in it; world space, dir is unit
-// far:         what is behind that need not be looked for
+// far:         the largest t that matters: nothing behind it need be found
 // t, normal:   where the ray meets the shape first, origin + t * dir, and the normal to the outside there
-// gives:       whether it does. The answer is a matter of the ray alone: for what the camera sees whit asks a
-//              second time, as if there were neither box nor scene, and where that differs the picture is an error.
-float ball(vec3 p) // how far p is from the shape, less than 0 inside
+// gives:       whether it does. The answer may depend on the ray alone: for camera rays whit asks a
+//              second time, as if there were neither box nor scene, and another answer is an error.
+float ball(vec3 p) // distance of p from the shape, below 0 inside
 {
     return length(p - vec3(0.0, 1.0, 0.0)) - 0.9;
 }

@@ -1,5 +1,6 @@
-// What a ray has met: the hit, its surface on the side that the ray comes from, the media on both sides of it, and
-// what its material does with light. The stages hit, aov and shade share it.
+// A hit with all that shading needs: its surface, turned to the side that the ray comes from, the
+// media on both sides, and what its material does with light. The stages hit, aov and shade share
+// it.
 #ifndef HOOK_MET_GLSL
 #define HOOK_MET_GLSL
 
@@ -14,14 +15,14 @@ layout(set = 0, binding = BIND_HOOK_TEXELS) uniform usamplerBuffer hook_texels;
 
 struct Met {
     uint slot;
-    Ray ray; // as it arrives: its weight is what counts of the surface's light
+    Ray ray; // as it arrives: its weight is that of the surface's light in the picture
     Hit hit;
     Surface s;
     gpu_material m;
     Crossing c;
 };
 
-// What user's functions are told of the ray.
+// Sets what the user's functions can read about the ray.
 void tell_functions(Met met)
 {
     hook_ray = met.ray;
@@ -32,8 +33,9 @@ void tell_functions(Met met)
 #endif
 }
 
-// The hit of ray `id`, of which user's functions are told. `alive`: it is not another invocation's.
-// `counts`: what is traversed for it is of the pixel's costs.
+// Fetches the hit of ray `id`, and sets what the user's functions can read. `alive`: false where
+// the invocation has no ray of its own. `counts`: rays traced for the media add to the pixel's
+// costs.
 Met fetch_met(uint id, bool alive, bool counts, inout uint status)
 {
     Met met;
@@ -57,7 +59,7 @@ Met fetch_met(uint id, bool alive, bool counts, inout uint status)
     return met;
 }
 
-// Rows that a hit has of what the user's functions make of it.
+// Numbers of rows per hit for what the user's functions return.
 const uint SURFACE_ROWS = (SPEC_HOOKS & HOOK_SURFACE) != 0u ? HOOK_SURFACE_ROWS : 0u;
 const uint HOOK_ROWS = SURFACE_ROWS + ((SPEC_HOOKS & HOOK_SHADE) != 0u ? HOOK_LIGHT_ROWS : 0u);
 
@@ -86,7 +88,7 @@ vec4 fetch_hook_row(uint row)
     return uintBitsToFloat(fetch_hook_words(row));
 }
 
-// Stores what surface() made of the hit of ray `id`. `lost`: some of what it gave was NaN or infinite.
+// Stores what surface() made of the hit of ray `id`. `lost`: some of it is NaN or infinite.
 void store_changed(uint id, Surface s, bool lost)
 {
     store_hook_row(id * HOOK_ROWS, vec4(s.ns, s.u));
@@ -106,7 +108,7 @@ void fetch_changed(uint id, inout Surface s, out bool lost)
     lost = r2.y != 0.0;
 }
 
-// What shade() has said.
+// Stores the light that shade() returned.
 void store_hook_light(uint id, vec3 light)
 {
     store_hook_row(id * HOOK_ROWS + SURFACE_ROWS, vec4(light, 0.0));
@@ -119,7 +121,7 @@ vec3 fetch_hook_light(uint id)
 
 // ---- What HIT_PART_FETCH leaves to HIT_PART_CALL ----
 
-// The first row of the invocation, behind those of hits. False: there is no room for it.
+// The invocation's first row, behind those of hits. False: there is no room for it.
 bool met_row(out uint row)
 {
     uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
@@ -145,7 +147,7 @@ void store_met(uint row, Met met)
     store_hook_words(row + 10u, uvec4(floatBitsToUint(s.color), uint(s.on_sphere)));
 }
 
-// Fills in what functions are told, and nothing else of `met`.
+// Fills in what the user's functions can read, and nothing else of `met`.
 Met fetch_stored_met(uint row)
 {
     Met met;
@@ -214,7 +216,8 @@ bool is_catcher(Met met)
     return SPEC_CATCHERS != 0u && (met.m.flags & MATERIAL_CATCHER) != 0u;
 }
 
-// A shadow catcher reflects nothing: light goes straight on, see caught_share.
+// Makes a shadow catcher's optics: it reflects nothing, and light goes straight on (see
+// caught_share).
 void make_catcher(inout Optics o)
 {
     o.diffuse = vec3(1.0);
@@ -228,7 +231,7 @@ void make_catcher(inout Optics o)
     o.metal_rough = false;
 }
 
-// What the material does with light; met.s then has its last normal.
+// What the material does with light. Also sets met.s to its final normal.
 Optics look_at(inout Met met)
 {
     Optics o = surface_optics(met.s, met.m, met.ray.dir, met.c.eta);

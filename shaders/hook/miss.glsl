@@ -1,6 +1,6 @@
-// Light from where a ray meets nothing.
+// The light that a ray sees where it hits nothing.
 //
-// dir: unit, world space, the way the ray goes
+// dir: the ray's direction, unit, world space
 // gives: radiance, linear RGB
 vec3 miss(vec3 dir)
 {

@@ -1,8 +1,8 @@
-// The last say over a pixel, when all its samples are in.
+// Changes the colour of a pixel when it has all its samples.
 //
 // at:    pixel, from 0, 0 at the top left
 // color: radiance, linear RGB, the mean of the samples
-// gives: the same
+// gives: the new color, in the same terms
 vec3 post(ivec2 at, vec3 color)
 {
     return color;

@@ -1,7 +1,7 @@
-// What the functions of a user's file may use besides each other. Lengths are in world units, angles in radians,
-// directions unit vectors of world space, light is radiance in linear RGB.
+// What the functions of a user's file may call besides each other. Lengths are in world units,
+// angles in radians, directions unit vectors of world space; light is radiance in linear RGB.
 //
-// Records stand in lib/records.glsl. What is declared for users, and with which words, in hook/interface.glsl.
+// lib/records.glsl has the records. hook/interface.glsl declares for users what they may call.
 #ifndef HOOK_PRELUDE_GLSL
 #define HOOK_PRELUDE_GLSL
 
@@ -9,16 +9,16 @@
 #include "../bind/hook.glsl"
 #include "../bind/lit_surface.glsl"
 
-// Set before a hook is called.
+// What is known of the call. The first three are set before each call of a user's function.
 uvec2 hook_pixel;
 Hit hook_hit;            // of the surface
 uvec4 hook_media;        // around it
-uint hook_status = 0u;   // of the rays that hooks have traced
-uint hook_traced = 0u;   // how many these are
+uint hook_status = 0u;   // STATUS_* of the rays that the user's functions have traced
+uint hook_traced = 0u;   // number of those rays
 uint whit_fuel = 0u;     // iterations of loops that the call may still take
-uint whit_fuel_loop = 0u; // number of the loop in which there were none left; 0: none
-uint hook_loop = 0u;      // the same, of any call
-uint hook_shape = 0u;     // what status_shape is to hold of the answers for a shape
+uint whit_fuel_loop = 0u; // number of the loop that used up whit_fuel; 0: none
+uint hook_loop = 0u;      // the largest whit_fuel_loop of all calls
+uint hook_shape = 0u;     // for status_shape: what is wrong with answers for a shape
 
 #include "record.glsl"
 
@@ -33,8 +33,9 @@ void end_hook(bool alive)
     hook_loop = alive ? max(hook_loop, whit_fuel_loop) : hook_loop;
 }
 
-// A camera ray is made, and the user's function called, whether it is of use or not: its rays count where it
-// is. `before`: hook_traced without them.
+// The user's camera() is called for each camera ray that is made, whether the kernel needs it or
+// not. Where it does not, the rays that camera() traced are not counted. `before`: hook_traced
+// before the call.
 void count_camera(uint before, bool of_use)
 {
     if ((SPEC_HOOKS & HOOK_CAMERA) != 0u && !of_use)
@@ -61,19 +62,20 @@ float slider(uint index)
 
 // ---- The ray ----
 
-// Where it starts.
+// Where the ray starts.
 vec3 ray_origin()
 {
     return hook_ray.origin;
 }
 
-// How far the surface is from there.
+// The distance from there to the surface.
 float ray_distance()
 {
     return hook_hit.t;
 }
 
-// Surfaces between the camera and this one that have called for rays; 0: the camera sees it.
+// Number of surfaces between the camera and this one that sent the ray on; 0: the camera sees this
+// one.
 uint bounces()
 {
     return ray_bounces(hook_ray.steps);
@@ -81,7 +83,7 @@ uint bounces()
 
 // ---- The picture ----
 
-// From 0, 0 at the top left.
+// The pixel, counted from 0, 0 at the top left.
 uvec2 pixel()
 {
     return hook_pixel;
@@ -92,13 +94,13 @@ uvec2 picture_size()
     return uvec2(frame.width, frame.height);
 }
 
-// Which of the pixel's samples.
+// Number of the sample within the pixel, from 0.
 uint sample_number()
 {
     return chunk.sample_index;
 }
 
-// Where the camera is.
+// Position of the camera.
 vec3 eye()
 {
     return frame.eye;
@@ -111,7 +113,8 @@ uint hash(uint x) // PCG, after Jarzynski and Olano 2020
     return x >> 22 ^ x;
 }
 
-// A number from 0 to just below 1: another one for each k, pixel, sample and ray, the same in every run.
+// A random number from 0 to just below 1: it differs for each k, pixel, sample and ray, and is the
+// same in every run.
 float random(uint k)
 {
     uvec2 at = pixel();
@@ -123,7 +126,7 @@ float random(uint k)
 
 // ---- Light ----
 
-// Light that comes from everywhere.
+// The scene's ambient light, which comes from everywhere.
 vec3 ambient()
 {
     return frame.ambient;
@@ -134,13 +137,15 @@ uint light_count()
     return frame.light_count;
 }
 
-// A light of the scene, which has one; behind the last one that.
+// Light `index` of the scene, which has at least one; an index beyond the last light means the
+// last.
 gpu_light light_of(uint index)
 {
     return fetch_light(min(index, frame.light_count - 1u));
 }
 
-// Points of the light that are tested: --light-samples of an area light, 1 of all others.
+// Number of points of the light that are tested: --light-samples for an area light, 1 for all
+// others.
 uint light_points(uint index)
 {
     if (frame.light_count == 0u)
@@ -148,7 +153,7 @@ uint light_points(uint index)
     return is_flat(light_of(index)) ? turns_each() : 1u;
 }
 
-// Point `point` of a light, as a surface has it.
+// Point `point` of a light, as it is seen from a surface.
 Light light(uint index, uint point, Surface s)
 {
     if (frame.light_count == 0u)
@@ -160,17 +165,17 @@ Light light(uint index, uint point, Surface s)
 
 // ---- Rays ----
 
-// Just off the surface, on the side that `dir` goes to: where a ray from it starts.
+// A point just off the surface, on the side that `dir` goes to, from which to start a ray.
 vec3 off_surface(Surface s, vec3 dir)
 {
     return offset_origin(s.p, s.error, dot(dir, s.ng) < 0.0 ? -s.ng : s.ng);
 }
 
-// A shape of the user's is in no tree (hook/shape.glsl).
+// Tests the user's shape, which is in no tree (hook/shape.glsl).
 void add_shape(vec3 origin, vec3 dir, bool alive, inout Hit hit);
 
-// How much light comes along a way of length `distance` from `origin`: 1 where nothing is in it, 0 behind
-// something opaque.
+// The share of light that comes to `origin` from the distance `distance` along `dir`: 1 where
+// nothing is in between, 0 behind something opaque.
 vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorption)
 {
     if (SPEC_SHADOWS == 0u)
@@ -183,14 +188,15 @@ vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorp
     return passing_share(blocker, absorption, distance);
 }
 
-// The same from a surface, which is not in its own way.
+// visible_from for a surface, which does not block itself.
 vec3 visible(Surface s, vec3 dir, float distance)
 {
     return visible_from(off_surface(s, dir), dir, distance, uvec2(hook_hit.instance, hook_hit.primitive),
                         surrounding_absorption(hook_media));
 }
 
-// What a ray meets, and after which distance. False: nothing; `met` then means nothing.
+// Finds the surface that a ray hits first, and its distance. False: it hits nothing, and `met` is
+// undefined.
 bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
 {
     Hit hit = traverse(TRAVERSE_CLOSEST, origin, dir, 0.0, FLOAT_LARGEST, frame.root, HIT_NONE, HIT_NONE);
@@ -212,7 +218,7 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
     return some;
 }
 
-// What a light, with its shadows, lets a surface send to `to_eye`.
+// The light that a surface sends to `to_eye` because of one light, with shadows.
 vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
 {
     if (frame.light_count == 0u)

@@ -1,4 +1,5 @@
-// What dbg(x) of a user's file is, for the first sample of a pixel that is looked at (hook/dbg.glsl).
+// Records the values of dbg(x) in a user's file, for the first sample of a probed pixel
+// (hook/dbg.glsl).
 #ifndef HOOK_RECORD_GLSL
 #define HOOK_RECORD_GLSL
 
@@ -7,15 +8,15 @@
 
 layout(set = 0, binding = BIND_DBG, std430) buffer DbgBuffer
 {
-    uint dbg_counts[DBG_CALLS]; // how often each was reached
-    gpu_dbg dbg_values[];       // DBG_VALUES of each
+    uint dbg_counts[DBG_CALLS]; // how often each call was reached
+    gpu_dbg dbg_values[];       // DBG_VALUES for each call
 };
 
-bool hook_records = false; // the function in hand is called for a ray of the picture
-uint hook_id = 0u;         // of that ray
-uint hook_order = 0u;      // records of the invocation
+bool hook_records = false; // the current function is called for a ray of the picture
+uint hook_id = 0u;         // id of that ray
+uint hook_order = 0u;      // number of records of the invocation so far
 
-// The functions that are called next are for ray `id`, or with `alive` false for none.
+// The next functions are called for ray `id`, or, with `alive` false, for no ray.
 void record_for(uint id, bool alive)
 {
     hook_records = alive && chunk.sample_index == 0u;

@@ -1,10 +1,10 @@
-// Which rays go on from a surface, which way, and how much of what they bring is seen.
+// Which rays go on from a surface, their directions, and how much of the light that they bring is seen.
 //
-// s, o: as of shade()
-// rays: struct Rays; comes without rays
+// s, o: as in shade()
+// rays: struct Rays; has no rays at first
 void scatter(Surface s, Optics o, inout Rays rays)
 {
-    float solid = 1.0 - o.straight; // what does not pass undisturbed
+    float solid = 1.0 - o.straight; // the share that does not pass straight through
     rays.straight = vec3(o.straight);
     rays.reflected = o.reflected * solid;
     rays.reflected_dir = reflect(ray_dir(), s.ns);

@@ -1,4 +1,4 @@
-// The light that a surface sends to where the ray came from, without what is mirrored or let through.
+// The light that a surface sends to where the ray came from, without what it mirrors or lets through.
 //
 // s:      struct Surface, turned to the ray's side
 // o:      struct Optics: what the material does with light at this place, after textures

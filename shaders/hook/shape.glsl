@@ -1,14 +1,16 @@
-// A shape of the user's: his function intersect() in the box that his file names. It is in no tree. A ray is held
-// against the box, and asks the function where it enters that: rays of pictures in kernel/shape.comp, before they
-// go through the trees, and those of the user's functions in trace() and visible(), behind that.
+// A user's shape: the function intersect() in the box that the file names. It is in no tree. A ray
+// is tested against the box, and intersect() is called for it from where it enters the box: for
+// rays of pictures in kernel/shape.comp, before they go through the trees; for rays of the user's
+// functions in trace() and visible(), after the trees.
 #ifndef HOOK_SHAPE_GLSL
 #define HOOK_SHAPE_GLSL
 
-// The pixel + 1 in whose name the answers for the ray are checked; 0: they are not.
+// 1 + the pixel for which the ray's answers are checked; 0: they are not checked.
 uint shape_checked = 0u;
 
-// Where a ray is within the box, widened by what answers may be off; and how far from its origin an answer is
-// looked at without the box: a function that marches through the void takes long to the end of the world.
+// Where a ray enters and leaves the box, which is widened by `error`. `far_bare`: how far from its
+// origin the ray is followed without the box; limited, since a function that marches through empty
+// space would take long.
 void enter_shape_box(vec3 origin, vec3 dir, out float enter, out float leave, out float slack, out float far_bare)
 {
     vec3 lo, hi;
@@ -23,7 +25,7 @@ void enter_shape_box(vec3 origin, vec3 dir, out float enter, out float leave, ou
     far_bare = length(0.5 * (lo + hi) - origin) + 2.0 * length(hi - lo);
 }
 
-// What intersect() said.
+// What intersect() returned.
 struct ShapeAnswer {
     bool met;
     float t;
@@ -36,8 +38,8 @@ bool is_number(ShapeAnswer answer)
     return !answer.met || (floatBitsToUint(sum) & 0x7f800000u) != 0x7f800000u;
 }
 
-// Holds the answer with the box against that without: without box and trees a ray meets the same, or the
-// function is not one of a shape in its box.
+// Compares the answer with the box to that without it: without box and trees a ray must meet the
+// same, else the function depends on more than the ray, or the shape is not in its box.
 void check_shape(ShapeAnswer boxed, ShapeAnswer bare, float far, float leave, bool enters)
 {
     bool outside = bare.met && bare.t >= 0.0 && (!enters || bare.t > leave);
@@ -51,8 +53,9 @@ void check_shape(ShapeAnswer boxed, ShapeAnswer bare, float far, float leave, bo
     hook_shape = reason != 0u ? max(hook_shape, told) : hook_shape;
 }
 
-// The nearest point of the shape, after the distance t <= far along a unit direction. The loop has one turn, and
-// one more for rays that are checked: so the function is in the kernel once.
+// The nearest point of the shape, at a distance t <= far along a unit direction. The loop has one
+// iteration, and a second one for rays that are checked, so that the user's function is in the
+// kernel only once.
 ShapeAnswer ask_shape(vec3 origin, vec3 dir, float far, bool alive)
 {
     float enter, leave, slack, far_bare;
@@ -87,10 +90,10 @@ ShapeAnswer ask_shape(vec3 origin, vec3 dir, float far, bool alive)
     return boxed;
 }
 
-// Keeps the shape in `hit`, what the ray has met so far, where the ray meets that first.
+// Makes the shape the ray's hit where it is nearer than `hit`, the hit so far.
 void add_shape(vec3 origin, vec3 dir, bool alive, inout Hit hit)
 {
-    // It may be a function of the user's that traces.
+    // The caller may be a user's function, whose fuel must stay as it is.
     uint fuel = whit_fuel, fuel_loop = whit_fuel_loop;
     float size = sqrt(dot(dir, dir));
     ShapeAnswer answer = ask_shape(origin, dir / size, min(hit.t * size, FLOAT_LARGEST), alive);

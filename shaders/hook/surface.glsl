@@ -1,7 +1,7 @@
-// What a ray has met, before textures and material are looked at: the place for bumps and patterns.
+// Changes the surface that a ray has hit, before textures and material apply: for bumps and patterns.
 //
-// s: struct Surface. What is read afterwards is ns (the shading normal; need not be unit), color (the
-//    material's own is multiplied by it), color_alpha, u and v.
+// s: struct Surface. Read afterwards are ns (the shading normal; need not be unit), color (the
+//    material's color is multiplied by it), color_alpha, u and v.
 void surface(inout Surface s)
 {
 }

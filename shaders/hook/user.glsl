@@ -1,2 +1,1 @@
-// The place of the user's functions: their text stands here where a kernel is compiled with them
-// (host/shader/).
+// Replaced by the text of the user's file where a kernel is compiled with it (host/shader/).

@@ -1,5 +1,5 @@
-// What a user's functions give beside the colour, for what the camera's rays have met: in a kernel of its own, so
-// that the file's next version is soon made, and leaves the colours as they are.
+// Calls the aov functions of a user's file for the hits of camera rays. They have a kernel of their
+// own, so that a changed file compiles fast, and leaves the colours as they are.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -28,7 +28,7 @@ void main()
     if ((SPEC_HOOKS & HOOK_SURFACE) != 0u)
         fetch_changed(id, met.s, lost);
     look_at(met);
-    record_for(id, alive); // values of dbg(x) in camera() are recorded by closest.comp, in surface() by hit.comp
+    record_for(id, alive); // closest.comp records dbg(x) of camera(), hit.comp that of surface()
     for (uint i = 0u; i < SPEC_AOVS; i++) {
         begin_hook();
         vec4 value = aov(i, met.s);

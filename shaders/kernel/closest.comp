@@ -1,5 +1,5 @@
-// What the rays of a generation meet: those that meet something are listed to be shaded, the others see
-// the sky.
+// Finds the closest hits of a generation's rays and lists them for shading; rays that miss get the
+// light of the sky.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -42,7 +42,7 @@ void take_ray(uint r)
     alive = alive && (!primary || is_in_picture(slot_place(slot_of(id))));
     uint slot;
 #ifdef HOOKS
-    record_for(id, alive && primary); // by the camera's function
+    record_for(id, alive && primary); // records dbg(x) in a user's camera()
 #endif
 #ifdef HOOKS
     uint traced = hook_traced;
@@ -65,7 +65,7 @@ void take_ray(uint r)
     packet_skip[r] = uvec2(ray.skip_instance, ray.skip_primitive);
 }
 
-// Where the rays begin that those of the dispatch call for.
+// The `firsts` of the generation that this dispatch's rays call for.
 uvec4 firsts_behind()
 {
     if (is_primary())
@@ -78,10 +78,10 @@ uint class_of_hit(Hit hit)
     return SPEC_CLASSES != 1u && hit.glass ? CLASS_GLASS : CLASS_PLAIN;
 }
 
-// Whether ray `r` met something to be shaded.
+// Stores the hit of ray `r`, or its sum where it misses. True: the hit is to be shaded.
 bool leave_ray(uint r, bool alive)
 {
-    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u) // met by shape.comp
+    if ((SPEC_HOOKS & HOOK_INTERSECT) != 0u) // shape.comp has found where the ray meets it
         add_stored_shape(ray_id[r], packet_hits[r]);
     Hit hit = packet_hits[r];
     bool primary = is_primary();
@@ -101,8 +101,8 @@ bool leave_ray(uint r, bool alive)
     }
     if (met)
         store_hit(ray_id[r], hit);
-    vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // the largest float
-    const bool asked = (SPEC_HOOKS & HOOK_MISS) != 0u; // by miss.comp
+    vec3 weight = ray_weight[r] * medium_transmittance(ray_media_of[r], hit.t); // a miss: the largest float
+    const bool asked = (SPEC_HOOKS & HOOK_MISS) != 0u; // miss.comp will compute the sky
     vec3 sky = asked ? weight : whit_miss(packet_dir[r]) * weight;
     if (alive && (asked || !met))
         store_sum(ray_id[r], sky, asked && !met ? SUM_MISSED : 0u);

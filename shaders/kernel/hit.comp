@@ -1,5 +1,5 @@
-// What a user's functions make of what a ray has met: the surface, and the light that it sends to the eye. In a
-// kernel of its own, before the one that shades, so that the file's next version is soon made.
+// Calls the user's surface() and shade() for the hits of a generation. They have a kernel of their
+// own, before the one that shades, so that a changed file compiles fast.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -14,7 +14,8 @@
 
 layout(local_size_x_id = 0) in;
 
-// Fields of the surface that surface() may not change stay; a normal that is no direction does too.
+// Calls surface(). Fields that it may not change stay as they are, and so does the normal where it
+// gives none with a direction.
 void change_surface(uint id, bool alive, inout Surface s)
 {
     Surface changed = s;
@@ -32,7 +33,8 @@ void change_surface(uint id, bool alive, inout Surface s)
         store_changed(id, s, lost);
 }
 
-// HIT_PART_FETCH: where there is no room, the tile is drawn again in smaller ones.
+// HIT_PART_FETCH: stores what the user's functions need. Without room for it the tile is drawn
+// again in smaller ones.
 void fetch_for_functions(uint id, bool alive)
 {
     uint row, status = 0u;
@@ -47,12 +49,12 @@ void fetch_for_functions(uint id, bool alive)
         report_status(STATUS_QUEUE_FULL);
 }
 
-// `row`: of HIT_PART_CALL.
+// Calls the user's functions. `row`: where HIT_PART_CALL finds what HIT_PART_FETCH stored.
 void call_functions(uint id, bool alive, uint row)
 {
     const bool stored = SPEC_HIT_PART == HIT_PART_CALL;
-    uint status = 0u;      // shade.comp fetches the same and reports it; here it is never read, and not compiled
-    record_for(id, false); // values of dbg(x) in camera() are recorded by closest.comp
+    uint status = 0u;      // shade.comp fetches the same and reports it; here it is not used
+    record_for(id, false); // closest.comp records dbg(x) of camera()
     Met met;
     if (stored) {
         met = fetch_stored_met(row);

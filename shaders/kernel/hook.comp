@@ -1,4 +1,5 @@
-// The functions of a user's file, which the stages' kernels get from here (host/shader/link.c). It is never run.
+// The module of a user's functions, from which host/shader/link.c takes them into the stages'
+// kernels. It never runs.
 #version 460
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
@@ -8,7 +9,7 @@ layout(local_size_x = 1) in;
 
 #include "../hook/user.glsl"
 
-// Holds the file's functions against their declarations.
+// Calls the file's functions, so that the compiler checks them against their declarations.
 void call_all()
 {
     Surface s;
@@ -31,7 +32,7 @@ void call_all()
     sum += shade(s, o, sum) + miss(sum) + post(ivec2(0), sum);
 }
 
-// Without this call, which is left out of kernels, nobody would say that a function is missing.
+// Without this call, which is left out of kernels, a missing function would be no error.
 void main()
 {
     call_all();

@@ -1,5 +1,5 @@
-// What the rays of a generation see that have met nothing, where a user's function says so: in a kernel of its
-// own, which is small, so that the file's next version is soon made.
+// Calls the user's miss() for the rays of a generation that hit nothing. It is a small kernel of
+// its own, so that a changed file compiles fast.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require

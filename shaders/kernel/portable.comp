@@ -1,7 +1,6 @@
 #version 450
-// Answers what a function of lib/portable.glsl gives for pairs of floats: for tests, for what
-// `whit devices` finds out of a device, and as the module that host/shader/portable.c takes functions
-// from.
+// Computes a function of lib/portable.glsl for pairs of floats: for tests, for what `whit devices`
+// finds out about a device, and as the module that host/shader/portable.c takes functions from.
 #extension GL_GOOGLE_include_directive : require
 #include "../abi/portable.h"
 #include "../lib/portable.glsl"
@@ -18,7 +17,7 @@ layout(set = 0, binding = 1, std430) buffer Answers
     uint answers[];
 };
 
-// One branch each, of which host/device/evaluate.c leaves the one that is asked for.
+// One branch for each function; host/device/evaluate.c leaves the one that FUNCTION chooses.
 uint answer(const float x, const float y)
 {
     float found = x + y; // PORTABLE_SUM
@@ -76,7 +75,7 @@ bool is_other(const float x, const float y)
     return floatBitsToUint(x) != floatBitsToUint(y) && !(portable_isnan(x) && portable_isnan(y));
 }
 
-// Some number for each; lowbias32 (Wellons 2018).
+// A hash of n: lowbias32 (Wellons 2018).
 uint scramble(uint n)
 {
     n = (n ^ n >> 16) * 0x7feb352du;
@@ -84,9 +83,10 @@ uint scramble(uint n)
     return n ^ n >> 16;
 }
 
-// Whether the device's own root or quotient number n has other bits than that of lib/portable.glsl:
-// roots of all floats of 1..4, with those of all others by even powers of two; 1 / x of all of 1..4; and
-// quotients of any two floats, denormals, infinities and NaN too.
+// Whether the device's own result for case n has other bits than that of lib/portable.glsl. The
+// cases: square roots of all floats from 1 to 4, which stand for all others by even powers of two;
+// 1 / x of all from 1 to 4; and quotients of any two floats, denormals, infinities and NaN
+// included.
 bool compare(const uint n)
 {
     float x = uintBitsToFloat(0x3f800000u + n % COMPARED_ROOTS);

@@ -1,5 +1,6 @@
-// What a user's function makes of the colour of a pixel, where all samples are in it: in a kernel of its own, so
-// that the file's next version is soon made, and draws the last picture's pixels again without its rays.
+// Calls the user's post() for the colour of each pixel that has all its samples. It has a kernel of
+// its own, so that a changed file compiles fast, and draws the last picture's pixels again without
+// tracing rays.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -24,7 +25,7 @@ void main()
     bool alive = id != ITEM_NONE && is_tile_done() && is_in_picture(at);
     uint pixel = alive ? (at.y - chunk.band_y) * frame.width + at.x : 0u;
     hook_pixel = slot_pixel(slot);
-    hook_records = alive; // it is called for all samples together
+    hook_records = alive; // called once for all samples of the pixel
     hook_id = id;
     begin_hook();
     vec3 color = post(ivec2(hook_pixel), pixels[chunk.before_post + pixel].rgb);

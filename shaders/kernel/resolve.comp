@@ -1,5 +1,5 @@
-// Adds to the sum of each ray of a generation those of the rays that it called for, in a fixed order. The
-// sums of camera rays go to the pixels.
+// Adds to the sum of each ray of a generation the sums of the rays that it called for, in a fixed
+// order. The sums of camera rays go to the pixels.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -20,15 +20,15 @@ vec3 child_sum(uint id)
     return fetch_sum(id).rgb;
 }
 
-// How much of what lies behind it a catcher shows: what light it gets of what it would get without
-// shadows. Where no light comes anyway it shows all.
+// The share of what lies behind a shadow catcher that it shows: the light that it gets over the
+// light that it would get without shadows; 1 where no light comes anyway.
 vec3 caught_share(vec3 light, vec3 open)
 {
     vec3 share = clamp(light / max(open, vec3(1e-30)), vec3(0.0), vec3(1.0));
     return mix(vec3(1.0), share, greaterThan(open, vec3(1e-30)));
 }
 
-// The radiance that a ray brings, together with that of the rays it called for.
+// The radiance that a ray brings, with that of the rays that it called for.
 vec3 whole_sum(uint id, vec4 own)
 {
     uint has = floatBitsToUint(own.w);
@@ -55,8 +55,8 @@ void resolve_hit(uint item)
         store_sum(id, whole_sum(id, own), 0u);
 }
 
-// Adds the weights of rays that were cut from the sample, for --depth and for --bailout, to those of the
-// pixel; and keeps the largest sums of all pixels in the tally.
+// Adds the weights of the sample's cut rays, by --depth and by --bailout, to those of the pixel,
+// and keeps the largest sum over all pixels in the tally.
 void add_cuts(bool alive, uint slot, uint pixel)
 {
     vec2 cut = vec2(0.0);
@@ -73,7 +73,8 @@ void add_cuts(bool alive, uint slot, uint pixel)
         atomicMax(tally.cut_bailout_weight, bailout);
 }
 
-// The functions of a user beside the colour: means, as of colours.
+// Adds the sample's values of the user's aov functions; pixels get their mean, as they do of
+// colours.
 void add_aovs(uint slot, uint pixel)
 {
     for (uint i = 0u; i < SPEC_AOVS; i++) {
@@ -102,9 +103,9 @@ void resolve_pixel(uint id)
     if (alone)
         return;
     vec4 total = vec4(whole_sum(id, fetch_sum(id)) * chunk.sample_weight, 1.0);
-    // Samples are summed in pairs, pairs in pairs: partial sum i, of 2^i samples, waits for the next like it
-    // where bit i of their number is set. Behind the last sample all that wait are added; of 2^i samples these
-    // are the same.
+    // Samples are summed pairwise: partial sum i holds 2^i samples, and waits for the next sum of
+    // as many where bit i of the number of summed samples is set. After the last sample all waiting
+    // sums are added; for 2^i samples this is the same.
     bool last = chunk.summed + 1u == chunk.samples;
     uint row = chunk.sums_row + slot;
     for (uint waiting = chunk.summed; last ? waiting != 0u : (waiting & 1u) != 0u; waiting >>= 1) {
@@ -112,7 +113,8 @@ void resolve_pixel(uint id)
             total.rgb += pixels[row].rgb;
         row += chunk.sums_step;
     }
-    bool posted = (SPEC_HOOKS & HOOK_POST) != 0u; // by a kernel that comes behind this one
+    bool posted = (SPEC_HOOKS & HOOK_POST) != 0u; // post.comp, which runs after this kernel, checks
+                                                  // the colour
     if (last && !posted && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
     pixels[last ? (posted ? chunk.before_post : 0u) + pixel : row] = total;

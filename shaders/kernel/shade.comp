@@ -1,5 +1,5 @@
-// What surfaces do with the rays of a generation that met one: light of their own, what lights are asked
-// for, and the rays that go on.
+// Shades the hits of a generation: adds the surfaces' own light to the sums, lists hits for the
+// lights, and makes the rays of the next generation.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -24,19 +24,19 @@
 
 layout(local_size_x_id = 0) in;
 
-// The rays that a surface calls for, in the order in which their light is added.
+// The rays that a hit calls for, in the order in which their light is added.
 struct Calls {
     vec3 dir[3], weight[3]; // refracted, straight, reflected
     bool wanted[3];
-    uint ends[3]; // with SPEC_PROBE: PROBE_*, where not traced
+    uint ends[3]; // with SPEC_PROBE: why it is not traced, PROBE_DEPTH or PROBE_BAILOUT
     uint steps;
-    uint cuts; // for --depth, and above bit 16 for --bailout
-    float cut; // largest channels of what is not traced, summed up
-    bool deep; // for --depth
-    bool lost; // a ray whose weight is NaN is not traced, so the sum must tell
+    uint cuts; // number of rays cut by --depth; those cut by --bailout from bit 16 on
+    float cut; // sum of the largest channel of each weight that is not traced
+    bool deep; // cut by --depth
+    bool lost; // a weight is NaN: such a ray is not traced, so the sum must become NaN
 };
 
-// Whether a ray of this weight is traced.
+// Whether a ray of this weight is traced; counts it as cut where it is not.
 bool traced(vec3 weight, bool deep, inout Calls calls, inout uint status)
 {
     float largest = largest_of(weight);
@@ -59,7 +59,7 @@ void call(uint which, vec3 dir, vec3 weight, bool deep, inout Calls calls, inout
         calls.ends[which] = deep ? PROBE_DEPTH : PROBE_BAILOUT;
 }
 
-// A scatter() of the user's sends rays of any kind, whatever the scene's materials do.
+// A user's scatter() may send rays of any kind, whatever the scene's materials do.
 bool scatters()
 {
     return CALLS_RAYS && (SPEC_HOOKS & HOOK_SCATTER) != 0u;
@@ -75,7 +75,8 @@ bool passes_straight()
     return SPEC_CUTOUTS != 0u || SPEC_CATCHERS != 0u || scatters();
 }
 
-// hook/scatter.glsl, or the user's function. `lost`: some of what it gave is NaN or infinite.
+// Calls the user's scatter(), or whit's of hook/scatter.glsl. `lost`: something that the user's
+// function gave is NaN or infinite.
 void scatter_hook(Surface s, Optics o, inout Rays rays, inout bool lost)
 {
 #ifdef HOOKS
@@ -103,7 +104,7 @@ Calls no_calls(uint steps)
     return calls;
 }
 
-// What the surface reflects and lets through.
+// The rays that the surface reflects, refracts and lets straight through.
 Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
 {
     Calls calls = no_calls(ray.steps + STEPS_OF_BOUNCE);
@@ -112,7 +113,7 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
     scatter_hook(s, o, rays, calls.lost);
     if (refracts()) {
         vec3 dir = rays.refracted_dir;
-        // A shading normal may bend the ray back to its own side: then straight on.
+        // A shading normal may bend the ray back to its own side: then it goes straight on.
         if (dot(dir, s.ng) >= 0.0 || dot(dir, c.ng) >= 0.0)
             dir = ray.dir;
         call(0u, dir, ray.weight * rays.refracted, deep, calls, status);
@@ -128,7 +129,8 @@ Calls call_children(Ray ray, Surface s, Optics o, Crossing c, inout uint status)
     return calls;
 }
 
-// Straight on, where both sides of a surface are the same medium. Counted as refracted.
+// The ray that goes straight on where both sides of a surface are the same medium. It is counted as
+// refracted.
 Calls call_through(Ray ray, inout uint status)
 {
     Calls calls = no_calls(ray.steps + 1u);
@@ -147,7 +149,7 @@ void send(uint slot, Ray ray, vec3 dir, vec3 weight, uint steps, inout uint next
     next++;
 }
 
-// Gives what sums[].w tells of them.
+// Puts the called rays into the next generation. Returns the bits of sums[].w that name them.
 uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
 {
     uint next = reserve_rays(alive ? uint(calls.wanted[0]) + uint(calls.wanted[1]) +
@@ -230,7 +232,7 @@ void ask_lights(bool alive, uint id, Met met, Optics o, bool catcher, inout uint
     list_lit(alive && some, lit, status);
 }
 
-// What the surface sends to the eye before lights are asked, or by a function of a user all of it.
+// The light that the surface sends without that of lights; with a user's shade() all of its light.
 vec3 emitted_light(uint id, Optics o)
 {
     if ((SPEC_HOOKS & HOOK_SHADE) != 0u)
@@ -297,7 +299,7 @@ void main()
         count_cut(met.slot, calls);
     if (alive && catcher)
         store_hit_row(id * HIT_ROWS, uvec4(0u));
-    bool has_asked = (SPEC_HOOKS & HOOK_SHADE) != 0u; // but for catchers
+    bool has_asked = (SPEC_HOOKS & HOOK_SHADE) != 0u; // by shade(), except for shadow catchers
     seen = has_asked ? catcher : seen;
     if (SPEC_LIGHTS != 0u && (SPEC_CATCHERS != 0u || (SPEC_HOOKS & HOOK_SHADE) == 0u))
         ask_lights(alive && seen && !o.unlit && (!catcher || some), id, met, o, catcher, status);

@@ -1,4 +1,4 @@
-// Light that reaches the lit hits of a generation from one light, with shadows.
+// Adds the light of one light, with shadows, to the lit hits of a generation.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -20,7 +20,8 @@ layout(local_size_x_id = 0) in;
 
 Lit lit_of[SPEC_PACKET_RAYS];
 
-// How much of a light passes to the surface: 1 less opaque things in between, times the filters.
+// The share of the light that reaches the surface: 0 behind something opaque, else the product of
+// the filters.
 vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
 {
     Hit blocker = packet_hits[r];
@@ -37,7 +38,8 @@ vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
 
 Arrival arrival_of[SPEC_PACKET_RAYS];
 
-// Told by shape.comp. Such a ray does not go through the trees.
+// Whether the user's shape blocks the shadow ray, found by shape.comp. Such a ray is not traced
+// through the trees.
 bool in_shape_shadow[SPEC_PACKET_RAYS];
 
 void face_light(uint r, bool alive, gpu_light light, uint item, uint point)
@@ -81,7 +83,7 @@ void add_arrival(uint r, gpu_light light, uint point)
     }
 }
 
-// Adds the light of all points to the sum of the ray; gives how many shadow rays that took.
+// Adds the light of all points to the ray's sum; returns how many shadow rays that took.
 uint leave_lit(uint r, bool alive, uint item, gpu_light light)
 {
     bool deferred = alive && must_wait(status_of[r]);

@@ -1,6 +1,6 @@
-// Where rays meet a user's shape: those of a generation, before they go through the trees (closest.comp keeps the
-// shape where it comes first), and the shadow rays to a light, which what is in the way ends (shadow.comp). In a
-// kernel of its own, which is small, so that the file's next version is soon made.
+// Finds where rays meet a user's shape: rays of a generation before they go through the trees
+// (closest.comp keeps the shape where it comes first), and shadow rays to a light, which the shape
+// may block (shadow.comp). It is a small kernel of its own, so that a changed file compiles fast.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -15,22 +15,23 @@
 
 layout(local_size_x_id = 0) in;
 
-// A ray that is held against the shape.
+// A ray to test against the shape.
 struct ShapeRay {
     bool alive;
-    uint at; // its id; of a shadow ray the place in the list of the light
+    uint at; // its id; of a shadow ray, its hit's place in the light's list
     vec3 origin, dir;
     float t_max;
 };
 
-// Gives this invocation's ray of the generation. What the camera sees in the first sample is checked.
+// Returns this invocation's ray of the generation. The shape's answers to camera rays of the first
+// sample are checked (shape_checked).
 ShapeRay generation_ray()
 {
     uint id = traced_item(0u), slot;
     ShapeRay asked;
     asked.alive = id != ITEM_NONE;
     asked.at = asked.alive ? id : 0u;
-    record_for(asked.at, false); // values of dbg(x) in camera() are recorded by closest.comp
+    record_for(asked.at, false); // closest.comp records dbg(x) of camera()
     Ray ray = fetch_ray(asked.at, slot);
     count_camera(0u, is_primary());
     uvec2 pixel = slot_pixel(slot);
@@ -44,7 +45,7 @@ ShapeRay generation_ray()
     return asked;
 }
 
-// To a point of the light, from lit hit `r` of the invocation.
+// The shadow ray from the invocation's lit hit `r` to a point of the light.
 ShapeRay shadow_ray(gpu_light light, uint r, uint rays, uint point)
 {
     uint place = gl_LocalInvocationID.x + r * SPEC_GROUP_SIZE;
@@ -62,7 +63,7 @@ ShapeRay shadow_ray(gpu_light light, uint r, uint rays, uint point)
     return asked;
 }
 
-// One loop for both, so that the user's function is in the kernel once.
+// One loop serves both kinds of rays, so that the user's function is in the kernel only once.
 void main()
 {
     load_frame();

@@ -1,4 +1,5 @@
-// Tests of a user's file: row y of the dispatch is test y, each for as many seeds as a row has invocations.
+// Runs the tests of a user's file: row y of the dispatch is test y, with one invocation for each
+// seed.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -13,7 +14,7 @@
 
 layout(local_size_x_id = 0) in;
 
-// Calls test `test` of the file: what host/shader/tests.c writes takes its place.
+// Calls test `test` of the file. host/shader/tests.c writes the function that replaces this one.
 void run_test(uint test, uint seed)
 {
 }
@@ -23,7 +24,7 @@ void main()
     load_frame();
     begin_user();
     uint seed = gl_GlobalInvocationID.x;
-    hook_pixel = uvec2(seed % TEST_ROW, seed / TEST_ROW); // so that random() is another one for each seed
+    hook_pixel = uvec2(seed % TEST_ROW, seed / TEST_ROW); // so that random() differs between seeds
     hook_ray.dir = vec3(0.0, 0.0, -1.0);
     begin_checks();
     begin_hook();

@@ -1,4 +1,5 @@
-// A batch of rays in, closest or any hits out. Geometry only: cut-outs count as solid.
+// Traces a batch of rays to closest or any hits. It looks at geometry only: cut-outs count as
+// solid.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -15,7 +16,7 @@ layout(set = 0, binding = BIND_RAYS, std430) readonly buffer RayBuffer { gpu_ray
 layout(set = 0, binding = BIND_BATCH_TEXELS) uniform usamplerBuffer ray_texels;
 layout(set = 0, binding = BIND_HITS, std430) buffer HitBuffer
 {
-    uvec4 hit_rows[]; // two of each gpu_hit
+    uvec4 hit_rows[]; // two rows for each gpu_hit
 };
 layout(set = 0, binding = BIND_HITS, std430) buffer WideHitBuffer { u64vec4 wide_hits[]; };
 layout(set = 0, binding = BIND_HITS, std430) buffer BlockedBuffer
@@ -102,8 +103,8 @@ void store_answer(uint index, Hit hit)
 
 const uint MODE = SPEC_ANY_HIT != 0u ? TRAVERSE_ANY : TRAVERSE_CLOSEST;
 
-// Whether `dir` lies so near to `first` that packets of such rays visit little more than each ray alone:
-// by their components in units of that which is the largest of `first`.
+// Whether `dir` is so close to `first` that a packet of such rays visits little more than each ray
+// alone. Compared are the components relative to the one that is largest in `first`.
 const float BEAM_WIDTH = 0.25;
 
 bool is_near(vec3 dir, vec3 first)
@@ -119,7 +120,7 @@ vec3 of_first(vec3 value)
     return vec3(subgroupShuffle(value.x, 0u), subgroupShuffle(value.y, 0u), subgroupShuffle(value.z, 0u));
 }
 
-// Lists the rays of the subgroup, to be traced one by one.
+// Lists the subgroup's rays, to be traced one by one in a second dispatch.
 void list_packet(bool wanted, uint index[SPEC_PACKET_RAYS], bool alive[SPEC_PACKET_RAYS])
 {
     const uint rays_each = 8u * SPEC_PACKET_RAYS;
@@ -135,7 +136,8 @@ void list_packet(bool wanted, uint index[SPEC_PACKET_RAYS], bool alive[SPEC_PACK
     }
 }
 
-// Rays that follow each other, start at one point and go about the same way walk together.
+// Traces the subgroup's rays as a packet if they start at one point and go about the same way;
+// lists them otherwise.
 void trace_beam()
 {
     uint index[SPEC_PACKET_RAYS];
