@@ -69,9 +69,9 @@ bool affine_is_finite(const struct affine *a)
     return true;
 }
 
-/* Whether the determinant is farther from 0 than it is rounded by: at most three roundings of each
-   of six products and two of the sums, below 6 x 2^-53 of their sizes. A matrix of rank 2 in
-   decimals has one of some 2^-54 for 0. */
+/* Whether the determinant is farther from 0 than its rounding error: at most three roundings of
+   each of six products and two of the sums, below 6 x 2^-53 of their sizes. A matrix of rank 2 with
+   decimal entries can have a determinant of some 2^-54 instead of 0. */
 static bool is_invertible(const double *m, double det)
 {
     double size = fabs(m[0]) * (fabs(m[5] * m[10]) + fabs(m[6] * m[9])) +

@@ -17,8 +17,8 @@ struct affine affine_from_trs(const double translation[3], const double rotation
 double affine_determinant(const struct affine *a); /* of the 3x3 part */
 bool affine_is_finite(const struct affine *a);
 bool affine_is_identity(const struct affine *a);
-/* False, and *out untouched, when the 3x3 part has no finite inverse, or its determinant is no
-   farther from 0 than its own roundings. */
+/* False, with *out unchanged, when the 3x3 part has no finite inverse, or its determinant is not
+   farther from 0 than its rounding error. */
 bool affine_invert(const struct affine *a, struct affine *out);
 void affine_point(const struct affine *a, const double in[3], double out[3]);
 void affine_vector(const struct affine *a, const double in[3], double out[3]);

@@ -40,10 +40,10 @@ enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_MIN
 struct child {
     pid_t pid;
     int read_fd, write_fd; /* the pipe: why there is no sandbox (errno, one byte), then the reply */
-    uint8_t *data;         /* what came so far, at the start of `room` bytes of address space */
+    uint8_t *data;         /* received so far, at the start of `room_bytes` of address space */
     size_t size_bytes, room_bytes;
     uint8_t open_because;
-    bool heard, over; /* the first byte came; more came than there is room for */
+    bool heard, over; /* the first byte was received; more was received than there is room for */
 };
 
 static bool write_all(int fd, const uint8_t *from, size_t size_bytes)
@@ -57,7 +57,7 @@ static bool write_all(int fd, const uint8_t *from, size_t size_bytes)
     return true;
 }
 
-/* `to` is whether all that was written before arrived. */
+/* A child_write. `to`: a bool, whether all earlier writes arrived. */
 static bool write_reply(void *to, const void *data, size_t size_bytes)
 {
     bool *whole = to;
@@ -76,8 +76,8 @@ static void limit(__rlimit_resource_t resource, uint64_t value)
     setrlimit(resource, &limits);
 }
 
-/* What is mapped already, by this process and the libraries and drivers in it, does not count
-   against the child. */
+/* The address space that is mapped already, by this process with its libraries and drivers: it does
+   not count against the child. */
 static uint64_t mapped_bytes(void)
 {
     unsigned long pages = 0;
@@ -90,7 +90,7 @@ static uint64_t mapped_bytes(void)
     return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Puts the descriptors where the sandbox wants them; none need be free. */
+/* Moves the descriptors to the numbers that the sandbox wants, whether these are in use or not. */
 static bool place_descriptors(const struct child *child)
 {
     close(child->read_fd);
@@ -114,18 +114,19 @@ static void confine(const struct child *child, const struct child_limits *limits
     /* Ctrl+C reaches the whole group; the parent decides what becomes of the child. */
     signal(SIGINT, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
-    /* A backstop for when the parent is stopped. */
+    /* A limit that holds even while the parent is stopped. */
     limit(RLIMIT_CPU, 1 + (uint64_t)fmin(ceil(fmax(limits->cpu_s, 0.0)), 1e6));
     if (LIMIT_ADDRESS_SPACE && limits->memory_bytes)
         limit(RLIMIT_AS, already_bytes + limits->memory_bytes);
 }
 
-/* In the sandbox, or, where that is not to be had and not required, without it. */
+/* Runs fn in the sandbox; without it where it cannot be set up and is not required. */
 static int run_inside(const struct child_limits *limits,
                       int (*fn)(void *user, void *to, child_write write), void *user)
 {
     bool whole = true;
-    /* Else glibc looks into /proc before it gives memory back, which the filter forbids. */
+    /* Without this glibc reads /proc before it gives memory back, which the filter of system calls
+       forbids. */
     (void)mallopt(M_TRIM_THRESHOLD, INT_MAX);
     uint8_t error = (uint8_t)sandbox_enter();
     if (!write_all(SANDBOX_REPLY_FD, &error, 1) || (error && limits->require_sandbox))
@@ -141,8 +142,8 @@ static void close_fd(int *fd)
     *fd = -1;
 }
 
-/* Address space for a reply; no memory is taken before it comes. Under limits on address space it
-   may be less than what is allowed. */
+/* Reserves address space for a reply, which takes no memory before it is used. Under limits on
+   address space it may be less than `reply_bytes`. */
 static bool make_room(struct child *child, uint64_t reply_bytes)
 {
     size_t room = (size_t)(reply_bytes > ROOM_MIN ? reply_bytes : ROOM_MIN);
@@ -225,7 +226,7 @@ static bool start(struct child *child, const struct child_limits *limits,
     return child->pid > 0;
 }
 
-/* Takes what came through the pipe; false: nothing did. */
+/* Reads what is in the pipe. False: there was nothing. */
 static bool hear(struct child *child)
 {
     uint8_t more;
@@ -254,7 +255,7 @@ static bool hear(struct child *child)
     return !child->over;
 }
 
-/* Returns when the child said something or is about to end, or after a moment. */
+/* Waits until the child has written something or is about to end, at most for a moment. */
 static void wait_a_moment(struct child *child)
 {
     struct pollfd watched = {.fd = child->read_fd, .events = POLLIN};
@@ -281,7 +282,7 @@ double child_clock_limit_s(const struct child_limits *limits)
     return limits->clock_s > 0.0 ? limits->clock_s : 10.0 * limits->cpu_s;
 }
 
-/* CHILD_DONE when it ended by itself. */
+/* Waits for the child's end, and kills it at a limit. CHILD_DONE when it ended by itself. */
 static enum child_end wait_for_end(struct child *child, const struct child_limits *limits,
                                    int *status)
 {
@@ -320,7 +321,7 @@ static enum child_end end_of_signal(int number)
     return CHILD_CRASHED;
 }
 
-/* Hands the room over to the reply, without what is left of it. */
+/* Gives the received bytes to the reply, and unmaps the address space behind them. */
 static enum child_end take_reply(struct child *child, const struct child_limits *limits,
                                  struct child_reply *reply)
 {

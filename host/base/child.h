@@ -1,4 +1,4 @@
-/* Child processes that run one function, on foreign files, and answer. */
+/* Child processes that run one function on foreign files and send back a reply. */
 #ifndef BASE_CHILD_H
 #define BASE_CHILD_H
 
@@ -20,17 +20,17 @@ enum child_end {
     CHILD_MEMORY,    /* asked for more memory than allowed */
     CHILD_REPLY,     /* replied with more than the limit, or not at all */
     CHILD_NOT_STARTED,
-    CHILD_OPEN,      /* the sandbox could not be set, and was required: nothing ran */
+    CHILD_OPEN,      /* the sandbox was required and could not be set up: nothing ran */
     CHILD_CANCELLED, /* *cancel became true while it ran */
 };
 
 struct child_limits {
-    const char *who;             /* "importer": what runs, for messages */
-    double cpu_s;                /* of the processor, so that a busy machine counts for nothing */
-    double clock_s;              /* by the clock; 0: ten times cpu_s */
-    uint64_t memory_bytes;       /* address space, beyond what is mapped at the fork; 0: no limit */
-    uint64_t reply_bytes;        /* largest reply */
-    bool require_sandbox;        /* nothing runs where it cannot be set */
+    const char *who;       /* "importer": what runs, for messages */
+    double cpu_s;          /* processor time, so that the load of the machine does not matter */
+    double clock_s;        /* elapsed time; 0: ten times cpu_s */
+    uint64_t memory_bytes; /* address space, beyond what is mapped at the fork; 0: no limit */
+    uint64_t reply_bytes;  /* largest reply */
+    bool require_sandbox;  /* nothing runs where it cannot be set up */
     const volatile bool *cancel; /* polled, may be NULL */
 };
 
@@ -39,7 +39,8 @@ struct child_reply {
     size_t size_bytes;
     int signal; /* with CHILD_CRASHED */
     int exit_code;
-    int open_because; /* errno: it ran without the sandbox; 0: it ran in it */
+    int open_because; /* errno of setting up the sandbox: it ran without; 0: it ran in the sandbox
+                       */
 };
 
 /* Writes bytes of the child's reply; false when there is no room for them. */
@@ -53,14 +54,16 @@ enum child_end child_run(const struct child_limits *limits,
                          int (*fn)(void *user, void *to, child_write write), void *user,
                          struct child_reply *reply);
 void child_reply_free(struct child_reply *reply);
-/* What these limits allow by the clock; 0: for ever. */
+/* The elapsed time that these limits allow, in seconds; 0: no limit. */
 double child_clock_limit_s(const struct child_limits *limits);
-/* Between these two, child_run of other threads waits with its fork: around foreign code that holds
-   locks, such as loading a library, which a child would find held for ever. */
+/* Between these two calls, child_run in other threads waits before it forks. For foreign code that
+   takes locks, such as loading a library: a child forked meanwhile would find them held for ever.
+   */
 void child_hold_forks(void);
 void child_release_forks(void);
-/* fork() as child_run does it: not while forks are held, and with all signals blocked in the child,
-   which sets its handlers and then *before. child_run works in there too. */
+/* fork() as child_run does it: it waits while forks are held, and the child starts with all signals
+   blocked. The child sets its handlers, and then the signal mask *before. child_run works in such a
+   child too. */
 pid_t child_fork(sigset_t *before);
 
 #endif

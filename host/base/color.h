@@ -1,4 +1,5 @@
-/* The curve of sRGB (IEC 61966-2-1), between 0 and 1, and one that keeps highlights below 1. */
+/* The transfer curve of sRGB (IEC 61966-2-1) for values in 0..1, and a curve that keeps highlights
+   below 1. */
 #ifndef BASE_COLOR_H
 #define BASE_COLOR_H
 

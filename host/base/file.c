@@ -17,11 +17,11 @@
 #include "base/array.h"
 #include "base/input.h"
 
-/* Paths of unfinished files. Whoever takes a pointer out of its slot owns it, so that the signal
+/* Paths of unfinished files. Code that takes a pointer out of its slot owns it, so that the signal
    handler never reads a string that another thread frees. Slot numbers start at 1. */
 enum { SLOT_COUNT = 64, NAME_KEPT = 200 }; /* NAME_MAX is 255 */
 static _Atomic(char *) unfinished[SLOT_COUNT];
-static char *abandoned[SLOT_COUNT]; /* free() is not for signal handlers */
+static char *abandoned[SLOT_COUNT]; /* not freed: signal handlers may not call free() */
 /* Held while files begin, and while a slot is given back, so that paths in slots can be read. */
 static pthread_mutex_t begin_lock = PTHREAD_MUTEX_INITIALIZER;
 
@@ -159,8 +159,8 @@ fail:
     return result;
 }
 
-/* The process that an unfinished file for `target` is of, by its name as open_sibling gives it; 0
-   where `name` is another one. */
+/* The process that writes an unfinished file for `target`, by the file's name as open_sibling makes
+   it; 0 where `name` is no such name. */
 static pid_t writer_of(const char *name, const char *target)
 {
     size_t length = strnlen(target, NAME_KEPT);
@@ -174,7 +174,8 @@ static pid_t writer_of(const char *name, const char *target)
     return strcmp(rest, ".tmp") == 0 && pid > 0 && pid <= INT_MAX ? (pid_t)pid : 0;
 }
 
-/* A process with our number may be one that was killed before we were there. */
+/* Whether the writer of file `name` still runs. Files with this process's own number may be left by
+   an earlier process of that number: only those in slots are ours. */
 static bool is_alive(pid_t writer, const char *name)
 {
     if (writer != getpid())
@@ -187,8 +188,8 @@ static bool is_alive(pid_t writer, const char *name)
     return false;
 }
 
-/* Removes a file that its writer did not live to finish. The lock that a writer holds tells of one
-   in another container too, whose number says nothing here. */
+/* Removes a file whose writer was killed before it finished. A writer holds a lock on its file,
+   which also shows writers in other containers, whose process numbers mean nothing here. */
 static void remove_left(const char *path)
 {
     struct stat info;
@@ -201,7 +202,7 @@ static void remove_left(const char *path)
         close(fd);
 }
 
-/* What killed runs left of `target` beside it. */
+/* Removes unfinished files for `target` that killed runs left beside it. */
 static void sweep(const char *folder, const char *target)
 {
     DIR *dir = opendir(folder[0] ? folder : ".");
@@ -218,8 +219,8 @@ static void sweep(const char *folder, const char *target)
         closedir(dir);
 }
 
-/* The slot is taken before there is a file, so that a signal just after open() finds it. A file
-   that is there already belongs to somebody else. */
+/* Takes the slot before the file exists, so that a signal just after open() finds it. A file that
+   exists already belongs to another process. */
 static int open_new(struct file_write *file)
 {
     errno = EEXIST;
@@ -267,7 +268,8 @@ static int open_sibling(struct file_write *file)
     return fd;
 }
 
-/* Pipes, devices and the standard output cannot be renamed over: they are written directly. */
+/* Opens a pipe, a device or the standard output: they cannot be replaced by a rename, and are
+   written directly. */
 static int open_direct(const char *path)
 {
     if (strcmp(path, "/dev/stdout") == 0)
@@ -290,7 +292,7 @@ static int open_for_writing(struct file_write *file, const char *path)
     }
     if (exists && access(path, W_OK) != 0)
         return -1;
-    /* What a symbolic link points to is replaced, not the link. */
+    /* A symbolic link stays; the file that it points to is replaced. */
     file->path = exists ? realpath(path, NULL) : string_copy(path);
     if (!file->path)
         return -1;
@@ -343,7 +345,7 @@ static int flush_and_close(struct file_write *file)
         reason = errno ? errno : EIO;
     else if (ferror(file->stream))
         reason = reason_again(file->stream);
-    /* Before the rename, or a power cut could leave the new name on no data. */
+    /* Synced before the rename: else a power cut could leave the new name with no data. */
     if (!reason && file->temporary_path && fsync(fileno(file->stream)) != 0 && errno != EINVAL)
         reason = errno;
     if (fclose(file->stream) != 0 && !reason)

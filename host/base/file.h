@@ -12,17 +12,17 @@
 #include "base/path.h"
 #include "base/roots.h"
 
-/* *data is malloc'ed, with one zero byte behind its size; free() it. Errors are logged with the
-   path. Every file that whit did not make is opened here: with the roots that `path` may not lead
-   out of, or NULL for what the user named. Refuses folders, devices and files over `limit_bytes`
-   (0: no limit). */
+/* Reads a whole file. *data is malloc'ed, with one zero byte behind its size; free() it. Errors are
+   logged with the path. Every file that whit did not write is opened here. `roots`: `path` may not
+   lead out of these; NULL for a file that the user named. Refuses folders, devices and files over
+   `limit_bytes` (0: no limit). */
 WHIT_CHECK whit_result file_read(const whit_log *log, const struct roots *roots, const char *path,
                                  uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
 
 /* A file under construction: `stream` writes to a hidden sibling of `path`. Commit renames it over
-   `path`; abandon removes it. Exactly one of the two ends it; both accept a zeroed one. Files open
-   when the process is interrupted are removed by file_abandon_all(), which is safe in a signal
-   handler; those of a process that was killed by whoever writes the same path next. */
+   `path`; abandon removes it. Call exactly one of the two; both accept a zeroed struct. When the
+   process is interrupted, file_abandon_all(), which is safe in a signal handler, removes open
+   files. Files of a killed process are removed by the next one that writes the same path. */
 struct file_write {
     FILE *stream;
     char *path;

@@ -15,7 +15,7 @@ struct child_limits foreign_limits(const struct foreign_params *params, const ch
                                    uint64_t size_bytes, uint64_t reply_bytes)
 {
     const struct foreign_params none = {0}, *p = params ? params : &none;
-    /* A small damaged file fails soon. */
+    /* Less time for small files, so that damaged ones fail soon. */
     double cpu_s = fmin(8.0 + 4.0 * (double)size_bytes / 10e6, DEFAULT_TIME_S);
     return (struct child_limits){
         .who = who,

@@ -1,17 +1,17 @@
-/* Foreign code that reads foreign files: it runs in a child, its answer is checked, and of a child
-   that gave none there is one clear reason. */
+/* Runs foreign code that reads foreign files in a child process, checks its answer, and gives one
+   clear reason where there is none. */
 #ifndef BASE_FOREIGN_H
 #define BASE_FOREIGN_H
 
 #include "base/child.h"
 #include "base/log.h"
 
-/* What the user may change. A zeroed one means the defaults. */
+/* Limits that the user may change. A zeroed struct means the defaults. */
 struct foreign_params {
     double cpu_s;          /* 0: 8, and 4 more for each 10 MB of the files, at most 60 */
     double clock_s;        /* 0: ten times cpu_s */
     uint64_t memory_bytes; /* 0: 4 GiB */
-    bool require_sandbox;  /* where it cannot be set: an error in place of a warning */
+    bool require_sandbox;  /* if it cannot be set up: an error instead of a warning */
     const volatile bool *cancel;
 };
 
@@ -21,33 +21,34 @@ struct child_limits foreign_limits(const struct foreign_params *params, const ch
 
 enum { FOREIGN_REASON_BYTES = 768 };
 
-/* child_run. Not WHIT_OK: `reason` says why there is no reply, and nothing is logged:
-   WHIT_ERROR_INPUT, or _MEMORY (no child), _CANCELLED, _USAGE (a sandbox is required and not to be
-   had). That it ran without one is a warning, once in the life of this process. */
+/* Calls child_run. If not WHIT_OK, `reason` says why there is no reply, and nothing is logged:
+   WHIT_ERROR_INPUT, or _MEMORY (no child), _CANCELLED, _USAGE (a sandbox is required and cannot be
+   set up). A run without the sandbox is logged as a warning, once in a process. */
 WHIT_CHECK whit_result foreign_run(const whit_log *log, const struct child_limits *limits,
                                    int (*fn)(void *user, void *to, child_write write), void *user,
                                    struct child_reply *reply, char reason[FOREIGN_REASON_BYTES]);
 
-/* Stands at the end of a reply, behind its data. */
+/* The end of a reply, behind its data. */
 struct foreign_answer {
     uint32_t result; /* a whit_result */
     uint32_t numbers[4];
     char reason[FOREIGN_REASON_BYTES];
 };
 
-/* What a child does for foreign_ask: writes data, fills in the answer's numbers, or its reason. */
+/* The function that foreign_ask runs in a child: it writes data, and fills in the answer's numbers
+   or its reason. */
 typedef whit_result (*foreign_fn)(void *user, void *to, child_write write,
                                   struct foreign_answer *answer);
 
-/* foreign_run for functions with answers. WHIT_OK: *reply is the data, `answer` what it says of
-   them, neither to be believed but for the result and that the reason is text; else `answer` has
-   the reason, and there is no reply. */
+/* foreign_run for functions with answers. With WHIT_OK, *reply is the data and `answer` describes
+   it; neither is trusted, but `result` is valid and `reason` is text. Otherwise `answer` has the
+   reason, and there is no reply. */
 WHIT_CHECK whit_result foreign_ask(const whit_log *log, const struct child_limits *limits,
                                    foreign_fn fn, void *user, struct child_reply *reply,
                                    struct foreign_answer *answer);
 
-/* Text of a child as one line, without blanks at its end; of what it quotes, only as much as a
-   message may. Whoever shows it has to do so by whit_text_show, as the log does. */
+/* Makes one line of a child's text, without blanks at its end; of what the text quotes it keeps
+   only as much as a message may quote. Show it through whit_text_show, as the log does. */
 void foreign_text(const void *text, size_t bytes, char *out, size_t out_bytes);
 
 #endif

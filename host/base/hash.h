@@ -1,4 +1,4 @@
-/* A 64-bit hash that tells files and scenes apart; not against people who mean to collide. */
+/* A 64-bit hash that tells files and scenes apart; no defence against deliberate collisions. */
 #ifndef BASE_HASH_H
 #define BASE_HASH_H
 

@@ -27,7 +27,7 @@ static bool make_room(uint8_t **data, size_t used_bytes, size_t *room_bytes)
     return true;
 }
 
-/* NULL: `*data` is all of it; else why not. */
+/* Reads standard input to its end. Returns NULL, or why that failed. */
 static const char *read_to_end(uint8_t **data, size_t *size_bytes)
 {
     size_t used_bytes = 0, room_bytes = 0;

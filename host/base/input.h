@@ -14,12 +14,12 @@ static inline bool is_input(const char *path)
     return path[0] == '-' && !path[1];
 }
 
-/* More is refused. */
+/* Longer input is refused. */
 #define INPUT_BYTES_MAX ((size_t)256 << 20)
 
-/* *data stays until the process ends, with one zero byte behind its size. The first call of all
-   threads reads; what failed fails again. Logs why: a terminal, nothing in it, too much of it.
-   WHIT_ERROR_INPUT. */
+/* *data stays valid until the process ends, with one zero byte behind its size. The first call,
+   from whichever thread, reads; if it fails, later calls fail too. WHIT_ERROR_INPUT, logged:
+   standard input is a terminal, is empty, or is too long. */
 WHIT_CHECK whit_result input_read(const whit_log *log, const uint8_t **data, size_t *size_bytes);
 
 #endif

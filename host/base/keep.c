@@ -25,12 +25,12 @@ struct keep {
 };
 
 struct request_head {
-    struct child_limits limits; /* `who` and `cancel` mean nothing there */
+    struct child_limits limits; /* `who` and `cancel` are not valid in the other process */
     uint64_t bytes;
 };
 
 struct reply_head {
-    struct child_reply reply; /* `data` means nothing here */
+    struct child_reply reply; /* `data` is not valid in this process */
     uint32_t end;
 };
 
@@ -38,7 +38,8 @@ struct reply_head {
 
 static pid_t parent;
 
-/* The signal comes when the thread ends that forked, too. */
+/* Ends the process when its parent has ended. The signal also comes when only the thread that
+   forked has ended. */
 static void on_parent_end(int number)
 {
     (void)number;
@@ -64,7 +65,7 @@ static bool place_descriptors(int fd)
             close(i);
     }
     close_from(SOCKET_FD + 1);
-    /* Children put a pipe there: the socket goes where they close it. */
+    /* Children put a pipe at that number, so the socket moves to a number that they close. */
     int above = fcntl(SOCKET_FD, F_DUPFD_CLOEXEC, SOCKET_FD + 1);
     close(SOCKET_FD);
     return placed && above == SOCKET_FD + 1;
@@ -197,7 +198,7 @@ void keep_stop(struct keep *keep)
     free(keep);
 }
 
-/* Until there is something to read; why not, where it is not. */
+/* Waits until there is something to read: CHILD_DONE; else why it gave up. */
 static enum child_end wait_for_reply(const struct keep *keep, const struct child_limits *limits)
 {
     double start_ms = clock_ms(), limit_s = child_clock_limit_s(limits);

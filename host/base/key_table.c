@@ -21,7 +21,7 @@ static uint64_t spread(uint64_t hash)
     return hash ^ hash >> 33;
 }
 
-/* Where the key is, or the empty slot where it would be. There is always an empty one. */
+/* The slot that has the key, or the empty slot where it would go. There is always an empty slot. */
 static struct key_table_slot *find_slot(const struct key_table *table, const void *key,
                                         size_t key_bytes, uint64_t hash)
 {

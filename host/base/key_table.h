@@ -1,4 +1,4 @@
-/* Small numbers by the bytes of a key: what a list of names would be searched for. */
+/* A hash table from keys, strings of bytes, to numbers. */
 #ifndef BASE_KEY_TABLE_H
 #define BASE_KEY_TABLE_H
 
@@ -8,7 +8,7 @@
 
 struct key_table_slot;
 
-/* A zeroed one is empty; key_table_finish() it. */
+/* A zeroed table is empty; release it by key_table_finish(). */
 struct key_table {
     struct key_table_slot *slots;
     uint32_t count, slot_count;

@@ -18,8 +18,8 @@ static enum lock_end fail(const whit_log *log, struct lock *lock, int reason)
     return LOCK_FAILED;
 }
 
-/* Whether the file that was locked is the one of that name: its holder may have removed it
-   meanwhile, and another process made a new one. */
+/* Whether the locked file still has that name: its holder may have removed it meanwhile, and
+   another process made a new one. */
 static bool is_current(const struct lock *lock)
 {
     struct stat own, named;
@@ -56,7 +56,7 @@ void lock_give_back(struct lock *lock)
 {
     if (!lock->path)
         return;
-    unlink(lock->path); /* before it is free: nobody else's is removed */
+    unlink(lock->path); /* while it is still locked, so that it is not another process's file */
     close(lock->file);
     free(lock->path);
     *lock = (struct lock){0};

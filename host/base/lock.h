@@ -1,5 +1,5 @@
-/* Work that several processes share: who holds the lock of a file does it. A lock ends with the
-   process that holds it, whatever ends that, so none is ever stale. */
+/* A lock between processes, for work that one of them is to do. It ends with the process that holds
+   it, however that ends, so no lock is ever stale. */
 #ifndef BASE_LOCK_H
 #define BASE_LOCK_H
 
@@ -7,8 +7,8 @@
 
 #include "base/log.h"
 
-/* This is a lock on the file PATH.lock, which is there while a process holds the lock, and stays
-   where a process was killed while it held it. A zeroed struct holds nothing. */
+/* A lock on the file PATH.lock. The file exists while a process holds the lock, and stays where
+   that process was killed. A zeroed struct holds nothing. */
 struct lock {
     char *path; /* of the lock file */
     int file;

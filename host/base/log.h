@@ -1,4 +1,4 @@
-/* One-line messages to whoever asked for them. */
+/* One-line messages to the caller's log function. */
 #ifndef BASE_LOG_H
 #define BASE_LOG_H
 

@@ -30,7 +30,7 @@ void path_extension(const char *path, char *out, size_t out_bytes)
     const char *name = path_name(path);
     const char *dot = strrchr(name, '.');
     if (!dot || dot == name || strlen(dot + 1) >= out_bytes)
-        return; /* cut short it could look like another one */
+        return; /* a truncated extension could look like another one */
     size_t i = 0;
     for (const char *c = dot + 1; *c; ++c, ++i)
         out[i] = (char)(*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c);

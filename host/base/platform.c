@@ -11,10 +11,11 @@
 
 void platform_share_heaps(void)
 {
-#ifdef __GLIBC__ /* else up to 8 a core, each as large as its threads ever were */
+#ifdef __GLIBC__ /* the default is up to 8 heaps per core, each of which keeps the size it once    \
+                    had */
     (void)mallopt(M_ARENA_MAX, 2);
-    /* Pictures and trees come from the system and go back to it, whatever was freed before: else
-       each that does not fit into a gap makes another one. */
+    /* Large blocks, such as pictures and trees, always come from the system and go back to it: in
+       the heap, each that fits into no gap would leave another gap. */
     (void)mallopt(M_MMAP_THRESHOLD, 128 << 10);
     (void)mallopt(M_TRIM_THRESHOLD, 4 << 20);
 #endif
@@ -43,7 +44,8 @@ void platform_zero(void *data, size_t size_bytes)
     uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), from = ((uintptr_t)data + page - 1) & -page;
     uintptr_t to = ((uintptr_t)data + size_bytes) & -page;
     if (from < to) {
-        /* Pages of a file or of shared memory keep what they hold, without an error. */
+        /* On pages of a file or of shared memory MADV_DONTNEED succeeds, but they keep their
+           contents. */
         volatile uint8_t *last = (uint8_t *)to - 1;
         *last = 1;
         if (madvise((void *)from, to - from, MADV_DONTNEED) == 0 && *last == 0) {

@@ -1,12 +1,13 @@
 /* splitmix64: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators". A
-   stream is one 64-bit number, its seed at first; the numbers are the same on every machine.
-   Compilers differ in which operand or argument they evaluate first: no expression draws twice. */
+   stream is one 64-bit number, which starts as the seed; its numbers are the same on every machine.
+   Compilers evaluate operands and arguments in different orders, so no expression may draw twice.
+   */
 #ifndef BASE_RANDOM_H
 #define BASE_RANDOM_H
 
 #include <stdint.h>
 
-/* By which a stream moves on with each number. */
+/* What a stream adds to its state for each number. */
 #define SPLITMIX64_STEP UINT64_C(0x9e3779b97f4a7c15)
 
 static inline uint64_t splitmix64(uint64_t *state)

@@ -15,7 +15,8 @@
 #include "base/array.h"
 #include "base/file.h"
 
-/* A scheme as RFC 3986, section 3.1, has it, of two letters at least: one is a drive. */
+/* Whether `name` starts with a URI scheme (RFC 3986, section 3.1) of at least two letters; a single
+   letter is a drive. */
 static bool has_scheme(const char *name)
 {
     size_t length = 0;
@@ -35,7 +36,7 @@ static bool starts_with(const char *text, const char *start)
     return strncmp(text, start, strlen(start)) == 0;
 }
 
-/* What roots_join put no folder before. */
+/* Whether `path` is a name with a scheme, before which roots_join put no folder. */
 static bool is_uri(const struct roots *roots, const char *path)
 {
     char *folder = roots->named ? path_folder(roots->named) : NULL;
@@ -44,7 +45,7 @@ static bool is_uri(const struct roots *roots, const char *path)
     return !beside && has_scheme(path);
 }
 
-/* The part of `path` below `folder`, both without links; NULL: it is not below. */
+/* The part of `path` below `folder`, both without symbolic links; NULL: it is not below. */
 static const char *part_below(const char *folder, const char *path)
 {
     size_t length = strlen(folder);
@@ -66,7 +67,7 @@ static const char *find_below(const struct roots *roots, const char *path, const
     return NULL;
 }
 
-/* `path` from the root on, without `.` and `..`, whether anything is there or not. */
+/* `path` as an absolute path without `.` and `..`, whether it exists or not. */
 static char *make_absolute(const char *path)
 {
     char *here = path[0] == '/' ? string_copy("") : realpath(".", NULL);
@@ -94,8 +95,8 @@ static char *make_absolute(const char *path)
     return whole;
 }
 
-/* Where `path` leads: with its links resolved, or where there is nothing, as it is written.
- *exists tells which; errno why it cannot be had. */
+/* The absolute path of `path`, with links resolved where it exists (*exists). NULL, with errno: it
+   cannot be determined. */
 static char *resolve(const char *path, bool *exists)
 {
     char *resolved = realpath(path, NULL);
@@ -108,7 +109,8 @@ static char *resolve(const char *path, bool *exists)
     return resolved;
 }
 
-/* Looks before it opens, for opening a device may do something. -1 with errno. */
+/* Opens a regular file. It checks the kind first, since opening a device may have effects. Returns
+   -1 with errno. */
 static int open_regular(int folder_fd, const char *name, bool follow_links, bool read,
                         enum reach *reach)
 {
@@ -119,7 +121,7 @@ static int open_regular(int folder_fd, const char *name, bool follow_links, bool
     *reach = S_ISREG(info.st_mode) ? REACH_FILE : REACH_NOT_A_FILE;
     if (*reach != REACH_FILE || !read)
         return -1;
-    /* Non-blocking, or a pipe that has taken the file's place would wait for ever. */
+    /* Non-blocking: else open would wait for ever on a pipe that has taken the file's place. */
     int fd = openat(folder_fd, name,
                     O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | (follow_links ? 0 : O_NOFOLLOW));
     if (fd < 0)
@@ -127,8 +129,8 @@ static int open_regular(int folder_fd, const char *name, bool follow_links, bool
     return fd;
 }
 
-/* From the folder down, one name at a time and following no link: what was a folder when the path
-   was resolved may have become a link since. -1 with errno. */
+/* Opens a file from the folder down, one name at a time, and follows no link: a folder may have
+   become a link since the path was resolved. Returns -1 with errno. */
 static int open_below(const char *folder, const char *part, bool read, enum reach *reach)
 {
     int at = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
@@ -185,8 +187,8 @@ enum reach roots_reach(const struct roots *roots, const char *path)
     return reach;
 }
 
-/* The option that allows `folder`, as a shell reads it. A name that would end the quotes is left to
-   the user to write: it may be made to be pasted. */
+/* Writes the option that would allow `folder`, quoted for a shell. A folder whose name has a
+   quotation mark is left for the user to write: the name may be crafted to be pasted. */
 static void write_hint(const struct roots *roots, const char *folder, char *to, size_t bytes)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"

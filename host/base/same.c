@@ -116,7 +116,7 @@ static struct pair split(double a)
     return (struct pair){hi, a - hi};
 }
 
-static struct pair product(double a, double b) /* exact, but for what under- or overflows */
+static struct pair product(double a, double b) /* exact, but for under- and overflow */
 {
     struct pair as = split(a), bs = split(b);
     double p = a * b;
@@ -129,7 +129,7 @@ static struct pair times(struct pair a, struct pair b)
     return sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
-/* a / b, for a and b that are exact. */
+/* a / b, of doubles without errors of their own. */
 static struct pair quotient(double a, double b)
 {
     double q = a / b;
@@ -143,8 +143,8 @@ struct turn {
     struct pair sine, cosine;
 };
 
-/* Gives the sine and cosine of an angle up to pi / 4, by Taylor's series, whose first term left out
-   is below 2^-62 of the sum. */
+/* The sine and cosine of an angle up to pi / 4, by Taylor's series; the first term left out is
+   below 2^-62 of the sum. */
 static struct turn turn_of(struct pair r)
 {
     struct pair square = product(r.hi, r.hi);
@@ -173,8 +173,8 @@ static struct turn turn_of(struct pair r)
     return (struct turn){sine, sum(cosine.hi, low)};
 }
 
-/* Quarter turns are taken off by pi / 2 in four parts (Cody and Waite 1980), of which the first
-   three have 33 bits, so that their products with up to 2^20 are exact. */
+/* Reduces an angle by multiples of pi / 2, which is given in four parts (Cody and Waite 1980). The
+   first three parts have 33 bits, so that their products with integers up to 2^20 are exact. */
 static struct turn turn_by(double angle)
 {
     static const double parts[] = {0x1.921fb54400000p+0, 0x1.0b4611a600000p-34,
@@ -213,12 +213,12 @@ double same_tan(double angle)
     return q.hi + (q.lo + (t.sine.lo - q.hi * t.cosine.lo) / t.cosine.hi);
 }
 
-/* The angle in 0..pi / 4 whose tangent is `small` / `large`, of numbers that are not negative: that
-   of a tangent i / 16 near it, and what the sum of tangents leaves, by Taylor's series. */
+/* The angle in 0..pi / 4 whose tangent is `small` / `large`, neither negative: the table's angle of
+   a tangent i / 16 near it, and what remains by the addition theorem, by Taylor's series. */
 static struct pair small_angle(double small, double large)
 {
     int exponent;
-    (void)frexp(large, &exponent); /* far from overflow and underflow */
+    (void)frexp(large, &exponent); /* scaled away from overflow and underflow */
     small = ldexp(small, -exponent);
     large = ldexp(large, -exponent);
     int i = (int)floor(16.0 * (small / large) + 0.5);
@@ -238,8 +238,7 @@ static struct pair difference(struct pair a, struct pair b)
     return sum(s.hi, s.lo + (a.lo - b.lo));
 }
 
-/* Gives the angle in 0..pi from the x axis to (x, y), for finite numbers, y not negative, and not
-   both 0. */
+/* The angle in 0..pi from the x axis to (x, y), for finite numbers, y not negative, not both 0. */
 static struct pair angle_of(double y, double x)
 {
     double size = fabs(x);
@@ -259,8 +258,8 @@ double same_atan2(double y, double x)
     return copysign(angle_of(size, x).hi, y);
 }
 
-/* The angle of (x, sqrt(1 - x^2)); what rounding the root leaves of it turns the angle by x times
-   as much. */
+/* The angle of (x, sqrt(1 - x^2)). A rounding error of the root turns the angle by x times as much.
+ */
 double same_acos(double x)
 {
     if (!(fabs(x) <= 1.0))
@@ -277,8 +276,8 @@ double same_acos(double x)
 
 /* ---- Logarithms and powers ---- */
 
-/* Gives the natural logarithm of a finite x > 0: x = 2^e m, and log(m) = log(c) + 2 artanh(t) with
-   t = (m - c) / (m + c), where c = i / 32 is the nearest to m. */
+/* The natural logarithm of a finite x > 0: x = 2^e m, and log(m) = log(c) + 2 artanh(t) with t = (m
+   - c) / (m + c), where c is the multiple i / 32 nearest to m. */
 static struct pair log_pair(double x)
 {
     int e;
@@ -297,7 +296,7 @@ static struct pair log_pair(double x)
     return sum(all.hi, all.lo + (whole.lo + rest));
 }
 
-/* What logarithms are where x is no finite number above 0. */
+/* The logarithm where x is not a finite number above 0. */
 static double log_end(double x)
 {
     return x == 0.0 ? -INFINITY : x > 0.0 ? x : NAN;
@@ -323,8 +322,8 @@ double same_log10(double x)
     return has_log(x) ? times(log_pair(x), log10_e).hi : log_end(x);
 }
 
-/* Gives e to the power x, for x in -746..710: 2^(k / 32) from the table, and Taylor's series of
-   what is left. */
+/* e to the power x, for x in -746..710: 2^(k / 32) from the table, times Taylor's series of the
+   rest. */
 static double exp_of(struct pair x)
 {
     double k = floor(x.hi * 32.0 / (ln2.hi + ln2.lo) + 0.5);

@@ -1,16 +1,16 @@
-/* What libm gives in other bits by its version and by the processor's instructions, in the same
-   bits on every machine whose doubles are IEEE's: by sums, products, quotients and square roots,
-   which the build lets no compiler fuse (-ffp-contract=off). For all that is computed before it is
-   uploaded, so that scenes are the same everywhere; tests/same.cmake refuses libm's there.
+/* Functions whose bits in libm depend on its version and on the processor's instructions, here with
+   the same bits on every machine with IEEE doubles: made of sums, products, quotients and square
+   roots, which the build lets no compiler fuse (-ffp-contract=off). For all that is computed before
+   upload, so that scenes are the same everywhere; tests/same.cmake refuses libm's functions there.
 
-   Within 1 ulp of the exact value, logarithms and powers within 0.55 ulp
-   (tests/unit/base_same_test.c), but for angles that underflow; so that a float rounded from it is
-   nearly always that of libm. Special values are those of C, but for what is said. */
+   They are within 1 ulp of the exact value, logarithms and powers within 0.55 ulp
+   (tests/unit/base_same_test.c), except angles that underflow; so that a float rounded from one is
+   nearly always that of libm. Special values are those of C, except where stated. */
 #ifndef BASE_SAME_H
 #define BASE_SAME_H
 
-/* Angles of more than 10^6 are first reduced by multiples of the double nearest to 2 pi, not of 2
-   pi. */
+/* Angles above 10^6 are first reduced by multiples of the double nearest to 2 pi, not of 2 pi
+   itself. */
 double same_sin(double angle);
 double same_cos(double angle);
 double same_tan(double angle);

@@ -67,7 +67,7 @@ static double chance_of(uint32_t heads, uint32_t count)
     return exp(lgamma(n + 1.0) - lgamma(k + 1.0) - lgamma(n - k + 1.0) - n * log(2.0));
 }
 
-/* The index of the interval's low end: as far from 0 as the coverage of at least 95 % allows. */
+/* The index of the interval's low end: the largest that keeps a coverage of at least 95 %. */
 static uint32_t rank_of_low(uint32_t count, double *coverage)
 {
     uint32_t rank = 0;

@@ -15,9 +15,9 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* What takes no descriptor, no path and no other process. The C library asks for the processors and
-   the memory of the machine before it makes heaps and sorts, AddressSanitizer for the stack of
-   signal handlers. */
+/* Calls that are always allowed: they take no descriptor, no path and no other process. The C
+   library asks for the machine's processors and memory before it makes heaps and sorts;
+   AddressSanitizer for the stack of signal handlers. */
 static const int always[] = {
     SCMP_SYS(brk),
     SCMP_SYS(clock_gettime),
@@ -39,7 +39,7 @@ static const int always[] = {
     SCMP_SYS(sysinfo),
 };
 
-/* Calls that one argument decides about. */
+/* Allows calls that depend on one argument. */
 static int allow_some(scmp_filter_ctx filter)
 {
     const struct scmp_arg_cmp no_code = SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0);
@@ -73,8 +73,8 @@ static int filter_calls(void)
     return -error;
 }
 
-/* Landlock, of Linux 5.13 and later: no file, no port, no other process. The layout is the
-   kernel's, which takes members that it does not know where they are 0. */
+/* Landlock (Linux 5.13 and later): gives up all files, ports and other processes. The struct has
+   the kernel's layout; a kernel accepts members that it does not know if they are 0. */
 static void give_up_files(void)
 {
     enum { CREATE_RULESET = 444, RESTRICT_SELF = 446, ASK_VERSION = 1 };
@@ -95,7 +95,7 @@ static void give_up_files(void)
     close(rules);
 }
 
-/* `line` is one of /proc/self/maps: the part of memory, then `rw-s` or the like. */
+/* Unmaps shared memory. `line`: of /proc/self/maps, the address range, then `rw-s` or the like. */
 static void give_up_if_shared(const char *line)
 {
     char *end;
@@ -105,9 +105,9 @@ static void give_up_if_shared(const char *line)
         (void)syscall(SYS_munmap, first, behind - first);
 }
 
-/* What is written to memory that is shared leaves the child: a driver's cache of kernels is a file
-   of the user, mapped; a window's pixels are another process's. 0, or errno. No memory is taken:
-   the fork may have come while another thread held the lock of that. */
+/* Unmaps all shared memory, since writes to it leave the child: a driver's kernel cache is a mapped
+   file of the user, a window's pixels are another process's. 0, or errno. It allocates nothing:
+   another thread may have held the allocator's lock at the fork. */
 static int give_up_shared_memory(void)
 {
     char text[8192];

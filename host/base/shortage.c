@@ -7,7 +7,7 @@
 
 #include "whit/whit_program.h"
 
-enum { ROOM_FILES = 16 }; /* as many as a driver may want at a time */
+enum { ROOM_FILES = 16 }; /* file descriptors that a driver may need at once */
 
 static bool has_memory(size_t bytes)
 {

@@ -1,4 +1,4 @@
-/* Single SPIR-V instructions (SPIR-V 1.5): what is read and written of modules that glslang made.
+/* SPIR-V 1.5: the numbers and layout of instructions, as far as modules made by glslang need them.
  */
 #ifndef BASE_SPIRV_H
 #define BASE_SPIRV_H
@@ -8,11 +8,11 @@
 enum {
     SPV_MAGIC = 0x07230203,
     SPV_HEADER_WORDS = 5,
-    SPV_BOUND_AT = 3, /* the word of the header that all ids are below */
+    SPV_BOUND_AT = 3, /* the header word with the bound: all ids are below it */
     SPV_BOUND_MAX = 1 << 24,
 };
 
-/* Numbers of section 3.32. */
+/* Opcodes of section 3.32. */
 enum {
     OP_NOP = 0,
     OP_UNDEF = 1,

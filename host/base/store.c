@@ -18,7 +18,7 @@
 struct header {
     char magic[8];
     uint64_t data_bytes;
-    uint64_t hash; /* of name and data: one file in place of another is damage as well */
+    uint64_t hash; /* of name and data, so that a file under another's name counts as damaged */
 };
 
 static const char magic[8] = {'w', 'h', 'i', 't', 'k', 'e', 'p', '1'};
@@ -41,7 +41,7 @@ static bool is_off(void)
     return value && *value && strcmp(value, "0") != 0;
 }
 
-/* Makes its parent and itself; what that leads to is seen when it is opened. */
+/* Makes the folder and its parent. Failures show when it is opened. */
 static char *make_folder(void)
 {
     const char *xdg = getenv("XDG_CACHE_HOME");
@@ -60,8 +60,8 @@ static char *make_folder(void)
     return folder;
 }
 
-/* NULL, or what is wrong with a folder that is open. One that others may look into is closed to
-   them; from one that they could write to nothing can be trusted. */
+/* Checks an open folder. NULL, or why it is not used. Access by others is removed if they can only
+   read it; a folder that others can write to is not trusted. */
 static const char *distrust(int fd)
 {
     struct stat info;
@@ -74,7 +74,7 @@ static const char *distrust(int fd)
     return NULL;
 }
 
-/* A descriptor of it, or -1 and what is wrong. */
+/* Opens the folder: a descriptor, or -1 with *why. */
 static int open_folder(const whit_log *log, const char *path, const char **why)
 {
     static atomic_flag warned = ATOMIC_FLAG_INIT;
@@ -118,8 +118,8 @@ char *store_folder(const whit_log *log)
 
 /* ---- Reading ---- */
 
-/* Whether it is a plain file that only this user can write. It has no link once another process has
-   replaced it, else one: with more links it is also somebody's file elsewhere. */
+/* Whether it is a plain file that only this user can write. It has one link, or none if another
+   process has replaced it meanwhile; with more it also stands elsewhere under another name. */
 static bool is_own_file(const struct stat *info)
 {
     return S_ISREG(info->st_mode) && info->st_uid == geteuid() && info->st_nlink <= 1 &&
@@ -176,7 +176,7 @@ bool store_read(const whit_log *log, const char *name, uint8_t **data, size_t *s
     bool good = false;
     *data = NULL;
     *size_bytes = 0;
-    /* Looked at before it is opened, for to open a pipe or a device may have an effect. */
+    /* Checked before it is opened, since opening a pipe or a device may have an effect. */
     if (folder >= 0 && fstatat(folder, name, &info, AT_SYMLINK_NOFOLLOW) == 0) {
         if (is_own_file(&info))
             fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -208,7 +208,7 @@ static bool write_all(int fd, const void *data, size_t size_bytes)
     return true;
 }
 
-/* Whether it is ".NAME.PID.tmp" or ".NAME.PID.COUNT.tmp" of a process that no longer exists. */
+/* Whether `name` is ".NAME.PID.tmp" or ".NAME.PID.COUNT.tmp" of a process that no longer exists. */
 static bool is_leftover(const char *name)
 {
     size_t length = strlen(name);
@@ -227,7 +227,7 @@ static bool is_leftover(const char *name)
 struct tally {
     uint64_t bytes;
     struct timespec oldest_time;
-    char oldest[256]; /* "": there is none that may go */
+    char oldest[256]; /* "": there is no file to remove */
 };
 
 /* Adds up the files in the folder and finds the oldest; removes leftover temporary files. */
@@ -277,7 +277,7 @@ static bool replace(int folder, const char *name, const void *data, size_t size_
     memcpy(header.magic, magic, sizeof magic);
     snprintf(temporary, sizeof temporary, ".%.200s.%ld.%u.tmp", name, (long)getpid(),
              atomic_fetch_add(&counter, 1));
-    (void)unlinkat(folder, temporary, 0); /* of another process that had this number, and is gone */
+    (void)unlinkat(folder, temporary, 0); /* left by an earlier process of this number */
     int fd = openat(folder, temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
     if (fd < 0)
         return false;

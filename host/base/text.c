@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Bytes of the character that `text` starts with; 0: it is no UTF-8, or has more bytes than it
-   needs. */
+/* Number of bytes of the character that `text` starts with; 0: it is no UTF-8, or an overlong
+   encoding. */
 static size_t decode(const unsigned char *text, uint32_t *code)
 {
     static const uint32_t min[5] = {0, 0, 0x80, 0x800, 0x10000};
@@ -19,7 +19,7 @@ static size_t decode(const unsigned char *text, uint32_t *code)
     size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
     *code = text[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; ++i) {
-        if ((text[i] & 0xc0) != 0x80) /* the 0 at the end too */
+        if ((text[i] & 0xc0) != 0x80) /* also the terminating 0 */
             return 0;
         *code = *code << 6 | (text[i] & 0x3fu);
     }
@@ -27,7 +27,8 @@ static size_t decode(const unsigned char *text, uint32_t *code)
     return *code < min[length] || *code > 0x10ffff || surrogate ? 0 : length;
 }
 
-/* What steers a terminal, or is itself not seen and changes how what is seen reads. */
+/* Whether a character controls a terminal, or is invisible and changes how the text around it
+   reads. */
 static bool is_hidden(uint32_t code)
 {
     static const struct {
@@ -48,7 +49,8 @@ static bool is_hidden(uint32_t code)
         if (code >= hidden[i].first && code <= hidden[i].last)
             return true;
     }
-    return (code & 0xfffe) == 0xfffe || (code >= 0xfdd0 && code <= 0xfdef); /* no characters */
+    return (code & 0xfffe) == 0xfffe ||
+           (code >= 0xfdd0 && code <= 0xfdef); /* noncharacters of Unicode */
 }
 
 size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES])

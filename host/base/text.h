@@ -1,22 +1,22 @@
-/* What a message quotes of a file. */
+/* Text of files, as messages quote it. */
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 
 #include "whit/whit_base.h"
 
-/* A message quotes at most this many characters of a file: enough to find the place, too few to
-   read the file by its messages. */
+/* The most characters of a file that a message quotes: enough to find the place, too few to read
+   the file through messages. */
 enum { TEXT_TOKEN_CHARACTERS = 40 };
 
 struct text_token {
     char text[4 * TEXT_TOKEN_CHARACTERS + sizeof "..."];
 };
 
-/* The start of `text`, and `...` where there is more of it; not shown yet, the log does that. NULL
-   is as "". Made to be used where it is called: "%s", text_token(name).text */
+/* The start of `text`, and `...` where it is longer. It still has to go through whit_text_show,
+   which the log does. NULL is as "". Use it in the same expression: "%s", text_token(name).text */
 struct text_token text_token(const char *text);
 
-/* The name nearest to `word`, by changes of a letter; NULL when none is near. */
+/* The name with the fewest changed letters from `word`; NULL when none is near. */
 const char *text_nearest(const char *word, const char *const *names, uint32_t count);
 
 #endif

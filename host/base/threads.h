@@ -21,7 +21,7 @@ void threads_for(uint32_t thread_count, uint32_t count, void (*fn)(void *context
 /* A thread that calls fn(context) once. NULL when it cannot be started. */
 struct thread;
 struct thread *thread_start(void (*fn)(void *context), void *context);
-/* Waits for its end and frees it; NULL is fine. */
+/* Waits for the thread's end and frees it; NULL is fine. */
 void thread_join(struct thread *thread);
 
 #endif

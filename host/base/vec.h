@@ -21,7 +21,7 @@ static inline float float_of_bits(uint32_t bits)
     return value;
 }
 
-/* Floats that are not above, not below. */
+/* The largest float not above x; the smallest not below it. */
 static inline float float_below(double x)
 {
     float f = (float)x;

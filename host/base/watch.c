@@ -14,21 +14,21 @@
 #include "base/threads.h"
 
 struct watched {
-    int folder; /* inotify's number of it */
+    int folder; /* inotify's number of the folder */
     char *name; /* in that folder */
 };
 
 struct watch {
     int fd;
-    int end, both; /* an eventfd that ends the thread; an epoll of it and fd */
+    int end, both; /* end: an eventfd that ends the thread; both: an epoll over `end` and `fd` */
     struct thread *thread;
     void (*wake)(void *user);
     struct watched *files;
     uint32_t count, capacity;
 };
 
-/* inotify merges an event with an equal one that nobody has read yet, and then does not wake again:
-   whoever is woken reads all events by watch_changed. */
+/* inotify merges an event with an equal one that is still unread, and then wakes nobody. So the
+   owner must read all events, by watch_changed, each time it is woken. */
 static void wait_for_events(void *context)
 {
     const struct watch *watch = context;
@@ -92,11 +92,12 @@ void watch_clear(struct watch *watch)
     if (!watch)
         return;
     for (uint32_t i = 0; i < watch->count; ++i) {
-        (void)inotify_rm_watch(watch->fd, watch->files[i].folder); /* once for all of a folder */
+        (void)inotify_rm_watch(watch->fd,
+                               watch->files[i].folder); /* fails after the first file of a folder */
         free(watch->files[i].name);
     }
     watch->count = 0;
-    (void)watch_changed(watch); /* what came before */
+    (void)watch_changed(watch); /* discards earlier events */
 }
 
 void watch_add(struct watch *watch, const char *path)

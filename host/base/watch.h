@@ -10,12 +10,12 @@ struct watch;
    watch_changed may have something to tell. */
 struct watch *watch_create(void (*wake)(void *user));
 void watch_destroy(struct watch *watch); /* NULL is fine */
-/* Also this file. Editors replace files: its folder is watched for its name. Standard input, which
-   never changes, is none. */
+/* Adds a file. Since editors replace files, its folder is watched for its name. Standard input,
+   which never changes, is not watched. */
 void watch_add(struct watch *watch, const char *path);
-void watch_clear(struct watch *watch); /* none of them any more */
-/* Whether one of them was written to its end, or put in place of another, since the last call. Does
-   not wait. */
+void watch_clear(struct watch *watch); /* stops watching all files */
+/* Whether a watched file was written and closed, or replaced by another file, since the last call.
+   Does not wait. */
 bool watch_changed(struct watch *watch);
 
 #endif
