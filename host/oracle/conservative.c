@@ -9,7 +9,7 @@
 
 enum { STACK_SIZE = 512 };
 
-/* As fmin and fmax, which would be calls. */
+/* Like fmin and fmax, which compilers may make calls of. */
 static double smaller(double a, double b)
 {
     return a < b ? a : b;
@@ -20,7 +20,7 @@ static double larger(double a, double b)
     return a > b ? a : b;
 }
 
-/* Whether what begins at `start` may still matter. */
+/* Whether an interval that begins at t = `start` may still matter. */
 static bool begins_in_time(const struct conservative_walk *walk, double start)
 {
     return start - INTERVAL_GROWTH * fabs(start) - DENORMAL <=
@@ -57,7 +57,7 @@ double conservative_entry(const struct conservative_walk *walk, const float box_
 typedef void (*leaf_fn)(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
                         uint32_t instance);
 
-/* A node whose box is entered, and where. */
+/* A node, and the t at which the ray enters its box. */
 struct entered {
     uint32_t node;
     double entry;

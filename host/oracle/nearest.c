@@ -8,11 +8,11 @@
 
 struct query {
     const struct accel *accel;
-    struct affine placed; /* object to world, of the instance at hand */
+    struct affine placed; /* object to world, of the current instance */
     double p[3], best2;
 };
 
-/* Squared distance to the box around a box that is placed: no more than to what is in it. */
+/* Squared distance to the world-space box of a transformed box: at most that to its contents. */
 static double box_distance2(const struct query *q, const float lo[3], const float hi[3])
 {
     double sum = 0.0;
@@ -45,7 +45,7 @@ static double triangle_distance2(const double p[3], double v[3][3])
            d4 = double3_dot(ac, bp);
     double d5 = double3_dot(ab, cp), d6 = double3_dot(ac, cp);
     double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    double s = 0.0, t = 0.0; /* along ab and ac */
+    double s = 0.0, t = 0.0; /* weights along ab and ac */
     if (d1 <= 0 && d2 <= 0)
         s = t = 0;
     else if (d3 >= 0 && d4 <= d3)
@@ -71,7 +71,8 @@ static double triangle_distance2(const double p[3], double v[3][3])
     return sum;
 }
 
-/* No more than the distance to the sphere where its transform stretches. */
+/* Squared distance to a sphere; a lower bound where the instance's transform stretches the sphere.
+ */
 static double sphere_distance2(const struct query *q, const struct gpu_triangle *record)
 {
     double center[3], at[3], stretch2 = 0.0, away2 = 0.0;

@@ -46,10 +46,10 @@
 #define ROUNDING            0x1p-24
 #define DENORMAL            0x1p-149
 #define NORMAL_MIN          0x1p-126
-/* Boxes grow by this much of the distance to the ray's origin: what the float test may still hit
-   lies within 16 roundings of it. */
+/* Boxes are widened by this share of the distance to the ray's origin: hits of the float test lie
+   within 16 roundings of a box. */
 #define BOX_GROWTH          0x1p-18
-#define BOX_GROWTH_INSTANCE 0x1p-14 /* of the tree over instances: maps stretch errors */
+#define BOX_GROWTH_INSTANCE 0x1p-14 /* in the tree over instances: transforms stretch errors */
 
 struct probe {
     double origin[3], dir[3];
@@ -61,12 +61,13 @@ struct probe {
     double box_growth;
 };
 
-/* What the exact test says of one triangle, and what it would take to turn that around. */
+/* The result of the test in double for one primitive, and how far it is from the opposite result.
+ */
 struct verdict {
     bool hit; /* edges only, without t_min and t_max */
     double t, u, v, t_error;
-    double margin; /* in error bounds, 0 or more */
-    double choice; /* of a sphere: likewise, how far its other end is from being taken */
+    double margin; /* distance from the opposite result, in error bounds, >= 0 */
+    double choice; /* of a sphere: how far its other end is from being taken, in error bounds */
 };
 
 struct point {
@@ -78,7 +79,7 @@ struct number {
     double value, error;
 };
 
-/* The same rule as make_ray_setup: ties go to z, then y. */
+/* Chooses the dominant axis as make_ray_setup does: ties go to z, then y. */
 static void probe_shear(struct probe *p)
 {
     double x = fabs(p->dir[0]), y = fabs(p->dir[1]), z = fabs(p->dir[2]);
@@ -105,7 +106,8 @@ static struct probe probe_world(const struct gpu_ray *ray, double growth)
     return p;
 }
 
-/* The ray in instance space, by the float matrix: only rounding differs from the float twin. */
+/* The ray in an instance's object space, by the instance's float matrix, so that it differs from
+   the float twin's only by rounding. */
 static struct probe probe_local(const struct probe *world, const struct gpu_instance *in)
 {
     const float *rows[3] = {in->inverse0, in->inverse1, in->inverse2};
@@ -162,7 +164,8 @@ static struct number edge_function(const struct point *c, const struct point *b)
     return out;
 }
 
-/* A hit is lost when any edge function changes sign; a miss is turned when all of one sign do. */
+/* The margin by edge functions: a hit is lost when any of them changes sign; a miss becomes a hit
+   when all of one sign do. */
 static double edges_margin(const struct number edge[3], bool hit)
 {
     double min = INFINITY, below = 0.0, above = 0.0;
@@ -213,7 +216,7 @@ static struct verdict probe_triangle(const struct probe *p, const struct gpu_tri
 
 /* The chord of a ray's line through a sphere, measured along the dominant axis. */
 struct chord {
-    double room, room_error; /* squared radius less squared distance of the line */
+    double room, room_error; /* squared radius less the squared distance of the line */
     struct number length_squared, middle, half, begin, end;
 };
 
@@ -228,7 +231,7 @@ static struct number number_of_axis(const struct probe *p, int axis)
     return (struct number){p->shear[axis], error};
 }
 
-/* The line: its middle and its distance. */
+/* Measures the line: the chord's middle, and the distance from the centre. */
 static void chord_measure(const struct number c[3], const struct number d[3], double radius,
                           struct chord *out)
 {
@@ -311,7 +314,7 @@ static void chord_square(const struct probe *p, const double normal[3], double *
     *v = 0.5 + 0.5 * (below ? copysign(1.0 - fabs(x), z) : z);
 }
 
-/* Tests a sphere; the hit is the first end of the chord that is not before t_min. */
+/* Tests a sphere; the hit is the first end of the chord at t_min or later. */
 static struct verdict probe_sphere(const struct probe *p, const struct gpu_triangle *sphere)
 {
     const int axes[3] = {p->x, p->y, p->z};
@@ -343,13 +346,13 @@ static struct verdict probe_sphere(const struct probe *p, const struct gpu_trian
 /* ---- Every triangle that matters ---- */
 
 struct search {
-    struct conservative_walk walk; /* the first member: its callbacks get at the rest */
+    struct conservative_walk walk; /* must come first: callbacks cast it to struct search */
     struct probe world, probe;
-    /* First pass: the two nearest hits. */
+    /* Found in the first pass: the two nearest hits. */
     struct verdict best;
     uint32_t instance, primitive;
     double second_t;
-    /* Second pass: how many error bounds away another answer is. */
+    /* Found in the second pass: how many error bounds away another answer is. */
     bool judging;
     double margin;
 };
@@ -364,7 +367,7 @@ static void keep_nearest(struct search *s, const struct verdict *v, uint32_t ins
                          uint32_t primitive)
 {
     if (instance == s->instance && primitive == s->primitive)
-        return; /* another part of it */
+        return; /* another record of the same primitive */
     if (hit_comes_before((struct hit_place){v->t, instance, primitive},
                          (struct hit_place){s->best.t, s->instance, s->primitive})) {
         s->second_t = s->primitive == HIT_NONE ? INFINITY : s->best.t;
@@ -377,8 +380,9 @@ static void keep_nearest(struct search *s, const struct verdict *v, uint32_t ins
     s->walk.limit = fmin(s->walk.limit, s->second_t);
 }
 
-/* The float answer differs only if the winner is lost, or if some other triangle is hit, in the
-   interval, and in front: it takes the largest of these three. */
+/* Lowers s->margin by what one primitive may change. The float answer differs only if the nearest
+   hit is lost, or if another primitive is hit, within the interval, and in front: all three must
+   happen, so the largest of the three margins counts. */
 static void judge(struct search *s, const struct verdict *v, const struct probe *p,
                   uint32_t instance, uint32_t primitive)
 {
@@ -420,7 +424,8 @@ static void visit_record(struct conservative_walk *walk, uint32_t record, uint32
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
     const struct probe *p = &s->probe;
-    /* Triangles seen edge-on have no t to speak of; what their boxes rule out stays ruled out. */
+    /* Triangles seen edge-on have no meaningful t; but what lies outside their boxes is ruled out.
+     */
     struct bvh_box box = accel_record_box(triangle);
     if (s->judging && conservative_entry(walk, box.lo, box.hi) == INFINITY)
         return;

@@ -1,16 +1,16 @@
-/* Hits in double, with how sure they are. */
+/* Hits in double, and how certain they are. */
 #ifndef ORACLE_ORACLE_H
 #define ORACLE_ORACLE_H
 
 #include "accel/accel.h"
 
-/* The double-precision oracle's closest hit, with how sure it is: |edge_margin| is by how many
-   error bounds of the float test the ray keeps away from another answer: losing the hit at an edge
-   or an end of the interval, or a hit on another triangle that is narrowly missed, or as near.
-   Below 1 the float test may decide otherwise. Negative for a miss. Triangles far off do not enter
-   it when traced by tree: then only what is below 1 is exact. `second_t` is the next hit behind on
-   another primitive (infinity: none; equal: a tie). `t_error` bounds the error of the float test's
-   t. */
+/* The oracle's closest hit, in double. |edge_margin| says how certain it is: the number of error
+   bounds of the float test between the ray and another answer, which is to lose the hit at an edge
+   or an end of the interval, or to hit another triangle that is narrowly missed or as near. Below 1
+   the float test may decide otherwise. It is negative for a miss. When traced through a tree, far
+   triangles do not enter it, so that only values below 1 are exact. `second_t` is the t of the next
+   hit on another primitive (infinity: none; equal to t: a tie). `t_error` bounds the error of the
+   float test's t. */
 struct oracle_hit {
     double t, u, v;
     uint32_t primitive, instance;

@@ -16,10 +16,11 @@
 
 enum { VERTICES = 3, AXES = 3 };
 
-/* P t^2 - 2 S t + Q, with t in units of 2^power, and its discriminant over 4. */
+/* The quadratic P t^2 - 2 S t + Q, with t in units of 2^power, and a quarter of its discriminant.
+ */
 struct quadratic {
     mpz_t p, s, q, disc;
-    mpz_t at, shifted, slope, value, root; /* to work with */
+    mpz_t at, shifted, slope, value, root; /* scratch */
     int power;
 };
 
@@ -98,9 +99,10 @@ static void set_dot(mpz_t out, mpz_t a[AXES], mpz_t b[AXES])
     mpz_addmul(out, a[2], b[2]);
 }
 
-/* over / under * 2^power, rounded to float. Both numbers are lost. The quotient is taken to some 40
-   bits, and one more that tells whether anything is left: that is enough for a double to be on the
-   same side of every float, and of every middle of two, and at one only where the quotient is. */
+/* over / under * 2^power, rounded to float. Destroys both numbers. The quotient is computed to some
+   40 bits and one more bit that tells whether anything remains. That is enough for a double to lie
+   on the same side as the quotient of every float and every middle of two, and to equal one only
+   where the quotient does. */
 static float round_quotient(mpz_t over, mpz_t under, mpz_t rest, int power)
 {
     if (mpz_sgn(over) == 0)
@@ -118,7 +120,7 @@ static float round_quotient(mpz_t over, mpz_t under, mpz_t rest, int power)
     return (float)ldexp(sign * bits, power - shift - 1) + 0.0f;
 }
 
-/* The edge functions and their sum; false when they or the sum say that nothing is met. */
+/* Computes the edge functions and their sum. False when their signs or a sum of 0 mean a miss. */
 static bool set_edges(struct rational *r, uint32_t *edges)
 {
     bool below = false, above = false;
@@ -142,7 +144,8 @@ bool rational_meet(struct rational *r, struct vec3 origin, struct vec3 dir, cons
                    float *key, uint32_t *edges)
 {
     uint32_t on_edges;
-    /* Above every power there is, so that it is none's; all numbers 0: 0 in any unit. */
+    /* FLT_MAX_EXP is above every power, so it stands for "none"; if all numbers are 0, they are 0
+       in any unit. */
     int unit = lowest_of(origin, FLT_MAX_EXP), dir_unit = lowest_of(dir, FLT_MAX_EXP);
     for (int i = 0; i < VERTICES; ++i)
         unit = lowest_of(v[i], unit);
@@ -157,7 +160,7 @@ bool rational_meet(struct rational *r, struct vec3 origin, struct vec3 dir, cons
         return false;
     set_cross(r->cross, r->vertex[1], r->vertex[2]);
     set_dot(r->volume, r->vertex[0], r->cross);
-    /* The volume has three lengths for a unit, D has two and that of the direction. */
+    /* The volume's unit is three lengths, that of D two lengths times the direction's unit. */
     *key = round_quotient(r->volume, r->det, r->rest, unit - dir_unit);
     if (edges)
         *edges = on_edges;
@@ -166,8 +169,8 @@ bool rational_meet(struct rational *r, struct vec3 origin, struct vec3 dir, cons
 
 /* ---- Spheres, in integers ---- */
 
-/* Sign of the near or far root less `at`, which is a double: of the quadratic there, and of half of
-   its slope, which tells the side of the vertex that `at` is on. */
+/* Sign of (the near or far root - at), with `at` a double. It follows from the sign of the
+   quadratic at `at` and from that of half its slope there, which tells the side of the vertex. */
 static int compare_root(struct quadratic *f, bool far, double at)
 {
     int exponent;
@@ -192,8 +195,8 @@ static int compare_root(struct quadratic *f, bool far, double at)
     return slope <= 0 ? value : -1;
 }
 
-/* Floats that are not negative are in the order of their bits; after the largest comes what would
-   go on there, so that its middle with the largest is where keys become infinite. */
+/* Floats >= 0 are in the order of their bits. The largest is followed by 2^128, the next value of
+   the pattern, so that keys become infinite from the middle of both on. */
 #define INFINITE_BITS 0x7f800000u
 
 static double value_of_bits(uint32_t bits)
@@ -201,8 +204,8 @@ static double value_of_bits(uint32_t bits)
     return bits == INFINITE_BITS ? 0x1p128 : (double)float_of_bits(bits);
 }
 
-/* Whether the root rounds to a float above this one: it is beyond the middle of this one and the
-   next, or at it where the next one is even. A double holds the middle. */
+/* Whether the root rounds to a float above the one with these bits: it is beyond the middle of this
+   float and the next, or at the middle where the next one is even. A double holds the middle. */
 static bool is_above(struct quadratic *f, bool far, uint32_t bits)
 {
     double middle = 0.5 * (value_of_bits(bits) + value_of_bits(bits + 1));
@@ -210,8 +213,8 @@ static bool is_above(struct quadratic *f, bool far, uint32_t bits)
     return side > 0 || (side == 0 && bits % 2 == 1);
 }
 
-/* Some 60 bits of the root, which is not negative: those of the square root, and either a sum of
-   two numbers with the same sign or Q over that sum. */
+/* Some 60 bits of the root, which is >= 0: from as many bits of the square root, and either a sum
+   of two numbers with the same sign or Q over that sum. */
 static float estimate_root(struct quadratic *f, bool far, mpz_t rest)
 {
     enum { BITS = 64 };
@@ -229,8 +232,8 @@ static float estimate_root(struct quadratic *f, bool far, mpz_t rest)
                   : round_quotient(f->value, f->root, rest, f->power);
 }
 
-/* The key of a root that is not negative. What decides is on which side of the middles of floats
-   the root is, and the signs of integers say so: bits of the estimate only make that short. */
+/* The key of a root >= 0. The signs of integers decide on which side of the middles between floats
+   the root is; the estimate only makes the search short. */
 static float round_root(struct quadratic *f, bool far, mpz_t rest)
 {
     uint32_t bits = float_bits(estimate_root(f, far, rest));
@@ -272,7 +275,7 @@ bool rational_meet_sphere(struct rational *r, struct vec3 origin, struct vec3 di
     set_quadratic(r, origin, dir, center, radius);
     if (mpz_sgn(f->disc) < 0)
         return false;
-    /* The roots' sum is 2 S / P, their product Q / P. */
+    /* The sum of the roots is 2 S / P, their product is Q / P. */
     int sum = mpz_sgn(f->s), product = mpz_sgn(f->q);
     *out = (struct rational_chord){.near_there = sum >= 0 && product >= 0,
                                    .far_there = sum >= 0 || product <= 0,
@@ -320,12 +323,12 @@ enum opinion { NOT_MET, MET, UNSURE };
 
 struct estimate {
     enum opinion met;
-    uint32_t edges; /* if it is met */
-    float min, max; /* the key is between them, if it is met */
+    uint32_t edges; /* valid if it is met */
+    float min, max; /* bounds of the key, valid if it is met */
 };
 
-/* t = N / D: with errors n and m, |error| <= (n + |t| m) / (|D| - m), and a few u of t. Rounding is
-   monotonic, so the key lies between what the bounds of t round to. */
+/* t = N / D. With errors n of N and m of D, |error of t| <= (n + |t| m) / (|D| - m), and a few u of
+   t. Rounding is monotonic, so the key lies between the rounded bounds of t. */
 static void estimate_key(struct estimate *out, double v[3][3], const struct bounded edge[3])
 {
     struct bounded volume = triple(v[0], v[1], v[2]);
@@ -372,10 +375,10 @@ static struct estimate estimate_candidate(const double origin[3], const double d
     return out;
 }
 
-/* |m x d|^2 - r^2 d.d is minus the discriminant. Products of the cross product m x d are off as
-   those above, with two factors fewer; what is left of its size after that is rounded by a few u,
-   as r^2 d.d is. Nothing underflows here either: squares are 0 or at least 2^-702, and at most
-   2^517. */
+/* Whether the line surely misses the sphere. |m x d|^2 - r^2 d.d is minus the discriminant.
+   Products of the cross product m x d have errors as those above, with two factors fewer; the sum
+   of squares adds a few u, as r^2 d.d does. Nothing underflows here either: squares are 0 or at
+   least 2^-702, and at most 2^517. */
 static bool surely_misses(const double origin[3], const double dir[3],
                           const struct gpu_triangle *sphere)
 {
@@ -400,7 +403,7 @@ struct search {
     struct rational *rational;
     const struct rational_query *query;
     const struct gpu_ray *world;
-    struct gpu_ray ray; /* where walk->ray is */
+    struct gpu_ray ray; /* the ray in the space of walk->ray */
     float t_max;
     struct rational_hit best;
 };
@@ -415,8 +418,8 @@ static bool is_same(uint32_t instance, uint32_t primitive, const struct rational
     return instance == hit->instance && primitive == hit->primitive;
 }
 
-/* Whether a hit is in range and comes after query->behind; a sphere's far end does where its key
-   is larger. */
+/* Whether a hit is in range and comes after query->behind; a sphere's far end does if its key is
+   larger. */
 static bool may_count(const struct search *s, float t, uint32_t instance, uint32_t primitive)
 {
     return t >= s->world->t_min && t <= s->t_max &&
@@ -492,7 +495,7 @@ static void visit_record(struct conservative_walk *walk, uint32_t record, uint32
         visit_exactly(s, triangle, instance);
 }
 
-/* Sets the ray of the tree that comes next. */
+/* Sets the ray for the tree to walk next. */
 static bool set_ray(struct search *s, const struct gpu_ray *ray)
 {
     s->ray = *ray;
@@ -512,7 +515,7 @@ static bool enter_instance(struct conservative_walk *walk, uint32_t instance)
     return set_ray(s, &local);
 }
 
-/* See instance_spread. */
+/* Widens the boxes of the tree over instances; see instance_spread. */
 static void widen_for_instances(const struct rational *rational, struct conservative_ray *ray)
 {
     double dir = fmax(fmax(fabs(ray->dir[0]), fabs(ray->dir[1])), fabs(ray->dir[2]));

@@ -32,12 +32,12 @@
 struct rational_hit {
     float t;                      /* the key; infinity: miss */
     uint32_t primitive, instance; /* HIT_NONE: miss */
-    uint32_t edges;               /* that the point is on: 0 inside, 1, 2 at a vertex */
+    uint32_t edges; /* number of edges that the point is on: 0 inside, 1, or 2 at a vertex */
 };
 
-/* All fields may be zero: the closest hit. */
+/* What rational_trace looks for; zeroed: the closest hit. */
 struct rational_query {
-    bool any;                          /* the first one that is found */
+    bool any;                          /* any hit, not the closest */
     bool brute;                        /* no tree and no filter: integers for every primitive */
     const struct rational_hit *behind; /* the first hit that comes after this one */
     /* The hit that the ray starts at; NULL: none. Its primitive is not hit again. A sphere is, at
@@ -46,26 +46,26 @@ struct rational_query {
     const struct rational_hit *own;
 };
 
-/* Numbers to work with, for one thread at a time. `accel` is borrowed and may be NULL for
-   rational_meet and rational_meet_sphere alone; after accel_pose a new one is needed. NULL: no
-   memory. */
+/* Scratch numbers for the functions below, for one thread at a time. `accel` is borrowed; it may be
+   NULL if only rational_meet and rational_meet_sphere are called. After accel_pose, create a new
+   one. NULL: no memory. */
 struct rational *rational_create(const struct accel *accel);
 void rational_destroy(struct rational *rational);
 
 /* Whether the line of the ray meets the triangle, and the key and edges of the point, regardless of
-   t_min and t_max. All numbers finite. `edges` may be NULL. */
+   t_min and t_max. All numbers must be finite. `edges` may be NULL. */
 bool rational_meet(struct rational *rational, struct vec3 origin, struct vec3 dir,
                    const struct vec3 v[3], float *key, uint32_t *edges);
 
 /* Where the line of a ray meets a sphere. */
 struct rational_chord {
     bool near_there, far_there;
-    float near_key, far_key; /* of an end that is there */
+    float near_key, far_key; /* set for an end that is there */
     bool inward;             /* S > 0: a ray that starts on the sphere goes into it */
 };
 
-/* Whether an end is there, regardless of t_min and t_max; *out is only set if the line meets the
-   sphere. All numbers finite, `dir` not 0. */
+/* Whether any end is there, regardless of t_min and t_max; *out is only set if the line meets the
+   sphere. All numbers must be finite, `dir` not 0. */
 bool rational_meet_sphere(struct rational *rational, struct vec3 origin, struct vec3 dir,
                           struct vec3 center, float radius, struct rational_chord *out);
 
@@ -73,7 +73,8 @@ bool rational_meet_sphere(struct rational *rational, struct vec3 origin, struct 
 void rational_trace(struct rational *rational, const struct gpu_ray *ray,
                     const struct rational_query *query, struct rational_hit *hit);
 
-/* Primitives of traced rays that came to the filter, and those that it left to integers. */
+/* Counts over all traced rays: primitives that were tested, and those that the filter left to
+   integers. */
 struct rational_work {
     uint64_t primitives, exact;
 };

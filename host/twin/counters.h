@@ -1,4 +1,4 @@
-/* Sums of what traversals cost. */
+/* Sums of the counters of traversals. */
 #ifndef TWIN_COUNTERS_H
 #define TWIN_COUNTERS_H
 

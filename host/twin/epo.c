@@ -67,12 +67,12 @@ static double epo_area(const struct gpu_triangle *record, const struct bvh_box *
 
 /* ---- One tree ---- */
 
-/* A triangle in a leaf. Sorted, the places of one triangle are side by side. */
+/* A triangle in a leaf. In the sorted array, the places of one triangle are side by side. */
 struct place {
     uint32_t instance, primitive, leaf, record;
 };
 
-/* Leaves below a node, by number from the left. */
+/* The leaves below a node, as a range of numbers counted from the left. */
 struct leaves {
     uint32_t begin, end;
 };
@@ -84,10 +84,10 @@ struct walk {
     const struct gpu_triangle *triangles;
     uint32_t first_node, first_triangle, place_count, triangle_count;
     double pair_cost;
-    struct leaves *leaves; /* one a node */
+    struct leaves *leaves; /* one for each node */
     struct place *places;
-    uint32_t *firsts;     /* of each triangle: its first place; then place_count */
-    struct bvh_epo *sums; /* one a task */
+    uint32_t *firsts;     /* [triangle]: its first place; at the end place_count */
+    struct bvh_epo *sums; /* one for each task */
 };
 
 static uint32_t number_leaves(struct walk *walk, uint32_t node, uint32_t begin)
@@ -138,7 +138,8 @@ static bool belongs(const struct walk *walk, uint32_t triangle, uint32_t node)
     return false;
 }
 
-/* Adds what `node` and the nodes below it hold of the triangle without owning it. */
+/* Adds the area of the triangle inside the boxes of `node` and of the nodes below it, of those to
+   whose subtrees it does not belong. */
 static void add_overlap(const struct walk *walk, uint32_t triangle, uint32_t node, double *sum)
 {
     const struct gpu_bvh_node *at = &walk->nodes[node];

@@ -116,8 +116,8 @@ static void add_product(struct wide *w, int target, const int points[3], int i, 
     }
 }
 
-/* One determinant of three points after the other: e_a = d.(b x c) about the origin, so
-   det(d, b, c) - det(d, b, o) - det(d, o, c), and so on; and N = a.(b x c), likewise. */
+/* The determinants of three points: e_a = d.(b x c) about the origin is det(d, b, c) - det(d, b, o)
+   - det(d, o, c), and so on; and N = a.(b x c) likewise. */
 static const struct {
     int8_t target, points[3];
     bool negative;
@@ -151,8 +151,8 @@ static void add_determinants(struct wide *w)
     }
 }
 
-/* Carries; digits are 0..65535 then, of two's complement. The first integer, e_a so far, becomes
-   D = e_a + e_b + e_c. */
+/* Propagates the carries, after which digits are 0..65535, in two's complement. The first integer,
+   e_a until now, becomes D = e_a + e_b + e_c. */
 static void carry_digits(struct wide *w)
 {
     int32_t carry[WIDE_COUNT] = {0}, some[WIDE_COUNT] = {0}, carry_a = 0, some_a = 0;
@@ -228,7 +228,7 @@ static int32_t compare_product(const struct wide *w, uint32_t factor, int32_t sh
             (int32_t)digit_at(w, WIDE_N, i + moved) - (int32_t)(sum & 0xffffu) - borrow;
         borrow = difference < 0 ? 1 : 0;
         more |= difference & 0xffff;
-        if (i < w->first + moved) /* of N, below all of the product */
+        if (i < w->first + moved) /* digits of N below the product's lowest */
             more |= (int32_t)digit_at(w, WIDE_N, i);
         d2 = d1;
         d1 = d0;
@@ -236,7 +236,7 @@ static int32_t compare_product(const struct wide *w, uint32_t factor, int32_t sh
     return borrow ? -1 : more != 0 ? 1 : 0;
 }
 
-/* N / D, both positive, to nearest, ties to even. */
+/* N / D, both positive, rounded to nearest, ties to even. */
 static float round_quotient(const struct wide *w, int32_t top_n, int32_t top_d)
 {
     uint32_t zeros_n = leading_zeros(w, WIDE_N, top_n), zeros_d = leading_zeros(w, WIDE_D, top_d);
@@ -247,7 +247,7 @@ static float round_quotient(const struct wide *w, int32_t top_n, int32_t top_d)
         quotient = quotient << 1 | (one ? 1u : 0u);
         rest = (one ? rest - by : rest) << 1;
     }
-    /* t is quotient 2^(scale - 27), but for 2 in the last place. */
+    /* t is quotient 2^(scale - 27), off by at most 2 in the last place. */
     int32_t scale = 16 * (top_n - top_d) - (int32_t)zeros_n + (int32_t)zeros_d;
     int32_t drop = quotient >> 27 != 0 ? 4 : 3;
     int32_t biased = scale + drop + 123;

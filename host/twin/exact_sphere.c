@@ -36,11 +36,10 @@ void bound_sphere(const struct ray_setup *ray, struct vec3 center, float radius,
 /* ---- The exact test ----
 
    With m the centre less the origin, the t of the ends are the roots of f(t) = P t^2 - 2 S t + Q,
-   P = d.d, S = m.d, Q = m.m - r^2. In integers of digits of 12 bits, so that sums of products of
-   them fit an int: each a sum of digit[i] 2^(12 i), the last digit of any sign. Directions count in
-   units of 2^(e - 150), e being their least exponent, and lengths in such units of their own; so no
-   product is shifted by more than 507 bits, and the last of its digits is the one with number 46.
- */
+   with P = d.d, S = m.d, Q = m.m - r^2. They are integers, each a sum of digit[i] 2^(12 i), the
+   last digit of any sign: digits of 12 bits, so that sums of their products fit an int. Directions
+   have the unit 2^(e - 150), e being their least exponent, and lengths such a unit of their own; so
+   no product is shifted by more than 507 bits, and its last digit is at most number 46. */
 enum {
     DIGIT_BITS = 12,
     DIGIT_MASK = 0xfff,
@@ -116,7 +115,7 @@ static void add_products(struct ball *w)
     add_product(w, WIDE_Q, 9, 9, false, true);
 }
 
-/* Digits are 0..4095 then, but for the last. */
+/* Propagates the carries, after which all digits but the last are 0..4095. */
 static void carry_digits(struct ball *w, int32_t sign[WIDE_COUNT])
 {
     for (int k = 0; k < WIDE_COUNT; ++k) {
@@ -158,9 +157,9 @@ static int32_t product_at(const int32_t *digits, int32_t last, const int32_t fac
            factor[2] * digit_at(digits, last, i - 2);
 }
 
-/* On which side of the middle between the float of these bits and the next one an end of the chord
-   is: 1 beyond it. The middle is mantissa 2^power, so the signs of f and of its slope's half there,
-   P t - S, tell. Both are multiplied by a power of two where power < 0. */
+/* On which side an end of the chord is of the middle between the float with these bits and the next
+   float: 1 beyond it. The middle is mantissa 2^power. The signs there of f and of half its slope, P
+   t - S, decide; both are multiplied by a power of two where power < 0. */
 static int32_t side_of_middle(struct ball *w, uint32_t bits, bool far)
 {
     uint32_t exponent = bits >> 23;
@@ -174,7 +173,7 @@ static int32_t side_of_middle(struct ball *w, uint32_t bits, bool far)
     int32_t up_digits = up / DIGIT_BITS, down_digits = down / DIGIT_BITS;
     int32_t last = w->last + at_least(up_digits + 2, down_digits) + 1;
     int32_t slope_carry = 0, slope_some = 0, carry = 0, some = 0;
-    for (int32_t i = 0; i < last; ++i) { /* P t - S, and P t - 2 S into w->product */
+    for (int32_t i = 0; i < last; ++i) { /* computes P t - S, and P t - 2 S into w->product */
         int32_t pt = product_at(w->digits[WIDE_P], w->last, factor, i - up_digits);
         int32_t s =
             digit_at(w->digits[WIDE_S], w->last, i - down_digits) * (1 << down % DIGIT_BITS);
@@ -189,7 +188,7 @@ static int32_t side_of_middle(struct ball *w, uint32_t bits, bool far)
     int32_t slope = exact_sign(slope_carry, slope_some), twice_digits = 2 * down / DIGIT_BITS;
     int32_t end = at_least(last + up_digits + 2, w->last + twice_digits) + 1;
     carry = 0;
-    for (int32_t i = 0; i < end; ++i) { /* t (P t - 2 S) + Q */
+    for (int32_t i = 0; i < end; ++i) { /* computes t (P t - 2 S) + Q */
         carry +=
             product_at(w->product, last, factor, i - up_digits) +
             digit_at(w->digits[WIDE_Q], w->last, i - twice_digits) * (1 << 2 * down % DIGIT_BITS);
@@ -202,7 +201,7 @@ static int32_t side_of_middle(struct ball *w, uint32_t bits, bool far)
     return f < 0 || slope > 0 ? -1 : f == 0 ? 0 : 1;
 }
 
-/* Whether the key of an end is above the float of these bits. */
+/* Whether the key of an end is above the float with these bits. */
 static bool is_beyond(struct ball *w, uint32_t bits, bool far)
 {
     int32_t side = side_of_middle(w, bits, far);

@@ -6,13 +6,13 @@
 
 #include "twin/sphere.h"
 
-/* What floats can tell. Keys are the exact t of the ends of the chord, rounded to nearest. */
+/* What floats can decide. Keys are the exact t of the ends of the chord, rounded to nearest. */
 struct sphere_bounds {
     bool outside;                           /* surely missed */
-    bool inside;                            /* surely met, and what the chord says is good */
-    bool inward_known;                      /* what the chord says of it is so */
-    float near_lo, near_hi, far_lo, far_hi; /* of the keys, if it is met */
-    float room_error;                       /* the room is not off by more */
+    bool inside;                            /* surely hit, and the chord's values are valid */
+    bool inward_known;                      /* the chord's `inward` is certain */
+    float near_lo, near_hi, far_lo, far_hi; /* bounds of the keys, if it is hit */
+    float room_error;                       /* error bound of the foot's `room` */
 };
 
 void bound_sphere(const struct ray_setup *ray, struct vec3 center, float radius,
@@ -20,8 +20,8 @@ void bound_sphere(const struct ray_setup *ray, struct vec3 center, float radius,
 
 struct sphere_candidate {
     bool met;     /* at t >= 0; false where the key exceeds FLT_MAX */
-    bool at_exit; /* at the far end */
-    bool inward;  /* where it is met: from the ray's origin the centre is ahead */
+    bool at_exit; /* hit at the far end */
+    bool inward;  /* where it is hit: the centre is ahead of the ray's origin */
     float key;    /* where it is met */
 };
 

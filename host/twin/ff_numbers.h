@@ -1,6 +1,7 @@
-/* shaders/lib/ff_numbers.glsl in C, bit for bit. A pair is the sum of two floats, the second a
-   rounding error of the first (Dekker 1971, "A floating-point technique for extending the available
-   precision"). Products of pairs are off by 2^-45 of themselves, sums by 2^-46 of their terms. */
+/* shaders/lib/ff_numbers.glsl in C, bit for bit. A pair stands for the sum of two floats, of which
+   the second is a rounding error of the first (Dekker 1971, "A floating-point technique for
+   extending the available precision"). Products of pairs have a relative error of 2^-45, sums one
+   of 2^-46 of their terms. */
 #ifndef TWIN_FF_NUMBERS_H
 #define TWIN_FF_NUMBERS_H
 
@@ -109,7 +110,7 @@ struct bounded_ff {
     float error;
 };
 
-/* t = top / bottom, rounded to nearest. False: not sure. */
+/* t = top / bottom, rounded to nearest. False: it is not certain. */
 static inline bool round_ratio(struct bounded_ff top, struct bounded_ff bottom, float *t)
 {
     float first = top.value.high / bottom.value.high;

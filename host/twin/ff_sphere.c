@@ -2,8 +2,9 @@
 
 #include "twin/ff_numbers.h"
 
-/* The coefficients of f(t) = P t^2 - 2 S t + Q, whose roots are the ends of the chord; in units in
-   which the direction, and the larger of the way to the centre and the radius, are 1 to 2 long. */
+/* The coefficients of f(t) = P t^2 - 2 S t + Q, whose roots are the t of the chord's ends; in units
+   in which the direction, and the larger of the radius and the vector to the centre, are 1 to 2
+   long. */
 struct quadratic {
     struct bounded_ff p, s, q;
 };
@@ -24,8 +25,8 @@ static struct quadratic find_quadratic(const struct ff_vector *m, const struct f
                               .q = bounded(ff_minus(mm, rr), mm.high + rr.high)};
 }
 
-/* S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): its terms are of the sphere's size, however far it is.
- */
+/* The discriminant, S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): the size of its terms is that of the
+   sphere, however far away it is. */
 static struct bounded_ff discriminant(const struct ff_vector *m, const struct ff_vector *d,
                                       struct ff rr, struct bounded_ff p)
 {
@@ -78,7 +79,7 @@ bool ff_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, flo
     struct quadratic f = find_quadratic(&m, &d, rr);
     struct bounded_ff room = discriminant(&m, &d, rr, f.p);
     int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
-    /* |S| + root: no digits cancel out in it. The other end is Q over that. */
+    /* |S| + root has no cancellation; the other end comes from Q over it. */
     struct bounded_ff root = root_of(room), sum = negated(f.s, s < 0);
     sum.value = ff_plus(sum.value, root.value);
     sum.error = (sum.error + root.error) + sum.value.high * FF_RELATIVE;

@@ -1,11 +1,11 @@
-/* shaders/lib/ff_sphere.glsl in C, bit for bit: what exact_meet_sphere() tells, in pairs of
+/* shaders/lib/ff_sphere.glsl in C, bit for bit: the result of exact_meet_sphere() in pairs of
    floats, wherever their error bound leaves no doubt. Bounds: docs/numerics.md, "exact". */
 #ifndef TWIN_FF_SPHERE_H
 #define TWIN_FF_SPHERE_H
 
 #include "twin/exact_sphere.h"
 
-/* As exact_meet_sphere(). False: pairs of floats cannot decide, and *out is meaningless. */
+/* Like exact_meet_sphere(). False: pairs of floats cannot decide, and *out is undefined. */
 bool ff_meet_sphere(struct vec3 origin, struct vec3 dir, struct vec3 center, float radius,
                     bool only_far, float t_min, struct sphere_candidate *out);
 

@@ -2,7 +2,7 @@
 
 #include "twin/ff_numbers.h"
 
-/* d.(a x b) of vectors up to 2. */
+/* d.(a x b) for vectors up to length 2. */
 static struct bounded_ff triple(const struct ff_vector *d, const struct ff_vector *a,
                                 const struct ff_vector *b)
 {
@@ -20,12 +20,12 @@ static bool same(struct vec3 a, struct vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Vectors between a ray's origin and a triangle's vertices, and the direction; each scaled to
-   lengths up to 2, by these powers of two. */
+/* Vectors from a ray's origin to a triangle's vertices and between these, and the direction; each
+   scaled to lengths up to 2, by these powers of two. */
 struct ff_triangle {
     struct ff_vector a, b, ab, ac, bc, along;
     int way, size, speed;
-    bool fit; /* to be scaled */
+    bool fit; /* they can be scaled */
 };
 
 static struct ff_triangle ff_triangle(struct vec3 origin, struct vec3 dir, struct vec3 v0,

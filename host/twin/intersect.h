@@ -62,8 +62,8 @@ static inline float vec3_largest_magnitude(struct vec3 p)
     return float_larger(fabsf(p.x), float_larger(fabsf(p.y), fabsf(p.z)));
 }
 
-/* For NUMERICS_EXACT: quotients are bounded for divisors of 2^-126..2^126 alone (Vulkan: 2.5 ulp).
-   With others no filter decides. */
+/* For NUMERICS_EXACT. Vulkan bounds the error of quotients (2.5 ulp) only for divisors in
+   2^-126..2^126; with others the shear is NaN, and no filter decides. */
 static inline void bound_ray_setup(struct ray_setup *ray)
 {
     float size = vec3_largest_magnitude(ray->dir);

@@ -1,4 +1,4 @@
-/* Rays as the float twin and the shaders have them. */
+/* Rays in the form that the float twin and the shaders use. */
 #ifndef TWIN_RAY_H
 #define TWIN_RAY_H
 
@@ -7,7 +7,7 @@
 #include "abi/bvh.h"
 #include "base/vec.h"
 
-/* Finite, and with a direction: all others hit nothing. */
+/* Whether a ray is finite and has a direction. All others hit nothing. */
 static inline bool accel_ray_is_usable(const struct gpu_ray *ray)
 {
     struct vec3 o = vec3_load(ray->origin), d = vec3_load(ray->dir);
@@ -23,8 +23,8 @@ static inline struct vec3 accel_rotate_rows(const float *r0, const float *r1, co
                      (r2[0] * p.x + r2[1] * p.y) + r2[2] * p.z);
 }
 
-/* The ray in an instance's object space, in floats: their roundings are what the float twin and the
-   shaders have, so they belong to the ray that every answer is about. */
+/* The ray in an instance's object space, in floats. It has the roundings of the float twin and the
+   shaders, which count as part of the ray: every answer, also an exact one, is about this ray. */
 static inline struct gpu_ray accel_local_ray(const struct gpu_instance *instance,
                                              const struct gpu_ray *ray)
 {

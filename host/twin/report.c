@@ -1,4 +1,5 @@
-/* Shape of the mesh trees, and visits of random lines: predicted by areas, measured on the CPU. */
+/* Measures the shape of the mesh trees and the visits of random lines: predicted from areas, and
+   counted on the CPU. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,7 +17,7 @@ enum { RAYS_A_TASK = 1024 };
 
 /* Sums over the nodes of one tree. */
 struct tally {
-    double inner, leaves, shared; /* half areas; of leaves: times triangles */
+    double inner, leaves, shared; /* half areas; each leaf's times its triangles */
 };
 
 static double shared_area(const struct gpu_bvh_node *a, const struct gpu_bvh_node *b)
@@ -56,9 +57,9 @@ static void add_nodes(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t 
 
 /* ---- Random lines ---- */
 
-/* A line from the uniform measure on all that meet the box: it enters at a point that is uniform
-   over the surface, along a direction by the cosine with the normal there (Santalo 1976, "Integral
-   geometry and geometric probability"). The ray starts before the box. */
+/* A random line, uniform among all that meet the box: it enters at a uniform point of the surface,
+   with directions by the cosine to the normal there (Santalo 1976, "Integral geometry and geometric
+   probability"). The ray starts before the box. */
 static struct gpu_ray random_line(const struct bvh_box *box, uint64_t *random)
 {
     double size[3], faces[3], length = 0.0;
@@ -91,7 +92,7 @@ struct measuring {
     const struct accel *accel;
     const double *area_ends; /* running sum of the areas of the meshes' boxes */
     uint32_t mesh_count, ray_count;
-    struct gpu_cost *costs; /* one a task */
+    struct gpu_cost *costs; /* one for each task */
     uint32_t *statuses;
 };
 
@@ -108,7 +109,7 @@ static uint32_t mesh_at(const struct measuring *measuring, double area)
     return first;
 }
 
-/* A line through one mesh, in its own space: as if the scene were that mesh alone. */
+/* Traces a line through one mesh in its own space, as if it were the whole scene. */
 static void measure_line(const struct measuring *measuring, uint32_t index, struct gpu_cost *cost,
                          uint32_t *status)
 {
@@ -117,7 +118,7 @@ static void measure_line(const struct measuring *measuring, uint32_t index, stru
     struct accel_mesh *mesh = &measuring->accel->meshes[mesh_index];
     struct gpu_instance instance = {.root = mesh->root};
     struct accel alone = *measuring->accel;
-    if (!alone.flat) { /* which is one mesh in its own space already */
+    if (!alone.flat) { /* a flat scene is one mesh already */
         alone.meshes = mesh;
         alone.instances = &instance;
         alone.mesh_count = alone.instance_count = 1;

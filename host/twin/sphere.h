@@ -6,7 +6,7 @@
 #include "accel/extent.h"
 #include "twin/intersect.h"
 
-/* Turned, as the shader has them. */
+/* The shader's struct Foot: the dominant axis is last. */
 struct foot {
     struct vec3 c, d, off;
     float dd, mid, rr, room, half_length;
@@ -15,7 +15,7 @@ struct foot {
 struct chord {
     bool met, inward;
     float t_near, t_far, t_box;
-    struct vec3 middle, to_exit; /* turned */
+    struct vec3 middle, to_exit; /* the dominant axis is last */
 };
 
 static inline struct foot drop_perpendicular(const struct ray_setup *ray, struct vec3 center,

@@ -1,5 +1,5 @@
-/* shaders/bind/traverse.glsl, with what it includes, in C: the two modes that geometry alone
-   decides. */
+/* shaders/bind/traverse.glsl, with the files that it includes, in C: the modes that depend on
+   geometry alone. */
 #include "accel/accel.h"
 
 #include <float.h>
@@ -27,15 +27,15 @@ struct walk {
     uint32_t order, numerics;
     bool any;
     bool next;               /* TRAVERSE_NEXT */
-    float t_min, hit_before; /* the latter is -infinity but at TRAVERSE_NEXT */
+    float t_min, hit_before; /* hit_before: -infinity except with TRAVERSE_NEXT */
     uint32_t skip_instance, skip_primitive;
-    struct gpu_hit *hit; /* t is the largest that still counts */
+    struct gpu_hit *hit; /* its t is the largest that still counts */
     float lo, hi;        /* bounds of the hit's key */
     bool at_exit;        /* the hit is the far end of a sphere */
     uint32_t triangle;   /* record of the hit */
     struct gpu_cost cost;
     uint32_t status;
-    uint32_t level; /* of the ref in hand */
+    uint32_t level; /* of the current ref */
     uint32_t stack[STACK_SIZE], levels[STACK_SIZE];
 };
 
@@ -107,13 +107,13 @@ static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, fl
     return b_first ? ref_b : ref_a;
 }
 
-/* Where a ray meets a primitive, if it does. What decides is the key, in lo..hi: t itself, but at
-   NUMERICS_EXACT the exact t rounded to nearest, which is the t of a finished hit. */
+/* A candidate hit. It is compared by its key, which lies in lo..hi: t itself, but at NUMERICS_EXACT
+   the exact t rounded to nearest, which becomes the t of a finished hit. */
 struct candidate {
-    bool met; /* or may be, where not `sure` */
+    bool met; /* unless `sure`: it may be hit */
     float t, u, v;
     float lo, hi;
-    bool sure, rounded; /* NUMERICS_EXACT: met at t_min or beyond; t, u and v are good */
+    bool sure, rounded; /* NUMERICS_EXACT: it is hit, at t_min or later; t, u and v are valid */
     bool at_exit;       /* the far end of a sphere */
 };
 
@@ -145,8 +145,8 @@ static struct candidate meet_triangle(const struct walk *walk, const struct ray_
     return m;
 }
 
-/* One end of a chord. `self`: the ray starts on the sphere, and meets it only if it goes inwards.
- */
+/* The candidate hit at one end of a chord. `self`: the ray starts on the sphere, and hits it again
+   only if it goes inwards. */
 static struct candidate meet_end(const struct walk *walk, const struct ray_setup *ray,
                                  const struct chord *chord, const struct sphere_bounds *bounds,
                                  bool at_exit, bool self)
@@ -172,7 +172,8 @@ static struct candidate meet_end(const struct walk *walk, const struct ray_setup
 
 static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
 
-/* Finds exactly where a triangle is met. `hit`: it is met, and only the key is wanted. */
+/* Finds exactly where a triangle is hit. `hit`: it is known to be hit, and only the key is wanted.
+ */
 static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle *triangle, bool hit,
                          struct exact_candidate *out)
 {
@@ -193,7 +194,7 @@ static void meet_sphere_exactly(const struct ray_setup *ray, const struct gpu_tr
         exact_meet_sphere(ray->origin, ray->dir, center, radius, only_far, t_min, out);
 }
 
-/* The key of the hit so far, where only its bounds are known. */
+/* Computes the key of the hit so far, of which only bounds are known. */
 static void settle_hit(struct walk *walk)
 {
     struct ray_setup ray = ray_at(walk, walk->hit->instance);
@@ -211,8 +212,8 @@ static void settle_hit(struct walk *walk)
     walk->hit->t = m.key;
 }
 
-/* Replaces the bounds of a candidate by what is exact; finds the key of the hit so far too, where
-   it takes both to tell which comes first. */
+/* Replaces the bounds of a candidate by the exact result; also finds the key of the hit so far
+   where only both tell which comes first. */
 static void settle(struct walk *walk, const struct ray_setup *ray,
                    const struct gpu_triangle *record, bool self, struct candidate *m)
 {
@@ -240,8 +241,8 @@ static void settle(struct walk *walk, const struct ray_setup *ray,
 
 /* ---- Which candidate is the hit ---- */
 
-/* Whether a candidate is met, comes before the hit so far and behind the known one: or may, unless
-   both keys are known. */
+/* Whether a candidate is hit, comes before the hit so far, and comes behind the known hit; unless
+   both keys are known, whether that is possible. */
 static bool is_reached(const struct walk *walk, const struct candidate *m, uint32_t instance,
                        uint32_t primitive)
 {
@@ -362,7 +363,7 @@ static struct ray_setup local_ray(const struct walk *walk, const struct gpu_inst
     return setup_ray(walk, vec3_load(local.origin), vec3_load(local.dir));
 }
 
-/* No instances to choose among: rays meet the only mesh tree as they are. */
+/* Whether there is only one tree, in world space: rays need no transform. */
 static bool one_tree(const struct accel *accel)
 {
     return accel->single_identity || accel->flat;
@@ -396,7 +397,8 @@ static void traverse_instances(struct walk *walk, uint32_t root)
     }
 }
 
-/* (v1 - v0) x (v2 - v0), or that of a sphere, taken to world space by the inverse transpose. */
+/* Sets the geometric normal, (v1 - v0) x (v2 - v0) or that of a sphere, transformed to world space
+   by the inverse transpose. */
 static void set_normal(struct gpu_hit *hit, const struct accel *accel, uint32_t record)
 {
     const struct gpu_triangle *triangle = &accel->triangles[record];
@@ -458,7 +460,7 @@ static void traverse_trees(struct walk *walk)
     traverse_mesh(walk, &setup, root, 0, 0);
 }
 
-/* Every record of every instance, in this order. */
+/* Tests every record of every instance, in order. */
 static void traverse_records(struct walk *walk)
 {
     const struct accel *accel = walk->accel;

@@ -1,12 +1,12 @@
-// Angles by operations that round once each: GLSL's own functions have the error and the bits that a
-// driver likes (atan() may be off by 4096 ulp).
+// Trigonometry by operations with one rounding each: GLSL's own functions have the errors and the
+// bits that the driver chooses (atan() may be off by 4096 ulp).
 #ifndef LIB_ANGLES_GLSL
 #define LIB_ANGLES_GLSL
 
-// sine_cosine_pi of picture/camera.c is this in C, bit for bit.
-// x: sin(pi a), y: cos(pi a), for a in -1..1. Within 1.2e-7 of the exact values: the nearest quarter
-// turn is taken off, which is exact, and what remains, up to pi / 4, goes through the Taylor
-// polynomials of degree 9 and 10, whose own error is below 2e-9.
+// sine_cosine_pi of picture/camera.c is this in C, bit for bit. x: sin(pi a), y: cos(pi a), for a
+// in -1..1. Within 1.2e-7 of the exact values: the nearest quarter turn is taken off, which is
+// exact, and what remains, up to pi / 4, goes through the Taylor polynomials of degree 9 and 10,
+// whose own error is below 2e-9.
 vec2 sine_cosine_pi(float a)
 {
     float size = abs(a);
@@ -21,8 +21,8 @@ vec2 sine_cosine_pi(float a)
     return vec2(a < 0.0 ? -turned.x : turned.x, turned.y);
 }
 
-// 1 / sqrt(x) within 2 ulp, by products and differences alone: no driver's choice is in it. Newton's
-// steps from a guess by the exponent (Lomont 2003, "Fast inverse square root").
+// 1 / sqrt(x) within 2 ulp, by products and differences alone, so that no driver changes its bits.
+// Newton's steps from a guess by the exponent (Lomont 2003, "Fast inverse square root").
 // inverse_square_root of picture/camera.c is this in C, bit for bit.
 float inverse_square_root(float x)
 {

@@ -1,6 +1,6 @@
-// Whether a ray meets a triangle, and where, as exact arithmetic says for the given floats:
-// NUMERICS_EXACT. A filter of floats with a proven error bound decides nearly all; what it leaves goes
-// to integers of many digits, which every device computes alike. docs/numerics.md derives the bounds.
+// NUMERICS_EXACT: whether and where a ray meets a triangle, as exact arithmetic on the given floats
+// would find. A filter of floats with a proven error bound decides nearly all cases; the rest go to
+// integers of many digits, which every device computes alike. docs/numerics.md derives the bounds.
 // twin/exact.c is this file in C.
 #ifndef LIB_EXACT_GLSL
 #define LIB_EXACT_GLSL
@@ -10,16 +10,16 @@
 // ---- The filter ----
 
 const float EXACT_UNIT = 1.0 / 16777216.0;
-const float EXACT_TINY = 7.8886090522101181e-31; // 2^-100: whatever underflows, and more
+const float EXACT_TINY = 7.8886090522101181e-31; // 2^-100: more than underflow can add
 const float EXACT_LARGE = 1.2676506002282294e+30;
 
-// What floats can tell. The key is the exact t, rounded to nearest.
+// What floats can decide. The key is the exact t, rounded to nearest.
 struct ExactBounds {
     bool outside; // surely missed
-    bool inside;  // surely met, and t, u, v are good
-    bool front;   // where `inside`
+    bool inside;  // surely hit, and t, u, v are valid
+    bool front;   // valid where `inside`
     float t, u, v;
-    float lo, hi; // lo <= key <= hi if it is met
+    float lo, hi; // lo <= key <= hi if it is hit
 };
 
 float larger(float a, float b)
@@ -38,7 +38,8 @@ float largest_magnitude(vec3 p)
     return larger(size.x, larger(size.y, size.z));
 }
 
-// The bounds of a hit by floats. Vertices are relative to the ray's origin, as in intersect_triangle.
+// The bounds of a hit, in floats. Vertices are relative to the ray's origin, as in
+// intersect_triangle.
 ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
 {
     vec3 ta = turn_dominant(ray.dominant, a);
@@ -50,7 +51,7 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
     float far = larger(largest_magnitude(a), larger(largest_magnitude(b), largest_magnitude(c)));
     float size = larger(larger(larger(abs(sa.x), abs(sa.y)), larger(abs(sb.x), abs(sb.y))),
                         larger(abs(sc.x), abs(sc.y)));
-    // Bounds of the errors of sheared coordinates (`off`), and of edge functions.
+    // Error bounds: of sheared coordinates (`off`) and of edge functions.
     precise float off = 12.0 * EXACT_UNIT * far + EXACT_TINY;
     precise float edge_error =
         4.125 * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
@@ -128,7 +129,7 @@ void decode_point(int at, vec3 p)
     }
 }
 
-// The first and the last digit in use, by the exponents of the values that are not 0. Clears these digits.
+// The range of digits in use, by the exponents of the values that are not 0. Clears these digits.
 ivec2 find_range()
 {
     int lo = 254, hi = 1, dir_lo = 254, dir_hi = 1;
@@ -177,15 +178,15 @@ void add_product(int target, ivec3 at, bool negative)
     }
 }
 
-// The six products of each of thirteen determinants of three points. e_a = d.(b x c) about the origin:
-// det(d, b, c) - det(d, o, c) - det(d, b, o), and so on; and N = a.(b x c), likewise.
+// Adds the six products of each of thirteen determinants of three points: e_a = d.(b x c) about the
+// origin is det(d, b, c) - det(d, o, c) - det(d, b, o), and so on; and N = a.(b x c) likewise.
 void add_determinants()
 {
     for (int n = 0; n < 78; n++) {
         int row = n < 54 ? n / 18 : WIDE_N, part = n < 54 ? n / 6 % 3 : n / 6 - 9;
         ivec3 points = ivec3(POINT_DIR, POINT_A + (row == 2 ? 0 : row + 1),
                              POINT_A + (row == 0 ? 2 : row - 1));
-        int moved = part == 0 ? 0 : part + 1; // 1, 2 or 3: the point that gives way to the origin
+        int moved = part == 0 ? 0 : part + 1; // 1, 2 or 3: the point that the origin replaces
         if (row == WIDE_N) {
             points = ivec3(POINT_A, POINT_B, POINT_C);
             moved = part;
@@ -200,8 +201,8 @@ void add_determinants()
     }
 }
 
-// Propagates the carries: then digits are 0..65535, in two's complement, and the first integer is D. Gives
-// the signs of all integers, and that of e_a.
+// Propagates the carries, after which digits are 0..65535, in two's complement, and the first
+// integer is D. Returns the signs of all integers, and of e_a.
 void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
 {
     ivec4 carry = ivec4(0), some = ivec4(0);
@@ -222,8 +223,8 @@ void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
     signs = mix(ivec4(notEqual(some, ivec4(0))), ivec4(-1), lessThan(carry, ivec4(0)));
 }
 
-// Negates D, e_b and e_c where D is negative, and N where N is. Gives the number of the highest digit that is
-// not 0, of D and of N.
+// Negates D, e_b and e_c where D is negative, and N where N is. Returns the numbers of the highest
+// digits of D and of N that are not 0.
 ivec2 make_positive(ivec2 range, ivec4 signs)
 {
     bool flip = signs[WIDE_D] < 0;
@@ -260,8 +261,8 @@ uint leading_zeros(ivec2 range, int k, int top)
     return uint(clamp(15 - findMSB(digit_at(range, k, top)), 0, 15));
 }
 
-// Sign of N - factor D 2^shift, where factor < 2^26 and both terms nearly agree. Not `finished`: the driver
-// has ended the loop, and maybe others before it.
+// Sign of N - factor D 2^shift, where factor < 2^26 and both terms nearly agree. Not `finished`:
+// the driver ended this loop, or one before it.
 int compare_product(ivec2 range, uint factor, int shift, out bool finished)
 {
     uint bits = uint(shift) & 15u;
@@ -277,7 +278,7 @@ int compare_product(ivec2 range, uint factor, int shift, out bool finished)
         int difference = int(digit_at(range, WIDE_N, i + moved)) - int(sum & 0xffffu) - borrow;
         borrow = difference < 0 ? 1 : 0;
         more |= difference & 0xffff;
-        if (i < range.x + moved) // of N, below all of the product
+        if (i < range.x + moved) // digits of N below the product's lowest
             more |= int(digit_at(range, WIDE_N, i));
         d2 = d1;
         d1 = d0;
@@ -299,7 +300,7 @@ float round_quotient(ivec2 range, int top_d, int top_n, out bool finished)
         quotient = quotient << 1 | (one ? 1u : 0u);
         rest = (one ? rest - by : rest) << 1;
     }
-    // t is quotient 2^(scale - 27), but for 2 in the last place.
+    // t is quotient 2^(scale - 27), off by at most 2 in the last place.
     int scale = 16 * (top_n - top_d) - int(zeros_n) + int(zeros_d);
     int drop = quotient >> 27 != 0u ? 4 : 3;
     int biased = scale + drop + 123;
@@ -314,13 +315,15 @@ float round_quotient(ivec2 range, int top_d, int top_n, out bool finished)
 }
 
 struct ExactMeeting {
-    bool met; // t >= 0, the closed triangle, not edge-on; false where the key exceeds the largest float
+    bool met; // at t >= 0, in the closed triangle, not edge-on; false where the key exceeds the
+              // largest float
     bool front;
     float key, u, v;
     bvec3 on_edge; // which edge functions are 0
 };
 
-// Not `finished`: the driver has ended a loop (lavapipe: after 65,535 iterations a subgroup).
+// Decides exactly whether and where the ray meets the triangle. Not `finished`: the driver has
+// ended a loop (lavapipe: after 65,535 iterations per subgroup).
 ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out bool finished)
 {
     decode_point(POINT_DIR, dir);

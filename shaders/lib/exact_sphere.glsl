@@ -1,7 +1,7 @@
-// Whether a ray meets a sphere, and where, as exact arithmetic says for the given floats:
-// NUMERICS_EXACT. As with triangles (exact.glsl) a filter of floats with a proven error bound decides
-// nearly all, and integers the rest. docs/numerics.md derives the bounds. twin/exact_sphere.c is this
-// file in C.
+// NUMERICS_EXACT: whether and where a ray meets a sphere, as exact arithmetic on the given floats
+// would find. As with triangles (exact.glsl), a filter of floats with a proven error bound decides
+// nearly all cases, and integers the rest. docs/numerics.md derives the bounds. twin/exact_sphere.c
+// is this file in C.
 #ifndef LIB_EXACT_SPHERE_GLSL
 #define LIB_EXACT_SPHERE_GLSL
 
@@ -39,7 +39,7 @@ SphereBounds bound_sphere(RaySetup ray, vec3 center, float radius)
     bounds.outside = foot.room < -error;
     bounds.inside = inside && known;
     bounds.inward_known = abs(foot.mid) > mid_error;
-    bounds.near_lo = known ? near_lo : below; // of NaN too
+    bounds.near_lo = known ? near_lo : below; // also for NaN
     bounds.near_hi = known ? near_hi : above;
     bounds.far_lo = known ? far_lo : below;
     bounds.far_hi = known ? far_hi : above;
@@ -48,11 +48,11 @@ SphereBounds bound_sphere(RaySetup ray, vec3 center, float radius)
 
 // ---- The exact test ----
 //
-// With m the centre less the origin, the t of the ends are the roots of P t^2 - 2 S t + Q, P = d.d,
-// S = m.d, Q = m.m - r^2. In integers of digits of 12 bits, so that sums of products of them fit an int:
-// each a sum of digit[i] 2^(12 i), the last digit of any sign. Directions count in units of
-// 2^(e - 150), e being their least exponent, and lengths in such units of their own; so no product is
-// shifted by more than 507 bits, and the last of its digits is the one with number 46.
+// With m the centre less the origin, the t of the ends are the roots of P t^2 - 2 S t + Q, with P =
+// d.d, S = m.d, Q = m.m - r^2. They are integers, each a sum of digit[i] 2^(12 i), the last digit
+// of any sign: digits of 12 bits, so that sums of their products fit an int. Directions have the
+// unit 2^(e - 150), e being their least exponent, and lengths such a unit of their own; so no
+// product is shifted by more than 507 bits, and its last digit is at most number 46.
 
 const int BALL_BITS = 12;
 const int BALL_MASK = 0xfff;
@@ -67,8 +67,8 @@ int ball_product[88]; // of t times P
 uint ball_mantissa[BALL_VALUES]; // sign in the top bit
 int ball_exponent[BALL_VALUES];
 
-// Splits the values into mantissas and exponents, and clears the digits. Gives the last digit in use; `unit`:
-// the exponent of lengths less that of directions.
+// Splits the values into mantissas and exponents, and clears the digits. Returns the last digit in
+// use. `unit`: the exponent of lengths less that of directions.
 int decode_ball(vec3 origin, vec3 dir, vec3 center, float radius, out int unit)
 {
     ivec2 least = ivec2(254), most = ivec2(1); // directions, lengths
@@ -102,7 +102,8 @@ void add_ball_product(int target, int a, int b, bool twice, bool negative)
 {
     uint p = ball_mantissa[a], q = ball_mantissa[b];
     bool minus = negative != ((p ^ q) >> 31 != 0u);
-    int shift = max(ball_exponent[a] + ball_exponent[b] + (twice ? 1 : 0), 0); // below 0: of 0
+    int shift = max(ball_exponent[a] + ball_exponent[b] + (twice ? 1 : 0), 0); // below 0 only where the product
+                                                                               // is 0
     uint high, low;
     umulExtended(p & 0x7fffffffu, q & 0x7fffffffu, high, low);
     uint bits = uint(shift % BALL_BITS);
@@ -118,7 +119,7 @@ void add_ball_product(int target, int a, int b, bool twice, bool negative)
     }
 }
 
-// Adds the products that P, S and Q are sums of: six for each axis, and r^2.
+// Adds the products whose sums P, S and Q are: six for each axis, and r^2.
 void add_ball_products()
 {
     for (int n = 0; n < 19; n++) {
@@ -135,7 +136,8 @@ int sign_of(int carry, int some)
     return carry < 0 ? -1 : (carry | some) != 0 ? 1 : 0;
 }
 
-// Propagates the carries: then all digits but the last are 0..4095. Gives the signs of P, S and Q.
+// Propagates the carries, after which all digits but the last are 0..4095. Returns the signs of P,
+// S and Q.
 ivec3 carry_ball(int last)
 {
     ivec3 carry = ivec3(0), some = ivec3(0);
@@ -178,10 +180,11 @@ int product_digit(int last, int i)
     return i >= 0 && i <= last ? ball_product[clamp(i, 0, 87)] : 0;
 }
 
-// On which side of the middle between the float of these bits and the next one an end of the chord
-// is: 1 beyond it. The middle is mantissa 2^power, so the signs of the polynomial and of half its slope
-// there, P t - S, tell. Both are multiplied by a power of two where power < 0. Not `finished`: the
-// driver has ended a loop (lavapipe: after 65,535 iterations a subgroup), here or before.
+// On which side an end of the chord is of the middle between the float with these bits and the next
+// float: 1 beyond it. The middle is mantissa 2^power. The signs there of the polynomial and of half
+// its slope, P t - S, decide; both are multiplied by a power of two where power < 0. Not
+// `finished`: the driver has ended a loop (lavapipe: after 65,535 iterations per subgroup), here or
+// before.
 int side_of_middle(int ball_last, int unit, uint bits, bool far, out bool finished)
 {
     uint exponent = bits >> 23;
@@ -194,7 +197,7 @@ int side_of_middle(int ball_last, int unit, uint bits, bool far, out bool finish
     int up_digits = up / BALL_BITS, down_digits = down / BALL_BITS, down_bits = down % BALL_BITS;
     int last = ball_last + max(up_digits + 2, down_digits) + 1;
     int slope_carry = 0, slope_some = 0, carry = 0, some = 0;
-    for (int i = 0; i < last; i++) { // P t - S, and P t - 2 S into ball_product
+    for (int i = 0; i < last; i++) { // computes P t - S, and P t - 2 S into ball_product
         int at = i - up_digits;
         int pt = factor.x * ball_digit(BALL_P, ball_last, at) +
                  factor.y * ball_digit(BALL_P, ball_last, at - 1) +
@@ -212,7 +215,7 @@ int side_of_middle(int ball_last, int unit, uint bits, bool far, out bool finish
     int twice_digits = 2 * down / BALL_BITS, twice_bits = 2 * down % BALL_BITS;
     int end = max(last + up_digits + 2, ball_last + twice_digits) + 1, i;
     carry = 0;
-    for (i = 0; another_iteration(i < end); i++) { // t (P t - 2 S) + Q
+    for (i = 0; another_iteration(i < end); i++) { // computes t (P t - 2 S) + Q
         int at = i - up_digits;
         carry += factor.x * product_digit(last, at) + factor.y * product_digit(last, at - 1) +
                  factor.z * product_digit(last, at - 2) +
@@ -234,14 +237,14 @@ uint bits_within(float x)
 
 struct SphereCandidate {
     bool met;     // at t >= 0; false where the key exceeds the largest float
-    bool at_exit; // at the far end
-    bool inward;  // where it is met: from the ray's origin the centre is ahead
+    bool at_exit; // hit at the far end
+    bool inward;  // where it is hit: the centre is ahead of the ray's origin
     float key;
 };
 
-// The first end with t >= 0 and a key of `t_min` >= 0 and more; `only_far`: the far end or none. The
-// key is the least float, within its bounds, that t is not beyond; the first turn of the loop asks that
-// of the float before t_min, to choose the end.
+// The first end of the chord with t >= 0 whose key is at least `t_min`, which is >= 0; `only_far`:
+// only the far end counts. The key is the least float, within its bounds, that t does not round
+// above. The loop's first iteration asks that for the float before t_min, to choose the end.
 SphereCandidate exact_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_far,
                                 float t_min, out bool finished)
 {

@@ -1,6 +1,7 @@
-// Pairs of floats. A pair is its sum, the second float being a rounding error of the first (Dekker
-// 1971, "A floating-point technique for extending the available precision"). Products of pairs are off
-// by 2^-45 of themselves, sums by 2^-46 of their terms. twin/ff_numbers.h is this file in C.
+// Pairs of floats (float-float arithmetic). A pair stands for its sum; the second float is a
+// rounding error of the first (Dekker 1971, "A floating-point technique for extending the available
+// precision"). Products of pairs have a relative error of 2^-45, sums one of 2^-46 of their terms.
+// twin/ff_numbers.h is this file in C.
 #ifndef LIB_FF_NUMBERS_GLSL
 #define LIB_FF_NUMBERS_GLSL
 
@@ -55,7 +56,8 @@ vec2 ff_dot(PairVector a, PairVector b)
                      ff_times(a.z, b.z));
 }
 
-// The power of two that takes a finite length to 1..2, but for the very large and the very small.
+// The exponent of a finite length, limited to -100..100: divided by that power of two the length is
+// 1 to 2.
 int length_exponent(float largest)
 {
     return clamp(int(floatBitsToUint(largest) >> 23 & 255u) - 127, -100, 100);
@@ -71,8 +73,8 @@ PairVector ff_scaled(PairVector v, float power)
     return PairVector(v.x * power, v.y * power, v.z * power);
 }
 
-// t = top / bottom, rounded to nearest. False: not sure. The quotient need not be rounded rightly: what
-// it leaves is divided once more.
+// t = top / bottom, rounded to nearest. False: it is not certain. Quotients need not be correctly
+// rounded here: what remains is divided once more.
 bool round_ratio(vec2 top, vec2 bottom, float top_error, float bottom_error, out float t)
 {
     precise float first = top.x / bottom.x;

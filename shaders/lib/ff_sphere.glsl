@@ -1,5 +1,5 @@
-// The test of exact_sphere.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a
-// small part of the price of integers. twin/ff_sphere.c is this file in C.
+// The test of exact_sphere.glsl in float-float arithmetic (pairs of floats): nearly always enough,
+// for a small part of the cost of integers. twin/ff_sphere.c is this file in C.
 #ifndef LIB_FF_SPHERE_GLSL
 #define LIB_FF_SPHERE_GLSL
 
@@ -18,8 +18,9 @@ BoundedPair bounded_ff(vec2 value, float size)
     return BoundedPair(value, error);
 }
 
-// The coefficients of P t^2 - 2 S t + Q, whose roots are the t of the ends. In units in which the direction,
-// and the larger of the vector to the centre and the radius, are 1 to 2 by their largest component.
+// The coefficients of P t^2 - 2 S t + Q, whose roots are the t of the ends. In units in which the
+// largest component of the direction is 1 to 2, and so is the larger of the radius and the largest
+// component of the vector to the centre.
 struct Quadratic {
     BoundedPair p, s, q;
 };
@@ -34,7 +35,8 @@ Quadratic find_quadratic(PairVector m, PairVector d, vec2 rr)
                      bounded_ff(ff_plus(mm, -rr), qs));
 }
 
-// S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): its terms are of the sphere's size, however far it is.
+// The discriminant, S^2 - P Q = r^2 P - |m x d|^2 (Lagrange): the size of its terms is that of the
+// sphere, however far away it is.
 BoundedPair discriminant(PairVector m, PairVector d, vec2 rr, BoundedPair p)
 {
     vec3 sm = magnitudes(m), sd = magnitudes(d);
@@ -51,8 +53,9 @@ BoundedPair discriminant(PairVector m, PairVector d, vec2 rr, BoundedPair p)
     return room;
 }
 
-// The square root of a number that is larger than its error. The first float is off by 4.5 units in the last
-// place at most; what it leaves gives the second, and 2^-41 is left of that.
+// The square root of a number that is larger than its error. The first float is off by at most 4.5
+// units in the last place; the second is computed from what remains, and leaves a relative error of
+// 2^-41.
 BoundedPair root_of(BoundedPair x)
 {
     precise float first = sqrt(x.value.x);
@@ -83,7 +86,7 @@ bool ff_meet_sphere(vec3 origin, vec3 dir, vec3 center, float radius, bool only_
     Quadratic f = find_quadratic(m, d, rr);
     BoundedPair room = discriminant(m, d, rr, f.p);
     int side = sign_known(room), s = sign_known(f.s), q = sign_known(f.q);
-    // |S| + root: no digits cancel out in it. The other end is Q over that.
+    // |S| + root has no cancellation; the other end comes from Q over it.
     BoundedPair root = root_of(room);
     vec2 sum = ff_plus(s < 0 ? -f.s.value : f.s.value, root.value);
     vec2 past = s < 0 ? -f.q.value : f.q.value;

@@ -1,12 +1,12 @@
-// The test of exact.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a small part
-// of the price of integers. twin/ff_triangle.c is this file in C.
+// The test of exact.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a
+// small part of the cost of integers. twin/ff_triangle.c is this file in C.
 #ifndef LIB_FF_TRIANGLE_GLSL
 #define LIB_FF_TRIANGLE_GLSL
 
 #include "ff_numbers.glsl"
 
-// d.(a x b) of vectors up to 2, and in `error` how far it may be off: by the sizes of what it is the sum
-// of, with room for five times what the operations add up to; and by what underflows, see ff_meet.
+// d.(a x b) for vectors up to length 2, with a bound of its error: from the sizes of its terms,
+// with room for five times what the operations add up to, and from underflow, see ff_meet.
 vec2 ff_triple(PairVector d, PairVector a, PairVector b, out float error)
 {
     vec3 ma = magnitudes(a), mb = magnitudes(b), md = magnitudes(d);
@@ -17,15 +17,15 @@ vec2 ff_triple(PairVector d, PairVector a, PairVector b, out float error)
     return ff_dot(d, ff_cross(a, b));
 }
 
-// Vectors between a ray's origin and a triangle's vertices, and the direction; each scaled to lengths up
-// to 2, by these powers of two.
+// Vectors from a ray's origin to a triangle's vertices and between these, and the direction; each
+// scaled to lengths up to 2, by these powers of two.
 //
-// Differences of vertices are exact but for what underflows, below 2^-126; so at 2^-40 and more they
-// are, relative to the largest, good to 2^-86.
+// Differences of vertices are exact but for underflow, below 2^-126; so where the largest is 2^-40
+// or more, they are good to 2^-86 of it.
 struct PairTriangle {
     PairVector a, b, ab, ac, bc, along;
     int way, size, speed;
-    bool fit; // to be scaled
+    bool fit; // they can be scaled
 };
 
 PairTriangle ff_triangle(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
@@ -54,8 +54,8 @@ PairTriangle ff_triangle(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2)
     return p;
 }
 
-// d.(b x c) and so on, by the edges: less cancels out; and t as a ratio. `off`, `.._off`: how far they
-// may be off.
+// d.(b x c) and so on, computed from the triangle's edges, which cancels less; and t as a ratio.
+// `off`, `top_off`, `bottom_off`: error bounds.
 struct PairEdges {
     vec3 edges, off;
     vec2 top, bottom;
@@ -65,7 +65,7 @@ struct PairEdges {
 PairEdges ff_edges(PairTriangle p)
 {
     PairEdges e;
-    for (int n = 0; n < 5; n++) { // a loop, for less code to compile
+    for (int n = 0; n < 5; n++) { // a loop, so that there is less code to compile
         PairVector x = n == 0 ? p.b : n == 1 ? p.ac : n == 2 ? p.a : p.ab;
         PairVector y = n == 0 ? p.bc : n == 1 ? p.a : n == 2 ? p.ab : p.ac;
         float error;
@@ -94,7 +94,7 @@ bool ff_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactMeeting 
     bool inside = sided && (all(below) || all(above));
     bool behind =
         sided && abs(e.top.x) > e.top_off && (e.top.x < 0.0) != (e.bottom.x < 0.0);
-    bool point = v0 == v1 || v1 == v2 || v2 == v0; // no area
+    bool point = v0 == v1 || v1 == v2 || v2 == v0; // the triangle has no area
     float t, to_weight = power_of_two(p.way - p.size);
     key_known = round_ratio(e.top, e.bottom, e.top_off, e.bottom_off, t) && p.fit;
     precise float key = t * power_of_two(p.way - p.speed);

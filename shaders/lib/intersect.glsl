@@ -1,5 +1,5 @@
-// Boxes and triangles against a ray. Every product and sum is `precise`: one rounding each, never
-// contracted, so that neighbours decide a shared edge alike and C gives the same bits
+// Tests of boxes and triangles against a ray. Every product and sum is `precise`: rounded once,
+// never contracted, so that neighbours decide a shared edge alike and C gives the same bits
 // (docs/numerics.md). twin/intersect.h is this file in C.
 #ifndef LIB_INTERSECT_GLSL
 #define LIB_INTERSECT_GLSL
@@ -7,19 +7,19 @@
 #include "../abi/spec.h"
 #include "turn.glsl"
 
-// What a ray needs at every box and triangle.
+// Values that the tests of all boxes and triangles share for a ray.
 struct RaySetup {
     vec3 origin, dir;
-    vec3 above, below; // origin plus and less the margin of node boxes: see widen_ray_setup
+    vec3 above, below; // origin plus and minus the margin of node boxes: see widen_ray_setup
     vec3 inv_dir;  // infinite where the direction is 0
     bvec3 negative; // inv_dir < 0, so that -0 counts as negative
-    bvec2 space;    // the ray's space is that of the tree turned so: see turn_dominant
+    bvec2 space;    // how the ray's space is turned against that of the tree: see turn_dominant
     bvec2 dominant; // |dir| is largest along x; along y
     vec3 shear;    // Woop, Benthin and Wald 2013: dir.x / dir.z, dir.y / dir.z, 1 / dir.z after
                    // turning the dominant axis to z
 };
 
-// (x, y, z) turned so that the dominant axis comes last; the turn keeps orientation.
+// Permutes (x, y, z) cyclically so that the dominant axis comes last; this keeps orientation.
 vec3 turn_dominant(bvec2 dominant, vec3 p)
 {
     return dominant.x ? p.yzx : dominant.y ? p.zxy : p;
@@ -46,8 +46,8 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     shear.z = 1.0 / turned.z;
     shear.x = turned.x / turned.z;
     shear.y = turned.y / turned.z;
-    // Quotients are bounded for divisors of 2^-126..2^126 alone (Vulkan: 2.5 ulp): NaN, with which no
-    // filter decides.
+    // Vulkan bounds the error of quotients (2.5 ulp) only for divisors in 2^-126..2^126. For others
+    // the shear is NaN, with which no filter decides.
     float length = abs(turned.z);
     if (SPEC_NUMERICS == NUMERICS_EXACT && !(length > 7.8886090522101181e-31 && length < 1.2676506002282294e+30))
         shear = vec3(uintBitsToFloat(0x7fc00000u));
@@ -55,9 +55,10 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     return ray;
 }
 
-// For trees whose leaves hold clipped triangles. There a hit may lie outside the boxes above it, by
-// the roundings of the clip and of the triangle test; both are relative to distances from the ray's
-// origin, none of which exceeds that to the centre of the mesh's box plus its `reach`.
+// The margin of boxes in trees whose leaves hold clipped triangles. There a hit may lie outside the
+// boxes above it, by the roundings of the clip and of the triangle test. Both are relative to
+// distances from the ray's origin, none of which exceeds that to the centre of the mesh's box plus
+// its `reach`.
 const float CLIP_MARGIN = 1.0 / 524288.0;
 
 void widen_ray_setup(inout RaySetup ray, vec3 center, float reach)
@@ -72,14 +73,14 @@ void widen_ray_setup(inout RaySetup ray, vec3 center, float reach)
     ray.below = below;
 }
 
-// Widens the far end of a slab interval: more than the error of (b - o) * (1 / d) on both ends
-// (Ize 2013 shows that 2 ulp close all holes between boxes) and than that of the edge functions,
-// which may call a triangle hit by a ray that passes its box within rounding.
+// Widens the far end of a slab interval, by more than the error of (b - o) * (1 / d) on both ends
+// (Ize 2013 shows that 2 ulp close all holes between boxes) and more than the error of the edge
+// functions, by which a triangle may be hit by a ray that passes its box within rounding.
 const float SLAB_FAR_SCALE = 1.0 + 1.0 / 1048576.0;
 
-// The part of the ray inside a box, of which the ray comes to the corner `first` first, as far as it goes
-// that way, and to `last` last, both relative to its origin. NaN (0 times infinity: the origin in the plane
-// of a face, the ray parallel to it) loses every comparison and so bounds nothing.
+// The part of the ray inside a box. `first` and `last` are the box's corners that the ray reaches
+// first and last, relative to its origin. NaN (0 times infinity: the origin in the plane of a face,
+// the ray parallel to it) loses every comparison and so bounds nothing.
 void slab_between(RaySetup ray, vec3 first, vec3 last, float t_min, out float t_near, out float t_far)
 {
     precise vec3 near = first * ray.inv_dir;
@@ -102,8 +103,8 @@ void slab_interval(RaySetup ray, vec3 lo, vec3 hi, float t_min, out float t_near
     slab_between(ray, mix(lo, hi, ray.negative), mix(hi, lo, ray.negative), t_min, t_near, t_far);
 }
 
-// Vertices, the dominant axis last, sheared so that the ray goes along that axis; and for each vertex
-// the edge function of the other two.
+// Shears the vertices, whose dominant axis is last, so that the ray goes along that axis. Also the
+// edge function opposite each vertex.
 void shear_triangle(RaySetup ray, vec3 ta, vec3 tb, vec3 tc, out vec2 sa, out vec2 sb, out vec2 sc,
                     out vec3 edges)
 {
@@ -119,7 +120,7 @@ void shear_triangle(RaySetup ray, vec3 ta, vec3 tb, vec3 tc, out vec2 sa, out ve
     edges = vec3(ea, eb, ec);
 }
 
-// Where the edge functions place the ray in the triangle.
+// Where the ray meets the triangle, by its edge functions.
 struct Weights {
     float det, inv_det;
     float t, b, c; // distance along the ray; weights of the second and the third vertex
@@ -132,7 +133,8 @@ Weights weigh_triangle(RaySetup ray, float az, float bz, float cz, vec3 edges)
     precise vec3 z = ray.shear.z * vec3(az, bz, cz);
     precise float det = (edges.x + edges.y) + edges.z;
     precise float inv_det = 1.0 / det;
-    // Weights first: edge functions are areas, and areas times lengths leave the floats from 2^42 on.
+    // Weights are computed first: edge functions are areas, and areas times lengths overflow for
+    // lengths from 2^42 on.
     precise float weight_a = edges.x * inv_det;
     precise float weight_b = edges.y * inv_det;
     precise float weight_c = edges.z * inv_det;
@@ -157,12 +159,12 @@ void bound_points(vec3 a, vec3 b, vec3 c, out vec3 lo, out vec3 hi)
     hi.z = c.z > hi.z ? c.z : hi.z;
 }
 
-// Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin.
-// An edge function of exactly 0 is inside for both neighbours; the tie rule then picks one. The
-// triangle's own box must be met too, and t is not allowed before it: with boxes that contain each
-// other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
-// `first`, `last`: corners of that box, see slab_between.
-// `front`: met from the side that sees the vertices go round against the clock.
+// Watertight ray/triangle test (Woop, Benthin and Wald 2013) on vertices relative to the origin. An
+// edge function of exactly 0 counts as inside for both neighbours; the tie rule then picks one. The
+// ray must also meet the triangle's own box, and t may not lie before it: with boxes that contain
+// each other exactly, no tree, order or builder can then lose or gain a hit (docs/numerics.md).
+// `first`, `last`: corners of that box, see slab_between. `front`: hit from the side that sees the
+// vertices counter-clockwise.
 bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, vec3 first, vec3 last, float t_min,
                         out float t, out float u, out float v, out bool front)
 {
@@ -182,7 +184,7 @@ bool intersect_triangle(RaySetup ray, vec3 a, vec3 b, vec3 c, vec3 first, vec3 l
     v = w.c;
     t = w.t > t_near ? w.t : t_near;
     front = (w.det > 0.0) == (ray.shear.z > 0.0);
-    // w.t >= t_min is false for NaN: overflow and zero area are no hits.
+    // w.t >= t_min is false for NaN: overflow and zero area give no hit.
     return !(below && above) && w.det != 0.0 && w.t >= t_min && t_near <= t_far;
 }
 
@@ -193,17 +195,17 @@ bool owns_edge(vec2 edge, bool left)
                 : edge.y < 0.0 || (edge.y == 0.0 && edge.x < 0.0);
 }
 
-// Whether the triangle owns the point where it is met, by which edge functions are 0, and on which side of
-// its edges the triangle is.
+// Whether the triangle owns the point where it is hit. `on_edge`: which edge functions are 0;
+// `left`: the side of its edges on which the triangle lies.
 bool owns_its_edges(vec2 sa, vec2 sb, vec2 sc, bvec3 on_edge, bool left)
 {
     return (!on_edge.x || owns_edge(sc - sb, left)) && (!on_edge.y || owns_edge(sa - sc, left)) &&
            (!on_edge.z || owns_edge(sb - sa, left));
 }
 
-// Whether this triangle owns the point where the ray meets it. Of the triangles around an edge or a vertex
-// that a ray meets exactly, seen from the same side, just one does: the fill rule of rasterizers (Pineda
-// 1988). For what must be counted once.
+// Whether this triangle owns the point where the ray hits it. Of the triangles around an edge or a
+// vertex that a ray hits exactly, seen from the same side, just one does: the fill rule of
+// rasterizers (Pineda 1988). For what must be counted once.
 bool owns_point(RaySetup ray, vec3 a, vec3 b, vec3 c)
 {
     vec2 sa, sb, sc;

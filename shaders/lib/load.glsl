@@ -1,4 +1,4 @@
-// Bits to values.
+// Converts rows of buffers to values.
 #ifndef LIB_LOAD_GLSL
 #define LIB_LOAD_GLSL
 

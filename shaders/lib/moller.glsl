@@ -1,6 +1,6 @@
-// Moeller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", without an epsilon on
-// the determinant: NUMERICS_FAST. Neighbours round a shared edge each in its own way, so rays leak.
-// twin/moller.h is this file in C.
+// NUMERICS_FAST: Moeller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection",
+// without an epsilon on the determinant. Neighbours round a shared edge each in its own way, so
+// rays leak. twin/moller.h is this file in C.
 #ifndef LIB_MOLLER_GLSL
 #define LIB_MOLLER_GLSL
 
@@ -19,7 +19,7 @@ float dot_in_order(vec3 a, vec3 b)
     return sum;
 }
 
-// Vertices not relative to the origin. `front`: as intersect_triangle.
+// Vertices are not relative to the origin. `front`: as in intersect_triangle.
 bool intersect_moller(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, float t_min, out float t,
                       out float u, out float v, out bool front)
 {

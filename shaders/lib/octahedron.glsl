@@ -1,8 +1,9 @@
-// Directions on a square (Meyer et al. 2010), without trigonometry: the same on every device.
+// Maps directions to a square (Meyer et al. 2010) without trigonometry, so that it is the same on
+// every device.
 #ifndef LIB_OCTAHEDRON_GLSL
 #define LIB_OCTAHEDRON_GLSL
 
-// Unit direction to [0, 1]^2; +y in the middle.
+// Maps a unit direction to [0, 1]^2; +y is in the middle.
 vec2 octahedron_from_dir(vec3 dir)
 {
     float size = abs(dir.x) + abs(dir.y) + abs(dir.z);

@@ -1,5 +1,5 @@
-// Sums and products of two floats without any error: the rounded result, and what rounding left of it
-// (Dekker 1971, "A floating-point technique for extending the available precision"). ff_numbers.h is
+// Sums and products of two floats without error: the rounded result, and its rounding error (Dekker
+// 1971, "A floating-point technique for extending the available precision"). twin/ff_numbers.h is
 // this file in C.
 #ifndef LIB_PAIRS_GLSL
 #define LIB_PAIRS_GLSL

@@ -1,4 +1,4 @@
-// How much of what a surface could receive comes from a polygon of even radiance.
+// The form factor of a polygon of uniform radiance.
 #ifndef LIB_POLYGON_GLSL
 #define LIB_POLYGON_GLSL
 
@@ -7,16 +7,18 @@
 
 const float POLYGON_PI = 3.14159265358979;
 
-// The angle between a and b, times the cosine of n to the normal of the plane of both: what the
-// edge from a to b adds (Lambert 1760; Arvo 1995, "Applications of irradiance tensors", section 4).
+// What the edge from a to b adds to the form factor: the angle between a and b, times the cosine
+// between n and the normal of their plane (Lambert 1760; Arvo 1995, "Applications of irradiance
+// tensors", section 4).
 float edge_term(vec3 n, vec3 a, vec3 b)
 {
-    vec3 normal = cross(a, b - a); // b - a first: less cancels where the edge is short
+    vec3 normal = cross(a, b - a); // b - a, as less cancels where the edge is short
     float size = length(normal);
     return size > 0.0 ? angle_of(dot(a, b), size) * dot(n, normal) / size : 0.0;
 }
 
-// The part of an edge above the horizon. Remembers where the outline leaves it and comes back.
+// The term of the part of an edge above the horizon. Also finds the points where the outline goes
+// below the horizon and comes back.
 float clipped_edge_term(vec3 n, vec3 a, vec3 b, float a_height, float b_height, inout vec3 leaves,
                         inout vec3 returns)
 {
@@ -28,9 +30,10 @@ float clipped_edge_term(vec3 n, vec3 a, vec3 b, float a_height, float b_height, 
     return a_up || b_up ? edge_term(n, a_up ? a : met, b_up ? b : met) : 0.0;
 }
 
-// Form factor from a point with unit normal `n` to a convex polygon of four corners, as seen from
-// the point (a triangle repeats one): irradiance = pi * radiance * form factor. The horizon of `n`
-// cuts the polygon. The sign tells the winding. Relative error: about 1e-7 * distance / size.
+// Form factor from a point with unit normal `n` to a convex polygon of four corners, given relative
+// to the point (a triangle repeats one): irradiance = pi * radiance * form factor. The polygon is
+// cut at the horizon of `n`. The sign tells the winding. Relative error: about 1e-7 * distance /
+// size.
 float polygon_form_factor(vec3 n, vec3 c0, vec3 c1, vec3 c2, vec3 c3)
 {
     vec3 reach = max(max(abs(c0), abs(c1)), max(abs(c2), abs(c3)));

@@ -1,12 +1,12 @@
-// What Vulkan leaves to the driver, by operations whose results it does not: sums, differences and
-// products of floats, each rounded to nearest, and integers. host/shader/portable.c puts these
-// functions into kernels in place of the driver's where `--portable` asks for it, by name and by the
-// types of the arguments: whatever such a function is called with, they are the one place that says
-// what comes out.
+// Functions whose results Vulkan leaves to the driver, made of operations whose results it does
+// not: sums, differences and products of floats, each rounded to nearest, and integers. Where
+// `--portable` asks for it, host/shader/portable.c puts these functions into kernels in place of
+// the driver's, by name and types of the arguments. So they alone decide the results.
 //
-// ulp: the distance of neighbouring floats at the exact result. The largest errors told below are
-// measured, by device_portable_test; docs/numerics.md says over how many floats. NaN goes in and NaN comes out, with the bits
-// 0x7fc00000; what is said of denormals holds on devices that keep them, which `--portable` asks for.
+// ulp: the distance of neighbouring floats at the exact result. The largest errors stated below are
+// measured by device_portable_test; docs/numerics.md says over how many floats. NaN as an argument
+// gives NaN with the bits 0x7fc00000. Statements about denormals hold on devices that keep them,
+// which `--portable` asks for.
 #ifndef LIB_PORTABLE_GLSL
 #define LIB_PORTABLE_GLSL
 
@@ -14,15 +14,15 @@
 #include "pairs.glsl"
 
 // Whether the device's own division and square root are rounded correctly: they then give the same
-// bits as `divided` and `rooted`, and take less time. What else stands here has one form.
+// bits as `divided` and `rooted`, and take less time. The other functions have only one form.
 layout(constant_id = 0) const bool OWN_DIVISION = true;
 
 #include "portable_compare.glsl"
 
 // ---- Division and square root: rounded to nearest, ties to even, for all floats ----
 
-// A finite float but 0 without its sign is s 2^(exponent - 23), s in 2^23..2^24 - 1. In integers, so that
-// denormals are like others.
+// A finite float other than 0, without its sign: s 2^(exponent - 23), with s in 2^23..2^24 - 1. In
+// integers, so that denormals are no special case.
 struct Significand {
     uint s;
     int exponent;
@@ -42,8 +42,8 @@ float significand_float(const uint s)
     return uintBitsToFloat((s & 0x7fffffu) | 0x3f800000u);
 }
 
-// The bits of (s + d) 2^exponent, rounded, for s in 2^24..2^26 - 1: d is 0, or between 0 and 1 where
-// there is `more`. Denormals are cut at their last bit, and what is too large becomes infinite.
+// The bits of (s + d) 2^exponent, rounded, for s in 2^24..2^26 - 1. d is 0, or between 0 and 1 if
+// `more`. Denormals are rounded at their last bit; overflow gives infinity.
 uint rounded_bits(const uint s, const bool more, const int exponent)
 {
     int width = findMSB(s), power = exponent + width;
@@ -54,9 +54,9 @@ uint rounded_bits(const uint s, const bool more, const int exponent)
     return power > 127 ? INFINITE_BITS : bits;
 }
 
-// The quotient of two significands, to 25 bits and more, is guessed in floats (Newton's steps from
-// a line, Higham 2002, section 3.6) and then made exact: the remainder is an integer, which fits into 32 bits
-// though its terms do not, since the guess is off by few units.
+// x / y. The quotient of the significands, to 25 bits and more, is guessed in floats (Newton's
+// steps from a line, Higham 2002, section 3.6) and then corrected to be exact: the remainder is an
+// integer that fits into 32 bits, though its terms do not, since the guess is off by few units.
 float divided(const float x, const float y)
 {
     uint a = floatBitsToUint(x), b = floatBitsToUint(y), sign = (a ^ b) & SIGN_BIT;
@@ -82,8 +82,8 @@ float divided(const float x, const float y)
     return none ? portable_nan() : uintBitsToFloat(bits | sign);
 }
 
-// The same for the root: s s <= n < (s + 1) (s + 1) for the integer n, of 49 or 50 bits. It is
-// never a denormal.
+// The square root, by the same method: s s <= n < (s + 1) (s + 1) for the integer n, of 49 or 50
+// bits. The result is never a denormal.
 float rooted(const float x)
 {
     uint a = floatBitsToUint(x);
@@ -119,7 +119,7 @@ float portable_sqrt(const float x)
     return rooted(x);
 }
 
-// Two roundings: 1.49 ulp. -infinity for -0, as IEEE 754 has it.
+// Two roundings: 1.49 ulp. -infinity for -0, as in IEEE 754.
 float portable_inversesqrt(const float x)
 {
     return portable_divide(1.0, portable_sqrt(x));
@@ -138,7 +138,7 @@ float exp2_of_pair(const vec2 x)
     return scaled(1.0 + (r + 0.693147182 * x.y * (1.0 + r)), int(whole));
 }
 
-// The same without its ends: 0 and infinity where no float is near.
+// exp2_of_pair for any x: gives 0 or infinity where the result is no float.
 float exp2_of(const vec2 x)
 {
     float bounded = x.x < -150.0 ? -150.0 : x.x > 128.0 ? 128.0 : x.x;
@@ -163,9 +163,9 @@ float portable_exp(const float x)
     return is_nan_bits(floatBitsToUint(x)) ? portable_nan() : y;
 }
 
-// log2(x) of a finite x > 0 as a pair, off by 2^-30 of itself. x = 2^e m / c with m c in 0.866..1.156, c of
-// few bits, so that t = m c - 1 is exact; log(1 + t) = t - t^2 / 2 + t^3 p(t), the first two terms
-// without an error.
+// log2(x) of a finite x > 0 as a pair, with a relative error of 2^-30. x = 2^e m / c with m c in
+// 0.866..1.156, where c has few bits, so that t = m c - 1 is exact; log(1 + t) = t - t^2 / 2 + t^3
+// p(t), with the first two terms exact.
 vec2 log2_pair(const float x)
 {
     Significand of = significand(floatBitsToUint(x));
@@ -192,7 +192,7 @@ vec2 log2_pair(const float x)
     return ff_sum(sum.x, sum.y + (part.y + (scaled_ln.y + (ln.x * LOG2_E.y + low * LOG2_E.x))));
 }
 
-// What logarithms of x are where x is no positive number; `usual` where it is.
+// The logarithm of x where x is not a positive finite number; `usual` where it is.
 float logarithm(const float x, const float usual)
 {
     uint a = floatBitsToUint(x);
@@ -214,7 +214,7 @@ float portable_log(const float x)
     return logarithm(x, p.x + (p.y + (l.x * LN_2.y + l.y * LN_2.x)));
 }
 
-// 2.77 ulp. NaN for x < 0, which GLSL leaves open; 1 for y = 0 and for x = 1; else as C has it.
+// 2.77 ulp. NaN for x < 0, which GLSL leaves undefined; 1 for y = 0 and for x = 1; else as in C.
 float portable_pow(const float x, const float y)
 {
     uint a = floatBitsToUint(x), b = floatBitsToUint(y);
@@ -233,7 +233,7 @@ float portable_pow(const float x, const float y)
 
 const vec2 HALF_PI = vec2(1.57079637, -4.37113883e-08);
 
-// 32 bits of 2 / pi, from `first` bits behind 2^64 on.
+// 32 bits of 2 / pi, from bit number `first` on, counted down from the place 2^64.
 uint two_over_pi(const int first)
 {
     const uint digits[9] = uint[9](0u, 0u, 0xa2f9836eu, 0x4e441529u, 0xfc2757d1u, 0xf534ddc0u,
@@ -243,8 +243,9 @@ uint two_over_pi(const int first)
     return shift == 0u ? digits[word] : digits[word] << shift | digits[word + 1] >> (32u - shift);
 }
 
-// x = (quarter + 4 k) pi / 2 + angle, |angle| <= pi / 4, the angle as a pair. Payne and Hanek (1983): of the
-// product with 2 / pi only the digits around the point are made, in integers, 62 of them behind it.
+// Reduces an angle: x = (quarter + 4 k) pi / 2 + angle, |angle| <= pi / 4, the angle as a pair.
+// Payne and Hanek (1983): of the product with 2 / pi only the digits around the binary point are
+// computed, in integers, 62 of them behind it.
 struct Turned {
     vec2 angle;
     uint quarter;
@@ -312,7 +313,8 @@ float portable_tan(const float x)
     return portable_divide(turn.x, turn.y);
 }
 
-// Gives the angle whose tangent is x, for x in 0..infinity. Where x is large, pi / 4 or pi / 2 is split off first.
+// The angle whose tangent is x, for x in 0..infinity. Where x is large, pi / 4 or pi / 2 is split
+// off first.
 float arc_tangent(const float x)
 {
     bool large = x > 2.41421366, middle = x > 0.414213568;
@@ -333,7 +335,7 @@ float portable_atan(const float x)
     return is_nan_bits(bits) ? portable_nan() : bits >= SIGN_BIT ? -angle : angle;
 }
 
-// 2.21 ulp. As C has it: the sign of a zero tells the side.
+// 2.21 ulp. As in C, the sign of a zero decides the side.
 float portable_atan(const float y, const float x)
 {
     uint a = floatBitsToUint(y), b = floatBitsToUint(x);
@@ -345,14 +347,14 @@ float portable_atan(const float y, const float x)
     return is_nan_bits(a) || is_nan_bits(b) ? portable_nan() : angle;
 }
 
-// (asin(r) - r) / r of r^2 = z, up to r = 0.5.
+// (asin(r) - r) / r as a function of z = r^2, for r up to 0.5.
 float arc_sine_part(const float z)
 {
     return z * ((((((0.033800479 * z + 0.00827382505) * z + 0.0243319925) * z + 0.0301610455) * z +
                    0.0446555205) * z + 0.0749996826) * z + 0.166666672);
 }
 
-// 2.31 ulp; NaN beyond -1 and 1, as for acos.
+// 2.31 ulp; NaN outside -1..1, as for acos.
 float portable_asin(const float x)
 {
     float size = portable_abs(x);
@@ -391,7 +393,7 @@ float portable_max(const float x, const float y)
     return portable_less(x, y) ? y : x;
 }
 
-// An end that is NaN is none; low goes before high.
+// A limit that is NaN is ignored; where low > high, the result is high.
 float portable_clamp(const float x, const float low, const float high)
 {
     return portable_min(portable_max(x, low), high);
@@ -458,14 +460,14 @@ bool portable_isinf(const float x)
     return (floatBitsToUint(x) & ~SIGN_BIT) == INFINITE_BITS;
 }
 
-int portable_int(const float x) // the nearest that there is; 0 for NaN
+int portable_int(const float x) // out of range: the nearest int; 0 for NaN
 {
     bool fits = abs(x) < 2147483648.0;
     int ends = x > 0.0 ? 0x7fffffff : x < 0.0 ? int(SIGN_BIT) : 0;
     return fits ? int(fits ? x : 0.0) : ends;
 }
 
-uint portable_uint(const float x) // the same
+uint portable_uint(const float x) // likewise
 {
     bool fits = x > -1.0 && x < 4294967296.0;
     return fits ? uint(fits ? x : 0.0) : x > 0.0 ? 0xffffffffu : 0u;
@@ -566,7 +568,7 @@ float portable_dot(const vec4 x, const vec4 y)
     return ((x.x * y.x + x.y * y.y) + x.z * y.z) + x.w * y.w;
 }
 
-float portable_dot(const float x, const float y) // for what follows
+float portable_dot(const float x, const float y) // for the macros below
 {
     return x * y;
 }
@@ -576,7 +578,8 @@ vec3 portable_cross(const vec3 x, const vec3 y)
     return x.yzx * y.zxy - y.yzx * x.zxy;
 }
 
-// A k below 0 is total reflection. The length of what underflows is 0, and of what overflows infinite.
+// In refract, k < 0 means total reflection. A length whose square underflows is 0; one whose square
+// overflows is infinite.
 #define PORTABLE_VECTOR(T)                                                                         \
     float portable_length(const T x) { return portable_sqrt(portable_dot(x, x)); }                 \
     float portable_distance(const T x, const T y) { return portable_length(x - y); }               \
@@ -597,7 +600,7 @@ PORTABLE_VECTOR(vec2)
 PORTABLE_VECTOR(vec3)
 PORTABLE_VECTOR(vec4)
 
-// Written out, so that vectors are compared as such.
+// Written out for vectors, so that their comparisons are vector operations.
 #define PORTABLE_WRITTEN(T)                                                                       \
     T portable_min(const T x, const T y)                                                           \
     {                                                                                              \

@@ -1,8 +1,8 @@
-// Floats by their bits, and how they compare: a part of portable.glsl.
+// Bits and comparisons of floats: a part of portable.glsl.
 #ifndef LIB_PORTABLE_COMPARE_GLSL
 #define LIB_PORTABLE_COMPARE_GLSL
 
-// Whether comparisons of the device, and its absolute values, tell denormals from 0. NVIDIA's do not, where
+// Whether the device's comparisons and abs() tell denormals from 0. NVIDIA's do not, though its
 // sums and products do.
 layout(constant_id = 2) const bool OWN_COMPARISON = true;
 
@@ -29,7 +29,8 @@ float power_of_two(const int n)
     return uintBitsToFloat(uint(n + 127) << 23);
 }
 
-// x 2^n with one rounding, for 0.5 <= x < 2 and n in -150..128: the first of the two steps is exact.
+// x 2^n with one rounding, for 0.5 <= x < 2 and n in -150..128: of the two multiplications the
+// first is exact.
 float scaled(const float x, const int n)
 {
     int first = n >> 1;
@@ -38,8 +39,8 @@ float scaled(const float x, const int n)
 
 // ---- Comparisons ----
 
-// A difference is 0 for equal numbers alone, as denormals are kept, and negative from the bits of -2^-149 to
-// those of -infinity.
+// Whether a difference is below 0. It is 0 for equal numbers only, as denormals are kept; negative
+// ones have the bits of -2^-149 to those of -infinity.
 bool is_below(const float difference)
 {
     return floatBitsToUint(difference) - (SIGN_BIT + 1u) < INFINITE_BITS;
@@ -50,7 +51,8 @@ bool portable_less(const float x, const float y)
     return OWN_COMPARISON ? x < y : is_below(x - y);
 }
 
-// The device may call two numbers equal that are both denormals, or one of them 0. Else its answer is right.
+// The device may call two numbers equal if both are denormals, or one is and the other is 0.
+// Otherwise its answer is right.
 bool portable_at_most(const float x, const float y)
 {
     return x <= y && (OWN_COMPARISON || !is_below(y - x));

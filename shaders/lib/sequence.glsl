@@ -1,4 +1,4 @@
-// The sequence of samples as host/render/sequence.c has it: what is asked of it is said there.
+// The sequence of samples, the same as in host/render/sequence.c, which says what it must fulfil.
 #ifndef LIB_SEQUENCE_GLSL
 #define LIB_SEQUENCE_GLSL
 

@@ -2,8 +2,8 @@
 #ifndef LIB_SPAWN_GLSL
 #define LIB_SPAWN_GLSL
 
-// A ray starts at least this share of the largest coordinate of its origin away from a plane through 0.
-// It is at most 2^-24 of the distance between neighbouring floats there.
+// A ray starts at least this share of the largest coordinate of its origin away from each plane
+// through 0. The share is at most 2^-24 of the distance between neighbouring floats there.
 const float SPAWN_LEAST = 1.0 / 281474976710656.0; // 2^-48
 
 // Bound of n roundings (Higham 2002, section 3.1), for 24-bit significands.
@@ -13,9 +13,9 @@ float rounding_bound(float n)
     return n * unit / (1.0 - n * unit);
 }
 
-// One float further up or down; where x is nearer to 0 than `least`, that far from 0 in the same direction. A plane through 0 has no error,
-// and from there the next float is the least denormal: x86 processors of Intel take some 150 cycles for each
-// product with it.
+// The next float up or down; or, where x is nearer to 0 than `least`, `least` in that direction. A
+// plane through 0 has no error, and the next float from 0 is the least denormal, of which Intel's
+// x86 processors take some 150 cycles for each product.
 float next_float(float x, bool up, float least)
 {
     uint bits = floatBitsToUint(x);
@@ -23,8 +23,9 @@ float next_float(float x, bool up, float least)
     return abs(x) < least ? (up ? least : -least) : uintBitsToFloat(bits);
 }
 
-// Offset along `side`, the unit geometric normal on the side the ray leaves to (Pharr, Jakob and
-// Humphreys 2023, section 6.8.6). `error`: bound of the absolute error of `p`, per coordinate.
+// Offsets `p` along `side`, the unit geometric normal on the side where the ray starts (Pharr,
+// Jakob and Humphreys 2023, section 6.8.6). `error`: bound of the absolute error of `p`, per
+// coordinate.
 vec3 offset_origin(vec3 p, vec3 error, vec3 side)
 {
     float distance = dot(abs(side), error);

@@ -1,32 +1,33 @@
-// Spheres against a ray, and points on them. Every product and sum is `precise`, one rounding each:
-// twin/sphere.h is this file in C, and gives the same bits (docs/numerics.md).
+// Tests of spheres against a ray, and points on spheres. Every product and sum is `precise`,
+// rounded once: twin/sphere.h is this file in C, and gives the same bits (docs/numerics.md).
 #ifndef LIB_SPHERE_GLSL
 #define LIB_SPHERE_GLSL
 
 #include "angles.glsl"
 #include "intersect.glsl"
 
-// NUMERICS_EXACT: what floats can tell. Keys are the exact t of the ends of the chord, rounded to
+// NUMERICS_EXACT: what floats can decide. Keys are the exact t of the ends of the chord, rounded to
 // nearest.
 struct SphereBounds {
     bool outside;      // surely missed
-    bool inside;       // surely met, and what the chord says is good
-    bool inward_known; // what the chord says of it is so
-    float near_lo, near_hi, far_lo, far_hi; // of the keys, if it is met
+    bool inside;       // surely hit, and the chord's values are valid
+    bool inward_known; // the chord's `inward` is certain
+    float near_lo, near_hi, far_lo, far_hi; // bounds of the keys, if it is hit
 };
 
-// Where a ray's line goes through a sphere.
+// The chord of a ray's line in a sphere.
 struct Chord {
     SphereBounds bounds;  // NUMERICS_EXACT
     bool met;             // the line meets the sphere, the ray its box; NUMERICS_EXACT: may meet it
-    bool inward;          // from the ray's origin it goes nearer to the centre first
+    bool inward;          // the ray first approaches the centre
     float t_near, t_far;  // where it enters and leaves, not before t_box
     float t_box;          // where the ray enters the sphere's box, or t_min
-    vec3 middle, to_exit; // from the centre to the chord's middle; from there to its end
+    vec3 middle, to_exit; // vectors: from the centre to the chord's middle; from there to its far
+                          // end
 };
 
-// The box of a sphere, wider than what rounding takes from it: four roundings of `|center| + radius`
-// where c +- r carries one. Trees are built over this very box.
+// The box of a sphere, widened by more than rounding takes from it: by four roundings of `|center|
+// + radius`, where c +- r carries one. Trees are built over this very box.
 void sphere_box(vec3 center, float radius, out vec3 lo, out vec3 hi)
 {
     precise vec3 margin = (abs(center) + radius) * (1.0 / 4194304.0);
@@ -36,13 +37,14 @@ void sphere_box(vec3 center, float radius, out vec3 lo, out vec3 hi)
     hi = above;
 }
 
-// The perpendicular from a sphere's centre on the ray's line, the dominant axis last, in the units of
-// which the direction is (shear.x, shear.y, 1): no direction is too long or too short to square.
+// The perpendicular from a sphere's centre to the ray's line, with the dominant axis last, in units
+// in which the direction is (shear.x, shear.y, 1): so no direction is too long or too short to be
+// squared.
 struct Foot {
-    vec3 c, d;         // centre, from the ray's origin; direction
+    vec3 c, d;         // centre relative to the ray's origin; direction
     float dd, mid;     // d.d; where on the line the foot is, in units of d
     vec3 off;          // from the foot to the centre
-    float rr, room;    // radius squared; what of it is left beside the foot
+    float rr, room;    // radius squared; radius squared less the squared distance of the line
     float half_length; // of the chord, in units of d
 };
 
@@ -62,11 +64,11 @@ Foot drop_perpendicular(RaySetup ray, vec3 center, float radius)
     return Foot(c, d, dd, mid, off, rr, room, half_length);
 }
 
-// Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection" (Ray
-// Tracing Gems, chapter 7): the discriminant from the perpendicular dropped on the ray, not from a
-// difference of squares of distances; the end of the chord that is farther from the origin from the
-// sum, the nearer one from the product of both.
-// The sphere's own box must be met too, and t is not allowed before it, as with triangles.
+// Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection"
+// (Ray Tracing Gems, chapter 7): the discriminant comes from the perpendicular dropped on the ray,
+// not from a difference of squared distances; the end of the chord that is farther from the origin
+// comes from the sum, the nearer one from the product of both. The ray must also meet the sphere's
+// own box, and t may not lie before it, as with triangles.
 Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
 {
     Chord chord;
@@ -99,14 +101,14 @@ Chord intersect_sphere(RaySetup ray, vec3 center, float radius, float t_min)
     return chord;
 }
 
-// Back from turn_dominant.
+// Undoes turn_dominant.
 vec3 turn_back(bvec2 dominant, vec3 p)
 {
     return dominant.x ? p.zxy : dominant.y ? p.yzx : p;
 }
 
-// From the centre to where the chord ends or begins: of the sphere's radius but for roundings, however
-// far the ray's origin is.
+// The vector from the centre to the chord's far or near end: its length is the radius within
+// rounding, however far away the ray's origin is.
 vec3 chord_end(RaySetup ray, Chord chord, bool at_exit)
 {
     precise vec3 begin = chord.middle - chord.to_exit;
@@ -114,7 +116,8 @@ vec3 chord_end(RaySetup ray, Chord chord, bool at_exit)
     return turn_back(ray.space, turn_back(ray.dominant, at_exit ? end : begin));
 }
 
-// A direction on the unit square (Meyer et al. 2010); +y is in its middle, as is what has no length.
+// Maps a direction to the unit square (Meyer et al. 2010); +y is in the middle, and so is a vector
+// without length.
 vec2 square_from_dir(vec3 dir)
 {
     precise float size = (abs(dir.x) + abs(dir.y)) + abs(dir.z);
@@ -126,7 +129,7 @@ vec2 square_from_dir(vec3 dir)
     return size > 0.0 ? at : vec2(0.5);
 }
 
-// And back; not of unit length: |x| + |y| + |z| is 1.
+// Undoes square_from_dir. The result is not of unit length: |x| + |y| + |z| is 1.
 vec3 dir_from_square(vec2 at)
 {
     precise vec2 p = at * 2.0 - 1.0;
@@ -138,7 +141,8 @@ vec3 dir_from_square(vec2 at)
     return vec3(xz.x, y, xz.y);
 }
 
-// Texture coordinates, 0..1: u once around y from +x towards -z, v from the top (+y) down.
+// Texture coordinates of a sphere, 0..1: u goes once around y from +x towards -z, v from the top
+// (+y) down.
 vec2 sphere_uv(vec3 dir)
 {
     const float pi = 3.14159265;

@@ -1,10 +1,10 @@
 #ifndef LIB_TURN_GLSL
 #define LIB_TURN_GLSL
 
-// Whether a loop has another iteration, where a check behind it asks if there was one left to do: lavapipe
-// 22.3 ends all loops of an invocation after 65,535 iterations. Compilers know that a loop ends where its own
-// condition fails, and would take that check out. What they do not know is that all dispatches are one row of
-// workgroups.
+// Whether a loop has another iteration, for loops behind which a check asks if work was left:
+// lavapipe 22.3 ends all loops of an invocation after 65,535 iterations. Compilers know that a loop
+// ends only when its own condition fails, and would remove that check. They do not know that all
+// dispatches have one row of workgroups, which the condition here tests.
 bool another_iteration(bool again)
 {
     return again && gl_WorkGroupID.y == 0u;

@@ -1,5 +1,5 @@
-// Rows of 16 bytes as words of 64 bits. lavapipe writes to storage buffers lane by lane and word by word: rows in such
-// words take 0.7 of the time, pairs of rows in one 0.6.
+// Rows of 16 bytes as words of 64 bits. lavapipe writes to storage buffers lane by lane and word by
+// word: rows in such words take 0.7 of the time, pairs of rows at once 0.6.
 #ifndef LIB_WIDE_GLSL
 #define LIB_WIDE_GLSL
 
