@@ -2,7 +2,7 @@
 
 struct walk {
     const struct accel *accel;
-    const struct affine *to_world; /* NULL: the nodes are in world space */
+    const struct affine *to_world; /* NULL: nodes are in world space */
     uint32_t instance, level;
     bool (*fn)(void *user, const whit_box *box);
     void *user;

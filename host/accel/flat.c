@@ -19,11 +19,11 @@
 
 enum { SPAN = 4096 }; /* triangles or vertices handled by one call */
 
-/* What stays from pose to pose. */
+/* Data that is kept from pose to pose. */
 struct accel_flat {
     struct accel_mesh *meshes; /* of the scene; triangle_count and shade_base only */
     struct material_bits *materials;
-    uint32_t *first_triangle, *first_vertex; /* of each instance, and the total */
+    uint32_t *first_triangle, *first_vertex; /* [instance]; at the end the total */
     struct affine *placed;                   /* transforms of the instances in the present tree */
     bool has_tree;
     struct flat_span *spans;
@@ -36,12 +36,12 @@ struct flat_span {
     bool bad;
 };
 
-/* One build. */
+/* The data of one build of the world tree. */
 struct flattening {
     struct accel *accel;
     const struct scene_pose *pose;
     float *positions;
-    uint32_t *indices, *owners; /* of each triangle: 3 vertices; its instance */
+    uint32_t *indices, *owners; /* indices: 3 vertices of each triangle; owners: its instance */
     struct bvh_box *boxes;
     uint8_t *whole;
     struct bvh tree;

@@ -18,8 +18,8 @@ static inline uint32_t accel_flat_vertices(const struct scene_mesh *mesh)
 
 /* Prepares one tree over all triangles instead of mesh trees; it is built with the first pose. */
 WHIT_CHECK whit_result accel_flat_create(struct accel *accel);
-/* Builds that tree for `pose` as accel->meshes[0]; keeps the present one where no instance has
-   moved. Changes nothing on failure. */
+/* Builds the world tree for `pose` as accel->meshes[0]; keeps the present tree where no instance
+   has moved. Changes nothing on failure. */
 WHIT_CHECK whit_result accel_flat_build(struct accel *accel, const struct scene_pose *pose);
 void accel_flat_destroy(struct accel_flat *flat);
 /* The meshes of the scene; only triangle_count and shade_base are set. */

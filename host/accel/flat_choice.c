@@ -9,8 +9,9 @@
 #include "base/array.h"
 #include "scene/afford.h"
 
-/* The largest world coordinate of an object, in multiples of its longest side. Placed vertices are
-   then off by at most 2^-16 of that side: 1/60 of a pixel where the side fills 1000 pixels. */
+/* The largest allowed world coordinate of an object, in multiples of its longest side. Transformed
+   vertices are then off by at most 2^-16 of that side: 1/60 of a pixel where the side fills 1000
+   pixels. */
 static const double FARTHEST = 256.0;
 
 bool accel_flat_keeps_spheres(const struct affine *forward)
@@ -20,7 +21,7 @@ bool accel_flat_keeps_spheres(const struct affine *forward)
            m[4] == 0.0 && m[6] == 0.0 && m[8] == 0.0 && m[9] == 0.0;
 }
 
-/* Whether placing the instance's vertices loses little precision; the identity loses none. */
+/* Whether transforming the instance's vertices to world space loses little precision. */
 static bool is_placed_well(const struct scene_mesh *mesh, const struct affine *forward)
 {
     struct bvh_box box;

@@ -11,10 +11,10 @@ struct hit_place {
     uint32_t instance, primitive;
 };
 
-/* Of hits with equal t, the smaller instance comes first, then the smaller primitive. So a ray's
-   hit depends neither on the tree nor on the order of its traversal, on the device or the CPU.
-   False if both are the same place, or a t is NaN. shaders/bind/traverse.glsl has the same rule in
-   is_nearer and is_behind. */
+/* Whether hit `a` comes before hit `b`. With equal t, the smaller instance comes first, then the
+   smaller primitive. So a ray's hit depends neither on the tree nor on the order of its traversal,
+   on the device or the CPU. False if both are the same place, or a t is NaN.
+   shaders/bind/traverse.glsl has the same rule in is_nearer and is_behind. */
 static inline bool hit_comes_before(struct hit_place a, struct hit_place b)
 {
     return a.t < b.t || (a.t == b.t && (a.instance < b.instance ||

@@ -92,14 +92,15 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
     return good;
 }
 
-/* Kept from pose to pose: at ten thousand instances, fresh memory costs as much as filling it. */
+/* Buffers that are kept from pose to pose: at ten thousand instances, fresh memory costs as much as
+   filling it. */
 struct accel_posing {
     struct gpu_instance *instances; /* exchanged with accel->instances */
     struct bvh_box *boxes;          /* [rank]: of instances that are not empty */
     uint32_t *ranks;                /* [instance]: its rank; UINT32_MAX: it is empty */
     uint32_t *indices;              /* [rank]: its instance */
-    uint32_t *bad;                  /* of each chunk: the first without an inverse, or UINT32_MAX */
-    uint32_t count;                 /* of ranks */
+    uint32_t *bad;  /* [chunk]: its first instance without an inverse, or UINT32_MAX */
+    uint32_t count; /* of ranks */
     bool has_tree;
 };
 

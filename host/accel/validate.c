@@ -28,7 +28,7 @@ struct view {
     const void *user;
 };
 
-/* A node still to be looked at. */
+/* A node still to be checked. */
 struct visit {
     uint32_t node, depth;
 };

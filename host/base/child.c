@@ -23,7 +23,7 @@
 #include "base/platform.h"
 #include "base/sandbox.h"
 
-/* AddressSanitizer reserves terabytes of address space for its shadow. */
+/* No limit under AddressSanitizer, which reserves terabytes of address space. */
 #if defined(__SANITIZE_ADDRESS__)
 #define LIMIT_ADDRESS_SPACE 0
 #elif defined(__has_feature)
@@ -39,8 +39,9 @@ enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_MIN
 
 struct child {
     pid_t pid;
-    int read_fd, write_fd; /* the pipe: why there is no sandbox (errno, one byte), then the reply */
-    uint8_t *data;         /* received so far, at the start of `room_bytes` of address space */
+    int read_fd,
+        write_fd; /* the pipe: one byte, the errno of setting up the sandbox or 0; then the reply */
+    uint8_t *data; /* received so far, at the start of `room_bytes` of address space */
     size_t size_bytes, room_bytes;
     uint8_t open_because;
     bool heard, over; /* the first byte was received; more was received than there is room for */
@@ -273,7 +274,7 @@ static bool reap(pid_t pid, int flags, int *status)
         ended = waitpid(pid, status, flags);
     while (ended < 0 && errno == EINTR);
     if (ended < 0)
-        *status = SIGABRT; /* somebody else waited for it: its end is unknown */
+        *status = SIGABRT; /* other code has waited for the child: its end is unknown */
     return ended != 0;
 }
 
@@ -315,7 +316,7 @@ static enum child_end end_of_signal(int number)
         return CHILD_TIME;
     if (number == SIGSYS)
         return CHILD_FORBIDDEN;
-    /* Nobody here sent it: the kernel kills when the machine runs out of memory. */
+    /* Not sent by this process: Linux kills processes when the machine runs out of memory. */
     if (number == SIGKILL)
         return CHILD_MEMORY;
     return CHILD_CRASHED;

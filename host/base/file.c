@@ -22,7 +22,8 @@
 enum { SLOT_COUNT = 64, NAME_KEPT = 200 }; /* NAME_MAX is 255 */
 static _Atomic(char *) unfinished[SLOT_COUNT];
 static char *abandoned[SLOT_COUNT]; /* not freed: signal handlers may not call free() */
-/* Held while files begin, and while a slot is given back, so that paths in slots can be read. */
+/* Held while a file is begun, and while a slot is given back, so that paths in slots can be read.
+ */
 static pthread_mutex_t begin_lock = PTHREAD_MUTEX_INITIALIZER;
 
 static int slot_take(const char *path)
@@ -305,7 +306,7 @@ static int open_for_writing(struct file_write *file, const char *path)
         return -1;
     }
     if (exists && fchmod(fd, info.st_mode & 07777) != 0)
-        errno = 0; /* keeping the permissions is a courtesy: some file systems have none */
+        errno = 0; /* no error: some file systems have no permissions to keep */
     return fd;
 }
 

@@ -8,8 +8,9 @@
 
 #define HASH_START UINT64_C(0xcbf29ce484222325)
 
-/* FNV-1a over 8-byte words with a fold, since byte by byte it is slower than loading. Every step is
-   a bijection of `value` and of the word, so no change within one word goes unnoticed. */
+/* FNV-1a over 8-byte words with a fold: byte by byte it would be slower than loading the file.
+   Every step is a bijection of `value` and of the word, so no change within one word goes
+   unnoticed. */
 static inline uint64_t hash_bytes(uint64_t value, const void *data, size_t size_bytes)
 {
     const uint8_t *bytes = data;

@@ -1,4 +1,4 @@
-/* Standard input: read once, to its end, and kept for whoever reads it again. */
+/* Standard input: it is read once, to its end, and kept for later reads. */
 #ifndef BASE_INPUT_H
 #define BASE_INPUT_H
 

@@ -22,7 +22,7 @@ enum lock_end {
 
 /* Does not wait. */
 enum lock_end lock_take(const whit_log *log, const char *path, struct lock *lock);
-/* Removes the lock file. Nothing for a zeroed one. */
+/* Removes the lock file. Does nothing for a zeroed lock. */
 void lock_give_back(struct lock *lock);
 
 #endif

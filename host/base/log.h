@@ -6,7 +6,7 @@
 
 whit_log log_or_silence(const whit_log *log);
 
-/* NULL is silent too. */
+/* A NULL log is silent. */
 void log_message(const whit_log *log, whit_log_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
 

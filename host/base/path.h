@@ -6,7 +6,8 @@
 
 /* Folder part of `path` with its slash, "" when there is none. Release with free(). */
 char *path_folder(const char *path);
-/* `relative` taken from the folder of `file`; absolute ones are kept. Release with free(). */
+/* The path of `relative`, taken from the folder of `file`; absolute paths are kept. Release with
+   free(). */
 char *path_beside(const char *file, const char *relative);
 /* Lower-case extension without the dot, "" when there is none. */
 void path_extension(const char *path, char *out, size_t out_bytes);

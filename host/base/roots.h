@@ -20,7 +20,7 @@ enum reach {
 
 enum { REACH_REASON_BYTES = 768 };
 
-/* Made by roots_init, ended by roots_finish; a zeroed one reaches nothing. */
+/* Initialised by roots_init, released by roots_finish; a zeroed struct reaches nothing. */
 struct roots {
     char *named;    /* the file that the user named, which may lie anywhere */
     bool is_input;  /* `named` stands for standard input, which has no folder */

@@ -101,7 +101,7 @@ static const struct pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54}
 static const struct pair pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
 static const struct pair log2_e = {0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56};
 static const struct pair log10_e = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
-/* log(2); .hi ends in 17 zero bits, so that an integer of 17 bits times it is exact. */
+/* log(2); .hi ends in 17 zero bits, so that its product with an integer of 17 bits is exact. */
 static const struct pair ln2 = {0x1.62e42fefa0000p-1, 0x1.cf79abc9e3b3ap-40};
 
 static struct pair sum(double a, double b) /* exact (Knuth's two-sum) */

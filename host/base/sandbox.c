@@ -1,5 +1,5 @@
-/* Limits of resources, Landlock, and a filter of system calls (seccomp): each holds without the
-   others. */
+/* The sandbox: resource limits, Landlock, and a filter of system calls (seccomp). Each works
+   without the others. */
 #define _GNU_SOURCE
 #include "base/sandbox.h"
 
@@ -78,7 +78,7 @@ static int filter_calls(void)
 static void give_up_files(void)
 {
     enum { CREATE_RULESET = 444, RESTRICT_SELF = 446, ASK_VERSION = 1 };
-    static const unsigned file_rights[] = {0, 13, 14, 15, 15, 16}; /* by version */
+    static const unsigned file_rights[] = {0, 13, 14, 15, 15, 16}; /* [version] */
     struct {
         uint64_t files, ports, scopes;
     } handled = {0};

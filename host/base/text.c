@@ -79,7 +79,7 @@ size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES])
 char *whit_text_show(const char *text, char *out, size_t out_bytes)
 {
     char shown[WHIT_SHOWN_BYTES];
-    size_t used = 0, whole = 0; /* `...` has room at `whole` */
+    size_t used = 0, whole = 0; /* `whole`: the last place in `out` where `...` fits */
     out[0] = 0;
     for (size_t length; (length = whit_text_next(text, shown)) != 0; text += length) {
         size_t more = strlen(shown);

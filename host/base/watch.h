@@ -1,4 +1,5 @@
-/* Tells when files are written or replaced. Where the system cannot tell, nothing ever changes. */
+/* Tells when files are written or replaced. Where the system has no such service, files never seem
+   to change. */
 #ifndef BASE_WATCH_H
 #define BASE_WATCH_H
 

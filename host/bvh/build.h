@@ -65,7 +65,7 @@ struct build_halves {
 enum build_choice {
     BUILD_SPLIT, /* the records are in two runs */
     BUILD_LEAF,  /* a leaf costs less; allowed by the leaf limit */
-    BUILD_NONE,  /* no plane separates anything */
+    BUILD_NONE,  /* no plane separates the records */
 };
 
 /* From this depth on nodes are split at the median, which takes 28 more levels for 2^28 primitives.
@@ -83,7 +83,7 @@ struct build_output {
 struct builder {
     const struct bvh_params *params;
     struct build_record *records;
-    void *context; /* the builder's own */
+    void *context; /* the builder's own data */
     /* Chooses a split and makes it. thread_count is above 1 only where `threaded` is set: then the
        work on this one range is to be spread over threads. NULL: always `halve`. */
     enum build_choice (*split)(const struct builder *builder, const struct build_range *range,

@@ -15,8 +15,8 @@ struct bvh_box {
 
 /* The triangles that the boxes bound. */
 struct bvh_triangles {
-    const float *positions;  /* 3 a vertex */
-    const uint32_t *indices; /* 3 a triangle */
+    const float *positions;  /* 3 per vertex */
+    const uint32_t *indices; /* 3 per triangle */
     const uint8_t *whole;    /* 1: must stay in one leaf; NULL: none must */
 };
 
@@ -31,15 +31,15 @@ struct bvh_params {
     const struct bvh_triangles *triangles; /* WHIT_BUILD_SPATIAL */
     float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
                              tried (Stich et al. 2009, 4.5); 0: 1e-5 */
-    float spatial_budget; /* references beyond one a triangle, relative to triangles; 0: 0.5;
-                             < 0: none */
+    float spatial_budget; /* references beyond one per triangle, as a share of the triangles; 0:
+                             0.5; < 0: none */
 };
 
 /* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
 struct bvh {
     struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
     uint32_t *order;            /* free() */
-    uint32_t node_count;        /* with the unused one; 0: no primitives */
+    uint32_t node_count;        /* includes nodes[1]; 0: no primitives */
     uint32_t primitive_count, leaf_count;
     uint32_t
         reference_count; /* length of `order`; beyond primitive_count where triangles were split */

@@ -57,8 +57,8 @@ static inline unsigned f4_below(f4 a, f4 b)
 {
     return (unsigned)_mm_movemask_ps(_mm_cmplt_ps(a, b));
 }
-/* The first three lanes, 0 in the last: indices kept there would be denormals to the arithmetic,
-   which is slow. */
+/* The first three lanes, with 0 in the last: an index kept there would be a denormal, with which
+   arithmetic is slow. */
 static inline f4 f4_xyz(f4 a)
 {
     return _mm_and_ps(a, _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)));

@@ -4,7 +4,8 @@
 
 #include "bvh/build.h"
 
-/* In the order of the input, zeros without sign, and room for `spare` more behind them. free() */
+/* Makes records in the order of the input, with -0 replaced by +0, and room for `spare` more behind
+   them; free() *records. */
 whit_result records_make(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
                          uint32_t spare, uint32_t thread_count, struct build_record **records,
                          struct build_bounds *bounds);

@@ -11,7 +11,7 @@ struct bins {
 };
 
 struct span {
-    int first[3], last[3]; /* bins */
+    int first[3], last[3]; /* bins on each axis */
 };
 
 /* ---- Bins of a reference ---- */

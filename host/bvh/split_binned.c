@@ -94,7 +94,8 @@ static void fill_chunk(void *context, uint32_t index)
     bins_fill(&c->bins[index], c->grid, c->records + begin, end - begin);
 }
 
-/* Minimum, maximum and integer sums do not depend on how the records are cut into chunks. */
+/* Fills the bins by several threads. Minima, maxima and integer sums do not depend on how the
+   records are cut into chunks. */
 static void bins_fill_threaded(struct bins *bins, const struct bin_grid *grid,
                                const struct build_record *records, uint32_t count,
                                uint32_t thread_count)
@@ -217,7 +218,7 @@ static void partition(struct build_record *records, uint32_t count, const struct
     }
 }
 
-/* More bins than boxes find nothing more, and cost more than the boxes. */
+/* The number of bins for a node: more bins than boxes find no better plane, and cost more. */
 static uint32_t bins_wanted(const struct bvh_params *params, uint32_t count)
 {
     uint32_t wanted = FREE_BINS_MIN + count / 16;

@@ -6,7 +6,7 @@
 struct small_range {
     struct build_box box;
     uint32_t node, pair, first, count,
-        depth;     /* `first` counts from the first record that small_grow was given */
+        depth;     /* `first`: relative to the first record of small_grow's range */
     uint32_t side; /* which side of `order` holds its lists */
 };
 

@@ -15,7 +15,7 @@ struct small {
 };
 
 struct small_cut {
-    uint32_t axis, left_count; /* of order[0][axis] */
+    uint32_t axis, left_count; /* positions of order[0][axis] left of the cut */
     float cost;
 };
 

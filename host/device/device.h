@@ -18,7 +18,7 @@ struct pipeline;
 struct binding_set;
 struct commands;
 
-/* Limits of a device that only makers of kernels and buffers need; the others are public. */
+/* Limits that only code making kernels and buffers needs; the others are in whit_device_info. */
 struct device_limits {
     uint64_t max_texel_elements; /* of one texel buffer view */
     uint64_t max_allocation_bytes;
@@ -30,8 +30,8 @@ struct device_limits {
                         */
 };
 
-/* All physical devices, usable or not; *infos is one block, free() it. No loader or driver at all
-   is WHIT_ERROR_NO_DEVICE, logged with what to install. */
+/* Lists all physical devices, usable or not; *infos is one block, free() it. Without any loader or
+   driver: WHIT_ERROR_NO_DEVICE, logged with what to install. */
 WHIT_CHECK whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t *count);
 
 /* A window that a device shows pictures in, for device_params. The maker of the window names the

@@ -105,8 +105,7 @@ static void put(struct evaluation *e, struct word_list *out, const uint32_t *wor
 static void put_entry_point(struct evaluation *e, struct word_list *out, const uint32_t *at)
 {
     uint32_t begin = out->count, i = 3, length = spv_length(at);
-    while (i < length &&
-           at[i] >> 24 != 0) /* the name ends with a zero byte, in the last place too */
+    while (i < length && at[i] >> 24 != 0) /* the name ends at the word whose last byte is 0 */
         ++i;
     put(e, out, at, i < length ? i + 1 : length);
     for (++i; i < length; ++i) {
@@ -212,8 +211,8 @@ static void renumber(struct renumbering *r, uint32_t *at, uint32_t first, uint32
     }
 }
 
-/* Renumbers the ids of an instruction that stands before the function; false: the instruction
-   belongs to the function. */
+/* Renumbers the ids of an instruction in front of the function; false: the instruction belongs to
+   the function. */
 static bool renumber_front(struct renumbering *r, uint32_t *at)
 {
     uint32_t op = spv_op(at), first, last;
@@ -253,8 +252,8 @@ static void renumber_function(struct renumbering *r, uint32_t *at)
     }
 }
 
-/* Ids get numbers in the order in which they stand, so that a kernel has the same words whatever
-   was taken out of it. */
+/* Numbers the ids in their order in the module, so that a kernel has the same words whatever was
+   taken out of it. */
 static void renumber_ids(struct evaluation *e, struct word_list *out)
 {
     struct renumbering r = {array_alloc_zeroed(e->result_count, sizeof *r.numbers), 1};

@@ -8,7 +8,7 @@
 
 enum { BINDINGS_MAX = 64 };
 
-/* Bits of the bindings whose variables the instruction names. */
+/* The bindings whose variables the instruction names: bit i for binding i. */
 static uint64_t named_bindings(const uint32_t *at, const uint8_t *binding_of, uint32_t bound)
 {
     struct spirv_shape shape = spirv_shape(spv_op(at));
@@ -23,7 +23,7 @@ static uint64_t named_bindings(const uint32_t *at, const uint8_t *binding_of, ui
     return bits;
 }
 
-/* `binding_of`: of each id, 1 more than its binding; 0: none. */
+/* `binding_of` [id]: 1 + its binding; 0: none. */
 static bool inspect_words(const uint32_t *words, size_t word_count, uint8_t *binding_of,
                           struct spirv_info *out)
 {

@@ -7,8 +7,8 @@
 #include "base/hash.h"
 #include "device/kept.h"
 
-/* The device keeps at most so many pipelines; beyond that it drops those that nobody uses, the
-   oldest first. */
+/* The most pipelines that the device keeps. Beyond that it drops those without users, the oldest
+   first. */
 enum { KEPT_MAX = 128 };
 
 static struct pipeline *take(struct device *device, size_t key_of_pipeline, const uint64_t key[2])
@@ -25,8 +25,8 @@ static struct pipeline *take(struct device *device, size_t key_of_pipeline, cons
     return found;
 }
 
-/* Hashes all that decides which pipeline is made. Two hashes of 64 bits, for if two different
-   kernels had one key, a picture would be drawn by the wrong one. */
+/* Hashes all that decides which pipeline is made. It takes two hashes of 64 bits, since if two
+   different kernels had one key, a picture would be drawn by the wrong one. */
 static void key_of(const struct pipeline_params *params, bool specializes, uint64_t key[2])
 {
     const uint64_t sizes[] = {

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP */
+#define _GNU_SOURCE /* for PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP */
 #include "device/layers.h"
 
 #include <pthread.h>

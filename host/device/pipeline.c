@@ -8,7 +8,7 @@
 #include "device/buffer.h"
 #include "device/kept.h"
 
-/* A kernel as the driver gets it. */
+/* The words of a kernel that the driver gets. */
 struct kernel_words {
     uint32_t *whole; /* owned, the rewritten kernel; NULL: it is not rewritten */
     size_t whole_count;

@@ -24,24 +24,24 @@ struct spirv_shape spirv_shape(uint32_t op)
     if (op >= OP_GROUP_ELECT && op <= OP_GROUP_SHUFFLE_XOR && op != OP_GROUP_BALLOT_BIT_COUNT)
         return (struct spirv_shape){true, true, true, all};
     switch (op) {
-    case OP_GROUP_BALLOT_BIT_COUNT: /* scope, kind of count, value */
+    case OP_GROUP_BALLOT_BIT_COUNT: /* operands: scope, kind of count, value */
     case OP_GROUP_I_ADD:
     case OP_GROUP_U_MAX:
         return (struct spirv_shape){true, true, true, all & ~2u};
-    case OP_EXT_INST: /* a set and a number first */
+    case OP_EXT_INST: /* the first operands are a set and a number */
         return (struct spirv_shape){true, true, false, all & ~2u};
-    case OP_VARIABLE: /* a storage class first */
+    case OP_VARIABLE: /* the first operand is a storage class */
         return (struct spirv_shape){true, true, false, all & ~1u};
     case OP_LOAD:
-    case OP_ARRAY_LENGTH: /* a buffer, and the number of its member */
+    case OP_ARRAY_LENGTH: /* operands: a buffer, and the number of its member */
     case OP_COMPOSITE_EXTRACT:
         return (struct spirv_shape){true, true, false, 1};
     case OP_VECTOR_SHUFFLE:
     case OP_COMPOSITE_INSERT:
         return (struct spirv_shape){true, true, false, 3};
-    case OP_IMAGE_FETCH: /* image, coordinate, kinds of operands */
+    case OP_IMAGE_FETCH: /* operands: image, coordinate, kinds of further operands */
         return (struct spirv_shape){true, true, false, all & ~4u};
-    case OP_IMAGE_WRITE: /* image, coordinate, texel, kinds of operands */
+    case OP_IMAGE_WRITE: /* operands: image, coordinate, texel, kinds of further operands */
         return (struct spirv_shape){true, false, true, all & ~8u};
     case OP_STORE:
     case OP_LOOP_MERGE:
@@ -52,7 +52,7 @@ struct spirv_shape spirv_shape(uint32_t op)
         return (struct spirv_shape){true, false, true, 1};
     case OP_BRANCH_CONDITIONAL:
         return (struct spirv_shape){true, false, true, 7};
-    case OP_SWITCH: /* selector, default, then numbers and labels */
+    case OP_SWITCH: /* operands: selector, default, then numbers and labels */
         return (struct spirv_shape){true, false, true, 0xaaaaaaab};
     case OP_ATOMIC_STORE:
         return (struct spirv_shape){true, false, true, all};
@@ -110,7 +110,7 @@ static bool fold_two(uint32_t op, uint32_t a, uint32_t b, uint32_t *out)
         return true;
     case OP_SHIFT_RIGHT:
         *out = b < 32 ? a >> b : 0;
-        return b < 32; /* else undefined */
+        return b < 32; /* larger shifts are undefined */
     case OP_SHIFT_LEFT:
         *out = b < 32 ? a << b : 0;
         return b < 32;

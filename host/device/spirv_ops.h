@@ -13,7 +13,7 @@
 enum { HEAD_WORDS = 1, HEAD_WORDS_RESULT = 3 };
 
 /* The operands of an instruction within a function. `ids`: bit i is set if word i behind the head
-   is an id; from word 30 on, even words use bit 30 and odd ones bit 31. */
+   is an id; bit 30 stands for all even words from word 30 on, bit 31 for all odd ones. */
 struct spirv_shape {
     bool known;
     bool result;  /* has a type and an id */

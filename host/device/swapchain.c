@@ -175,7 +175,7 @@ void swapchain_destroy(struct swapchain *swapchain)
     if (!swapchain)
         return;
     VkDevice vk = swapchain->device->vk;
-    (void)vkDeviceWaitIdle(vk); /* a lost device has nothing left to wait for */
+    (void)vkDeviceWaitIdle(vk); /* fails for a lost device, which has no work left */
     drop_views(swapchain);
     swapchain_drop_canvas(swapchain);
     buffer_destroy(swapchain->picture);

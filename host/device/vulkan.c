@@ -1,4 +1,4 @@
-/* How Vulkan calls are checked, and made to fail. */
+/* Checks Vulkan calls, and makes them fail for tests. */
 #include "device/vulkan.h"
 
 #include <stdlib.h>
@@ -59,8 +59,7 @@ whit_result device_check(struct device *device, VkResult vk, const char *express
         return WHIT_ERROR_TIME_LIMIT;
     if (vk >= 0)
         return WHIT_OK;
-    /* Several threads that make kernels each see that the device is lost; only the first one says
-       so. */
+    /* Several threads may find that the device is lost; only the first one logs it. */
     bool told = vk == VK_ERROR_DEVICE_LOST ? atomic_exchange(&device->lost, true) : device->lost;
     if (told)
         return WHIT_ERROR_DEVICE;

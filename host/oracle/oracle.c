@@ -64,7 +64,7 @@ struct probe {
 /* The result of the test in double for one primitive, and how far it is from the opposite result.
  */
 struct verdict {
-    bool hit; /* edges only, without t_min and t_max */
+    bool hit; /* by the edges only, regardless of t_min and t_max */
     double t, u, v, t_error;
     double margin; /* distance from the opposite result, in error bounds, >= 0 */
     double choice; /* of a sphere: how far its other end is from being taken, in error bounds */

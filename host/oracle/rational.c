@@ -180,8 +180,8 @@ static int compare_root(struct quadratic *f, bool far, double at)
     mp_bitcnt_t down = shift < 0 ? (mp_bitcnt_t)-shift : 0;
     if (shift > 0)
         mpz_mul_2exp(f->at, f->at, (mp_bitcnt_t)shift);
-    /* slope = P a - S', value = a (P a - 2 S') + Q', with a = at 2^down, S' and Q' shifted alike.
-     */
+    /* slope = P a - S', value = a (P a - 2 S') + Q', with a = at 2^down, and S' and Q' scaled to
+       match. */
     mpz_mul_2exp(f->shifted, f->s, down);
     mpz_mul(f->slope, f->p, f->at);
     mpz_sub(f->slope, f->slope, f->shifted);
@@ -399,7 +399,7 @@ static bool surely_misses(const double origin[3], const double dir[3],
 /* ---- Every primitive that matters ---- */
 
 struct search {
-    struct conservative_walk walk; /* the first member: its callbacks get at the rest */
+    struct conservative_walk walk; /* must come first: callbacks cast it to struct search */
     struct rational *rational;
     const struct rational_query *query;
     const struct gpu_ray *world;

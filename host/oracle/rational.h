@@ -40,9 +40,9 @@ struct rational_query {
     bool any;                          /* any hit, not the closest */
     bool brute;                        /* no tree and no filter: integers for every primitive */
     const struct rational_hit *behind; /* the first hit that comes after this one */
-    /* The hit that the ray starts at; NULL: none. Its primitive is not hit again. A sphere is, at
-       its far end, where the ray goes into it (S > 0); with `behind` it is tested as any other
-       sphere. */
+    /* The hit where the ray starts; NULL: none. Its primitive is not hit again, except a sphere at
+       its far end, where the ray goes into it (S > 0). With `behind` a sphere is tested as any
+       other. */
     const struct rational_hit *own;
 };
 

@@ -1,6 +1,6 @@
-/* shaders/lib/exact_sphere.glsl in C: whether a ray meets a sphere and where, as exact arithmetic
-   says for the given floats. The filter is the shader's operation by operation, the exact test the
-   same integers. Method and bounds: docs/numerics.md, "exact". */
+/* shaders/lib/exact_sphere.glsl in C: whether and where a ray meets a sphere, as exact arithmetic
+   on the given floats would find. The filter repeats the shader's operations one by one; the exact
+   test is the same integer arithmetic. Method and bounds: docs/numerics.md, "exact". */
 #ifndef TWIN_EXACT_SPHERE_H
 #define TWIN_EXACT_SPHERE_H
 

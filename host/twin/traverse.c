@@ -17,7 +17,7 @@
 
 #define REF_DONE          0xffffffffu
 #define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
-/* As in the shader; the product is rounded to float there too. */
+/* The shader's constant; here too its product is rounded to float. */
 #define SLAB_NEAR_SCALE   (1.0f - 1.0f / 524288.0f)
 enum { STACK_SIZE = 512 };
 

@@ -1,5 +1,5 @@
-/* Read by the C compiler and by glslang: names of types that both know. Records are laid out in
-   16-byte rows, so that std430, scalar and C layouts agree. */
+/* Names of types that both the C compiler and glslang know; both read the files of abi/. Records
+   are laid out in 16-byte rows, so that std430, scalar and C layouts agree. */
 #ifndef ABI_BASE_H
 #define ABI_BASE_H
 

@@ -14,12 +14,12 @@
 #define BIND_DEFERRED          7
 #define BIND_NODE8_TEXELS     8
 
-/* The ray batch kernel. */
+/* Further bindings of the ray batch kernel (trace.comp). */
 #define BIND_RAYS         9
 #define BIND_BATCH_TEXELS 10 /* of BIND_RAYS */
 #define BIND_HITS         11
 #define BIND_TRACE_COSTS  12
-#define BIND_TRACE_COUNT  13 /* bindings of that kernel */
+#define BIND_TRACE_COUNT  13 /* number of bindings of that kernel */
 
 /* Bindings of the stages of a picture, with the queues between them. */
 #define BIND_SHADING             9

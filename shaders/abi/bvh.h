@@ -4,22 +4,23 @@
 
 #include "base.h"
 
-/* A box and what is in it. Nodes live in pairs: the two children of a node are nodes `first` and
-   `first + 1` with `first` even, so that siblings share one 64-byte line. In a tree over instances a
-   leaf holds one instance and `first` is its index. */
+/* A node: a box and its contents. Nodes come in pairs: the two children of a node are nodes `first`
+   and `first + 1` with `first` even, so that siblings share one 64-byte line. In a tree over
+   instances a leaf holds one instance, and `first` is its index. */
 struct gpu_bvh_node {
     gpu_vec3 lo;
     gpu_uint first; /* inner: left child; leaf: first record of the triangle array */
     gpu_vec3 hi;
-    gpu_uint count; /* & BVH_COUNT_MASK: 0: inner; else primitives of the leaf. In the first node of
-                       a pair also the bits of BVH_AXIS_* */
+    gpu_uint count; /* its bits BVH_COUNT_MASK: 0: inner; else number of primitives of the leaf. In
+                       the first node of a pair also the bits of BVH_AXIS_* */
 };
 GPU_ASSERT_SIZE(gpu_bvh_node, 32)
 GPU_ASSERT_AT(gpu_bvh_node, first, 12)
 GPU_ASSERT_AT(gpu_bvh_node, hi, 16)
 GPU_ASSERT_AT(gpu_bvh_node, count, 28)
 
-/* A node as the traversal stack holds it: count in the upper 4 bits, first in the lower 28. */
+/* A ref: a node in the 32 bits that the traversal stack holds: count in the upper 4, first in the
+   lower 28. */
 #define BVH_LEAF_MAX    15u
 #define BVH_COUNT_MASK  15u
 #define BVH_COUNT_SHIFT 28u
@@ -32,19 +33,22 @@ GPU_ASSERT_AT(gpu_bvh_node, count, 28)
 #define BVH_AXIS_MASK  3u
 #define BVH_SECOND_LOW 64u
 
-/* Which of two children that are both hit is visited first. */
-#define ORDER_DISTANCE 0u /* the one entered earlier along the ray */
-#define ORDER_SIGN     1u /* the lower one, on the axis of the pair, for rays that go up it */
+/* Which of two children is visited first, where both are hit. */
+#define ORDER_DISTANCE 0u /* the one that the ray enters first */
+#define ORDER_SIGN     1u /* the lower one on the pair's axis, for rays that go up along it; else
+                             the other */
 #define ORDER_BASIC    2u /* the first of the pair */
 
-/* One triangle in leaf order. In object space; where instances are flattened in world space. */
+/* A record: one primitive, in the order of the leaves. In object space, or in world space where
+   instances are flattened. */
 struct gpu_triangle {
     gpu_vec3 v0;
     gpu_uint primitive; /* index within its mesh */
     gpu_vec3 v1;
     gpu_uint flags; /* TRIANGLE_* */
     gpu_vec3 v2;
-    gpu_uint shadow; /* optical depth to shadow rays: 3 x 10 bits, red lowest; see TRIANGLE_FILTER */
+    gpu_uint shadow; /* optical depth for shadow rays: 3 x 10 bits, red lowest; see TRIANGLE_FILTER
+                        */
 };
 GPU_ASSERT_SIZE(gpu_triangle, 48)
 GPU_ASSERT_AT(gpu_triangle, primitive, 12)
@@ -54,22 +58,23 @@ GPU_ASSERT_AT(gpu_triangle, v2, 32)
 GPU_ASSERT_AT(gpu_triangle, shadow, 44)
 
 #define TRIANGLE_CUTOUT    1u /* opacity decides whether it is hit */
-#define TRIANGLE_NO_SHADOW 2u /* casts no shadow: the surface of a light */
-/* Lets shadow rays through, weaker by 2^(-shadow / 64) per channel. Depths are added as integers,
-   so that the order in which a ray meets its filters cannot change the sum. */
+#define TRIANGLE_NO_SHADOW 2u /* casts no shadow: the surface of a light, or a shadow catcher */
+/* Lets shadow rays through, weakened by 2^(-shadow / 64) per channel. Depths are added as integers,
+   so that the order in which a ray hits its filters cannot change the sum. */
 #define TRIANGLE_FILTER    4u
-#define TRIANGLE_MIRRORED  8u /* flat: its instance turns it inside out, its normal is reversed */
-/* No triangle: centre in v0, radius in v1.x. v1.yz are 0 and v2 is v1: as a triangle it would be met
-   by no ray. */
+#define TRIANGLE_MIRRORED  8u /* flat tree: its instance mirrors it, so its normal is reversed */
+/* A sphere: centre in v0, radius in v1.x. v1.yz are 0 and v2 is v1, so that no ray would hit it as
+   a triangle. */
 #define TRIANGLE_SPHERE        16u
-#define TRIANGLE_ONE_SIDED     32u  /* not hit from behind, but by shadow rays */
-#define TRIANGLE_FILTER_DETAIL 64u  /* a filter whose depth is a matter of the point met */
+#define TRIANGLE_ONE_SIDED     32u  /* not hit from behind, except by shadow rays */
+#define TRIANGLE_FILTER_DETAIL 64u  /* a filter whose depth depends on the point that is hit */
 #define TRIANGLE_GLASS         128u /* light passes through it */
-#define TRIANGLE_INSTANCE_SHIFT 8u /* flat: its instance is in the bits from here up */
+#define TRIANGLE_INSTANCE_SHIFT 8u /* flat tree: its instance is in the bits from here up */
 #define SHADOW_DEPTH_SCALE 64.0
 
-/* An object placed in the world. t is the same in both spaces: directions are not renormalised.
-   The inverse takes (p - origin), never p: no cancellation far from the origin. */
+/* An instance of a mesh. t is the same in object and world space, as directions are not
+   renormalised. The inverse is applied to (p - origin), never to p: so nothing cancels far from the
+   origin. */
 struct gpu_instance {
     gpu_vec3 inverse0;
     gpu_float origin_x;
@@ -78,7 +83,7 @@ struct gpu_instance {
     gpu_vec3 inverse2;
     gpu_float origin_z;
     gpu_uint root;       /* ref of the mesh tree, or BVH_EMPTY_REF */
-    gpu_uint shade_base; /* of primitive 0: index among the triangles of all meshes */
+    gpu_uint shade_base; /* index of its primitive 0 among the primitives of all meshes */
     gpu_uint mesh;
     gpu_uint pad3;
     gpu_vec3 forward0; /* object to world, rows */
@@ -88,7 +93,7 @@ struct gpu_instance {
     gpu_vec3 forward2;
     gpu_float center_z;
     gpu_float reach; /* half the longest side of that box */
-    gpu_uint root8;  /* ref of the mesh tree of eight children a node */
+    gpu_uint root8;  /* ref of the mesh tree with eight children per node */
     gpu_float pad1;
     gpu_float pad2;
 };
@@ -115,7 +120,7 @@ struct gpu_hit {
 GPU_ASSERT_SIZE(gpu_hit, 32)
 GPU_ASSERT_AT(gpu_hit, instance, 16)
 
-/* What the traversals of one kind of ray cost: for a pixel, a ray of a batch, or summed up. */
+/* Counters of the traversals of one kind of ray: for a pixel, for a ray of a batch, or summed. */
 struct gpu_cost {
     gpu_uint rays;
     gpu_uint inner_nodes; /* inner nodes opened: box tests are twice that */
@@ -130,7 +135,7 @@ struct gpu_cost {
 GPU_ASSERT_SIZE(gpu_cost, 32)
 GPU_ASSERT_AT(gpu_cost, triangles, 16)
 
-/* Kinds of rays that are counted apart. */
+/* Kinds of rays, with counters of their own. */
 #define RAY_PRIMARY    0u
 #define RAY_SHADOW     1u
 #define RAY_REFLECTED  2u
@@ -141,11 +146,11 @@ GPU_ASSERT_AT(gpu_cost, triangles, 16)
 struct gpu_batch {
     gpu_uint ray_count;
     gpu_uint root;
-    gpu_uint deferred; /* 1: of the rays on the list of deferred rays */
-    gpu_uint root8;   /* of eight children a node, for SPEC_PACKETS */
+    gpu_uint deferred; /* 1: works on the rays of the deferred list */
+    gpu_uint root8;   /* root of the tree with eight children per node, for SPEC_PACKETS */
 };
 
-/* Head of a work list, followed by the items: pixels (slots within the chunk), or rays of a batch.
+/* Head of a work list. The items follow it: pixels (slots within the chunk), or rays of a batch.
    The first three words are the arguments of an indirect dispatch. */
 struct gpu_work {
     gpu_uint groups_x;
@@ -157,30 +162,31 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 
 #define HIT_NONE 0xffffffffu
 
-/* Record and instance of a hit on the shape of a user's file (HOOK_INTERSECT), which is in no tree. Its
-   primitive is 0. */
+/* Stands for the record and the instance of a hit on a user's shape (HOOK_INTERSECT), which is in
+   no tree. The primitive of such a hit is 0. */
 #define HIT_SHAPE 0x7fffffffu
 
-/* Reasons not to trust a result. Kernels or them into the status word; the host obeys. */
+/* Reasons not to trust a result. Kernels or these bits into the status word, which the host checks.
+   */
 #define STATUS_UNFINISHED_TRAVERSAL 1u /* a loop ended before its stack was empty */
 #define STATUS_NODE_STACK_OVERFLOW  2u
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
-#define STATUS_UNFINISHED_LOOP      16u /* lights or another loop cut short */
+#define STATUS_UNFINISHED_LOOP      16u /* the loop over lights or another one was cut short */
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MAX media */
-/* A queue between stages was full. That voids no result: the tile is drawn again in smaller ones. */
+/* A queue between stages was full. This is no error: the tile is drawn again in smaller ones. */
 #define STATUS_QUEUE_FULL 128u
 #define STATUS_FUEL 256u /* a loop of a user's function took more iterations than it may */
-#define STATUS_SHAPE 512u /* a user's function has answered for its shape as it must not: SHAPE_* */
-/* The status of a single ray, never in the status word: a deferred ray, whose hit floats do not decide
-   (without SPEC_SETTLES). The rest of its result is ignored. */
+#define STATUS_SHAPE 512u /* a user's intersect() gave an answer that is not allowed: SHAPE_* */
+/* The status of a single ray, never in the status word: the ray is deferred, as floats do not
+   decide its hit (without SPEC_SETTLES). The rest of its result is ignored. */
 #define STATUS_RAY_DEFERRED 64u
 
-/* What is wrong with an answer for a user's shape, in the upper bits of status_shape; below them
-   SHAPE_PIXEL_MASK less the number of the pixel, so that of equal reasons the first pixel is the
-   largest. */
+/* What is wrong with an answer for a user's shape. It stands in the upper bits of status_shape;
+   below it is SHAPE_PIXEL_MASK less the number of the pixel, so that by atomicMax the first pixel
+   remains of those with the same reason. */
 #define SHAPE_NOT_A_NUMBER 1u
-#define SHAPE_BY_REACH     2u /* another answer with a larger `far` */
-#define SHAPE_OUTSIDE      3u /* the shape is met outside of its box */
+#define SHAPE_BY_REACH     2u /* the answer differs with a larger `far` */
+#define SHAPE_OUTSIDE      3u /* the shape is hit outside of its box */
 #define SHAPE_REASON_SHIFT 30u
 #define SHAPE_PIXEL_MASK   0x3fffffffu
 

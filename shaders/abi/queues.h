@@ -23,7 +23,8 @@
 #define GENERATION_ROWS 25u
 #define ITEMS_ROWS      2u
 
-/* A bit in the word of a hit's record: at NUMERICS_EXACT, the hit is the far end of a sphere. */
+/* A bit in the word that names a hit's record: at NUMERICS_EXACT, the hit is the far end of a
+   sphere. */
 #define HIT_AT_EXIT 0x80000000u
 
 /* sums[].w of a ray, as bits: which rays it called for, and the id of the first of them in
@@ -38,7 +39,7 @@
 #define SUM_IS_CATCHER 0x80000000u /* the hit is a shadow catcher: its sum is its light, unweighted;
                                       the first row of the hit has that light without shadows */
 
-/* The lists of a generation: what waits for each stage. */
+/* The lists of a generation: the items that wait for each stage. */
 #define LIST_RAYS      0u
 #define LIST_HITS      1u /* to be shaded, class by class */
 #define LIST_LIT       3u /* hits that lights may reach, to be lit */

@@ -276,9 +276,9 @@ GPU_ASSERT_SIZE(gpu_probe, 16)
                                catcher shows */
 
 /* gpu_probe_ray.end */
-#define PROBE_DEFERRED    0u /* not known yet */
+#define PROBE_DEFERRED    0u /* deferred: its end is not known yet */
 #define PROBE_MISSED   1u
-#define PROBE_ABSORBED 2u /* it leaves the scene in a medium of which too little comes back */
+#define PROBE_ABSORBED 2u /* it leaves the scene in a medium that absorbs nearly all of its light */
 #define PROBE_HIT      3u
 #define PROBE_DEPTH    4u /* not traced: --depth */
 #define PROBE_BAILOUT  5u /* not traced: --bailout */
@@ -301,9 +301,10 @@ struct gpu_probe_ray {
     gpu_vec3 normal; /* unit, interpolated, on the ray's side; without bump maps */
     gpu_uint material;
     gpu_float u, v;
-    gpu_uint primitive, instance; /* HIT_NONE: none, or (blocked without trees) not known */
+    gpu_uint primitive, instance; /* HIT_NONE: none, or not known (for a blocked ray without trees)
+                                     */
     gpu_uint skip_primitive, skip_instance;
-    gpu_uint medium; /* material + 1 of what it goes through; 0: air */
+    gpu_uint medium; /* material + 1 of the medium it goes through; 0: air */
     gpu_uint light_sample; /* shadow rays: light * light_samples + sample */
 };
 GPU_ASSERT_SIZE(gpu_probe_ray, 128)
@@ -312,7 +313,7 @@ GPU_ASSERT_AT(gpu_probe_ray, skip_primitive, 112)
 
 /* ---- What dbg(x) of a user's functions is, for that pixel ---- */
 
-#define DBG_CALLS  64u /* in a file */
+#define DBG_CALLS  64u /* calls of dbg() in a file */
 #define DBG_VALUES 64u /* kept for each call; further ones are only counted */
 
 /* gpu_dbg.type: one of these, plus 1, 2 or 3 for a vector of two, three or four */

@@ -10,7 +10,7 @@
 #define LOAD_STORAGE 0u
 #define LOAD_TEXEL   1u
 
-/* Which camera rays start at the lens. */
+/* Kinds of cameras. */
 #define CAMERA_PERSPECTIVE  0u
 #define CAMERA_ORTHOGRAPHIC 1u
 #define CAMERA_LENS         2u /* perspective with a thin lens */
@@ -21,7 +21,7 @@
 #define FRESNEL_EXACT   1u
 #define FRESNEL_SCHLICK 2u /* Schlick's approximation */
 
-/* Media. */
+/* Whether media are tracked, and whether their surfaces may touch. */
 #define MEDIA_NONE  0u
 #define MEDIA_ALONE 1u /* surfaces of two media touch nowhere */
 #define MEDIA_TOUCH 2u /* surfaces of several media may touch */
@@ -130,10 +130,10 @@
     X(34, SPEC_EMISSION, 1)                                                                        \
     X(35, SPEC_LISTED, 1)             /* camera rays may be limited to listed pixels */            \
     X(36, SPEC_NUMERICS, 0)           /* NUMERICS_* */                                             \
-    X(37, SPEC_PROBE, 0)              /* only the probed pixel, and its rays are recorded */       \
-    X(38, SPEC_SETTLES, 1)              /* NUMERICS_EXACT: 0: open rays are deferred */              \
+    X(37, SPEC_PROBE, 0)              /* draws only the probed pixel, and records its rays */      \
+    X(38, SPEC_SETTLES, 1)              /* NUMERICS_EXACT; 0: defers undecided rays */               \
     X(39, SPEC_PACKETS, 0)            /* rays of a subgroup of 8 lanes form a packet */            \
-    X(40, SPEC_EIGHT_LANES, 0)        /* subgroups have 8 lanes, and are slow to add them up */    \
+    X(40, SPEC_EIGHT_LANES, 0)        /* subgroups have 8 lanes and slow subgroup sums */          \
     X(41, SPEC_PACKET_RAYS, 1)        /* rays per lane */                                          \
     X(42, SPEC_PACKET_STACK, 16)      /* stack entries of a packet */                              \
     X(43, SPEC_BEAM, 0)               /* BEAM_*: what point the rays of packets share */           \

@@ -16,9 +16,9 @@ struct Beam {
     vec2 inverse_lo, inverse_hi; // bounds of beam_inverse over the group's rays
 };
 Beam beam;
-vec3 beam_inv_dir[SPEC_PACKET_RAYS]; // turned likewise
-vec3 beam_origin[SPEC_PACKET_RAYS];  // where the rays start, likewise
-vec2 beam_inverse[SPEC_PACKET_RAYS]; // last component of a ray's direction by the others, upwards
+vec3 beam_inv_dir[SPEC_PACKET_RAYS]; // turned in the same way
+vec3 beam_origin[SPEC_PACKET_RAYS];  // where the rays start, turned in the same way
+vec2 beam_inverse[SPEC_PACKET_RAYS]; // last component of a ray's direction / the others, upwards
 bool beam_left[SPEC_PACKET_RAYS];    // rays whose group is still to be traversed
 bool beam_walks[SPEC_PACKET_RAYS];   // rays of the current group
 vec3 beam_aside[SPEC_PACKET_RAYS];   // t, lo and hi of the hits of all other rays, saved
@@ -47,7 +47,7 @@ const uint GROUP_NONE = 32u;
 // Prepares the rays of the group for tests of boxes, and bounds their directions.
 void bound_beam()
 {
-    vec2 lo = vec2(INFINITE), hi = lo; // hi: negated
+    vec2 lo = vec2(INFINITE), hi = lo; // hi holds negated values
     EACH_RAY {
         packet_unit[r] = abs(turn_dominant(beam.dominant, packet_rays[r].dir).z);
         beam_inv_dir[r] = turn_dominant(beam.dominant, packet_rays[r].inv_dir);

@@ -11,8 +11,8 @@ uint camera_kind()
     return SPEC_CAMERA == CAMERA_EACH ? view.camera : SPEC_CAMERA;
 }
 
-// Origin and direction, not of unit length, of the camera ray through `at`: -1..1 from left to right
-// and from top to bottom. `lens`: as chunk.lens_xy.
+// Origin and direction, not of unit length, of the camera ray through `at`: -1..1 from left to
+// right and from top to bottom. `lens`: as in chunk.lens_xy.
 void camera_line(vec2 at, vec2 lens, out vec3 origin, out vec3 dir)
 {
     origin = frame.eye;

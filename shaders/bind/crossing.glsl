@@ -60,7 +60,7 @@ float crossing_contact(Surface s, Ray ray)
 struct Crossed {
     uvec4 entries; // material + 1
     uvec4 instances;
-    uint leaving;  // bit i: entry i is left
+    uint leaving;  // bit i: medium i is left, not entered
     uint count;
 };
 

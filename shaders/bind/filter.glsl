@@ -7,12 +7,13 @@
 #include "media.glsl"
 #include "surface.glsl"
 
-// Absorption is counted up to where the shadow ray ends: at the light, or for suns at t = 0. A surface where
-// the ray enters a body adds what the body would absorb from there to the end, one where it leaves takes that
-// away again, and a ray that starts in a body starts with all of it (surrounding_absorption). So what remains
-// is the path inside, wherever the ray's ends are. No sun is inside anything, so the end may lie at 0.
-// Open meshes: a ray that enters and never leaves is absorbed up to the light, as is a camera ray, which
-// stays in the medium; one that leaves without having entered gets a sum below 0, which counts as 0.
+// Absorption along a shadow ray is counted relative to where the ray ends: at the light, or for
+// suns at t = 0. A surface where the ray enters a body adds what the body would absorb from there
+// to the ray's end, a surface where it leaves subtracts it, and a ray that starts in a body starts
+// with all of it (surrounding_absorption). What remains is the absorption of the path inside,
+// wherever the ray's ends are. No sun is inside a body, so its ray may end at 0. Open meshes: a ray
+// that enters and never leaves is absorbed up to the light, as a camera ray that stays in the
+// medium is; a ray that leaves without having entered gets a sum below 0, which counts as 0.
 const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
 const float DEPTH_MAX = 1073741824.0;        // 2^30; sums may wrap around and back
 

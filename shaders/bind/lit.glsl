@@ -19,7 +19,7 @@ struct Lit {
     float error;    // bound of the error of p on each axis; with flat emitters
     vec3 ns, ng;    // on the side that receives light
     vec3 view;      // to where the ray came from
-    vec3 diffuse, highlight; // weighted
+    vec3 diffuse, highlight; // weighted by the ray's weight
     float gloss;    // alpha of GGX, or shininess
     vec3 absorption; // of the media around
     uint flags;     // LIT_*

@@ -46,7 +46,7 @@ vec3 inverse_or_infinite(vec3 value)
 
 void make_packet_bounds(const uint mode)
 {
-    vec3 o_lo = vec3(INFINITE), o_hi = o_lo, d_lo = o_lo, d_hi = o_lo; // o_hi, d_hi: negated
+    vec3 o_lo = vec3(INFINITE), o_hi = o_lo, d_lo = o_lo, d_hi = o_lo; // o_hi, d_hi hold negated values
     bool backwards = false;
     EACH_RAY {
         vec3 o = packet_rays[r].origin, d = packet_rays[r].dir;

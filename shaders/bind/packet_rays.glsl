@@ -105,13 +105,13 @@ float distance_to_eye(RaySetup ray, vec3 eye)
     eye = turn_dominant(ray.dominant, eye);
     vec2 aside = abs(origin.xy + dir.xy * ((eye.z - origin.z) / dir.z) - eye.xy);
     float distance = max(aside.x, aside.y);
-    return distance < INFINITE ? distance : INFINITE; // NaN: anywhere
+    return distance < INFINITE ? distance : INFINITE; // NaN counts as infinite
 }
 
 // Sets packet_size: the part of box_margin that is the same for all boxes of the tree.
 void size_rays(vec3 eye)
 {
-    float least = 0.0; // negated
+    float least = 0.0; // holds negated values
     EACH_RAY {
         float own = largest_size(packet_rays[r].origin);
         if (SPEC_BEAM == BEAM_ENDS)
@@ -132,8 +132,8 @@ float box_margin(vec3 lo, vec3 hi)
     return (max(largest_size(lo), largest_size(hi)) + packet_size) * BOUNDS_MARGIN;
 }
 
-// The t of a box that no ray enters: bits of infinity. Such t are compared as integers, of which lavapipe takes
-// the minimum in one instruction; of negative ones only the sign counts.
+// The t, as bits, of a box that no ray enters: infinity. Such t are compared as integers, as
+// lavapipe has the minimum of integers in one instruction; of negative ones only the sign matters.
 const int NEVER = 0x7f800000;
 
 #endif

@@ -70,7 +70,7 @@ uvec2 slot_pixel(uint slot)
     return uvec2(place.x, place.y % view_rows());
 }
 
-// Tells whether a place is in the picture.
+// Whether a place is in the picture.
 bool is_in_picture(uvec2 at)
 {
     if (SPEC_VIEWS != 0u)

@@ -34,7 +34,7 @@ struct Hit {
     float lo, hi; // NUMERICS_EXACT: bounds of the hit's key, see lib/exact.glsl
     float u, v;     // of a sphere: square_from_dir of the normal, object space
     bool at_exit;   // NUMERICS_EXACT: the far end of a sphere
-    uint triangle;  // record
+    uint triangle;  // number of its record
     bool glass;     // light passes through it
     uint primitive; // index in its mesh, or HIT_NONE
     uint instance;

@@ -149,7 +149,7 @@ uvec2 fetch_firsts(uint generation)
     return generations[generation].firsts.xy;
 }
 
-// How many rays of a generation there is room for.
+// The most rays of one generation for which there is room.
 uint generation_capacity()
 {
     return chunk.ray_capacity / 4u;

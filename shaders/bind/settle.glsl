@@ -26,8 +26,8 @@ ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, 
     return m;
 }
 
-// Which ends of a chord through a sphere count: those from t_min on; `only_far`: the far one alone; `self`:
-// the ray starts on the sphere, and meets an end only if it goes inwards.
+// Which ends of a sphere's chord count: those from t_min on; `only_far`: only the far one; `self`:
+// the ray starts on the sphere, and hits an end only if it goes inwards.
 struct Ends {
     float t_min;
     bool only_far, self;
@@ -145,7 +145,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
         }
         first = false;
     } while (another_iteration(again));
-    if (again) // the driver has ended the loop
+    if (again) // the driver has cut the loop short
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
 

@@ -84,7 +84,7 @@ uint triangle_rows_each()
     return SPEC_SMOOTH_NORMALS != 0u ? TRIANGLE_SHADE_ROWS : TRIANGLE_FLAT_ROWS;
 }
 
-// `shade_index`: index of the triangle among those of all meshes.
+// `shade_index`: index of the primitive among those of all meshes.
 uint fetch_material_index(uint shade_index)
 {
     return fetch_shading_row(frame.triangle_row + shade_index * triangle_rows_each()).w;

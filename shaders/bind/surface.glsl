@@ -1,4 +1,4 @@
-// From a hit to what shading needs: point, normals, texture coordinates, material.
+// Computes from a hit what shading needs: point, normals, texture coordinates, material.
 #ifndef BIND_SURFACE_GLSL
 #define BIND_SURFACE_GLSL
 

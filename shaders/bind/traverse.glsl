@@ -11,10 +11,11 @@
 // its texture coordinates (sphere_uv), here and below.
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
-// Defined by the kernel: the optical depth that a filter with TRIANGLE_FILTER_DETAIL adds to a shadow
-// ray that meets it from the front or from behind, in units of 1/64 stop. `way`: the distance from there to
-// the light; for suns to the ray's origin, which is less than 0. `own`: the depth in its record. A surface
-// where the ray enters or leaves a medium may add a negative depth; a sum below 0 counts as 0.
+// Defined by the kernel: the optical depth, in units of 1/64 stop, that a filter with
+// TRIANGLE_FILTER_DETAIL adds to a shadow ray that hits it from the front or from behind. `way`:
+// the distance from there to the light; for suns the distance to the ray's origin, negated. `own`:
+// the depth in its record. A surface where the ray enters or leaves a medium may add a negative
+// depth; a sum below 0 counts as 0.
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own);
 
@@ -455,7 +456,7 @@ bool look_at_rows(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_
         }
         at_exit = true;
     } while (goes_on(again));
-    if (again) // the driver has ended the loop
+    if (again) // the driver has cut the loop short
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
     return is_over(mode, accepted, hit);
 }
@@ -498,7 +499,8 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
         } while (is_leaf(ref) && !deferred);
         ref = refill_stack(ref, stack, hit.status);
     } while (another_iteration(ref != REF_DONE && !deferred));
-    // A driver that cuts loops short (lavapipe: 65,535 iterations a subgroup) leaves work behind.
+    // A driver that cuts loops short (lavapipe: after 65,535 iterations per subgroup) leaves work
+    // undone.
     if (ref != REF_DONE && !deferred)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -529,7 +531,8 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
             look_at_leaf(mode, ray, ray.origin, ray.dir, t_min, 0u, skip_instance, skip_primitive,
                          ref, stack, hit);
     } while (settles(mode) && another_iteration(ref != REF_DONE));
-    // A driver that cuts loops short (lavapipe: 65,535 iterations a subgroup) leaves work behind.
+    // A driver that cuts loops short (lavapipe: after 65,535 iterations per subgroup) leaves work
+    // undone.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -597,7 +600,8 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
             look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
                          skip_primitive, mesh_ref, mesh_stack, hit);
     } while (settles(mode) && another_iteration(ref != REF_DONE));
-    // A driver that cuts loops short (lavapipe: 65,535 iterations a subgroup) leaves work behind.
+    // A driver that cuts loops short (lavapipe: after 65,535 iterations per subgroup) leaves work
+    // undone.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -621,7 +625,7 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
         traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (!is_usable(origin, dir))
         root = REF_DONE;
-    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // behind the origin nothing is hit
+    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // nothing is hit behind the origin
         t_min = 0.0;
     if (SPEC_INSTANCED != 0u) {
         traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);

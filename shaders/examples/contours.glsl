@@ -9,7 +9,7 @@
 //@ aov contours
 vec4 contours(Surface s)
 {
-    // World units that a pixel covers at this distance, along the slope.
+    // World units that a pixel covers at this distance.
     float pixel_size = ray_distance() * 1.2 / float(picture_size().y);
     float slope = sqrt(max(1.0 - s.ng.y * s.ng.y, 0.0));
     float height = s.p.y / spacing;

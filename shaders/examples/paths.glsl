@@ -1,5 +1,5 @@
 //@ whit 1
-// A path tracer: what is diffuse sends a ray on as well, at random. Needs many samples: --aa 256, or the
+// A path tracer: diffuse surfaces send a ray on too, at random. Needs many samples: --aa 256, or the
 // viewer, which goes on by itself.
 //@ slider bounce 0 1 1 "share of the indirect light"
 

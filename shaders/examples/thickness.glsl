@@ -8,7 +8,7 @@ vec3 shade(Surface s, Optics o, vec3 to_eye)
     float inside = 0.0;
     vec3 dir = ray_dir();
     Surface at = s;
-    bool within = true; // the ray has just gone in
+    bool within = true; // the ray is inside
     for (uint i = 0u; i < uint(layers); i++) {
         Surface next;
         float distance;

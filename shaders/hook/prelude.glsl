@@ -12,7 +12,7 @@
 // What is known of the call. The first three are set before each call of a user's function.
 uvec2 hook_pixel;
 Hit hook_hit;            // of the surface
-uvec4 hook_media;        // around it
+uvec4 hook_media;        // media around it
 uint hook_status = 0u;   // STATUS_* of the rays that the user's functions have traced
 uint hook_traced = 0u;   // number of those rays
 uint whit_fuel = 0u;     // iterations of loops that the call may still take

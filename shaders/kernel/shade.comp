@@ -26,7 +26,7 @@ layout(local_size_x_id = 0) in;
 
 // The rays that a hit calls for, in the order in which their light is added.
 struct Calls {
-    vec3 dir[3], weight[3]; // refracted, straight, reflected
+    vec3 dir[3], weight[3]; // index: 0 refracted, 1 straight, 2 reflected
     bool wanted[3];
     uint ends[3]; // with SPEC_PROBE: why it is not traced, PROBE_DEPTH or PROBE_BAILOUT
     uint steps;

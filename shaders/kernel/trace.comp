@@ -21,7 +21,7 @@ layout(set = 0, binding = BIND_HITS, std430) buffer HitBuffer
 layout(set = 0, binding = BIND_HITS, std430) buffer WideHitBuffer { u64vec4 wide_hits[]; };
 layout(set = 0, binding = BIND_HITS, std430) buffer BlockedBuffer
 {
-    uint blocked[]; // with SPEC_ANY_HIT: 1: there is a hit
+    uint blocked[]; // with SPEC_ANY_HIT: 1 if there is a hit
 };
 layout(set = 0, binding = BIND_TRACE_COSTS, std430) buffer CostBuffer
 {

@@ -87,7 +87,7 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
 // 2^72 times 2^(e1 + e2 + e3 - 3) such units. The largest shift is 759: the last digit touched is 52.
 
 const int WIDE_DIGITS = 54;
-const int WIDE_D = 0; // e_a, then D = e_a + e_b + e_c
+const int WIDE_D = 0; // e_a at first, then D = e_a + e_b + e_c
 const int WIDE_B = 1;
 const int WIDE_C = 2;
 const int WIDE_N = 3;
@@ -97,7 +97,7 @@ const int POINT_A = 2;
 const int POINT_B = 3;
 const int POINT_C = 4;
 
-int wide[4 * WIDE_DIGITS]; // one integer after the other
+int wide[4 * WIDE_DIGITS]; // four integers, one after the other
 uint wide_mantissa[15]; // x, y, z of POINT_*; sign in the top bit
 int wide_exponent[15];
 
@@ -163,7 +163,7 @@ void add_product(int target, ivec3 at, bool negative)
     umulExtended(pq_high, r, word2, above);
     word1 = uaddCarry(word1, above, carry);
     word2 += carry;
-    uint bits = uint(shift) & 15u, back = 16u - bits; // shifts by 32 have no meaning
+    uint bits = uint(shift) & 15u, back = 16u - bits; // shifts by 32 are undefined
     word2 = word2 << bits | word1 >> 16 >> back;
     word1 = word1 << bits | word0 >> 16 >> back;
     word0 = word0 << bits;

@@ -63,7 +63,7 @@ const int BALL_Q = 2;
 const int BALL_VALUES = 10; // direction, origin, centre, radius
 
 int ball[3 * BALL_DIGITS];
-int ball_product[88]; // of t times P
+int ball_product[88]; // digits of t times P
 uint ball_mantissa[BALL_VALUES]; // sign in the top bit
 int ball_exponent[BALL_VALUES];
 
@@ -107,7 +107,7 @@ void add_ball_product(int target, int a, int b, bool twice, bool negative)
     uint high, low;
     umulExtended(p & 0x7fffffffu, q & 0x7fffffffu, high, low);
     uint bits = uint(shift % BALL_BITS);
-    high = high << bits | low >> 16 >> (16u - bits); // shifts by 32 have no meaning
+    high = high << bits | low >> 16 >> (16u - bits); // shifts by 32 are undefined
     low = low << bits;
     if ((high | low) != 0u) {
         int to = target * BALL_DIGITS + shift / BALL_BITS, sign = minus ? -1 : 1;

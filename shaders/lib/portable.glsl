@@ -64,11 +64,12 @@ float divided(const float x, const float y)
     b &= ~SIGN_BIT;
     Significand n = significand(a), d = significand(b);
     float divisor = significand_float(d.s);
-    float inverse = 1.41176471 - 0.470588235 * divisor; // within 1/17
+    float inverse = 1.41176471 - 0.470588235 * divisor; // off by at most 1/17
     inverse = inverse * (2.0 - divisor * inverse);
     inverse = inverse * (2.0 - divisor * inverse);
     inverse = inverse * (2.0 - divisor * inverse);
-    uint q = uint(significand_float(n.s) * inverse * 33554432.0); // n.s 2^25 / d.s, off by 20
+    uint q = uint(significand_float(n.s) * inverse * 33554432.0); // n.s 2^25 / d.s, off by at most
+                                                                  // 20
     int rest = int((n.s << 25) - q * d.s);
     int off = int(floor(float(rest) * (inverse * (1.0 / 8388608.0))));
     q += uint(off);
@@ -91,7 +92,7 @@ float rooted(const float x)
     uint odd = uint(of.exponent) & 1u, n = of.s << odd;
     float square = float(n) * (1.0 / 8388608.0); // 1..4
     float inverse = inverse_square_root(square);
-    uint s = uint(square * inverse * 16777216.0); // off by 8
+    uint s = uint(square * inverse * 16777216.0); // off by at most 8
     int rest = int((n << 25) - s * s);
     int off = int(floor(float(rest) * (inverse * (1.0 / 33554432.0))));
     rest -= off * int(2u * s + uint(off));
@@ -127,8 +128,8 @@ float portable_inversesqrt(const float x)
 
 // ---- Powers and logarithms ----
 
-// 2^(x.x + x.y), for x.x in -150..128 and a small x.y: a polynomial on -0.5..0.5 (Remez), which is off by
-// 2^-34 of the result.
+// 2^(x.x + x.y), for x.x in -150..128 and a small x.y, by a polynomial on -0.5..0.5 (Remez) whose
+// relative error is 2^-34.
 float exp2_of_pair(const vec2 x)
 {
     float whole = floor(x.x + 0.5), f = x.x - whole;
@@ -201,7 +202,7 @@ float logarithm(const float x, const float usual)
     return none ? portable_nan() : ends;
 }
 
-// 0.53 ulp, of both logarithms: -infinity for 0 and -0, NaN for x < 0.
+// 0.53 ulp, as portable_log has. -infinity for 0 and -0, NaN for x < 0.
 float portable_log2(const float x)
 {
     return logarithm(x, log2_pair(x).x);
@@ -223,7 +224,7 @@ float portable_pow(const float x, const float y)
     float bounded = y > 1e10 ? 1e10 : y < -1e10 ? -1e10 : y;
     vec2 p = ff_product(l.x, bounded);
     float power = exp2_of(vec2(p.x, p.y + l.y * bounded));
-    bool grows = ((a & ~SIGN_BIT) == 0u) == (b >= SIGN_BIT); // for 0 or infinity
+    bool grows = ((a & ~SIGN_BIT) == 0u) == (b >= SIGN_BIT); // for x = 0 or infinity
     power = usual ? power : grows ? portable_infinity() : 0.0;
     bool none = is_nan_bits(a) || is_nan_bits(b) || a > SIGN_BIT;
     return (b & ~SIGN_BIT) == 0u || a == 0x3f800000u ? 1.0 : none ? portable_nan() : power;
@@ -291,7 +292,7 @@ vec2 sine_cosine(const float x)
     float cosine = near + (((1.0 - near) - 0.5 * z) + (z * z * c - r * t.angle.y));
     vec2 turn = (t.quarter & 1u) == 0u ? vec2(sine, cosine) : vec2(cosine, -sine);
     turn = (t.quarter & 2u) == 0u ? turn : -turn;
-    turn.x = abs(x) < 1.0 / 4096.0 ? x : turn.x; // -0 too
+    turn.x = abs(x) < 1.0 / 4096.0 ? x : turn.x; // also for -0
     return (floatBitsToUint(x) & ~SIGN_BIT) >= INFINITE_BITS ? vec2(portable_nan()) : turn;
 }
 
@@ -340,7 +341,7 @@ float portable_atan(const float y, const float x)
 {
     uint a = floatBitsToUint(y), b = floatBitsToUint(x);
     bool equal = ((a ^ b) & ~SIGN_BIT) == 0u, zero = (a & ~SIGN_BIT) == 0u;
-    float slope = zero ? 0.0 : equal ? 1.0 : portable_divide(portable_abs(y), portable_abs(x)); // of infinities too
+    float slope = zero ? 0.0 : equal ? 1.0 : portable_divide(portable_abs(y), portable_abs(x)); // 1 also for two infinities
     float angle = arc_tangent(slope);
     angle = b >= SIGN_BIT ? 2.0 * HALF_PI.x - (angle - 2.0 * HALF_PI.y) : angle;
     angle = a >= SIGN_BIT ? -angle : angle;

@@ -1,4 +1,4 @@
-// Where a secondary ray starts: the hit point moved off the surface by no more than its own error.
+// The start of a secondary ray: the hit point, moved off the surface by no more than its own error.
 #ifndef LIB_SPAWN_GLSL
 #define LIB_SPAWN_GLSL
 

@@ -20,7 +20,7 @@ struct Chord {
     SphereBounds bounds;  // NUMERICS_EXACT
     bool met;             // the line meets the sphere, the ray its box; NUMERICS_EXACT: may meet it
     bool inward;          // the ray first approaches the centre
-    float t_near, t_far;  // where it enters and leaves, not before t_box
+    float t_near, t_far;  // where the line enters and leaves the sphere, not before t_box
     float t_box;          // where the ray enters the sphere's box, or t_min
     vec3 middle, to_exit; // vectors: from the centre to the chord's middle; from there to its far
                           // end
@@ -42,7 +42,7 @@ void sphere_box(vec3 center, float radius, out vec3 lo, out vec3 hi)
 // squared.
 struct Foot {
     vec3 c, d;         // centre relative to the ray's origin; direction
-    float dd, mid;     // d.d; where on the line the foot is, in units of d
+    float dd, mid;     // d.d; place of the foot on the line, in units of d
     vec3 off;          // from the foot to the centre
     float rr, room;    // radius squared; radius squared less the squared distance of the line
     float half_length; // of the chord, in units of d
