@@ -57,8 +57,7 @@ struct accel {
     struct gpu_instance *instances; /* in the order of the scene */
     struct accel_mesh *meshes;      /* in the order of the scene */
     uint32_t node_count, instance_count, mesh_count;
-    uint32_t record_count,
-        triangle_count; /* length of `triangles`; primitives of all meshes, spheres included */
+    uint32_t record_count, triangle_count; /* in `triangles`; of all meshes, spheres included */
     uint32_t instance_node_count, instance_node_capacity;
     uint32_t instance_root;  /* ref, or BVH_EMPTY_REF */
     uint32_t instance_depth; /* of the tree over instances */

@@ -39,9 +39,8 @@ enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_MIN
 
 struct child {
     pid_t pid;
-    int read_fd,
-        write_fd; /* the pipe: one byte, the errno of setting up the sandbox or 0; then the reply */
-    uint8_t *data; /* received so far, at the start of `room_bytes` of address space */
+    int read_fd, write_fd; /* the pipe: first one byte, errno of the sandbox or 0; then the reply */
+    uint8_t *data;         /* received so far, at the start of `room_bytes` of address space */
     size_t size_bytes, room_bytes;
     uint8_t open_because;
     bool heard, over; /* the first byte was received; more was received than there is room for */

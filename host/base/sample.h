@@ -24,8 +24,7 @@ struct sample_runs {
     double values[SAMPLE_RUNS_MAX];
     uint32_t count;
 };
-void sample_add(struct sample_runs *runs,
-                double value); /* only the first SAMPLE_RUNS_MAX are kept */
+void sample_add(struct sample_runs *runs, double value); /* keeps the first SAMPLE_RUNS_MAX */
 struct sample_summary sample_of(const struct sample_runs *runs);
 /* The ratio a / b of each run of `a` and the run of `b` in the same turn; 0 where b is 0. */
 struct sample_runs sample_ratio(const struct sample_runs *a, const struct sample_runs *b);

@@ -49,8 +49,7 @@ static bool is_hidden(uint32_t code)
         if (code >= hidden[i].first && code <= hidden[i].last)
             return true;
     }
-    return (code & 0xfffe) == 0xfffe ||
-           (code >= 0xfdd0 && code <= 0xfdef); /* noncharacters of Unicode */
+    return (code & 0xfffe) == 0xfffe || (code >= 0xfdd0 && code <= 0xfdef); /* noncharacters */
 }
 
 size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES])

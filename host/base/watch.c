@@ -92,8 +92,7 @@ void watch_clear(struct watch *watch)
     if (!watch)
         return;
     for (uint32_t i = 0; i < watch->count; ++i) {
-        (void)inotify_rm_watch(watch->fd,
-                               watch->files[i].folder); /* fails after the first file of a folder */
+        (void)inotify_rm_watch(watch->fd, watch->files[i].folder); /* works once per folder */
         free(watch->files[i].name);
     }
     watch->count = 0;

@@ -21,8 +21,7 @@ void bvh_set_axis(struct gpu_bvh_node *first)
 }
 
 struct tally {
-    double area_inner,
-        area_leaves; /* sums of half areas; each leaf's times its number of primitives */
+    double area_inner, area_leaves; /* half areas; of leaves: times primitives */
     uint32_t leaf_count, leaf_largest;
 };
 

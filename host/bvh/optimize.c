@@ -154,8 +154,8 @@ static double refit(struct optimizer *o, uint32_t node)
     return grown;
 }
 
-/* Takes `from` out: its sibling takes their parent's place. `from` and the node beside it are kept
-   for attach. Returns by how much the area of inner nodes grows. */
+/* Takes `from` out: its sibling takes their parent's place. The pair of nodes stays, for attach.
+   Returns by how much the area of inner nodes grows. */
 static double detach(struct optimizer *o, uint32_t from)
 {
     uint32_t above = o->parents[from / 2];

@@ -45,8 +45,7 @@ static void halves_place(const struct build *build, const struct build_range *ra
     uint32_t left_spare = (uint32_t)((uint64_t)spare * left / (left + right));
     uint32_t room = left + left_spare;
     struct build_record *from = build->builder->records + range->first + left;
-    if (left_spare >
-        0) { /* moves as few records of the right half as possible; their order may change */
+    if (left_spare > 0) { /* as few as possible move; their order may change */
         uint32_t moved = left_spare < right ? left_spare : right;
         memmove(from + (left_spare < right ? right : left_spare), from, moved * sizeof *from);
     }

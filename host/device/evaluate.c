@@ -629,8 +629,7 @@ whit_result spirv_evaluate(const uint32_t *words, size_t word_count, const uint3
             walk_module(&e, spec_of, spec, spec_count);
             bool refused = e.failed;
             *out = refused ? NULL : evaluate_write(&e, out_words);
-            e.starved =
-                e.starved || (!refused && !*out); /* writing fails for want of memory only */
+            e.starved = e.starved || (!refused && !*out); /* only memory can be lacking */
         }
     }
     free(spec_of);

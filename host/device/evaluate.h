@@ -45,8 +45,7 @@ struct result_id {
     uint32_t value; /* known value, of bools and 32-bit integers */
     uint32_t base; /* of a pointer: the variable with storage class Function that it points into; 0:
                       none */
-    uint32_t
-        stored; /* of such a variable: id of the value in it; valid in block number `block` alone */
+    uint32_t stored; /* of such a variable: id of its value, in block number `block` */
     uint32_t block;
     uint32_t same_as; /* of labels that take_back_wrap removed: the block that goes on instead */
     bool known, exact, live;

@@ -351,8 +351,8 @@ uint hit_capacity()
     return is_primary() ? camera_ray_count() : chunk.ray_capacity;
 }
 
-// The place of an item of the dispatch's generation among those of all generations of the tile,
-// which is the ray's id.
+// The place of an item of the dispatch's generation among those of all generations of the tile. In
+// lists of rays this is the ray's id.
 uint place_in_tile(uint item)
 {
     uvec2 firsts = fetch_firsts(chunk.generation);
