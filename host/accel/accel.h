@@ -67,8 +67,7 @@ struct accel {
     bool flat; /* one tree over the primitives of all instances: meshes[0], the only mesh, is the
                   whole world, which accel_pose builds anew. In `instances`, mesh and shade_base are
                   those of the scene's mesh; root, centre and reach are those of the world */
-    bool no_trees; /* WHIT_BUILD_NONE: a ray that hits a tree's root box tests all of its primitives
-                    */
+    bool no_trees; /* WHIT_BUILD_NONE: a ray that hits a tree's root box tests all its primitives */
     uint32_t iterations; /* with no_trees: the most loop iterations of one ray; at most
                             ACCEL_ITERATIONS_MAX */
     double build_ms, instance_build_ms;

@@ -4,8 +4,7 @@
 
 #include "accel/accel.h"
 
-/* Whether `forward` only moves spheres and scales them alike along all axes, without turning them.
- */
+/* Whether `forward` only moves spheres and scales them alike along all axes, without a turn. */
 bool accel_flat_keeps_spheres(const struct affine *forward);
 
 /* Whether `flatten` suits a frozen scene that is posed at `pose`: each mesh but single spheres has

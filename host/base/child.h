@@ -39,8 +39,7 @@ struct child_reply {
     size_t size_bytes;
     int signal; /* with CHILD_CRASHED */
     int exit_code;
-    int open_because; /* errno of setting up the sandbox: it ran without; 0: it ran in the sandbox
-                       */
+    int open_because; /* errno of setting up the sandbox: it ran without; 0: it ran in it */
 };
 
 /* Writes bytes of the child's reply; false when there is no room for them. */
@@ -57,8 +56,7 @@ void child_reply_free(struct child_reply *reply);
 /* The elapsed time that these limits allow, in seconds; 0: no limit. */
 double child_clock_limit_s(const struct child_limits *limits);
 /* Between these two calls, child_run in other threads waits before it forks. For foreign code that
-   takes locks, such as loading a library: a child forked meanwhile would find them held for ever.
-   */
+   takes locks, such as loading a library: a child forked meanwhile would find them held. */
 void child_hold_forks(void);
 void child_release_forks(void);
 /* fork() as child_run does it: it waits while forks are held, and the child starts with all signals

@@ -7,8 +7,7 @@
 double clock_ms(void);
 /* CPU milliseconds used by all threads of this process. */
 double clock_cpu_ms(void);
-/* CPU milliseconds that another process has used since its start; 0 where the system does not say.
- */
+/* CPU milliseconds that another process has used since its start; 0 where the system cannot say. */
 double clock_of_process_ms(pid_t pid);
 
 #endif

@@ -22,8 +22,7 @@
 enum { SLOT_COUNT = 64, NAME_KEPT = 200 }; /* NAME_MAX is 255 */
 static _Atomic(char *) unfinished[SLOT_COUNT];
 static char *abandoned[SLOT_COUNT]; /* not freed: signal handlers may not call free() */
-/* Held while a file is begun, and while a slot is given back, so that paths in slots can be read.
- */
+/* Held while a file is begun and while a slot is given back, so that slots' paths can be read. */
 static pthread_mutex_t begin_lock = PTHREAD_MUTEX_INITIALIZER;
 
 static int slot_take(const char *path)

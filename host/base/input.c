@@ -13,7 +13,7 @@ static uint8_t *kept;
 static size_t kept_bytes;
 static const char *why_not; /* NULL: it was read to its end */
 
-/* A pipe does not tell its size beforehand. */
+/* Grows *data where it is full: a pipe does not tell its size beforehand. */
 static bool make_room(uint8_t **data, size_t used_bytes, size_t *room_bytes)
 {
     if (used_bytes + 1 < *room_bytes)

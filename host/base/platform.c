@@ -45,7 +45,7 @@ void platform_zero(void *data, size_t size_bytes)
     uintptr_t to = ((uintptr_t)data + size_bytes) & -page;
     if (from < to) {
         /* On pages of a file or of shared memory MADV_DONTNEED succeeds, but they keep their
-           contents. */
+           contents, which the last byte shows. */
         volatile uint8_t *last = (uint8_t *)to - 1;
         *last = 1;
         if (madvise((void *)from, to - from, MADV_DONTNEED) == 0 && *last == 0) {

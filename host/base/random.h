@@ -1,7 +1,6 @@
 /* splitmix64: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators". A
    stream is one 64-bit number, which starts as the seed; its numbers are the same on every machine.
-   Compilers evaluate operands and arguments in different orders, so no expression may draw twice.
-   */
+   Compilers evaluate operands and arguments in any order, so no expression may draw twice. */
 #ifndef BASE_RANDOM_H
 #define BASE_RANDOM_H
 

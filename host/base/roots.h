@@ -56,8 +56,7 @@ const char *reach_words(enum reach reach);
 const char *roots_why_not(struct roots *roots, const char *path);
 /* Opens `path` for reading: a descriptor to close(), or -1 with *reach, and errno for
    REACH_MISSING. Only a REACH_FILE is opened, and no link is followed on the way to the file that
-   was checked. NULL roots are for files that the user or whit itself named, which may lie anywhere.
-   */
+   was checked. NULL roots are for files that the user or whit named, which may lie anywhere. */
 int roots_open(const struct roots *roots, const char *path, enum reach *reach);
 
 #endif

@@ -214,7 +214,7 @@ double same_tan(double angle)
 }
 
 /* The angle in 0..pi / 4 whose tangent is `small` / `large`, neither negative: the table's angle of
-   a tangent i / 16 near it, and what remains by the addition theorem, by Taylor's series. */
+   a tangent i / 16 near it, plus the rest that the addition theorem gives, by Taylor's series. */
 static struct pair small_angle(double small, double large)
 {
     int exponent;
@@ -258,8 +258,7 @@ double same_atan2(double y, double x)
     return copysign(angle_of(size, x).hi, y);
 }
 
-/* The angle of (x, sqrt(1 - x^2)). A rounding error of the root turns the angle by x times as much.
- */
+/* The angle of (x, sqrt(1 - x^2)). An error of the root turns the angle by x times as much. */
 double same_acos(double x)
 {
     if (!(fabs(x) <= 1.0))

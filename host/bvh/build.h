@@ -68,8 +68,7 @@ enum build_choice {
     BUILD_NONE,  /* no plane separates the records */
 };
 
-/* From this depth on nodes are split at the median, which takes 28 more levels for 2^28 primitives.
- */
+/* From this depth on nodes are split at the median: 28 more levels for 2^28 primitives. */
 enum { BUILD_DEPTH_OF_MEDIANS = 96 };
 
 /* The nodes of a growing tree. Pair slot s is nodes 2 + 2 s and 3 + 2 s. */

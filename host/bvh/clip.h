@@ -20,8 +20,7 @@ static inline struct clip_triangle clip_fetch(const struct bvh_triangles *triang
                                    &triangles->positions[3 * (size_t)corner[2]]}};
 }
 
-/* Six planes add a corner each to the triangle's three; more where rounding makes the polygon bend.
- */
+/* Six planes add a corner each to the triangle's three; more where rounding bends the polygon. */
 enum { CLIP_CORNERS_MAX = 16 };
 struct clip_polygon {
     double at[CLIP_CORNERS_MAX][3];

@@ -16,8 +16,7 @@ struct span {
 
 /* ---- Bins of a reference ---- */
 
-/* Nodes of few references have fewer bins: more would take more time than the better planes save.
- */
+/* Nodes of few references have fewer bins: more would take more time than they save. */
 static int bins_for(uint32_t count)
 {
     return count < 12 ? 4 : count < 48 ? 8 : SPATIAL_BINS;
@@ -217,8 +216,7 @@ bool spatial_find(const struct build_record *records, const struct build_range *
 enum side { SIDE_LEFT = 1, SIDE_RIGHT = 2, SIDE_BOTH = 3 };
 
 /* Which halves a reference goes to (reference unsplitting, Stich et al. 2009, 4.4). It uses the
-   counts and boxes that the plane was chosen for, so that the order of references does not matter.
-   */
+   counts and boxes that the plane was chosen for: so the order of references does not matter. */
 static enum side side_of(const struct spatial_plane *plane, const struct build_record *record)
 {
     const struct build_box *side = plane->side, box = build_record_box(record);

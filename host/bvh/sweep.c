@@ -15,7 +15,7 @@
 enum { THREADED_MIN = 4096 }; /* in nodes of so many records the three axes are swept by threads */
 
 struct sweep {
-    const struct build_record *records; /* index: primitive */
+    const struct build_record *records; /* [primitive] */
     uint32_t *list[3]; /* primitives in the order of their centroids, equal ones by number */
     /* For each primitive: 1 if it goes left, else 0; in a small subtree, its index there. */
     uint8_t *mark;

@@ -20,8 +20,7 @@ enum placement {
 };
 
 /* Wanted properties of a memory type for each placement, best first. Vulkan promises every buffer a
-   type that is host-visible and coherent, so incoherent memory, with its flushes, is never needed.
-   */
+   host-visible and coherent type, so incoherent memory, with its flushes, is never needed. */
 static const VkMemoryPropertyFlags wanted[][4] = {
     [PLACE_DEVICE] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0},
     [PLACE_UNIFIED] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |

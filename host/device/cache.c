@@ -1,4 +1,4 @@
-/* The pipeline cache and its file, one for each build of a driver. */
+/* The pipeline cache and its file; each build of a driver has a file of its own. */
 #include "device/cache.h"
 
 #include <stdlib.h>

@@ -26,8 +26,7 @@ struct device_limits {
     /* Whether kernels may request these of 32-bit floats (float controls): rounding to nearest;
        NaN, infinity and the sign of 0 kept; denormals kept. */
     bool asked_nearest, asked_special, asked_denormals;
-    bool loop_limited; /* the driver may end shaders after 65535 iterations of loops (old lavapipe)
-                        */
+    bool loop_limited; /* the driver may end shaders after 65535 loop iterations (old lavapipe) */
 };
 
 /* Lists all physical devices, usable or not; *infos is one block, free() it. Without any loader or
@@ -64,8 +63,7 @@ const whit_device_info *device_get_info(const struct device *device);
 const struct device_limits *device_get_limits(const struct device *device);
 /* How many threads may make pipelines of the device at once, in the form that threads_for takes: 0
    for as many as there are cores. 1 while WHIT_FAULT counts calls, and under validation layers:
-   those of Debian 12 crash when threads create devices at once, and were not tried with pipelines.
-   */
+   those of Debian 12 crash when threads create devices at once, and pipelines were not tried. */
 uint32_t device_compile_threads(const struct device *device);
 /* How many pipelines the driver was asked for so far. Those that it found in its own cache count,
    those that device_keep_pipelines made unnecessary do not. From any thread. */

@@ -198,8 +198,7 @@ static void end_delayed(struct evaluation *e)
     e->delayed = 0;
 }
 
-/* Ends a waiting return by a branch, with its value in a variable: other returns or blocks follow.
- */
+/* Ends a waiting return by a branch, its value in a variable: other returns or blocks follow. */
 static void end_return(struct evaluation *e, struct instance *in)
 {
     if (!in->return_waits)
@@ -254,8 +253,7 @@ static void enter(struct evaluation *e, uint32_t label)
         e->failed = true; /* a branch backwards, but not to a loop header */
 }
 
-/* Writes the waiting merge instruction. The blocks that it names are then needed, reached or not.
- */
+/* Writes the waiting merge instruction. The blocks that it names are needed, reached or not. */
 static void put_merge(struct evaluation *e, struct instance *in)
 {
     if (!in->merge)

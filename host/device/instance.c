@@ -45,8 +45,7 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct device *device)
     };
 }
 
-/* Finds which of `names` the loader (layer NULL) or a layer offers: bit i of *found for names[i].
- */
+/* Finds which of `names` the loader (layer NULL) or a layer offers: bit i of *found: names[i]. */
 static whit_result find_extensions(struct device *device, const char *layer,
                                    const char *const *names, uint32_t name_count, uint32_t *found)
 {
@@ -423,8 +422,7 @@ static uint32_t best_of(const whit_device_info *infos, uint32_t count, const cha
     return best;
 }
 
-/* Lists the physical devices. Returns two blocks to free(): the handles and what is known of them.
- */
+/* Lists the physical devices. Two blocks to free(): the handles and what is known of them. */
 static whit_result list_physical(struct device *device, VkPhysicalDevice **handles,
                                  whit_device_info **infos, uint32_t *count)
 {

@@ -7,8 +7,7 @@
 /* instance_create and instance_destroy need no more of `device` than log, fault and validation; all
    else may be zero. */
 whit_result instance_create(struct device *device);
-/* Sets `surface`, where one is asked for. Comes after instance_create and before instance_select.
- */
+/* Sets `surface`, if one is asked for. Call it between instance_create and instance_select. */
 whit_result instance_make_surface(struct device *device);
 void instance_destroy(struct device *device);
 /* Sets physical, properties, memory and info. */

@@ -106,8 +106,7 @@ fail:
     return result;
 }
 
-/* Calls params->rewrite, if there is one. out->whole stays NULL where the kernel is not rewritten.
- */
+/* Calls params->rewrite, if there is one. If there is none, out->whole stays NULL. */
 static whit_result rewrite_kernel(const struct pipeline_params *params, struct kernel_words *out,
                                   char why[REWRITE_WHY_BYTES])
 {

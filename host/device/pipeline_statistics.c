@@ -39,8 +39,7 @@ static double value_of(const VkPipelineExecutableStatisticKHR *statistic)
     }
 }
 
-/* A driver with more statistics than there is room for answers VK_INCOMPLETE, which is no failure.
- */
+/* A driver with more statistics than fit in answers VK_INCOMPLETE, which is no failure. */
 static whit_result read_executable(const struct pipeline *pipeline, uint32_t index,
                                    const char *name, struct statistics *to)
 {

@@ -205,8 +205,7 @@ static void record_overlay(struct swapchain *swapchain, const struct window_imag
     vkCmdEndRenderPass(swapchain->commands);
 }
 
-/* Expects the image in layout COLOR_ATTACHMENT_OPTIMAL; *layout is the one that it has afterwards.
- */
+/* Expects the image in layout COLOR_ATTACHMENT_OPTIMAL, and leaves it in *layout. */
 static whit_result record_capture(struct swapchain *swapchain, const struct window_image *image,
                                   VkImageLayout *layout)
 {

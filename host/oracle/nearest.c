@@ -71,8 +71,7 @@ static double triangle_distance2(const double p[3], double v[3][3])
     return sum;
 }
 
-/* Squared distance to a sphere; a lower bound where the instance's transform stretches the sphere.
- */
+/* Squared distance to a sphere; a lower bound where the instance's transform stretches it. */
 static double sphere_distance2(const struct query *q, const struct gpu_triangle *record)
 {
     double center[3], at[3], stretch2 = 0.0, away2 = 0.0;

@@ -61,8 +61,7 @@ struct probe {
     double box_growth;
 };
 
-/* The result of the test in double for one primitive, and how far it is from the opposite result.
- */
+/* The result of the test in double for one primitive, and how far the opposite result is. */
 struct verdict {
     bool hit; /* by the edges only, regardless of t_min and t_max */
     double t, u, v, t_error;
@@ -424,8 +423,7 @@ static void visit_record(struct conservative_walk *walk, uint32_t record, uint32
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
     const struct probe *p = &s->probe;
-    /* Triangles seen edge-on have no meaningful t; but what lies outside their boxes is ruled out.
-     */
+    /* Triangles seen edge-on have no meaningful t, but outside of their boxes they are not hit. */
     struct bvh_box box = accel_record_box(triangle);
     if (s->judging && conservative_entry(walk, box.lo, box.hi) == INFINITY)
         return;

@@ -16,8 +16,7 @@
 
 enum { VERTICES = 3, AXES = 3 };
 
-/* The quadratic P t^2 - 2 S t + Q, with t in units of 2^power, and a quarter of its discriminant.
- */
+/* The quadratic P t^2 - 2 S t + Q, t in units of 2^power, and a quarter of its discriminant. */
 struct quadratic {
     mpz_t p, s, q, disc;
     mpz_t at, shifted, slope, value, root; /* scratch */

@@ -197,7 +197,7 @@ static uint32_t digit_at(const struct wide *w, int k, int32_t i)
     return i >= w->first && i <= w->last ? (uint32_t)w->digits[k][i] : 0u;
 }
 
-/* 32 bits from digit `top` down, after `shift` < 16 bits. */
+/* 32 bits of integer `k`, from digit `top` down, after the first `shift` < 16 bits. */
 static uint32_t leading_bits(const struct wide *w, int k, int32_t top, uint32_t shift)
 {
     uint32_t bits = digit_at(w, k, top) << 16 | digit_at(w, k, top - 1);

@@ -25,8 +25,7 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
                   struct exact_bounds *out);
 
 struct exact_candidate {
-    bool met; /* at t >= 0, in the closed triangle, not edge-on; false where the key exceeds FLT_MAX
-               */
+    bool met; /* at t >= 0, in the closed triangle, not edge-on; false for keys above FLT_MAX */
     float key, u, v;
 };
 

@@ -172,8 +172,7 @@ static struct candidate meet_end(const struct walk *walk, const struct ray_setup
 
 static struct ray_setup ray_at(const struct walk *walk, uint32_t instance);
 
-/* Finds exactly where a triangle is hit. `hit`: it is known to be hit, and only the key is wanted.
- */
+/* Finds exactly where a triangle is hit. `hit`: it is known to be; only the key is wanted. */
 static void meet_exactly(const struct ray_setup *ray, const struct gpu_triangle *triangle, bool hit,
                          struct exact_candidate *out)
 {

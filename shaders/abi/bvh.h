@@ -47,8 +47,7 @@ struct gpu_triangle {
     gpu_vec3 v1;
     gpu_uint flags; /* TRIANGLE_* */
     gpu_vec3 v2;
-    gpu_uint shadow; /* optical depth for shadow rays: 3 x 10 bits, red lowest; see TRIANGLE_FILTER
-                        */
+    gpu_uint shadow; /* optical depth of a filter: 3 x 10 bits, red lowest; see TRIANGLE_FILTER */
 };
 GPU_ASSERT_SIZE(gpu_triangle, 48)
 GPU_ASSERT_AT(gpu_triangle, primitive, 12)
@@ -166,8 +165,7 @@ GPU_ASSERT_SIZE(gpu_work, 16)
    no tree. The primitive of such a hit is 0. */
 #define HIT_SHAPE 0x7fffffffu
 
-/* Reasons not to trust a result. Kernels or these bits into the status word, which the host checks.
-   */
+/* Reasons not to trust a result. Kernels or these bits into the status word; the host checks it. */
 #define STATUS_UNFINISHED_TRAVERSAL 1u /* a loop ended before its stack was empty */
 #define STATUS_NODE_STACK_OVERFLOW  2u
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */

@@ -36,8 +36,8 @@
 /* The ray hit nothing. A user's miss() will give the light that it sees; until then its sum is the
    weight of that light. */
 #define SUM_MISSED 0x0fffffffu
-#define SUM_IS_CATCHER 0x80000000u /* the hit is a shadow catcher: its sum is its light, unweighted;
-                                      the first row of the hit has that light without shadows */
+#define SUM_IS_CATCHER 0x80000000u /* a shadow catcher: its light, unweighted; the first row of its
+                                      hit: that without shadows */
 
 /* The lists of a generation: the items that wait for each stage. */
 #define LIST_RAYS      0u
@@ -74,8 +74,7 @@ GPU_ASSERT_SIZE(gpu_generation, 400)
 struct gpu_tally {
     gpu_uint reflected, refracted;
     gpu_uint cut_depth, cut_bailout;
-    gpu_uint cut_depth_weight, cut_bailout_weight; /* bits of floats: the largest sum of weights in
-                                                      a pixel */
+    gpu_uint cut_depth_weight, cut_bailout_weight; /* float bits: largest sum of a pixel */
     gpu_uint by_functions; /* rays traced by functions of a user's file */
     gpu_uint pad0;
 };

@@ -196,8 +196,7 @@ GPU_ASSERT_AT(gpu_view, lens_xy, 80)
 /* Behind the frame stand the values of the sliders of a user's file, as floats. */
 #define SLIDERS_MAX 64u
 
-/* Tests of a user's file run for TEST_SEEDS seeds each, which count as pixels in rows of TEST_ROW.
-   */
+/* Each test of a user's file runs for TEST_SEEDS seeds, which are pixels in rows of TEST_ROW. */
 #define TEST_SEEDS 4096u
 #define TEST_ROW   64u
 
@@ -234,12 +233,11 @@ struct gpu_chunk {
     gpu_uint list;                       /* LIST_* that the dispatch works on */
     gpu_uint light_index; /* in the sequence: the sample's first point on flat emitters */
     gpu_uint summed, samples; /* of a pixel in this pass: samples summed already, and all */
-    gpu_uint sums_row, sums_step; /* in the pixel buffer: slot 0's first partial sum, and the step
-                                     to its next */
+    gpu_uint sums_row, sums_step; /* in the pixel buffer: slot 0's first partial sum, step to its
+                                     next */
     gpu_uint blocks_x; /* blocks in a row of the drawn part */
     gpu_uint lattice;  /* LATTICE_*: which of the picture's pixels are drawn */
-    gpu_uint before_post; /* HOOK_POST: in the pixel buffer, the first pixel as it is before post()
-                             */
+    gpu_uint before_post; /* HOOK_POST: in the pixel buffer, first pixel as it is before post() */
     gpu_uint aovs_alone;  /* 1: writes the aovs of pixels, no colours */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 104)
@@ -301,8 +299,7 @@ struct gpu_probe_ray {
     gpu_vec3 normal; /* unit, interpolated, on the ray's side; without bump maps */
     gpu_uint material;
     gpu_float u, v;
-    gpu_uint primitive, instance; /* HIT_NONE: none, or not known (for a blocked ray without trees)
-                                     */
+    gpu_uint primitive, instance; /* HIT_NONE: none, or not known (blocked, without trees) */
     gpu_uint skip_primitive, skip_instance;
     gpu_uint medium; /* material + 1 of the medium it goes through; 0: air */
     gpu_uint light_sample; /* shadow rays: light * light_samples + sample */

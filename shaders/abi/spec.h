@@ -137,7 +137,7 @@
     X(41, SPEC_PACKET_RAYS, 1)        /* rays per lane */                                          \
     X(42, SPEC_PACKET_STACK, 16)      /* stack entries of a packet */                              \
     X(43, SPEC_BEAM, 0)               /* BEAM_*: what point the rays of packets share */           \
-    X(44, SPEC_LIT_RAYS, 1)           /* SPEC_PACKET_RAYS of shadow rays, camera hits */           \
+    X(44, SPEC_LIT_RAYS, 1)           /* SPEC_PACKET_RAYS of shadow rays of camera hits */         \
     X(45, SPEC_GENERATIONS, 3)        /* bit 0: camera rays; bit 1: later generations */           \
     X(46, SPEC_CLASSES, 1)            /* number of material classes: 1 or 2 */                     \
     X(47, SPEC_CROSSINGS, 1)          /* surfaces of the class bound media */                      \

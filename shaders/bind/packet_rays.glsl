@@ -23,11 +23,10 @@ Hit packet_hits[SPEC_PACKET_RAYS];
 uint packet_status; // of the traversal, for all rays
 
 RaySetup packet_rays[SPEC_PACKET_RAYS]; // in the space of the current tree
-int packet_end[SPEC_PACKET_RAYS];       // bits of the t behind which nothing counts, in units of
-                                        // packet_unit
+int packet_end[SPEC_PACKET_RAYS];       // bits of the t behind which nothing counts, in packet_unit
 float packet_unit[SPEC_PACKET_RAYS];    // largest component of the direction
-float packet_reach[SPEC_PACKET_RAYS];   // BEAM_ENDS: distance from the common point to the ray's
-                                        // start, in the same units
+float packet_reach[SPEC_PACKET_RAYS];   // BEAM_ENDS: from the common point to the ray's start, as
+                                        // above
 float packet_size; // largest coordinate of an origin, and a part for clipped triangles
 
 const float BOX_INVERSE_MAX = 16777216.0; // 2^24

@@ -86,8 +86,7 @@ void probe_traced(uint id, vec3 origin, vec3 dir, uvec2 skip, vec3 weight, vec3 
     gpu_probe_ray ray = with_hit(
         make_probe_ray(kind, end, parent, origin, dir, FLOAT_LARGEST, weight, skip, id), hit);
     ray.medium = SPEC_MEDIA != 0u ? media_top(media) : 0u;
-    ray.added = hit.primitive != HIT_NONE ? after : sky; // for a hit: its weight, until its light
-                                                         // is known
+    ray.added = hit.primitive != HIT_NONE ? after : sky; // a hit: its weight, for now
     probe_rays[id] = ray;
 }
 

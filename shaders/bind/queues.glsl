@@ -284,7 +284,7 @@ void store_shape(uint id, Hit hit)
     store_hit_row(id * HIT_ROWS, uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), hit.triangle));
 }
 
-// Makes the stored hit with the shape the ray's hit where it is closer than the one in the trees.
+// Replaces the ray's hit in the trees by the stored hit on the user's shape where that is closer.
 void add_stored_shape(uint id, inout Hit hit)
 {
     uvec4 row = fetch_hit_row(id * HIT_ROWS);

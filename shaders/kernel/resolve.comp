@@ -113,8 +113,7 @@ void resolve_pixel(uint id)
             total.rgb += pixels[row].rgb;
         row += chunk.sums_step;
     }
-    bool posted = (SPEC_HOOKS & HOOK_POST) != 0u; // post.comp, which runs after this kernel, checks
-                                                  // the colour
+    bool posted = (SPEC_HOOKS & HOOK_POST) != 0u; // post.comp, run later, checks the colour
     if (last && !posted && (any(isnan(total.rgb)) || any(isinf(total.rgb))))
         report_status(STATUS_NON_FINITE);
     pixels[last ? (posted ? chunk.before_post : 0u) + pixel : row] = total;

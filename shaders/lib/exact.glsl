@@ -248,7 +248,7 @@ uint digit_at(ivec2 range, int k, int i)
     return i >= range.x && i <= range.y ? uint(wide[k * WIDE_DIGITS + clamp(i, 0, WIDE_DIGITS - 1)]) : 0u;
 }
 
-// 32 bits from digit `top` down, after `shift` < 16 bits.
+// 32 bits of integer `k`, from digit `top` down, after the first `shift` < 16 bits.
 uint leading_bits(ivec2 range, int k, int top, uint shift)
 {
     uint bits = digit_at(range, k, top) << 16 | digit_at(range, k, top - 1);

@@ -102,8 +102,7 @@ void add_ball_product(int target, int a, int b, bool twice, bool negative)
 {
     uint p = ball_mantissa[a], q = ball_mantissa[b];
     bool minus = negative != ((p ^ q) >> 31 != 0u);
-    int shift = max(ball_exponent[a] + ball_exponent[b] + (twice ? 1 : 0), 0); // below 0 only where the product
-                                                                               // is 0
+    int shift = max(ball_exponent[a] + ball_exponent[b] + (twice ? 1 : 0), 0); // below 0: the product is 0
     uint high, low;
     umulExtended(p & 0x7fffffffu, q & 0x7fffffffu, high, low);
     uint bits = uint(shift % BALL_BITS);

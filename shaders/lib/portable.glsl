@@ -68,8 +68,8 @@ float divided(const float x, const float y)
     inverse = inverse * (2.0 - divisor * inverse);
     inverse = inverse * (2.0 - divisor * inverse);
     inverse = inverse * (2.0 - divisor * inverse);
-    uint q = uint(significand_float(n.s) * inverse * 33554432.0); // n.s 2^25 / d.s, off by at most
-                                                                  // 20
+    uint q = uint(significand_float(n.s) * inverse * 33554432.0); // n.s 2^25 / d.s, off by 20 at
+                                                                  // most
     int rest = int((n.s << 25) - q * d.s);
     int off = int(floor(float(rest) * (inverse * (1.0 / 8388608.0))));
     q += uint(off);

@@ -41,8 +41,7 @@ struct Optics {
 
 // The rays that go on from a surface.
 struct Rays {
-    vec3 reflected, refracted, straight; // share of the light they bring that is seen, linear RGB;
-                                         // 0: no such ray
+    vec3 reflected, refracted, straight; // share of their light that is seen, linear RGB; 0: no ray
     vec3 reflected_dir, refracted_dir;   // directions, world space, unit within rounding
 };
 

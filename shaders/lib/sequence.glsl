@@ -23,7 +23,7 @@ uint sequence_place(uint digits, uvec2 turns)
     return bitfieldReverse(digits ^ flips);
 }
 
-// Point `index`, in units of 2^-32.
+// Point `index` of the sequence, in units of 2^-32.
 uvec2 sequence_point(uint index)
 {
     return uvec2(sequence_place(index, uvec2(0x026472e0u, 0x21a3e51au)),
