@@ -274,7 +274,7 @@ static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
     return WHIT_OK;
 }
 
-/* Changes nothing on failure. */
+/* Moves the instances and their tree to `pose`. Changes nothing on failure. */
 static whit_result pose_instances(struct accel *accel, const struct scene_pose *pose)
 {
     struct accel_posing *posing = accel->posing;

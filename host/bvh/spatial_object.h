@@ -8,7 +8,7 @@
 /* The plane of an object split: `small` and `cut` hold it for up to BUILD_SMALL references, `bins`
    for more. */
 struct object_plane {
-    float cost; /* relative to one primitive of the node's scaled area */
+    float cost; /* scaled half area times references, summed over both sides */
     struct build_box side[2];
     struct bin_plane bins;
     struct small small;

@@ -19,7 +19,7 @@ struct spatial_plane {
     struct spatial_grid grid;
     uint32_t axis, bin; /* references that start in bins below `bin` go left */
     float at;           /* coordinate */
-    float cost;         /* relative to one primitive of the node's scaled area */
+    float cost;         /* scaled half area times references, summed over both sides */
     uint32_t count[2];  /* of both sides */
     struct build_box side[2];
     f4 scale;

@@ -14,7 +14,7 @@ struct bin_grid {
 struct bin_plane {
     struct bin_grid grid;
     uint32_t axis, bin;  /* records of bins below `bin` go left */
-    float cost;          /* relative to one primitive of the node's scaled area */
+    float cost;          /* scaled half area times records, summed over both sides */
     uint32_t left_count; /* set, as `side` is, only where the cost is below infinity */
     struct build_box side[2];
 };

@@ -33,7 +33,7 @@ struct Ends {
     bool only_far, self;
 };
 
-// The exact hit of a record's sphere; a ray may be deferred as above.
+// The exact hit of a record's sphere; a ray may be deferred as in meet_record_triangle.
 ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
 {
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
