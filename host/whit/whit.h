@@ -4,12 +4,12 @@
 
    Ownership: what a function creates, its destroy function ends; destroy accepts NULL. Handles
    borrow what they were made from: scene <- accel <- renderer -> device; destroy in reverse order.
-   NULL params mean all defaults. In params structs 0 means the default, but for pictures: those
-   begin as whit_renderer_defaults(), where 0 bounces are none and a bail-out of 0 is every ray.
-   Params are read during the call only. On failure an out parameter is NULL or untouched, the
-   reason went to the log callback as one line (where the call or a handle has one), and the result
-   says which kind it was. Each function names the results that it may give beside WHIT_OK and
-   WHIT_ERROR_MEMORY, which any of them may.
+   NULL params mean all defaults. In params structs 0 means the default, except in
+   whit_renderer_params: start that from whit_renderer_defaults(), because 0 bounces there means
+   none and a bail-out of 0 traces every ray. Params are read during the call only. On failure an
+   out parameter is NULL or untouched, the reason went to the log callback as one line (where the
+   call or a handle has one), and the result says which kind it was. Each function names the results
+   that it may give beside WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
 
    Threads: different handles may be used from different threads; one handle from one at a time. A
    `cancel` flag may be set from anywhere, a signal handler included. */

@@ -18,15 +18,15 @@ extern "C" {
 #define WHIT_PRINTF(f, a)
 #endif
 
-/* Rays that can add less than this to a pixel are not traced, unless asked otherwise: a quarter of
-   what 8 bits can show. */
+/* The default bail-out: rays that can add less than this to a pixel are not traced. It is a quarter
+   of one step of 8-bit colour. */
 #define WHIT_BAILOUT_DEFAULT (1.0 / 1024.0)
 
-/* Samples of a pixel. */
+/* The most samples per pixel. */
 #define WHIT_SAMPLES_MAX     4096
 
-/* The one vocabulary of failure, from `base` to the public API. The reason is logged once,
-   where it happens; callers pass the code up. */
+/* The error codes of all of whit, from `base` to the public API. The reason of a failure is logged
+   once, where it happens; callers pass the code up. */
 typedef enum whit_result {
     WHIT_OK = 0,
     WHIT_ERROR_FAILED,     /* a result differs, or a promise was not kept */
@@ -49,19 +49,19 @@ typedef enum whit_log_level {
 } whit_log_level;
 
 /* `message` is one line without its newline, as whit_text_show shows it, valid during the call
-   only. Called from any thread, one call at a time. */
+   only. The function may be called from any thread, but never by two at once. */
 typedef void (*whit_log_fn)(void *user, whit_log_level level, const char *message);
 /* Where messages go. Zeroed, or NULL: nowhere. */
 typedef struct whit_log {
     whit_log_fn fn;
     void *user;
-    whit_log_level level; /* messages above it are not made */
+    whit_log_level level; /* less severe messages (higher levels) are not produced */
 } whit_log;
 
-/* Files outside of the scene's folder that its files name, and that were not read. */
+/* Files that a scene refers to but that were not read because they lie outside of its folder. */
 typedef struct whit_refused {
     uint32_t count;
-    char folder[4096]; /* of the first of them, absolute; "" where there is none */
+    char folder[4096]; /* of the first refused file, absolute; "" where none was refused */
 } whit_refused;
 
 /* A short name for a result, for messages: "bad input". Never NULL. */
@@ -69,23 +69,24 @@ const char *whit_result_name(whit_result result);
 
 /* ---- Text that others wrote ---- */
 
-/* Names of files, materials and devices, and words of damaged files, may hold what steers a
-   terminal, or hides or turns round what they say. Libwhit hands them out as they are; whoever
-   prints them shows them by these functions, as libwhit does in its messages: UTF-8 as it is, but
-       \u001b  a control character (also U+0080 to U+009F, newlines and tabs), one that sets the
-               direction or is not seen, a separator of lines, or none at all (U+FFFE); as in JSON,
-               so past 16 bits as a pair, \udb40\udc41
-       \xff    a byte that is not UTF-8
-   A backslash stays as it is, and with it what was shown before: showing it again changes nothing,
-   so that it is done wherever text leaves the program, and nowhere else. */
+/* Names of files, materials and devices, and words of damaged files, may hold characters that
+   control a terminal, hide text or reverse its direction. Libwhit hands them out unchanged; code
+   that prints them must pass them through these functions, as libwhit does for its messages. These
+   keep UTF-8 as it is, with two exceptions:
+       \u001b  stands for a control character (also U+0080 to U+009F, newlines and tabs), one that
+               sets the direction or is invisible, a line separator, or a noncharacter (U+FFFE); as
+               in JSON, above U+FFFF as a surrogate pair, \udb40\udc41
+       \xff    stands for a byte that is not UTF-8
+   A backslash stays as it is, so escaping a second time changes nothing. Escape wherever text
+   leaves the program, and nowhere else. */
 
 /* The most bytes of one shown character, with the 0 at its end. */
 #define WHIT_SHOWN_BYTES 13
-/* The first character of `text`, as it is shown. Gives how many bytes of `text` it takes: 0 at its
-   end. */
+/* Writes the first character of `text`, escaped, to `shown`. Returns how many bytes of `text` it
+   takes: 0 at the end of `text`. */
 size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES]);
-/* As much of `text` as has room in `out` with a 0 at its end, in whole characters and escapes;
-   where there is more, with `...` at the end. `out_bytes` > 16. Gives `out`. */
+/* Writes as much of `text`, escaped, as fits in `out`, in whole characters and escapes, ended by a
+   0. Text that does not fit is cut and ends with `...`. `out_bytes` > 16. Returns `out`. */
 char *whit_text_show(const char *text, char *out, size_t out_bytes);
 
 #ifdef __cplusplus

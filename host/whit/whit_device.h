@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* By how well they suit: "auto" takes the first. */
+/* In order of preference: "auto" takes a device of the first kind that there is. */
 typedef enum whit_device_kind {
     WHIT_DEVICE_DISCRETE = 0,
     WHIT_DEVICE_INTEGRATED,
@@ -25,12 +25,12 @@ typedef struct whit_device_info {
     char driver[256]; /* name and version text */
     char api_version[32];
     whit_device_kind kind;
-    uint64_t memory_bytes;            /* of the largest heap of its own */
+    uint64_t memory_bytes;            /* size of its largest device-local heap */
     uint64_t max_storage_range_bytes; /* of one storage buffer */
     uint32_t subgroup_size;
     bool float64, int64, timestamps, usable;
     bool automatic;    /* the one that "auto" takes */
-    char why_not[128]; /* when not usable */
+    char why_not[128]; /* the reason where `usable` is false */
 } whit_device_info;
 
 /* *infos is one block for whit_memory_destroy. WHIT_ERROR_NO_DEVICE where there is no Vulkan, or no
@@ -51,19 +51,20 @@ WHIT_CHECK whit_result whit_device_create(const whit_device_params *params, cons
 void whit_device_destroy(whit_device *device);
 void whit_device_get_info(const whit_device *device, whit_device_info *info);
 
-/* What a device does with floats of 32 bits where Vulkan leaves that to it;
-   whit_renderer_params.portable asks for keeps_denormals and rounds_nearest, and has functions in
-   the place of what is not the device's own. */
+/* How a device computes with 32-bit floats where Vulkan leaves it a choice.
+   whit_renderer_params.portable asks the driver for keeps_denormals and rounds_nearest, and
+   replaces division, square root and comparison by functions of whit's where own_division or
+   own_comparison is false. */
 typedef struct whit_device_floats {
-    bool own_division;    /* division and square root are rounded correctly, as far as 43 million of
-                             them tell */
-    bool keeps_denormals; /* numbers below 2^-126 are no zeros to sums and products */
+    bool own_division;    /* division and square root are correctly rounded, tested on 43 million
+                             values */
+    bool keeps_denormals; /* sums and products do not flush numbers below 2^-126 to 0 */
     bool rounds_nearest;  /* sums and products are rounded to nearest */
     bool own_comparison;  /* comparisons and absolute values tell numbers below 2^-126 from 0 */
 } whit_device_floats;
 
-/* Found out once for a device and its driver, in about a second, and kept. WHIT_ERROR_DEVICE,
-   WHIT_ERROR_MEMORY. */
+/* Measured once for a device and its driver, which takes about a second; the result is kept in the
+   cache folder. WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_device_find_floats(whit_device *device, whit_device_floats *floats);
 
 uint32_t whit_device_validation_messages(const whit_device *device);

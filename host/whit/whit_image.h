@@ -13,18 +13,18 @@ typedef struct whit_image_info {
     bool integers;
 } whit_image_info;
 void whit_image_get_info(const whit_image *image, whit_image_info *info);
-/* width * height * channels values, row 0 at the top; the other one gives NULL. */
+/* width * height * channels values, row 0 at the top. NULL where the image has the other type. */
 const float *whit_image_floats(const whit_image *image);
 const uint32_t *whit_image_words(const whit_image *image);
 
-/* Writes what the .png of a picture of floats holds: RGBA, width * height * 4 bytes. */
+/* Writes the RGBA bytes (width * height * 4) that a .png of this image of floats has. */
 void whit_image_display_bytes(const whit_image *image, uint8_t *rgba);
 
 typedef struct whit_text {
     const char *key, *value;
 } whit_text;
-/* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` is the recipe kept
-   inside the picture. WHIT_ERROR_USAGE for a format that cannot hold the image, WHIT_ERROR_OUTPUT
+/* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` (the recipe) is
+   stored in the file. WHIT_ERROR_USAGE for a format that cannot hold the image, WHIT_ERROR_OUTPUT
    where the file cannot be written. */
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
@@ -33,21 +33,21 @@ typedef struct whit_image_layer {
     const char *name;
     const whit_image *image;
 } whit_image_layer;
-/* The same with images of 4 floats beside it, in its size: channels NAME.R, .G, .B and .A of an
-   .exr. WHIT_ERROR_USAGE too for other files, and for more than 16. */
+/* As whit_image_save, for an .exr, with further images of 4 floats and the same size as channels
+   NAME.R, .G, .B and .A. WHIT_ERROR_USAGE too for other formats, and for more than 16 layers. */
 WHIT_CHECK whit_result whit_image_save_layers(const whit_image *image,
                                               const whit_image_layer *layers, uint32_t layer_count,
                                               const char *path, const whit_text *texts,
                                               uint32_t text_count, const whit_log *log);
-/* Loads a picture. `params` (may be NULL): only those about foreign files are used.
+/* Loads a picture. `params` (may be NULL): only its fields about foreign files are used.
    WHIT_ERROR_INPUT for a file that is missing, damaged or no picture; WHIT_ERROR_USAGE as of
    whit_scene_load. */
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_image **out);
-/* The recipe in a .png or .exr; none in other pictures. *texts with its strings is one block, to be
-   released by whit_memory_destroy. `params` as above. WHIT_ERROR_INPUT for a file that is missing,
-   damaged or no picture, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE without a
-   sandbox that is required. */
+/* The recipe in a .png or .exr; other formats have none. *texts with its strings is one block, to
+   be released by whit_memory_destroy. `params` as above. WHIT_ERROR_INPUT for a file that is
+   missing, damaged or no picture, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE where a
+   sandbox is required and there is none. */
 WHIT_CHECK whit_result whit_image_load_texts(const char *path, const whit_load_params *params,
                                              const whit_log *log, whit_text **texts,
                                              uint32_t *text_count);
@@ -55,38 +55,39 @@ WHIT_CHECK whit_result whit_image_load_texts(const char *path, const whit_load_p
    WHIT_ERROR_USAGE for other channels or sizes. */
 WHIT_CHECK whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,
                                          const float *pixels, whit_image **out);
-/* The picture whose .png holds these RGBA bytes; alpha is left out. WHIT_ERROR_USAGE for no size.
- */
+/* Makes the picture whose .png has these RGBA bytes; alpha is ignored. WHIT_ERROR_USAGE for a size
+   of 0. */
 WHIT_CHECK whit_result whit_image_create_display(uint32_t width, uint32_t height,
                                                  const uint8_t *rgba, whit_image **out);
-/* A copy of `count` rows from `first` on, shown as the image is. WHIT_ERROR_USAGE for rows that it
-   has not, and for none; WHIT_ERROR_MEMORY. */
+/* A copy of `count` rows from `first` on, which is displayed with the same exposure.
+   WHIT_ERROR_USAGE for rows outside of the image, or a count of 0; WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_image_rows(const whit_image *image, uint32_t first, uint32_t count,
                                        whit_image **out);
 void whit_image_destroy(whit_image *image);
 
-/* True for a path that whit_image_save can write; `integers` asks for hit identities. */
+/* True where whit_image_save can write an image to `path`, by its extension; `integers`: an image
+   of hit identities. */
 bool whit_image_format_known(const char *path, bool integers);
 
-/* A picture of one channel as a heat map with a legend below: colours that the colour-blind can
-   tell apart (viridis), dark is 0, bright is `scale` and above. Linear RGB, at least as wide as a
-   legend that can be read: narrower pictures are centred. */
+/* Draws an image of one channel as a heat map with a legend below, in colours that the colour-blind
+   can tell apart (viridis): dark is 0, bright is `scale` and above. The result is linear RGB and
+   wide enough for a readable legend; narrower images are centred in it. */
 typedef struct whit_heat_params {
     double scale;      /* 0: whit_image_heat_scale */
     const char *title; /* of the legend, or NULL; ASCII, shortened when it does not fit */
     const char *unit;  /* of the numbers, at the legend's right end, or NULL */
-    bool is_signed;    /* from -scale (blue) over 0 (white) to scale (brown); of three channels the
-                          one farthest from 0 */
+    bool is_signed;    /* colours from -scale (blue) over 0 (white) to scale (brown); an image of
+                          three channels shows the one farthest from 0 */
 } whit_heat_params;
-/* The 99.5th percentile, rounded up to a number that reads well; of the largest value where that
-   is 0; 1 where all are. */
+/* The 99.5th percentile of the values, rounded up to a round number. Where it is 0, the largest
+   value is rounded up instead; 1 where all values are 0. */
 double whit_image_heat_scale(const whit_image *values);
-/* WHIT_ERROR_USAGE for an image that has not one channel of floats, or three that are signed. */
+/* WHIT_ERROR_USAGE unless the image has one channel of floats, or three with `is_signed`. */
 WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
                                        whit_image **out);
 
-/* The bytes of a PNG, as whit_image_save writes it, for whit_memory_destroy. WHIT_ERROR_USAGE for
-   integers. */
+/* The bytes of the PNG that whit_image_save writes, to be released by whit_memory_destroy.
+   WHIT_ERROR_USAGE for integers. */
 WHIT_CHECK whit_result whit_image_encode_png(const whit_image *image, const whit_text *texts,
                                              uint32_t text_count, const whit_log *log,
                                              uint8_t **data, size_t *size_bytes);

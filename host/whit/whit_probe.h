@@ -11,10 +11,10 @@ extern "C" {
 /* Why a ray ended. */
 typedef enum whit_probe_end {
     WHIT_PROBE_MISSED = 0, /* it meets nothing, and sees the environment */
-    WHIT_PROBE_OPAQUE,     /* it meets a surface that calls for no further ray */
+    WHIT_PROBE_OPAQUE,     /* it meets a surface that spawns no further ray */
     WHIT_PROBE_DIVIDED,    /* it meets a surface that reflects it or lets it through */
-    WHIT_PROBE_ABSORBED,   /* too little is left of it behind what it went through */
-    WHIT_PROBE_DEPTH,      /* not traced: its bounces were used up */
+    WHIT_PROBE_ABSORBED,   /* the medium that it crossed absorbed too much of it */
+    WHIT_PROBE_DEPTH,      /* not traced: it would exceed the limit of bounces */
     WHIT_PROBE_BAILOUT,    /* not traced: it could add less than params.bailout */
     WHIT_PROBE_REACHED,    /* shadow rays: all of the light passes */
     WHIT_PROBE_FILTERED,   /* shadow rays: some of it does */
@@ -31,30 +31,36 @@ typedef struct whit_probe_hit {
 
 typedef struct whit_probe_ray {
     whit_ray_kind kind;
-    bool straight; /* it is what passes a blended surface, a shadow catcher, or a surface that has
-                      the same medium on both sides */
+    bool straight; /* it continues straight through a blended surface, a shadow catcher, or a
+                      surface with the same medium on both sides */
     whit_probe_end end;
-    uint32_t parent;     /* index of the ray that it comes from, below its own; WHIT_NONE: none */
+    uint32_t parent;     /* index of the ray that spawned it, less than its own index; WHIT_NONE:
+                            none */
     uint32_t generation; /* 0: the camera ray */
     whit_ray ray;        /* one that was not traced starts where its parent ended */
-    float weight[3];     /* of what it brings to the pixel; shadow rays: of their surface */
-    float added[3]; /* radiance that it added, without its branches, by weight; shadow rays: the
-                       share of the light that passes */
-    /* What the device met, its twin on the CPU, and exact arithmetic. */
+    float weight[3];     /* factor by which its radiance counts in the pixel; shadow rays: the
+                            weight of their surface */
+    float added[3];      /* radiance times weight that this ray itself added, without its branches;
+                            shadow rays: the share of the light that passes */
+    /* The hit by the device, by its twin on the CPU, and by exact arithmetic. */
     whit_probe_hit device, twin, exact;
-    bool equal; /* twin: ids and every bit of t, and of u and v. Whether a cut-out is solid is the
-                   device's word; shadow rays: any blocker that the device may have met */
-    bool exact_known; /* false: not traced, or too many surfaces let it pass */
-    bool exact_equal; /* ids (shadow rays: blocked or not), at WHIT_NUMERICS_EXACT t as well */
-    uint32_t passed;  /* cut-outs, and one-sided surfaces from behind, that it went through; shadow
-                         rays: also filters, and what casts no shadow */
+    bool equal; /* the twin's ids and every bit of t, u and v equal the device's. The twin takes
+                   from the device whether a cut-out is solid there; for shadow rays any blocker
+                   that the device may have met counts as equal */
+    bool exact_known; /* false: the ray was not traced, or it passed too many surfaces */
+    bool exact_equal; /* ids (shadow rays: blocked or not) equal the exact ones; at
+                         WHIT_NUMERICS_EXACT t as well */
+    uint32_t passed;  /* number of surfaces that it went through: cut-outs and back faces of
+                         one-sided surfaces; shadow rays: also filters and surfaces that cast no
+                         shadow */
     /* The material of the surface that it met; WHIT_NONE: it met nothing. */
     uint32_t material;
-    float point[3], normal[3];    /* unit, interpolated, to the ray's side; without bump maps */
-    bool inside;                  /* met from inside */
-    uint32_t medium;              /* material of what it went through; WHIT_NONE: air */
-    float ior;                    /* of that */
-    uint32_t light, light_sample; /* shadow rays; else WHIT_NONE */
+    float point[3], normal[3];    /* `normal`: unit length, interpolated, on the ray's side, without
+                                     bump maps */
+    bool inside;                  /* the surface was met from inside */
+    uint32_t medium;              /* material of the medium that the ray crossed; WHIT_NONE: air */
+    float ior;                    /* of the medium */
+    uint32_t light, light_sample; /* of shadow rays; WHIT_NONE for others */
 } whit_probe_ray;
 
 typedef enum whit_value_kind {
@@ -68,71 +74,73 @@ typedef enum whit_value_kind {
 typedef struct whit_probe_value {
     whit_value_kind kind;
     uint32_t size;       /* 1: a number; 2 to 4: a vector */
-    double v[4];         /* of each component, exact; of a bool 0 or 1 */
-    uint32_t ray;        /* index of the ray that the function was called for, of post() the camera
-                            ray */
-    uint32_t generation; /* of that */
+    double v[4];         /* the components, exactly; a bool is 0 or 1 */
+    uint32_t ray;        /* index of the ray that the function was called for; for post() that of
+                            the camera ray */
+    uint32_t generation; /* of that ray */
 } whit_probe_value;
-/* "0.5", "(1, 2, 3)", "true": floats with `digits` digits, 9 of which tell all. At most `bytes` of
-   `text`, which end with a 0. */
+/* Writes a value as text: "0.5", "(1, 2, 3)", "true". Floats get `digits` significant digits; 9 are
+   enough to be exact. Writes at most `bytes` to `text`, including the 0 at the end. */
 void whit_probe_value_text(const whit_probe_value *value, int digits, char *text, size_t bytes);
 
 #define WHIT_PROBE_VALUES 8
-/* A dbg(x) of the shader. */
+/* One dbg(x) in the text of the shader. */
 typedef struct whit_probe_call {
-    const char *text; /* x as the file has it, cut where it is long */
-    const char *file; /* as whit opened it */
+    const char *text; /* the argument x as the file has it, cut where it is long */
+    const char *file; /* path as whit opened it */
     uint32_t line;
     uint32_t count;                             /* how often it was reached */
-    whit_probe_value values[WHIT_PROBE_VALUES]; /* the first ones, in the order of rays, but for
-                                                   those of rays that were dropped */
+    whit_probe_value values[WHIT_PROBE_VALUES]; /* the first values, in the order of rays; dropped
+                                                   rays have none */
     uint32_t value_count;
 } whit_probe_call;
 
 typedef struct whit_probe_report {
     uint32_t x, y;
-    uint32_t samples; /* that `color` is of; of an adaptive picture the 4 of its first pass */
+    uint32_t samples; /* the number that `color` is the mean of; for an adaptive picture the 4 of
+                         its first pass */
     float color[4];   /* as in the picture: the same bytes */
     uint8_t shown[4]; /* as displayed: sRGB */
-    /* The tree of the first sample: a ray is followed by its shadow rays, then by its branches,
-       each with its own, in the order in which they were traced. The first one is the camera ray.
-     */
+    /* The tree of the first sample: a ray is followed by its shadow rays, then by its branches in
+       the order in which they were traced, each with its own shadow rays and branches behind it.
+       The first ray is the camera ray. */
     whit_probe_ray *rays;
     uint32_t ray_count;
-    uint32_t dropped;   /* rays that there was no room for */
-    uint32_t differing; /* rays of which the twin says something else */
-    /* Each dbg(x) of the shader, in the order of files and lines: of the first sample, and of
-       post() that of all samples. */
+    uint32_t dropped;   /* number of rays that did not fit into `max_rays` */
+    uint32_t differing; /* rays whose hit by the twin differs from the device's (`equal` is
+                           false) */
+    /* Each dbg(x) of the shader, in the order of files and lines. Values are those of the first
+       sample; post() runs once for all samples. */
     whit_probe_call *calls;
     uint32_t call_count;
 } whit_probe_report;
 
-/* Traces pixel (x, y), from the upper left, once more, and nothing else; the picture that was
-   rendered stays. The first call compiles a kernel. `max_rays`: that are recorded; 0: 16383, which
-   is the limit. With a shader the tree is that of whit's rays: those that its functions trace
-   themselves are not in it. WHIT_ERROR_USAGE outside of the picture or without a device;
-   WHIT_ERROR_DEVICE; WHIT_ERROR_STATUS, WHIT_ERROR_TIME_LIMIT and WHIT_ERROR_CANCELLED as
-   whit_renderer_render. */
+/* Traces pixel (x, y), counted from the upper left, once more and alone; the rendered picture
+   stays. The first call compiles a kernel. `max_rays`: how many rays are recorded; 0: 16383, which
+   is the limit. Rays that functions of a shader trace themselves are not recorded. WHIT_ERROR_USAGE
+   for a pixel outside of the picture, or without a device; WHIT_ERROR_DEVICE; WHIT_ERROR_STATUS,
+   WHIT_ERROR_TIME_LIMIT and WHIT_ERROR_CANCELLED as whit_renderer_render. */
 WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y,
                                   uint32_t max_rays, whit_probe_report **out);
 void whit_probe_report_destroy(whit_probe_report *report);
 
-/* A ray of a report, or several shadow rays from where it ended to one light that ended alike: the
-   same end, at the same instance. */
+/* One line of a printed report: a ray, or several shadow rays from one surface point to one light
+   that share their end and the instance that they ended at. */
 typedef struct whit_probe_row {
     uint32_t ray; /* the first one */
     uint32_t count;
-    float added[3]; /* as of a ray; the mean of several */
+    float added[3]; /* as whit_probe_ray.added; the mean over several rays */
 } whit_probe_row;
 /* The rows of a report, which hold each ray once: a ray is followed by its shadow rays, those that
-   reach their light first, then by its branches, what brought most first. *rows is the caller's,
+   reach their light first, then by its branches, those that added most first. *rows is one block,
    for whit_memory_destroy. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_probe_rows(const whit_probe_report *report, whit_probe_row **rows,
                                        uint32_t *count);
 
-/* Why the pixel is as bright as it is, by the rays of its first sample: where its light comes from,
-   and which lights reach what is seen there. Names are as `scene` has them, which is the
-   renderer's. At most `bytes` of `text`, which end with a 0; more is cut. */
+/* Explains in words why the pixel is as bright as it is, by the rays of its first sample: where its
+   light comes from, and which lights reach the surface seen there. `scene` must be the renderer's;
+   names are written as it has them. Writes at most `bytes` to `text`, including the 0 at the end;
+   longer text is cut. */
 #define WHIT_PROBE_WHY_BYTES 512
 void whit_probe_why(const whit_probe_report *report, const whit_scene *scene, char *text,
                     size_t bytes);

@@ -1,7 +1,7 @@
 /* What whit's own programs use of libwhit beside whit.h: files that appear whole or not at all,
-   clocks, pictures in strips, kernels as drivers make them, parts of scenes for `whit check`, what
-   is kept from one run to the next. It is not installed, the shared library does not
-   have it, and it may change with every commit. */
+   clocks, pictures in strips, kernels as drivers make them, parts of scenes for `whit check`, the
+   cache folder. This header is not installed, the shared library does not export these functions,
+   and they may change with every commit. */
 #ifndef WHIT_PROGRAM_H
 #define WHIT_PROGRAM_H
 
@@ -27,30 +27,30 @@ WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_
 /* Removes unfinished output; safe in a signal handler. */
 void whit_file_abandon_all(void);
 uint64_t whit_peak_memory_bytes(void);
-/* What this process has run out of at this moment, by a limit of its own (`ulimit -v`, `ulimit -n`)
-   or the system's, for behind `: `: `room_bytes` of memory, or some descriptors; NULL: neither.
-   What drivers and libraries then fail with has other names, or they crash. Safe in signal
-   handlers. */
+/* Tells whether this process has run out of something at this moment, by its own limit (`ulimit
+   -v`, `ulimit -n`) or the system's: "out of memory" where `room_bytes` cannot be had, "too many
+   open files" where a few more descriptors cannot; NULL: neither. It names the cause where drivers
+   and libraries crash or fail with other errors. Safe in signal handlers. */
 const char *whit_shortage(uint64_t room_bytes);
 double whit_clock_ms(void);
-double whit_clock_cpu_ms(void); /* used by all threads of this process */
+double whit_clock_cpu_ms(void); /* processor time of all threads of this process */
 
 /* ---- Pictures in strips ---- */
 
-/* A picture that is written in strips of rows, from the top down, so that no more than one of them
-   is in memory: each but the last has a multiple of WHIT_STRIP_ROWS rows. The file appears at
-   commit, with the bytes that whit_image_save of the whole picture gives it. */
+/* A picture that is written in strips of rows, from the top down, so that only one strip is in
+   memory at a time. Each strip but the last has a multiple of WHIT_STRIP_ROWS rows. The file
+   appears at commit, with the bytes that whit_image_save of the whole picture gives it. */
 #define WHIT_STRIP_ROWS 16
 typedef struct whit_image_strips whit_image_strips;
-/* `like`: a strip, for all but the height. `texts` are borrowed until the end. WHIT_ERROR_OUTPUT
-   also for pipes. */
+/* `like`: a strip, which sets all properties of the picture but its height. `texts` are borrowed
+   until commit or abandon. WHIT_ERROR_OUTPUT also for pipes. */
 WHIT_CHECK whit_result whit_image_strips_begin(const char *path, const whit_image *like,
                                                uint32_t height, const whit_text *texts,
                                                uint32_t text_count, const whit_log *log,
                                                whit_image_strips **out);
 WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const whit_image *strip);
-/* One of the two ends it; abandon takes NULL too. WHIT_ERROR_OUTPUT: the file could not be
-   written, and there is none. */
+/* Exactly one of the two ends the strips; abandon takes NULL too. WHIT_ERROR_OUTPUT: the file could
+   not be written, and none is left. */
 WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
 void whit_image_strips_abandon(whit_image_strips *strips);
 /* Makes an image of integers, as hit identities are: it copies width * height * channels of them
@@ -63,10 +63,10 @@ float *whit_image_edit(whit_image *image);
 /* ---- Renderers ---- */
 
 typedef struct whit_overlay {
-    bool grid; /* on the ground, behind what stands before it */
+    bool grid; /* a grid on the ground, hidden where objects stand before it */
     bool edges_of_instances, edges_of_primitives;
-    const uint32_t *ids; /* hit identities that edges are of, two a pixel, borrowed; NULL: those of
-                            the picture that the renderer has just drawn */
+    const uint32_t *ids; /* hit identities between which edges are drawn, two words a pixel,
+                            borrowed; NULL: those of the picture that the renderer has just drawn */
 } whit_overlay;
 /* Draws over `color`, a picture of the renderer's view. WHIT_ERROR_USAGE where nothing
    was rendered, WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED. */
@@ -77,34 +77,37 @@ WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const wh
    and _MANY too where the params are refused. */
 whit_classes whit_classes_of(const whit_renderer_params *params);
 
-/* What camera rays of the picture that was set last cost, without counting in its kernel: the twin
-   traces those of at most `pixels` pixels, all or a smaller picture of the view, up to what they
-   meet first. On the calling thread, some microseconds a ray. WHIT_ERROR_USAGE without a device,
-   WHIT_ERROR_STATUS and WHIT_ERROR_CANCELLED as whit_trace. */
+/* Estimates the traversal cost of the camera rays of the picture that was set last, without
+   counting in its kernel: the twin traces to their first hit the rays of all pixels, or of a
+   smaller picture of the same view with at most `pixels` pixels. It runs on the calling thread and
+   takes some microseconds a ray. WHIT_ERROR_USAGE without a device, WHIT_ERROR_STATUS and
+   WHIT_ERROR_CANCELLED as whit_trace. */
 WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
                                                   whit_cost *cost);
 
 /* ---- A device, opened beside other work ---- */
 
-/* What whit_device_create does, in a thread of its own, while the caller does something else, such
-   as loading a scene. `params` is read, and its selector borrowed, until the end; what there is to
-   say is logged at the end, by the thread that asks for it. NULL when memory or threads run out:
-   then whit_device_create is left. */
+/* Runs whit_device_create in a thread of its own while the caller does something else, such as
+   loading a scene. `params` is read, and its selector borrowed, until whit_device_open_end or
+   _abandon; messages are logged by whit_device_open_end, in the thread that calls it. NULL when
+   memory or threads run out: call whit_device_create instead. */
 typedef struct whit_device_opening whit_device_opening;
 WHIT_CHECK whit_device_opening *whit_device_open_begin(const whit_device_params *params,
                                                        const whit_log *log);
-/* Waits; gives what whit_device_create would have given, and frees `opening`. */
+/* Waits for the thread, frees `opening` and gives the result of its whit_device_create. */
 WHIT_CHECK whit_result whit_device_open_end(whit_device_opening *opening, whit_device **out);
-/* Instead: nothing is logged, and a device is destroyed again. NULL is fine. */
+/* Call this in place of whit_device_open_end to drop the device: nothing is logged. Takes NULL. */
 void whit_device_open_abandon(whit_device_opening *opening);
-/* For programs that draw many small pictures: from here on kernels stay with the device, and who
-   makes a renderer that needs the same ones has them at once. Before any renderer. */
+/* For programs that draw many small pictures: from this call on the device keeps its kernels, so
+   that a later renderer that needs the same ones gets them at once. Call it before any renderer is
+   made. */
 void whit_device_keep_kernels(whit_device *device);
-/* Kernels that the driver has been asked for so far: nothing was compiled between two equal counts.
- */
+/* Number of kernels that the driver was asked to make so far. Two equal counts mean that nothing
+   was compiled between them. */
 uint64_t whit_device_kernels_made(const whit_device *device);
-/* Whether a program that opens the same device again gets further by drawing with both at once: a
-   CPU, unless validation layers check or a test counts calls. */
+/* Whether a program draws faster when it opens the same device a second time and draws with both at
+   once. True for a CPU device, unless kernels are compiled by one thread only, as under validation
+   layers or in tests that count calls. */
 bool whit_device_takes_peers(const whit_device *device);
 
 /* ---- Kernels, looked at ---- */
@@ -118,14 +121,16 @@ enum { WHIT_STATISTICS_MAX = 48, WHIT_KERNELS_MAX = 30 };
 /* A kernel of a picture as the device's driver makes it. */
 typedef struct whit_kernel {
     const char *name;      /* of its stage: "camera", "shade glass" */
-    bool deferred;         /* for the rays that the one before leaves open, at exact numerics */
+    bool deferred;         /* at exact numerics: finishes the rays that the kernel before it in the
+                              list deferred */
     uint32_t instructions; /* SPIR-V, of its functions */
-    double create_ms;      /* by the clock; lavapipe goes on at the first dispatch */
+    double create_ms;      /* wall clock; lavapipe compiles more at the first dispatch */
     whit_statistic statistics[WHIT_STATISTICS_MAX];
     uint32_t statistic_count; /* 0: the driver tells nothing */
 } whit_kernel;
 
-/* What is left of the kernel for this renderer, and of the same with every effect. */
+/* Sizes of the kernels as specialized for this renderer, and (general) with every effect compiled
+   in. */
 typedef struct whit_kernel_info {
     uint32_t instructions, general_instructions; /* SPIR-V, in functions of all kernels */
     uint32_t largest_instructions;               /* of the largest of the scene's own kernels */
@@ -136,36 +141,37 @@ typedef struct whit_kernel_info {
 WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
                                                 whit_kernel_info *info);
 
-/* Makes the kernels of a picture with these params one after the other, and no picture: takes no
-   memory of the device. `kernels`: room for WHIT_KERNELS_MAX; `params` may be NULL.
+/* Makes the kernels of a picture with these params one after the other, without drawing and without
+   allocating memory of the device. `kernels`: room for WHIT_KERNELS_MAX; `params` may be NULL.
    WHIT_ERROR_USAGE for params that a renderer refuses too, WHIT_ERROR_DEVICE or _MEMORY where a
    kernel cannot be made. */
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                                          const whit_renderer_params *params, whit_kernel *kernels,
                                          uint32_t *count);
-/* The same, but counts their instructions and makes none: other figures are 0. It
-   gives what whit_kernels_list gives. */
+/* As whit_kernels_list, with the same errors, but only counts the instructions of kernels and makes
+   none: other figures are 0. */
 WHIT_CHECK whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
                                           const whit_renderer_params *params, whit_kernel *kernels,
                                           uint32_t *count);
 
-/* The kernels that the shader has part in, by index; NULL past the last. `words`: SPIR-V. */
+/* Gives the name of a kernel that contains functions of the shader, by index; NULL past the last.
+   `words`: its SPIR-V. */
 const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
                                size_t *bytes);
 
-/* The GLSL of such a kernel with all that it includes, and what stands in `words` of it in the form
-   of spirv-dis. To be released by whit_memory_destroy; NULL: there is no such kernel, no memory, or
-   damaged words. */
+/* The first gives the GLSL of such a kernel with all its includes, the second disassembles its
+   `words` in the format of spirv-dis. To be released by whit_memory_destroy; NULL: there is no such
+   kernel, no memory, or the words are damaged. */
 char *whit_shader_kernel_text(const whit_shader *shader, uint32_t index);
 char *whit_spirv_text(const uint32_t *words, size_t bytes);
 
-/* The file that `whit shader new` writes: whit's own function, with what it may use in comments.
+/* The file that `whit shader new` writes: whit's own function, with comments on what it may use.
    NULL: there is no such hook, or no memory. To be released by whit_memory_destroy. */
 char *whit_shader_template(whit_hook hook);
 
 /* ---- Parts of scenes, and faults in them ---- */
 
-/* What a picture depends on, piece by piece. */
+/* The kinds of parts that `whit check` divides a scene into. */
 typedef enum whit_part_kind {
     WHIT_PART_MESH = 0,
     WHIT_PART_MATERIAL,
@@ -173,40 +179,43 @@ typedef enum whit_part_kind {
     WHIT_PART_LIGHT,
     WHIT_PART_CAMERA,
     WHIT_PART_ANIMATION,   /* keys of one property of one node */
-    WHIT_PART_ENVIRONMENT, /* with ambient light, and what a scene file says of contact */
-    WHIT_PART_OBJECTS,     /* nodes and instances: where meshes are; and which parts there are, but
-                              for materials and textures, which come with those that name them */
+    WHIT_PART_ENVIRONMENT, /* with ambient light, and the contact settings of a scene file */
+    WHIT_PART_OBJECTS,     /* nodes and instances, which place meshes, and the list of parts;
+                              materials and textures are not in that list, they come with the parts
+                              that name them */
     WHIT_PART_KINDS,
 } whit_part_kind;
 /* "mesh", "material", ... */
 const char *whit_part_kind_name(whit_part_kind kind);
 typedef struct whit_part {
     whit_part_kind kind;
-    const char *name; /* as the file has it, made unique among its kind by `#2`, `#3`, ..., or its
-                         number where it has none; show it by whit_text_show. Meshes are called
-                         after the first object that has them, textures after their file without
-                         folders; "" of environment and objects, of which there is one */
-    uint64_t hash;    /* of what is loaded: of decoded texels and imported meshes, not of files */
+    const char *name; /* the file's name for it, made unique among its kind by `#2`, `#3`, ..., or
+                         its number where the file gives none; show it by whit_text_show. A mesh has
+                         the name of the first object that uses it, a texture that of its file
+                         without folders. "" for environment and objects, of which there is one
+                         each */
+    uint64_t hash;    /* of the loaded data (decoded texels, imported meshes), not of the files */
 } whit_part;
-/* The parts of a scene, sorted as the scene has them within each kind. What whit adds to a scene is
-   none, since it follows from the others. *parts with its names is one block, for
-   whit_memory_destroy. WHIT_ERROR_MEMORY; WHIT_ERROR_USAGE for a scene whose pictures were
-   dropped. */
+/* The parts of a scene, by kind, and within a kind in the scene's order. Things that whit itself
+   adds to a scene are no parts, since they follow from the others. *parts with its names is one
+   block, for whit_memory_destroy. WHIT_ERROR_MEMORY; WHIT_ERROR_USAGE for a scene whose pictures
+   were dropped. */
 WHIT_CHECK whit_result whit_scene_parts(const whit_scene *scene, whit_part **parts,
                                         uint32_t *count);
 
-/* How the part of `after` differs from the one of that kind and name of `before`: "vertices 2716
-   and 2717 moved by up to 0.0013"; "" where it does not, or where one of the two is not there. At
-   most `bytes`, which end with a 0. Names in it are as the files have them. WHIT_ERROR_MEMORY,
-   WHIT_ERROR_USAGE as of whit_scene_parts. */
+/* Describes how the part of this kind and name in `after` differs from that in `before`: "vertices
+   2716 and 2717 moved by up to 0.0013"; "" where they are equal, or where one scene lacks the part.
+   Writes at most `bytes` to `text`, including the 0 at the end. Names in it are as the files have
+   them. WHIT_ERROR_MEMORY, WHIT_ERROR_USAGE as of whit_scene_parts. */
 WHIT_CHECK whit_result whit_scene_part_change(const whit_scene *before, const whit_scene *after,
                                               whit_part_kind kind, const char *name, char *text,
                                               size_t bytes);
-/* A scene of its own that has some parts of `before` and the rest of `after`: `back` says of which
-   parts, in the order of whit_scene_parts of `before`, it has those of `before`. Objects bring the
-   lists of parts with them: a part that one scene alone has comes and goes with these. What whit
-   adds to a scene is made anew. With all or none of `back` it has the hash of `before` or `after`.
-   WHIT_ERROR_MEMORY; WHIT_ERROR_INPUT for what does not go together; WHIT_ERROR_USAGE as above. */
+/* Makes a new scene with some parts of `before` and the rest of `after`. `back[i]`: part i in the
+   order of whit_scene_parts of `before` comes from `before`. The objects part carries the list of
+   parts: a part that only one of the scenes has comes and goes with it. Things that whit adds to a
+   scene are made anew. With all or none of `back` the new scene has the hash of `before` or
+   `after`. WHIT_ERROR_MEMORY; WHIT_ERROR_INPUT for parts that do not fit together; WHIT_ERROR_USAGE
+   as above. */
 WHIT_CHECK whit_result whit_scene_mix(const whit_scene *before, const whit_scene *after,
                                       const bool *back, whit_scene **out);
 
@@ -214,43 +223,44 @@ WHIT_CHECK whit_result whit_scene_mix(const whit_scene *before, const whit_scene
 typedef enum whit_fault_kind {
     WHIT_FAULT_VERTEX = 0, /* a vertex, or a sphere, moves by `amount` of its mesh's longest side */
     WHIT_FAULT_IOR,        /* a refractive index grows by `amount` */
-    WHIT_FAULT_LIGHT,      /* a light, or what glows where there is none, is brighter by `amount`
-                              of what it was */
-    WHIT_FAULT_TEXELS,     /* a row of texels goes by `amount` of its range */
-    WHIT_FAULT_MATERIALS,  /* two materials have each other's values, and glow by `amount` */
-    WHIT_FAULT_ORDER,      /* two objects have each other's place in the file */
+    WHIT_FAULT_LIGHT,      /* a light, or an emissive material where there is no light, gets
+                              brighter by the share `amount` */
+    WHIT_FAULT_TEXELS,     /* the colours of a row of texels change by `amount` of their range */
+    WHIT_FAULT_MATERIALS,  /* two materials swap their values, and emit `amount` */
+    WHIT_FAULT_ORDER,      /* two objects swap their places in the file */
     WHIT_FAULT_KINDS,
 } whit_fault_kind;
 /* "vertex", "ior", ... */
 const char *whit_fault_kind_name(whit_fault_kind kind);
 typedef struct whit_fault {
     whit_fault_kind kind;
-    uint64_t seed; /* draws what is changed; not how much */
-    double amount; /* of VERTEX below 0 the other way; of MATERIALS 0 too; of ORDER not read */
+    uint64_t seed; /* chooses at random what is changed, but not by how much */
+    double amount; /* VERTEX: below 0 moves the other way; MATERIALS: may be 0; ORDER: not read */
 } whit_fault;
-/* A copy of a scene with faults in it. WHIT_ERROR_USAGE, not logged, where it has nothing that one
-   of them could change; else as whit_scene_mix. */
+/* A copy of a scene with faults in it. WHIT_ERROR_USAGE, not logged, where the scene has nothing
+   that one of the faults could change; other errors as of whit_scene_mix. */
 WHIT_CHECK whit_result whit_scene_fault(const whit_scene *scene, const whit_fault *faults,
                                         uint32_t count, whit_scene **out);
 
 /* ---- What can be made again, kept from one run to the next ---- */
 
-/* In $XDG_CACHE_HOME/whit or ~/.cache/whit, which is closed to others; nothing where that folder
-   cannot be had, belongs to somebody else or may be written by others (a warning, once), and where
-   WHIT_NO_CACHE is set. What is kept has a checksum; files used longest ago are removed beyond
-   512 MiB, or $WHIT_CACHE_LIMIT MiB. libwhit keeps pipelines there. */
+/* The cache folder is $XDG_CACHE_HOME/whit or ~/.cache/whit, closed to other users. Nothing is kept
+   where the folder cannot be made, belongs to somebody else or is writable by others (one warning),
+   or where WHIT_NO_CACHE is set. Files have a checksum; beyond 512 MiB, or $WHIT_CACHE_LIMIT MiB,
+   the least recently used are removed. libwhit keeps pipelines there. */
 
 /* Reads what was kept under `name`. The caller releases *data, which has one zero byte behind its
    size, by whit_memory_destroy. False: nothing was kept, or it was damaged and is thrown away. */
 bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes);
-/* `name`: of what and in which version it is; no slash, at most 200 bytes. What cannot be kept is
-   not. */
+/* `name`: says what the data is and its version; no slash, at most 200 bytes. Fails silently where
+   the data cannot be kept. */
 void whit_cache_write(const char *name, const void *data, size_t size_bytes, const whit_log *log);
-/* The folder, made when it is not there, for whit_memory_destroy. NULL: nothing is kept. */
+/* The path of the cache folder, which is created where it is missing; to be released by
+   whit_memory_destroy. NULL: nothing is kept. */
 char *whit_cache_folder(void);
 typedef struct whit_cache_info {
-    char folder[4096]; /* "": there is no such place */
-    char why_not[128]; /* nothing is kept; "" when it is */
+    char folder[4096]; /* "": there is no cache folder */
+    char why_not[128]; /* the reason where nothing is kept; "" where files are kept */
     uint64_t used_bytes, limit_bytes;
 } whit_cache_info;
 void whit_cache_get_info(whit_cache_info *info);

@@ -8,16 +8,17 @@
 extern "C" {
 #endif
 
-/* The same picture in double, on the CPU, written a second time: what kernels get wrong is the
-   difference to it. See host/reference/reference.h. */
+/* Draws the same picture on the CPU in double, by an independent implementation: a picture of the
+   device is judged by its difference from this one. See host/reference/reference.h. */
 typedef struct whit_reference whit_reference;
 
-/* `accel` is borrowed until whit_reference_destroy and goes to params->time_s: no renderer may be
-   at work on it. Of `params` size, camera, time, samples, depth, bailout, shadows, Fresnel, area
-   lights, cancel, progress and time_limit_s (of one whit_reference_render) are obeyed; adaptive
-   samples, effects left out, a shader and what a renderer refuses are WHIT_ERROR_USAGE;
-   WHIT_ERROR_INPUT and WHIT_ERROR_STATUS as of whit_renderer_create. `threads`: 0: one a core; the
-   same bytes for any number, and whatever the machine and its libm. */
+/* `accel` is borrowed until whit_reference_destroy and is posed at params->time_s, so no renderer
+   may use it meanwhile. Of `params` it obeys size, camera, time, samples, depth, bailout, shadows,
+   Fresnel, area lights, cancel, progress and time_limit_s (per whit_reference_render).
+   WHIT_ERROR_USAGE for adaptive samples, removed effects, a shader and params that a renderer
+   refuses; WHIT_ERROR_INPUT and WHIT_ERROR_STATUS as of whit_renderer_create. `threads`: 0: one per
+   core. The picture has the same bytes for any number of threads, on any machine and with any
+   libm. */
 WHIT_CHECK whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params *params,
                                              uint32_t threads, whit_reference **out);
 void whit_reference_destroy(whit_reference *reference);
@@ -26,14 +27,15 @@ void whit_reference_destroy(whit_reference *reference);
 WHIT_CHECK whit_result whit_reference_render(whit_reference *reference, whit_image **color,
                                              whit_image **ids);
 /* Gives the statistics of the picture rendered last: rays by kind, rays cut, render_ms and
-   mrays_per_s. Figures that only a device has are 0; weights and bounds are not known: below 0. */
+   mrays_per_s. Figures that only a device has are 0; weights and bounds are unknown and therefore
+   below 0. */
 void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats);
 
-/* The rays of one sample (0: the first) of a pixel from the upper left, each after its parent, as
-   whit_probe has those of the device: `device` is what the reference met, and nothing is known of
-   `twin` and `exact`. The sum of `added` over all but shadow rays is the sample's colour, but for
-   their rounding to floats. *rays is for whit_memory_destroy. WHIT_ERROR_USAGE outside of the
-   picture, WHIT_ERROR_MEMORY; WHIT_ERROR_STATUS as whit_reference_render. */
+/* The rays of one sample (0: the first) of pixel (x, y), counted from the upper left, each after
+   its parent, in the form of whit_probe. The field `device` has the reference's hit; `twin` and
+   `exact` are not known. The sum of `added` over all but shadow rays is the sample's colour, up to
+   rounding to floats. *rays is for whit_memory_destroy. WHIT_ERROR_USAGE outside of the picture,
+   WHIT_ERROR_MEMORY; WHIT_ERROR_STATUS as whit_reference_render. */
 WHIT_CHECK whit_result whit_reference_rays(whit_reference *reference, uint32_t x, uint32_t y,
                                            uint32_t sample, whit_probe_ray **rays, uint32_t *count);
 

@@ -15,53 +15,56 @@ typedef struct whit_refine whit_refine;
 
 typedef struct whit_refine_info {
     uint32_t samples; /* of each pixel, so far; 0: there is no picture yet */
-    /* By how much the picture may be off: the root of the mean square, over all pixels, of
-       whit_refine_error_image. < 0: not known before samples were doubled. */
+    /* Estimated error of the picture: the root mean square of whit_refine_error_image over all
+       pixels. < 0: not known until samples were doubled once. */
     double error;
-    /* The same of rays that were not traced alone, which more samples leave as it is. */
+    /* The part of `error` that is due to rays that were not traced. More samples do not reduce
+       it. */
     double error_of_cuts;
-    /* What the error of rays that were not traced is reckoned with: the mean radiance of the rays
-       that what the camera sees calls for, largest channel; of camera rays where there are none. 0
-       where no ray was cut. */
+    /* The radiance that each ray that was not traced is assumed to carry: the mean over the rays
+       spawned by the surfaces that the camera sees, largest channel; over camera rays where there
+       are none. 0 where no ray was cut. */
     double cut_radiance;
-    bool last; /* there are not twice as many samples */
+    bool last; /* no further step: twice as many samples would exceed the limit */
 } whit_refine_info;
 
-/* `renderer` is borrowed until whit_refine_destroy, and draws nothing else meanwhile. `params` as
-   for whit_renderer_set_view, but for their sampling, and borrowed as there. WHIT_ERROR_USAGE as of
-   it, without a device, and for a shader with `post`. */
+/* `renderer` is borrowed until whit_refine_destroy, and draws nothing else meanwhile. `params` are
+   as for whit_renderer_set_view and borrowed as there; their sampling is not read. WHIT_ERROR_USAGE
+   as there, without a device, and for a shader with `post`. */
 WHIT_CHECK whit_result whit_refine_create(whit_renderer *renderer,
                                           const whit_renderer_params *params, whit_refine **out);
 void whit_refine_destroy(whit_refine *refine);
 
-/* Begins with a picture that there is already, of any number of samples from the first on: `color`
-   as of WHIT_AOV_COLOR and `cuts` as of WHIT_AOV_CUTS, in the size of the params, which are copied.
-   Its steps double this number, and statistics are of the steps alone. WHIT_ERROR_USAGE after the
-   first step. */
+/* Begins with an existing picture of samples 0 to `samples` - 1: `color` as of WHIT_AOV_COLOR and
+   `cuts` as of WHIT_AOV_CUTS, in the size of the params; both are copied. Steps then double
+   `samples`, and statistics cover only the steps. WHIT_ERROR_USAGE after the first step. */
 WHIT_CHECK whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float *color,
                                          const float *cuts);
-/* From here on this renderer draws, whose pictures have the same pixels. `params` as for
-   whit_refine_create. */
+/* From this call on `renderer` draws the steps; its pictures must have the same pixels as those of
+   the one before. `params` as for whit_refine_create. */
 void whit_refine_move(whit_refine *refine, whit_renderer *renderer,
                       const whit_renderer_params *params);
 
-/* One more step: the first sample; or what the estimate needs to know of rays that were cut, where
-   some were, once; or as many samples as there are. WHIT_ERROR_USAGE after the last one; else as of
-   whit_renderer_render, and then the picture stays as it was and the step can be taken again. */
+/* Draws one more step: the first sample; or, once and only where rays were cut, what the estimate
+   needs to know of them; or as many new samples as there are so far. WHIT_ERROR_USAGE after the
+   last step; other errors as of whit_renderer_render, after which the picture is unchanged and the
+   step can be repeated. */
 WHIT_CHECK whit_result whit_refine_step(whit_refine *refine);
 void whit_refine_get_info(const whit_refine *refine, whit_refine_info *info);
 
 /* Linear RGBA. WHIT_ERROR_USAGE where there is no picture yet. */
 WHIT_CHECK whit_result whit_refine_image(const whit_refine *refine, whit_image **out);
-/* A function of the shader, as WHIT_AOV_SHADER + index, of all samples. WHIT_ERROR_USAGE too for
-   those that the shader has not, and where the samples were begun with by others. */
+/* The mean over all samples of the shader's aov `index`, as WHIT_AOV_SHADER + index.
+   WHIT_ERROR_USAGE also where the shader has no such aov, and after whit_refine_begin, whose
+   samples have no aovs. */
 WHIT_CHECK whit_result whit_refine_aov(const whit_refine *refine, uint32_t index, whit_image **out);
-/* One channel: by how much each pixel may be off, in its worst channel, linear. It is what the last
-   doubling of samples changed in the 3 x 3 pixels around, and the weights of rays that were cut
-   times `cut_radiance`. An estimate and no bound: light that no sample has met is in none.
-   WHIT_ERROR_USAGE where nothing is known yet. */
+/* One channel: the estimated error of each pixel, linear, in its worst channel. It is the change by
+   the last doubling of samples in the 3 x 3 pixels around, plus the weights of cut rays times
+   `cut_radiance`. It is no bound: it knows nothing of light that no sample has met.
+   WHIT_ERROR_USAGE where no error is known yet. */
 WHIT_CHECK whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out);
-/* All steps together. Rays are those of the picture; times are of all steps. */
+/* Statistics of all steps together: rays are those of the picture, times are the sums of all
+   steps. */
 void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats);
 
 #ifdef __cplusplus

@@ -11,11 +11,12 @@ extern "C" {
 
 /* ---- Rendering ---- */
 
-/* Which of two nodes that a ray meets is visited first. Never changes a picture. */
+/* Which of two sibling nodes that a ray meets is visited first. It does not change the picture. */
 typedef enum whit_traversal {
     WHIT_TRAVERSAL_DISTANCE = 0, /* the one entered earlier */
-    WHIT_TRAVERSAL_SIGN,  /* by the ray's sign on the axis where their centres are farthest apart */
-    WHIT_TRAVERSAL_BASIC, /* as they come */
+    WHIT_TRAVERSAL_SIGN,  /* by the sign of the ray's direction on the axis where their centres are
+                             farthest apart */
+    WHIT_TRAVERSAL_BASIC, /* in the order in which they are stored */
 } whit_traversal;
 
 /* What decides whether a ray meets a triangle, and which one first: see docs/numerics.md. */
@@ -23,7 +24,8 @@ typedef enum whit_numerics {
     WHIT_NUMERICS_WATERTIGHT = 0, /* no cracks; the same hit whatever the tree */
     WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
                             between triangles; hits may depend on the tree */
-    WHIT_NUMERICS_EXACT, /* as exact arithmetic says for the given floats, t rounded to nearest */
+    WHIT_NUMERICS_EXACT, /* the hit of exact arithmetic on the given floats, with t rounded to
+                            nearest */
 } whit_numerics;
 
 /* Whether surfaces between a point and a light keep the light from that point. */
@@ -35,21 +37,22 @@ typedef enum whit_shadows {
 
 /* Which samples of the sequence each pixel gets. */
 typedef enum whit_sampling_kind {
-    WHIT_SAMPLING_FIXED = 0, /* `count` from `first` on */
-    WHIT_SAMPLING_ADAPTIVE,  /* 4; where a pixel differs from a neighbour by more than `contrast`
-                                16, and then 64 */
+    WHIT_SAMPLING_FIXED = 0, /* `count` samples from `first` on */
+    WHIT_SAMPLING_ADAPTIVE,  /* 4 samples; 16 where a pixel then differs from a neighbour by more
+                                than `contrast`, and 64 where it still does */
 } whit_sampling_kind;
 typedef struct whit_sampling {
     whit_sampling_kind kind;
-    uint32_t count;  /* FIXED: up to WHIT_SAMPLES_MAX; powers of 4 are spread evenly; 0: 1 */
-    uint32_t first;  /* FIXED: a multiple of `count`; ids are of sample 0 alone */
+    uint32_t count;  /* FIXED: up to WHIT_SAMPLES_MAX; powers of 4 are the most evenly spread; 0:
+                        1 */
+    uint32_t first;  /* FIXED: a multiple of `count`; hit identities exist for sample 0 only */
     double contrast; /* ADAPTIVE: above 0, up to 1 */
 } whit_sampling;
 
-/* What textures show of a pixel that covers many of their texels. */
+/* How textures are sampled for a pixel that covers many texels. */
 typedef enum whit_minification {
-    WHIT_MINIFICATION_MIPMAP = 0, /* the mean of about as many, from smaller levels */
-    WHIT_MINIFICATION_NONE,       /* the texels where its samples are */
+    WHIT_MINIFICATION_MIPMAP = 0, /* the mean of about as many texels, from smaller levels */
+    WHIT_MINIFICATION_NONE,       /* only the texels at its samples */
 } whit_minification;
 
 /* How kernels read trees. */
@@ -59,176 +62,184 @@ typedef enum whit_load_path {
     WHIT_LOAD_TEXEL,    /* texel buffers */
 } whit_load_path;
 
-/* A picture in the making: every `spacing`-th pixel of its rows and columns, beginning near the
-   middle of the first square of so many. */
+/* A coarse version of a picture that is being drawn: every `spacing`-th pixel of its rows and
+   columns. The first one lies near the middle of the first square of `spacing` x `spacing`
+   pixels. */
 typedef struct whit_step {
     uint32_t spacing;       /* 8, 4 or 2 */
-    uint32_t width, height; /* the picture's by `spacing`, rounded up */
-    const float *rgba; /* linear, row by row from above; while whit_renderer_params.step runs */
+    uint32_t width, height; /* the picture's size divided by `spacing`, rounded up */
+    const float *rgba; /* linear RGBA, top row first; valid while whit_renderer_params.step runs */
 } whit_step;
 
-/* Begin with whit_renderer_defaults(): a zeroed one asks for no bounces and traces every ray. */
+/* Start from whit_renderer_defaults(): a zeroed struct asks for no bounces and a bail-out of 0. */
 typedef struct whit_renderer_params {
     uint32_t width, height; /* pixels; 0: 640 x 480 */
-    /* The rows of the picture that are drawn, and that its images have: `row_count` of them from
-       `first_row` on; 0: all. They begin at a multiple of 8, and end at another one or at the
-       picture's last row. The picture has a fixed number of samples, and its costs are not
-       counted. */
+    /* Draws only some rows of the picture, and its images have only these: `row_count` rows from
+       `first_row` on; 0: all. They begin at a multiple of 8, and end at a multiple of 8 or at the
+       picture's last row. This needs a fixed number of samples, and `count` false. */
     uint32_t first_row, row_count;
     whit_camera camera; /* its name is borrowed by renderers */
     double time_s;      /* of the animation */
     whit_sampling sampling;
-    uint32_t depth; /* most bounces; 0: what the camera ray sees, with its shadows */
-    double bailout; /* rays that can add less than this to a pixel are not traced, nor shadow rays
-                       that can add at most 2^-14 of this, times what their light sends; 0: all are
-                       */
+    uint32_t depth; /* most bounces; 0: only camera rays and their shadow rays */
+    double bailout; /* rays that can add less than this to a pixel are not traced, nor are shadow
+                       rays that can add at most 2^-14 of this times the radiance of their light; 0:
+                       all rays are traced */
     whit_shadows shadows;
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */
     whit_minification minification;
-    /* The same bits on every device: nothing is left to the driver (docs/numerics.md).
-       WHIT_ERROR_DEVICE where a device keeps no denormals, WHIT_ERROR_INPUT for a shader that calls
-       what has no portable form. */
+    /* Pictures have the same bits on every device, as no arithmetic is left to the driver
+       (docs/numerics.md). WHIT_ERROR_DEVICE where a device flushes denormals to 0, WHIT_ERROR_INPUT
+       for a shader that calls what has no portable form. */
     bool portable;
-    double exposure_ev;   /* what is displayed (.png, FLIP, bytes) is times 2^this */
-    bool soft_highlights; /* and runs softly towards 1 from 0.6 on, in place of a cut at 1 */
-    /* Kernels have what the scene calls for. With all_effects they have everything, which changes
-       no picture; without effects_removed it does. Bits 1 << the index of whit_effect_name. */
+    double exposure_ev;   /* displayed colours (.png, FLIP, bytes) are multiplied by 2^this */
+    bool soft_highlights; /* displayed colours above 0.6 approach 1 smoothly, in place of a cut at
+                             1 */
+    /* Kernels contain the effects that the scene needs. all_effects compiles every effect, which
+       does not change the picture; effects_removed leaves effects out, which may change it. Bits
+       are 1 << the index of whit_effect_name. */
     bool all_effects;
     uint64_t effects_added, effects_removed;
-    /* Draw with the general kernel, which is compiled first when no cache has it, while a thread
-       compiles that of the scene; the pictures are the same. Errors of that thread are logged from
-       it. */
+    /* Draws with the general kernel (compiled first where no cache has it) while a thread compiles
+       the scene's own kernels; the pictures are the same. That thread logs its own errors. */
     bool compile_async;
-    /* The renderer is for many pictures: kernels that take longer to make are right where they draw
-       faster. */
+    /* The renderer will draw many pictures: it uses kernels that draw faster even where they take
+       longer to make. */
     bool many_pictures;
-    /* Textures, normals and others that no function of `shader` reads are compiled all the same:
-       the renderer can take versions of it that read them (whit_renderer_takes_shader). */
+    /* Compiles textures, normals and other effects even where no function of `shader` reads them,
+       so that the renderer can take later versions of the shader that do
+       (whit_renderer_takes_shader). */
     bool keep_unread;
-    /* If nothing but post() of `shader` and what it has beside the colour have changed since the
-       renderer's last picture (no other kernel, slider or parameter), and neither
-       traces, the colours are not drawn once more: post() is given those of the last picture, and
-       for values beside the colour camera rays alone are traced. The picture is the same;
-       whit_stats are those of the last one. */
+    /* If only post() and aovs of `shader` have changed since the renderer's last picture (no other
+       kernel, slider or parameter), and they trace no rays, colours are not drawn again: post()
+       gets the colours of the last picture, and aovs only need camera rays. The picture is the
+       same; whit_stats are those of the last picture. */
     bool reuse_rays;
-    /* With `step`, and a shade() of `shader`: kernels that are sooner made are right where they
-       draw slower, as of a picture that is given up after its first step. The picture is the
+    /* With `step` and a shade() of `shader`: uses kernels that are made sooner even where they draw
+       slower, for pictures that are often abandoned after their first step. The picture is the
        same. */
     bool few_pixels;
-    uint32_t tile_size; /* pixels on a side, 16..1024; 0: by measured time */
+    uint32_t tile_size; /* pixels on a side, 16..1024; 0: chosen by measured time */
     const volatile bool *cancel;
-    /* Called from the rendering thread with the share done, 0..1; may be NULL. */
+    /* Called from the rendering thread with the share of the picture that is done, 0..1; may be
+       NULL. */
     void (*progress)(void *user, double done);
     void *progress_user;
-    /* With `step` a picture of at least 16 x 16 pixels and a fixed number of samples, which fits
-       one buffer of the device and whose costs are not counted, is drawn in steps: first every
-       `step_spacing`-th pixel of rows and columns, then what half of that asks for, and so on. Each
-       pixel is drawn once, and the picture is the same. It is called from the rendering thread with
-       progress_user after each step but the last. */
-    uint32_t step_spacing; /* 2, 4 or 8; 0: at once */
-    uint32_t step_aov;     /* 1 + the index of the aov of `shader` that steps show; 0: colours */
+    /* If `step` is set, the picture is drawn in steps: first every `step_spacing`-th pixel of rows
+       and columns, then the missing pixels for half of this spacing, and so on. Each pixel is drawn
+       once, and the picture is the same. It must have at least 16 x 16 pixels and a fixed number of
+       samples, fit into one buffer of the device, and `count` must be false; else it is drawn at
+       once. `step` is called from the rendering thread with progress_user after each step but the
+       last. */
+    uint32_t step_spacing; /* 2, 4 or 8; 0: no steps */
+    uint32_t step_aov;     /* what steps show: 1 + the index of an aov of `shader`; 0: colours */
     void (*step)(void *user, const whit_step *step);
     double time_limit_s; /* from whit_renderer_create on; 0: none */
     whit_load_path load_path;
     whit_traversal traversal;
     whit_numerics numerics;
-    /* How the kernels work; pictures are the same. `segments` of lists: 1 or 2; 0: as the device
-       likes. */
+    /* How the kernels work; these do not change the picture. `segments`: into how many parts work
+       lists are divided, 1 or 2; 0: chosen for the device. */
     whit_packets packets;
     whit_classes classes;
     uint32_t segments;
-    bool count; /* count what traversals cost: for whit_stats.costs and whit_renderer_cost_image */
+    bool count; /* counts traversal costs, for whit_stats.costs and whit_renderer_cost_image */
     /* Functions in the place of whit's own, borrowed as long as the renderer lives; NULL: none. Its
        kernels are made before the first picture, whatever compile_async says. */
     const whit_shader *shader;
-    const char *sliders; /* "NAME=VALUE,NAME=VALUE": values of its sliders; read during the call;
-                            NULL or "": as the file has them */
-    bool skip_sliders;   /* what the shader has no slider or use for is left out, not refused */
-    uint32_t trace_rays; /* most rays that whit_trace will be given, so that buffers need not be
-                            larger; 0: any number */
+    const char *sliders; /* "NAME=VALUE,NAME=VALUE": values of the shader's sliders; read during the
+                            call; NULL or "": the values of the file */
+    bool skip_sliders;   /* entries of `sliders` that the shader does not have are ignored, not
+                            refused */
+    uint32_t trace_rays; /* most rays per call of whit_trace, which keeps buffers small; 0: any
+                            number */
 } whit_renderer_params;
 
-/* 640 x 480, one sample, 16 of an area light, depth 8, bailout WHIT_BAILOUT_DEFAULT, the rest zero.
-   It is what a call takes whose params are NULL. */
+/* 640 x 480, one sample, 16 samples of an area light, depth 8, bailout WHIT_BAILOUT_DEFAULT, the
+   rest zero. Calls use these where their params are NULL. */
 whit_renderer_params whit_renderer_defaults(void);
 
 /* `device` may be NULL: then only whit_trace on the CPU works. WHIT_ERROR_USAGE for params out of
-   range, a camera that there is none of, or a scene whose pictures were dropped; WHIT_ERROR_INPUT
-   for a scene that has no finite pose at that time; WHIT_ERROR_STATUS for a camera in too many
-   media; WHIT_ERROR_DEVICE, also where a kernel cannot be made. */
+   range, a camera that does not exist, or a scene whose pictures were dropped; WHIT_ERROR_INPUT for
+   a scene that has no finite pose at that time; WHIT_ERROR_STATUS for a camera in too many media;
+   WHIT_ERROR_DEVICE, also where a kernel cannot be made. */
 WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
                                             const whit_renderer_params *params,
                                             whit_renderer **out);
 void whit_renderer_destroy(whit_renderer *renderer);
 
-/* Renders the whole picture. WHIT_ERROR_STATUS when a kernel reported that it must not be trusted
-   (logged in words); WHIT_ERROR_USAGE without a device; WHIT_ERROR_DEVICE, WHIT_ERROR_TIME_LIMIT,
-   WHIT_ERROR_CANCELLED. May be called again: the same bytes. */
+/* Renders the whole picture. WHIT_ERROR_STATUS when a kernel reported that its result cannot be
+   trusted (logged in words); WHIT_ERROR_USAGE without a device; WHIT_ERROR_DEVICE,
+   WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_CANCELLED. May be called again: the same bytes. */
 WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 
-/* Draws `count` small pictures together: of each of `cameras`, in the renderer's size, the picture
-   that a renderer with that camera draws, byte for byte. whit_renderer_image then gives them one
-   below the other, as an image of `count` times the height, until whit_renderer_render draws a
-   picture of one camera again, or a view is set or a pixel probed. They share tiles and dispatches,
-   so that thousands of 64 x 64 take about the time of one picture of as many pixels
+/* Draws `count` small pictures (views) together, one for each of `cameras`, in the renderer's size:
+   each is byte for byte the picture that a renderer with that camera draws. whit_renderer_image
+   then gives them one below the other, as one image of `count` times the height, until
+   whit_renderer_render is called, a view is set or a pixel probed. Views share tiles and
+   dispatches, so that thousands of 64 x 64 take about the time of one picture with as many pixels
    (whit_renderer_params.many_pictures makes the kernels for that; docs/batch.md); memory is that of
-   all of them, some 40 bytes a pixel. `cameras` are read during the call. WHIT_ERROR_USAGE, logged
-   with the number of the view, for no or too many cameras and for one that a renderer refuses; and
-   for params with a shader, adaptive samples, counts or some of the rows. Others as of
+   all of them, some 40 bytes a pixel. `cameras` are read during the call. WHIT_ERROR_USAGE for no
+   or too many cameras, for a camera that a renderer refuses (logged with the number of the view),
+   and for params with a shader, adaptive samples, `count` or `row_count`. Other errors as of
    whit_renderer_render. */
 WHIT_CHECK whit_result whit_renderer_render_views(whit_renderer *renderer,
                                                   const whit_camera *cameras, uint32_t count);
 
-/* Goes to another time of the animation: moves instances, lights and camera, keeps mesh trees and
+/* Sets the time of the animation: moves instances, lights and camera, and keeps mesh trees and
    pipelines. The picture is that of a renderer made at that time, byte for byte. WHIT_ERROR_USAGE
    for a time that is not finite, WHIT_ERROR_INPUT for one without a finite pose;
    WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
-/* Another picture of the same scene with the same kernel: takes over width, height, camera, time_s,
-   sampling, light_samples, bailout, depth, exposure_ev, soft_highlights and sliders, and nothing
-   else. Its camera is borrowed until the next call. The picture is that of a renderer made with
-   these, byte for byte. After an error there is nothing to render before a call that succeeds:
-   WHIT_ERROR_USAGE and others as of whit_renderer_create. */
+/* Prepares another picture of the same scene with the same kernels. Of `params` it takes width,
+   height, camera, time_s, sampling, light_samples, bailout, depth, exposure_ev, soft_highlights and
+   sliders, and nothing else; the camera's name is borrowed until the next call. The picture is that
+   of a renderer made with these params, byte for byte. After an error nothing can be rendered until
+   a call succeeds. WHIT_ERROR_USAGE and others as of whit_renderer_create. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 
-/* Whether `shader` is another version of the renderer's own: a file with the same functions,
-   which ask for the same of lights and shadows. */
+/* Whether `shader` is another version of the renderer's shader: a file with the same functions,
+   which need the same of lights and shadows. */
 bool whit_renderer_takes_shader(const whit_renderer *renderer, const whit_shader *shader);
-/* The same with another version of the renderer's shader, params->shader, whose kernels alone are
-   made anew; the one before may go afterwards. The rest of `params` as of whit_renderer_set_view.
-   WHIT_ERROR_USAGE, logged, for a shader that is no other version. */
+/* As whit_renderer_set_view, and takes params->shader, another version of the renderer's shader.
+   Only its kernels are made anew; the version before may be destroyed afterwards. WHIT_ERROR_USAGE,
+   logged, where whit_renderer_takes_shader is false. */
 WHIT_CHECK whit_result whit_renderer_set_shader(whit_renderer *renderer,
                                                 const whit_renderer_params *params);
 
-/* Effects by index, in the order of whit_scene_get_effect; NULL past the last. */
+/* The name of an effect by index, in the order of whit_scene_get_effect; NULL past the last. */
 const char *whit_effect_name(uint32_t index);
-/* Whether whit_renderer_params.effects_added and effects_removed may have it: what geometry or
-   camera decide cannot be switched; a lens can be left out. */
+/* Whether whit_renderer_params.effects_added or effects_removed may have the effect: effects that
+   geometry or camera decide cannot be switched, except that a lens can be removed. */
 bool whit_effect_can_add(uint32_t index);
 bool whit_effect_can_remove(uint32_t index);
-/* Whether the kernel of a renderer has an effect in it. */
+/* Whether a renderer's kernels contain the effect. */
 bool whit_renderer_compiles(const whit_renderer *renderer, uint32_t effect);
 
 typedef enum whit_aov {
     WHIT_AOV_COLOR = 0, /* 4 floats: linear RGB, alpha 1 */
     WHIT_AOV_IDS,       /* 2 uint32: instance, primitive of the pixel's first sample */
-    WHIT_AOV_CUTS,      /* 2 floats: weights of rays that were not traced, for params.depth and for
-                           params.bailout: sums of largest channels, means over samples */
-    WHIT_AOV_DISTANCES, /* 1 float, after whit_renderer_render_views: from where the camera ray of
-                           the pixel's first sample starts to what it meets, world units; infinity:
-                           nothing. The t of whit_trace, but that cut-outs are looked through,
-                           and that at WHIT_NUMERICS_EXACT it is not rounded from the exact one */
-    WHIT_AOV_SHADER = 64, /* and up: whit_shader_info.aovs by index; 4 floats, means over samples of
-                             what the function gives for what the camera meets, 0 for nothing */
+    WHIT_AOV_CUTS,      /* 2 floats: weights of rays that were not traced, first because of
+                           params.depth, then because of params.bailout: sums over rays of their
+                           largest channel, means over samples */
+    WHIT_AOV_DISTANCES, /* 1 float, after whit_renderer_render_views: from the origin of the camera
+                           ray of the pixel's first sample to its hit, in world units; infinity: a
+                           miss. It equals the t of whit_trace, except that the ray passes through
+                           cut-outs, and that at WHIT_NUMERICS_EXACT it is not the exact t
+                           rounded */
+    WHIT_AOV_SHADER = 64, /* plus an index into whit_shader_info.aovs; 4 floats, the mean over
+                             samples of the function's value for what the camera ray hits, 0 for a
+                             miss */
 } whit_aov;
-/* WHIT_ERROR_USAGE where nothing was rendered, for functions that the shader has not, for cuts of
-   a picture of adaptive samples, and for distances of one that is no views; WHIT_ERROR_DEVICE. */
+/* WHIT_ERROR_USAGE where nothing was rendered, for aovs that the shader does not have, for cuts of
+   a picture with adaptive samples, and for distances unless whit_renderer_render_views drew the
+   picture; WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
-/* From here on an image of colours is displayed as a picture with these params is, which those of
-   renderers and references are from the beginning. */
+/* Makes an image of colours displayed (.png, FLIP) with exposure_ev and soft_highlights of
+   `params`. Images from renderers and references have those of their params already. */
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params);
 
 typedef enum whit_ray_kind {
@@ -239,77 +250,83 @@ typedef enum whit_ray_kind {
     WHIT_RAY_KINDS,
 } whit_ray_kind;
 
-/* What traversals cost; see struct gpu_cost in shaders/abi/bvh.h. Sums, but for stack and depth,
-   which are the largest. */
+/* Traversal costs; see struct gpu_cost in shaders/abi/bvh.h. All are sums, except stack, depth and
+   max_*, which are maxima. */
 typedef struct whit_cost {
     uint64_t rays;
     uint64_t inner_nodes; /* inner nodes opened: box tests are twice that */
     uint64_t leaves, instances, triangles;
     uint32_t stack, depth;
-    /* A record is a ray of a batch, or a sample of a pixel that has rays of the kind. */
+    /* Number of records. A record is one ray of a batch, or one sample of a pixel with all its rays
+       of this kind. */
     uint64_t records;
-    uint64_t stack_sum, depth_sum; /* over records: means are these over `records` */
-    uint32_t max_inner_nodes, max_leaves, max_instances, max_triangles; /* in one record */
+    uint64_t stack_sum, depth_sum; /* sums over records; divided by `records` they are means */
+    uint32_t max_inner_nodes, max_leaves, max_instances, max_triangles; /* largest in one record */
 } whit_cost;
 
 typedef enum whit_view {
-    WHIT_VIEW_DEPTH = 0, /* deepest level of the trees that was looked at */
+    WHIT_VIEW_DEPTH = 0, /* deepest level of the trees that was visited */
     WHIT_VIEW_VISITS,    /* nodes opened: inner nodes, leaves, instances */
     WHIT_VIEW_BOXES,     /* box tests */
     WHIT_VIEW_TRIS,      /* triangle tests */
-    WHIT_VIEW_STACK,     /* most refs on the node stack */
+    WHIT_VIEW_STACK,     /* most entries on the node stack */
 } whit_view;
-/* One number a pixel, as floats of one channel: what the rays of `kind` of its first sample cost
-   (WHIT_RAY_KINDS: of all kinds). WHIT_ERROR_USAGE without params.count, or where nothing was
-   rendered. */
+/* One float per pixel: the cost of the rays of `kind` of its first sample (WHIT_RAY_KINDS: of all
+   kinds). WHIT_ERROR_USAGE without params.count, or where nothing was rendered. */
 WHIT_CHECK whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view,
                                                 whit_ray_kind kind, whit_image **out);
 
-/* What a stage of the kernels took. Time stamps are around the work of one tile in eight: `ms` is
-   that of all `rays`, by what one took there. */
+/* The time of one stage of the kernels. Only one tile in eight is timed: `ms` is extrapolated to
+   all `rays` from the mean time per ray in these tiles. */
 typedef struct whit_stage {
     char name[24];
-    uint64_t rays; /* hits where they are shaded, sums where they are added up */
+    uint64_t rays; /* items that the stage worked on: rays; hits in shading stages, sums in the
+                      stage that adds them up */
     double ms;     /* < 0: not measured */
 } whit_stage;
 #define WHIT_STAGES 14
 
-/* How many of the hits that a shading kernel worked on, in those tiles, wear one material. This is
-   the material's share of the kernel's time, not its price: a hit of one material may take longer
-   than a hit of another. */
+/* The share of hits with one material among those that a shading kernel worked on, in the timed
+   tiles. It stands for the material's share of the kernel's time, which is not exact: a hit of one
+   material may take longer than a hit of another. */
 typedef struct whit_share {
-    uint32_t stage;    /* of whit_stats.stages */
-    uint32_t material; /* of the scene */
+    uint32_t stage;    /* index into whit_stats.stages */
+    uint32_t material; /* index of the material in the scene */
     double share;      /* 0..1 */
 } whit_share;
 #define WHIT_SHARES 24
 
-/* Pixels are counted by their samples: 1, up to 4, up to 16, ... up to WHIT_SAMPLES_MAX. */
+/* Pixels are counted by number of samples, in classes: 1, up to 4, up to 16, ... up to
+   WHIT_SAMPLES_MAX. */
 enum { WHIT_SAMPLE_LEVELS = 7 };
 
 typedef struct whit_stats {
-    double upload_ms, compile_ms, render_ms, render_device_ms; /* device: < 0 when not measured */
+    double upload_ms, compile_ms, render_ms, render_device_ms; /* render_device_ms < 0: not
+                                                                  measured */
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
-    uint64_t rays_by_functions; /* that functions of params.shader traced, of all kinds */
-    double mrays_per_s;         /* all rays over render_ms */
+    uint64_t rays_by_functions; /* rays of all kinds that functions of params.shader traced
+                                   themselves */
+    double mrays_per_s;         /* millions of rays per second: all rays divided by render_ms */
     uint64_t device_bytes;
-    /* Rays that were not traced, and the largest sum of their weights in one pixel: depth, for
-       params.depth; bailout, for params.bailout. */
+    /* Rays that were not traced because of params.depth and of params.bailout, and the largest sum
+       of their weights in one pixel. */
     uint64_t rays_cut_depth, rays_cut_bailout;
     double weight_cut_depth, weight_cut_bailout;
-    /* No pixel channel is off by more than this for rays and shadow rays that bailout leaves out; <
-       0: not known. */
+    /* Upper bound of the error of any pixel channel due to rays and shadow rays that bailout left
+       out; < 0: not known. */
     double bailout_bound;
     uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS];
     uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
-    uint32_t kernels_beside; /* of these kernels, translated to machine code by a second device */
+    uint32_t kernels_beside; /* how many of these kernels a second device translated to machine code
+                                in parallel */
     bool general;            /* drawn by the general kernel: see params.compile_async */
     uint32_t dispatches, tiles, tile_size;
-    uint32_t deferred;        /* exact numerics: steps of pixels' rays that took more than floats */
-    whit_load_path load_path; /* the one taken: not WHIT_LOAD_AUTO */
-    bool packets;             /* camera rays walked together */
+    uint32_t deferred;        /* WHIT_NUMERICS_EXACT: number of traversals that floats left open and
+                                 that were finished in integers */
+    whit_load_path load_path; /* the path that was used, never WHIT_LOAD_AUTO */
+    bool packets;             /* camera rays were traced in packets */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */
-    whit_stage stages[WHIT_STAGES];  /* those that had rays; the others have none */
+    whit_stage stages[WHIT_STAGES];  /* `rays` is 0 for stages that were not used */
     whit_share shares[WHIT_SHARES];  /* largest first; the rest is left out */
     uint32_t share_count;
 } whit_stats;
@@ -321,20 +338,22 @@ static inline uint64_t whit_stats_rays(const whit_stats *stats)
            stats->rays_refracted + stats->rays_by_functions;
 }
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
-/* Adds what one more picture took to what others took: sums, of weights and bounds the largest; of
-   tiles and memory those of the last. Shares of materials, upload and compilation stay as they
-   are. */
+/* Adds the statistics of one more picture to those of others: counts and times are summed, weights
+   and bounds are maxima, tile_size and device_bytes are those of the picture added. Shares of
+   materials, upload and compilation of `to` stay as they are. */
 void whit_stats_add(const whit_stats *from, whit_stats *to);
 
 /* ---- Rays ---- */
 
-/* Directions need not be unit; t counts in their lengths. Hits with t_min <= t <= t_max. */
+/* Directions need not have unit length; t is measured in lengths of `dir`. Hits have t_min <= t <=
+   t_max. */
 typedef struct whit_ray {
     float origin[3], t_min, dir[3], t_max;
 } whit_ray;
-/* `u`, `v` weigh the second and third vertex; ng is (v1 - v0) x (v2 - v0) in world space, as long
-   as it comes. Of a sphere u and v are its normal in object space on the unit square (octahedral,
-   +y in the middle), and ng is that normal by the inverse transpose. */
+/* Triangles: `u`, `v` are the barycentric weights of the second and third vertex; ng is (v1 - v0) x
+   (v2 - v0) in world space, not normalized. Spheres: u and v are the normal in object space, mapped
+   to the unit square (octahedral, +y in the middle), and ng is this normal transformed by the
+   inverse transpose. */
 typedef struct whit_hit {
     float t; /* infinity: miss */
     float u, v;
@@ -348,15 +367,15 @@ typedef enum whit_trace_on {
     WHIT_TRACE_CPU_BRUTE, /* the twin without trees */
 } whit_trace_on;
 
-/* `cost`: what all rays together cost, or NULL (on the device it needs params.count).
-   Closest hit, or with `any` any hit (then only `primitive` != WHIT_NONE means something). Rays
-   that are not finite miss. Cut-outs count as solid. WHIT_ERROR_STATUS where the hits are not to be
-   trusted, WHIT_ERROR_USAGE for what the renderer was not made for, WHIT_ERROR_CANCELLED;
-   WHIT_ERROR_DEVICE on the device. */
+/* Finds the closest hit of each ray, or with `any` any hit (then only `primitive` != WHIT_NONE has
+   a meaning). Rays that are not finite miss. Cut-outs count as solid. `cost`: gets the cost of all
+   rays together, or NULL (on the device it needs params.count). WHIT_ERROR_STATUS where the hits
+   cannot be trusted, WHIT_ERROR_USAGE for what the renderer was not made for (no device, `count`
+   false, more than trace_rays), WHIT_ERROR_CANCELLED; WHIT_ERROR_DEVICE on the device. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits, whit_cost *cost);
-/* Device time of the traversals of the last whit_trace on the device, without transfers; < 0: not
-   measured. */
+/* Device time in ms of the traversals of the last whit_trace on the device, without transfers; < 0:
+   not measured. */
 double whit_trace_device_ms(const whit_renderer *renderer);
 
 #ifdef __cplusplus

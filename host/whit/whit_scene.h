@@ -10,63 +10,69 @@ extern "C" {
 
 /* Which axis of a model points up. */
 typedef enum whit_up {
-    WHIT_UP_Y = 0, /* numbers stay as the file has them, or as its format turns them */
+    WHIT_UP_Y = 0, /* coordinates stay as the file or its format defines them */
     WHIT_UP_X,
     WHIT_UP_Z,
     WHIT_UP_MINUS_X,
     WHIT_UP_MINUS_Y,
     WHIT_UP_MINUS_Z,
-    WHIT_UP_AUTO, /* y; of OBJ, PLY and STL, which do not say, by their shape */
+    WHIT_UP_AUTO, /* y; for OBJ, PLY and STL, which do not define it, guessed from the shape of the
+                     model */
 } whit_up;
 
 /* What lights a scene. */
 typedef enum whit_lights {
-    WHIT_LIGHTS_AUTO = 0, /* the file's; whit's where they light nothing of what is seen */
-    WHIT_LIGHTS_FILE,     /* the file's, emissive surfaces among them, and no other */
-    WHIT_LIGHTS_NONE,     /* no light but the ambient one */
-    WHIT_LIGHTS_KEY,      /* whit's in place of the file's */
+    WHIT_LIGHTS_AUTO = 0, /* the file's lights; lights made by whit where those light nothing that
+                             is seen */
+    WHIT_LIGHTS_FILE,     /* only the file's lights and emissive surfaces */
+    WHIT_LIGHTS_NONE,     /* only ambient light */
+    WHIT_LIGHTS_KEY,      /* lights made by whit in place of the file's */
 } whit_lights;
 
 typedef struct whit_load_params {
-    whit_up up; /* of a model; scene files say how they place theirs */
+    whit_up up; /* for models; scene files define it for theirs */
     whit_lights lights;
-    /* What rays see that meet nothing, in place of what the file says: a picture all around, as of
-       scene files (NULL: none), or one colour of sRGB. */
+    /* Replaces the file's environment, which rays see that hit nothing: the path of a panorama
+       picture, as in scene files (NULL: none), or one sRGB colour (where has_background). */
     const char *environment;
     bool has_background;
     uint8_t background[3];
     /* For each importer and decoder of pictures that is not whit's own: */
-    double import_limit_s; /* of the processor; 0: 8, and 4 for each 10 MB, at most 60 */
-    double time_limit_s;   /* by the clock; 0: ten times that */
-    bool require_sandbox;  /* WHIT_ERROR_USAGE where these cannot be locked in; else a warning */
-    /* Memory for the scene on host and device together, estimated before it is allocated: taking
-       more is an error. A foreign importer gets half of it. 0: half of what the machine has. */
+    double import_limit_s; /* processor time; 0: 8, plus 4 per 10 MB, at most 60 */
+    double time_limit_s;   /* wall clock; 0: ten times import_limit_s */
+    bool require_sandbox;  /* WHIT_ERROR_USAGE where importers cannot be run in a sandbox; false:
+                              only a warning */
+    /* Limit on the memory for the scene on host and device together, estimated before it is
+       allocated; exceeding it is an error. A foreign importer gets half of it. 0: half of the
+       machine's memory. */
     uint64_t memory_limit_bytes;
-    uint32_t texture_limit;      /* longest side, larger ones are halved; 0: 4096 */
+    uint32_t texture_limit;      /* longest side in texels, larger textures are halved until they
+                                    fit; 0: 4096 */
     const volatile bool *cancel; /* polled; NULL: never */
-    /* A scene may name files below its own folder, links resolved, and below these: others are
-       refused with a note, or an error where the scene cannot do without. */
+    /* A scene may refer to files below its own folder (with links resolved) and below these
+       folders. Other files are refused with a note, or with an error where the scene cannot be
+       loaded without them. */
     const char *const *allowed_folders;
     uint32_t allowed_count;
     whit_refused *refused; /* filled in, on failure too; NULL: not wanted */
 } whit_load_params;
 
 /* .json scene files and .obj .gltf .glb .ply .stl .fbx .dae .3mf .off models. `-` is standard
-   input, of at most 256 MiB: it is read once, and kept for further calls; its first bytes tell what
-   it is, and files that it names are found in `allowed_folders` alone. WHIT_ERROR_INPUT for a file
-   that is missing, damaged or refused, or takes more memory than params allow; WHIT_ERROR_USAGE
-   where `require_sandbox` cannot be kept; WHIT_ERROR_CANCELLED. */
+   input, of at most 256 MiB: it is read once and kept for further calls. Its first bytes tell its
+   format; files that it refers to are searched only in `allowed_folders`. WHIT_ERROR_INPUT for a
+   file that is missing, damaged or refused, or takes more memory than params allow;
+   WHIT_ERROR_USAGE where `require_sandbox` is set and there is no sandbox; WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_scene **out);
-/* A small scene of whit's own, with no file behind it, that has a ray of every kind.
+/* A small built-in scene, without a file, whose picture has rays of every kind.
    WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_scene_small(const whit_log *log, whit_scene **out);
 void whit_scene_destroy(whit_scene *scene);
 /* Frees the texels that the scene holds on the host, for programs that make no further renderer
-   from it: making one is WHIT_ERROR_USAGE afterwards. Renderers made before are not touched. */
+   from it: making one afterwards is WHIT_ERROR_USAGE. Existing renderers are not affected. */
 void whit_scene_drop_pictures(whit_scene *scene);
 
-/* What rays see that meet nothing. */
+/* The environment, which rays see that hit nothing. */
 typedef enum whit_environment_kind {
     WHIT_ENVIRONMENT_GRADIENT = 0,
     WHIT_ENVIRONMENT_MAP, /* a picture all around */
@@ -77,29 +83,32 @@ const char *whit_environment_kind_name(whit_environment_kind kind);
 typedef struct whit_scene_info {
     uint32_t mesh_count, instance_count, node_count, material_count, texture_count, light_count,
         camera_count, note_count, effect_count;
-    uint64_t mesh_triangle_count; /* each mesh once */
+    uint64_t mesh_triangle_count; /* counts each mesh once */
     uint64_t triangle_count;      /* over all instances */
     uint64_t sphere_count;        /* likewise */
     uint64_t file_bytes;          /* of all files read */
     uint64_t hash;
     uint32_t channel_count; /* animated properties of nodes */
     double time_end_s;      /* 0: nothing moves */
-    bool one_tree; /* what WHIT_INSTANCES_AUTO takes it for: no mesh but a ball is there twice,
-                      nothing moves with time, objects are no farther from the origin than 256 of
-                      their longest sides, spheres are not turned, mirrored or stretched, memory is
-                      enough, and it is not one instance that is where its mesh is */
+    bool one_tree; /* whether WHIT_INSTANCES_AUTO makes a single tree. It does where no mesh but a
+                      ball is instanced twice, nothing is animated, objects are no farther from the
+                      origin than 256 times their longest side, spheres are not rotated, mirrored or
+                      scaled unevenly, memory suffices, and the scene is not just one instance
+                      without a transformation */
     double lo[3], hi[3];                 /* world bounds at time 0; lo > hi when empty */
-    double objects_lo[3], objects_hi[3]; /* the same, without a floor that is much wider than what
-                                            stands on it */
+    double objects_lo[3], objects_hi[3]; /* the bounds without a floor that is much wider than the
+                                            objects on it */
     whit_environment_kind environment;
     bool environment_made_by_whit;
-    double exposure_ev; /* half stops that suit what the first camera sees of a model; 0 where much
-                           of it is neither burnt out nor black, and of scene files */
+    double exposure_ev; /* a suitable exposure for the first camera's view of a model, in steps of
+                           half a stop; 0 for scene files, and where much of the view is neither
+                           overexposed nor black */
 } whit_scene_info;
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
 
-/* Item `index` of a kind, described; zeroed when there is no such item. Strings live as long as
-   the scene; names and notes are as the files have them, so show them by whit_text_show. */
+/* The functions whit_scene_get_* below describe item `index` of a kind; the info is zeroed when
+   there is no such item. Strings live as long as the scene; names and notes are as the files have
+   them, so show them by whit_text_show. */
 typedef struct whit_mesh_info {
     const char *name;
     uint32_t vertex_count, triangle_count, group_count, sphere_count;
@@ -128,9 +137,10 @@ typedef enum whit_light_kind {
     WHIT_LIGHT_SPOT,
     /* One sample of an emissive surface, made when a scene is loaded: a point whose intensity along
        `direction` (the surface's normal) is `color`, falling with the cosine to it; inverse-square.
-       A Lambertian surface below leaves albedo * color * cos * cos / distance^2. */
+       The radiance that leaves a Lambertian surface below is albedo * color * cos * cos /
+       distance^2. */
     WHIT_LIGHT_AREA_SAMPLE,
-    WHIT_LIGHT_RECTANGLE, /* flat emitters of radiance `color` */
+    WHIT_LIGHT_RECTANGLE, /* rectangle and triangle: flat emitters of radiance `color` */
     WHIT_LIGHT_TRIANGLE,
     WHIT_LIGHT_KINDS, /* how many there are */
 } whit_light_kind;
@@ -139,7 +149,7 @@ const char *whit_light_kind_name(whit_light_kind kind);
 typedef struct whit_light_info {
     const char *name;
     whit_light_kind kind;
-    /* World, at time 0. Of a rectangle the centre, of a triangle a corner. */
+    /* World, at time 0. `position` of a rectangle is its centre, of a triangle a corner. */
     double position[3], direction[3];
     float color[3];
     bool made_by_whit;
@@ -149,7 +159,8 @@ typedef struct whit_camera_info {
     whit_camera_kind kind;
     double eye[3], target[3], up[3]; /* world, at time 0 */
     double fov_y_degrees, height;
-    double lens_radius, focus_distance; /* world units; 0: a pinhole; 0: the target's distance */
+    double lens_radius, focus_distance; /* world units. lens_radius 0: a pinhole; focus_distance 0:
+                                           that of the target */
     bool made_by_whit;
 } whit_camera_info;
 typedef struct whit_instance_info {
@@ -174,13 +185,13 @@ void whit_scene_get_instance(const whit_scene *scene, uint32_t index, whit_insta
 void whit_scene_get_effect(const whit_scene *scene, uint32_t index, whit_effect_info *info);
 void whit_scene_get_note(const whit_scene *scene, uint32_t index, whit_note_info *info);
 
-/* Where whit looks from at a scene whose file has no camera, at time 0; WHIT_ERROR_MEMORY. */
+/* The camera that whit chooses for a scene whose file has none, at time 0. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_scene_choose_camera(const whit_scene *scene, whit_camera *camera);
 
 /* The cameras of a file, for whit_renderer_render_views: a JSON array of cameras as scene files
-   have them (docs/scenes.md), or one camera a line. Names and aspects are not read. `cameras`: one
-   block, for whit_memory_destroy. WHIT_ERROR_INPUT, logged with line and column, for what cannot be
-   read, for a camera with an animation, and for none; WHIT_ERROR_MEMORY. */
+   have them (docs/scenes.md), or one camera a line. Their names and aspect ratios are not read.
+   `cameras`: one block, for whit_memory_destroy. WHIT_ERROR_INPUT, logged with line and column, for
+   a file that cannot be read, an animated camera, and an empty list; WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_cameras_load(const char *path, const whit_log *log,
                                          whit_camera **cameras, uint32_t *count);
 

@@ -12,9 +12,9 @@
 extern "C" {
 #endif
 
-/* The caller owns what libwhit hands out. A handle is released by its own function, as
-   whit_scene_destroy; a block of infos, boxes, rays or bytes by whit_memory_destroy. All of these
-   functions take NULL. */
+/* The caller owns everything that libwhit hands out. A handle is released by its own function, such
+   as whit_scene_destroy; a block of infos, boxes, rays or bytes by whit_memory_destroy. All of
+   these functions take NULL. */
 void whit_memory_destroy(void *memory);
 
 #define WHIT_NONE           UINT32_MAX /* no primitive, no instance: a miss */
@@ -31,47 +31,52 @@ typedef struct whit_shader whit_shader;     /* functions in the place of whit's 
 typedef enum whit_camera_kind {
     WHIT_CAMERA_PERSPECTIVE = 0,
     WHIT_CAMERA_ORTHOGRAPHIC,
-    WHIT_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the width is 360
-                             degrees, the height 180 */
+    WHIT_CAMERA_PANORAMA, /* equirectangular: the middle looks at the target, the picture covers 360
+                             x 180 degrees */
 } whit_camera_kind;
 /* "perspective", "orthographic", "panorama" */
 const char *whit_camera_kind_name(whit_camera_kind kind);
 
-/* Which camera a picture is seen by. Zeroed: the first of the scene. */
+/* The camera of a picture. Zeroed: the first camera of the scene. */
 typedef struct whit_camera {
-    const char *name; /* of a camera of the scene, or its number where none has that name */
-    bool own;         /* one at `eye` in place of the scene's cameras; `name` is not read */
+    const char *name; /* of a camera of the scene, or its index as text where no camera has that
+                         name */
+    bool own;         /* true: the fields below define the camera and `name` is not read */
     whit_camera_kind kind;
     double eye[3], target[3], up[3]; /* world space */
     double fov_y_degrees;            /* PERSPECTIVE: vertical, between 0 and 180 */
     double height;                   /* ORTHOGRAPHIC: of the picture, world units; above 0 */
-    double lens_radius;              /* PERSPECTIVE: of a thin lens, world units; 0: a pinhole */
-    double focus_distance;           /* along the view, with a lens; 0: the target's */
+    double lens_radius;              /* PERSPECTIVE: radius of a thin lens, world units; 0: a
+                                        pinhole */
+    double focus_distance;           /* with a lens: distance of focus along the view direction,
+                                        world units; 0: that of the target */
 } whit_camera;
 
-/* Whether there is one tree over the triangles of all instances, each vertex placed in the world in
-   double and rounded once, in place of trees of meshes and one over their instances. */
+/* Whether a scene gets a single tree over the triangles of all instances, with each vertex
+   transformed to world space in double and rounded once, or a tree for each mesh and one over
+   instances. */
 typedef enum whit_instances {
-    WHIT_INSTANCES_AUTO = 0, /* one tree where whit_scene_info.one_tree */
-    WHIT_INSTANCES_ON,       /* instances */
-    WHIT_INSTANCES_OFF,      /* one tree */
+    WHIT_INSTANCES_AUTO = 0, /* a single tree where whit_scene_info.one_tree is true */
+    WHIT_INSTANCES_ON,       /* a tree for each mesh and one over instances */
+    WHIT_INSTANCES_OFF,      /* always a single tree */
 } whit_instances;
 
-/* Whether camera rays and the shadow rays of what they meet walk together. */
+/* Whether camera rays, and the shadow rays from their hits, are traced in packets. */
 typedef enum whit_packets {
     WHIT_PACKETS_AUTO =
-        0,           /* where that is quicker: on lavapipe, in one large tree and with enough
-                        rays to pay for kernels that take longer to make; or with
-                        whit_renderer_params.compile_async, whose kernels are for many pictures */
-    WHIT_PACKETS_ON, /* elsewhere too; see whit_stats.packets */
+        0,           /* where packets are faster: on lavapipe, in a single large tree, and with
+                        enough rays to pay for kernels that take longer to make, or with
+                        whit_renderer_params.compile_async, whose kernels draw many pictures */
+    WHIT_PACKETS_ON, /* on all devices and for all trees that can; see whit_stats.packets */
     WHIT_PACKETS_OFF,
 } whit_packets;
 
-/* How many kernels draw a picture. One for several stages and materials is sooner made, one for
-   each draws faster. */
+/* How many kernels draw a picture. One kernel for several stages and materials is compiled sooner,
+   one for each draws faster. */
 typedef enum whit_classes {
-    WHIT_CLASSES_AUTO = 0, /* by how many rays the picture has that a renderer is made for */
-    WHIT_CLASSES_ONE,      /* one for all materials, and for camera rays and later ones */
+    WHIT_CLASSES_AUTO = 0, /* by the number of rays of the picture that the renderer is created
+                              for */
+    WHIT_CLASSES_ONE,      /* one kernel for all materials, and one for rays of all generations */
     WHIT_CLASSES_MANY,
 } whit_classes;
 
