@@ -1,4 +1,5 @@
-/* A thin table-driven layer over getopt_long, so that help and parser cannot drift apart. */
+/* Parses command lines by getopt_long and prints help, both from one table of options, so that they
+   cannot drift apart. */
 #define _GNU_SOURCE
 #include "app/arguments.h"
 
@@ -12,7 +13,7 @@
 
 enum { OPTIONS_MAX = 96, ID_FIRST = 256, HELP_COLUMN = 27 };
 
-/* Behind those of a command. */
+/* Follow the options of every command. */
 static const struct setting help_options[] = {
     {"help", 'h', NULL, "print this help", .kind = SETTING_HELP},
     {"help-all", 0, NULL, "and the options for those who work on whit", .kind = SETTING_HELP},
@@ -33,8 +34,8 @@ static bool is_own(const struct cli_command *command, const struct setting *opti
     return own == option && own->name;
 }
 
-/* Whether a command that has an option of that name itself, or takes none of them, leaves it out.
- */
+/* Whether the command takes this row of the table of settings. It does not where it has an option
+   of the same name itself. */
 static bool is_taken(const struct cli_command *command, const struct setting *row)
 {
     for (const struct setting *own = command->options; own->name; ++own) {
@@ -140,7 +141,8 @@ void cli_reader_init(struct cli_reader *reader, const struct cli_command *comman
     opterr = 0;
 }
 
-/* Words of a file are quoted up to 40 bytes, those of the command line whole. */
+/* Copies a printf format so that each quoted %s prints at most 40 bytes: messages quote words of a
+   file up to 40 bytes, words of the command line whole. */
 static void limit_quotes(const char *format, char *limited, size_t bytes)
 {
     size_t used = 0;
@@ -176,7 +178,7 @@ static struct option *long_options(const struct cli_command *command,
                                    struct option table[OPTIONS_MAX], char *shorts)
 {
     const struct setting *option;
-    *shorts++ = '-'; /* arguments that are no options come in their place, as id 1 */
+    *shorts++ = '-'; /* getopt returns arguments that are no options in order, as id 1 */
     *shorts++ = ':';
     for (uint32_t i = 0; (option = cli_option_at(command, i)) && i + 1 < OPTIONS_MAX; ++i) {
         table[i] = (struct option){
@@ -197,7 +199,7 @@ static struct option *long_options(const struct cli_command *command,
     return table;
 }
 
-/* The word in argv that getopt did not understand. */
+/* Reports the word in argv that getopt did not understand. */
 static void unknown_option(struct cli_reader *reader)
 {
     if (optopt > 0 && optopt < 128 && isprint(optopt) && !find_option(reader->command, optopt)) {
@@ -282,7 +284,7 @@ static const struct setting *next(struct cli_reader *reader)
     return NULL;
 }
 
-/* Cuts the value out of a file of settings, where `why` quotes it, to 40 characters. */
+/* Shortens `value`, read from a file of settings, to 40 characters where `why` quotes it. */
 static void shorten(const char *value, char why[SETTING_WHY_BYTES])
 {
     const struct text_token token = text_token(value);
@@ -293,7 +295,8 @@ static void shorten(const char *value, char why[SETTING_WHY_BYTES])
     memcpy(why, text, sizeof text);
 }
 
-/* Recipes say what decides pixels, and name a sky, which who reads them looks after. */
+/* Whether a recipe may not set this option. Recipes hold only settings that decide pixels, and the
+   path of an environment, which repeat_read checks. */
 static bool is_left(const struct setting *option, bool is_setting)
 {
     return !is_setting || option->change == SETTING_RUN || option->of_machine ||
@@ -307,7 +310,7 @@ static void take(struct cli_reader *reader, const struct setting *option, void *
     bool is_setting = !is_own(reader->command, option);
     if (reader->left && is_left(option, is_setting)) {
         size_t used = strlen(reader->left);
-        if (is_setting) /* else it is where the picture went */
+        if (is_setting) /* an option of the command itself, such as -o, is dropped without a word */
             snprintf(reader->left + used, reader->left_bytes - used, " --%s", option->name);
         return;
     }
@@ -344,7 +347,8 @@ bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path
 
 /* ---- Words of a file ---- */
 
-/* The bytes of $'\x1b\x5b' at *from, behind its first quote, up to its last; gives their end. */
+/* Decodes the bytes of a word such as $'\x1b\x5b' into `to`. *from is behind the first quote, then
+   at the last one. Returns the end of the bytes. */
 static char *read_bytes(char **from, char *to)
 {
     unsigned byte;

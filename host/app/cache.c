@@ -13,7 +13,7 @@
 #include "cost/cost.h"
 #include "whit/whit_program.h"
 
-/* Mesa's own limit holds in each of its folders. */
+/* whit keeps at most this many folders of Mesa's cache; Mesa's size limit applies to each. */
 enum { MESA_FOLDERS = 4, MESA_IN_USE_S = 3600 };
 static const char mesa_size[] = "MESA_SHADER_CACHE_MAX_SIZE", mesa_size_text[] = "128M";
 static const char gallivm_how[] = "GALLIVM_PERF", plain[] = "nopt";
@@ -70,7 +70,8 @@ static uint64_t drivers_hash(void)
 
 /* ---- Mesa's folders ---- */
 
-/* Bytes of all files below; removes them and their folders where told to. */
+/* Sums the bytes of all files below folder `name`; `removes`: also removes the files and their
+   folders. */
 static uint64_t walk(int parent, const char *name, bool removes)
 {
     uint64_t bytes = 0;
@@ -118,7 +119,8 @@ static uint32_t count_folders(int folder, char oldest[256])
     return count;
 }
 
-/* Makes the one of these drivers and this width, or marks it as used, and removes the oldest. */
+/* Creates the folder for these drivers and this vector width, or marks it as used, and removes the
+   oldest folder where there are too many. */
 static void choose_folder(const char *folder)
 {
     char path[4200], oldest[256];

@@ -5,17 +5,18 @@
 #include <jansson.h>
 #include <stdbool.h>
 
-/* Says in the environment where Mesa keeps compiled kernels: below whit's folder, apart by driver
-   version and vector width, for code of another width crashes Mesa 25. What the environment says
-   already stays. `off`: nothing is kept, neither by libwhit nor by Mesa. Before any thread, and
-   before Vulkan. */
+/* Sets environment variables that make Mesa keep compiled kernels below whit's cache folder, in one
+   folder for each driver version and vector width, because code of another width crashes Mesa 25.
+   Variables that are set already stay. `off`: neither libwhit nor Mesa keeps anything. Call it
+   before threads are started and before Vulkan. */
 void cache_prepare(bool off);
 
-/* Before cache_prepare: lavapipe is not to optimize the machine code of kernels, which takes half
-   of the time to make them, unless the environment says otherwise. Results have the same bits. */
+/* Tells lavapipe not to optimize the machine code of kernels, which halves the time to make them,
+   unless the environment already says how. Results have the same bits. Call it before
+   cache_prepare. */
 void cache_plain_code(void);
 
-/* Where both are, how large and how large they may grow. */
+/* For both caches: the folder, the size and the size limit. */
 json_t *cache_document(void);
 void cache_print(void);
 

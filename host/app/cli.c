@@ -24,11 +24,11 @@ static volatile sig_atomic_t has_grace_timer;
 static double limit_end_ms;
 static volatile sig_atomic_t error_said;
 static bool hushed;
-static _Thread_local atomic_bool *muted; /* NULL: the thread speaks */
+static _Thread_local atomic_bool *muted; /* set while cli_mute silences this thread, else NULL */
 static const char *errors_of;
 static char first_error[1024];
 static volatile sig_atomic_t grace_ms = GRACE_MS;
-/* Read in signal handlers: the one of two that is not being written. */
+/* Signal handlers read the one of these two texts that is not being written. */
 static char written_texts[2][64] = {"nothing was written", ""};
 static const char *volatile written_text = written_texts[0];
 static const char saving_text[] = "each file is whole or as it was";
@@ -37,8 +37,8 @@ static volatile sig_atomic_t progress_drawn;
 
 /* ---- Messages ---- */
 
-/* Held by the thread that says why the program ends: SIGALRM comes in any thread and says it too.
-   A thread that holds it does not get that signal. */
+/* Held by the thread that prints why the program ends, because the handler of SIGALRM, which runs
+   in any thread, prints it too. The thread that holds the lock blocks that signal. */
 static atomic_flag reason_lock = ATOMIC_FLAG_INIT;
 static _Thread_local bool holds_reason;
 
@@ -76,7 +76,7 @@ void cli_mute(atomic_bool *said)
     muted = said;
 }
 
-/* Whether the thread says nothing, which is noted. */
+/* Whether cli_mute silences the thread; if so, notes that it had something to say. */
 static bool keeps_silent(void)
 {
     if (muted)
@@ -235,11 +235,11 @@ static void put(const char *text)
 
 void cli_put_end(const char *kind, const char *why)
 {
-    /* Waits for a thread that is saying why the program ends. Not where that is this thread, which
-       crashed while it did and holds the lock: it would wait for ever. */
+    /* Waits for a thread that is printing why the program ends, unless this thread itself crashed
+       while it printed that and still holds the lock: it would wait for ever. */
     while (!holds_reason && atomic_flag_test_and_set(&reason_lock))
         ;
-    /* Why the program ends has been said already. */
+    /* The reason was printed already. */
     if (end_said || (error_said && !interrupt_signal))
         return;
     put(kind);
@@ -258,7 +258,7 @@ __attribute__((no_sanitize_address)) void cli_leave(int code)
     _exit(code);
 }
 
-/* The work did not stop in time: it may be inside a driver or a compiler. */
+/* Ends the process: the work did not stop in time, as it may be inside a driver or a compiler. */
 static void on_alarm(int number)
 {
     (void)number;
@@ -268,7 +268,7 @@ static void on_alarm(int number)
     cli_leave(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
 }
 
-/* Whether SIGALRM will come. Safe in a signal handler. */
+/* Asks for a SIGALRM; false where there is no timer. Safe in a signal handler. */
 static bool set_timer(long milliseconds)
 {
     const struct itimerspec when = {
@@ -326,7 +326,7 @@ void cli_catch_interrupts(void)
     sigfillset(&action.sa_mask);
     sigaction(SIGALRM, &action, NULL);
     has_grace_timer = timer_create(CLOCK_MONOTONIC, &event, &grace_timer) == 0;
-    signal(SIGXFSZ, SIG_IGN); /* a file over `ulimit -f` is an error of writing it */
+    signal(SIGXFSZ, SIG_IGN); /* so that a file above `ulimit -f` is an error of its write */
     action.sa_handler = on_interrupt;
     sigaction(SIGTERM, &action, NULL);
     /* SIGINT ends the program even where it was ignored at the start, as in background jobs of
@@ -343,10 +343,11 @@ void cli_limit_time(double seconds)
     if (!(seconds > 0.0))
         return;
     limit_end_ms = whit_clock_ms() + seconds * 1e3;
-    /* Rendering stops by itself; whatever does not is ended a little later, and what keeps
-       something when it is interrupted as much later as that may take. */
+    /* Rendering stops at the limit by itself. SIGALRM ends other work a little later, and work that
+       saves its results when interrupted (cli_keep_what_is_done) later by the time it was
+       granted. */
     (void)set_timer((long)(seconds * 1050.0 + 250.0) + grace_ms - GRACE_MS);
-    if (interrupt_signal) /* The timer was the interrupt's already. */
+    if (interrupt_signal) /* The timer already ran for the interrupt. */
         (void)set_timer(grace_ms);
 }
 
@@ -369,7 +370,7 @@ bool cli_can_write(const char *path)
 {
     struct stat info;
     whit_file *file;
-    /* Opening and closing a pipe would end its reader. */
+    /* The test below opens and closes the file, which would end the reader of a pipe. */
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
         return true;
     if (whit_file_begin(path, &cli_log, &file) != WHIT_OK)
@@ -402,7 +403,8 @@ int cli_print_json(json_t *value)
         cli_error("out of memory");
         return EXIT_USAGE;
     }
-    /* Through the buffer, which keeps what cannot be written: cli_finish_stdout then learns why. */
+    /* putchar() writes through the buffer of stdout, which keeps text that cannot be written, so
+       that cli_finish_stdout learns why it failed. */
     for (const char *c = text; *c; ++c)
         putchar(*c);
     putchar('\n');
@@ -462,7 +464,7 @@ void cli_progress_update(void *user, double done)
 void cli_progress_tell(struct cli_progress *progress, double done, double seconds_left,
                        const char *what)
 {
-    progress->last_ms = 0.0; /* each is said once */
+    progress->last_ms = 0.0; /* draws at once: every step is shown */
     if (!is_time_to_draw(progress))
         return;
     draw_bar(progress, done);

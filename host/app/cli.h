@@ -22,9 +22,9 @@ enum cli_exit {
 
 /* ---- Options ---- */
 
-/* A subcommand. Its own options end with a zeroed one. Behind them come those rows of the table of
-   settings that it takes and has no own option for, --help, and --help-all where some are for
-   developers. */
+/* A subcommand. Its own options end with a zeroed one. They are followed by those rows of the table
+   of settings that it takes and does not define itself, by --help, and by --help-all where some
+   options are for developers. */
 struct cli_command {
     const char *name;
     const char *arguments;                    /* "SCENE -o OUT" */
@@ -36,7 +36,8 @@ struct cli_command {
     bool takes_two;                           /* arguments that are no options; else one */
     bool takes_many;                          /* after the first one: CLI_OTHERS_MAX */
     int (*run)(const struct cli_command *command, int argc, char **argv);
-    /* Word `index` of what an option takes beside its values; NULL: no more. May be NULL. */
+    /* Gives word `index` that an option accepts beside its values; NULL: no more words. May be
+       NULL. */
     const char *(*word)(const char *option, uint32_t index);
 };
 
@@ -46,28 +47,29 @@ void cli_error(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_warning(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
 
-/* From here on errors begin with `where`, as "FILE:LINE: NAME"; NULL: with nothing. `where` is
-   borrowed. */
+/* From this call on errors begin with `where`, as "FILE:LINE: NAME"; NULL: without a prefix.
+   `where` is borrowed. */
 void cli_errors_of(const char *where);
-/* The first error since then, without that; "" where there was none. */
+/* The first error since cli_errors_of, without the prefix; "" where there was none. */
 const char *cli_said(void);
 
-/* The log of libwhit's calls: errors and warnings to stderr. While a scene loads only errors, for
-   the scene keeps its notes. */
+/* The log of libwhit's calls: errors and warnings to stderr. cli_log_errors is for loading a scene,
+   which keeps its own warnings and notes. */
 extern const whit_log cli_log;
 extern const whit_log cli_log_errors;
-extern const whit_log cli_log_notes; /* with notes */
+extern const whit_log cli_log_notes; /* errors, warnings and notes */
 
-/* From here on this thread says nothing, and sets *said where it would have; NULL: it speaks again.
-   `said` is borrowed until then. */
+/* From this call on this thread prints no messages, and sets *said where it would have printed one.
+   `said` is borrowed until a call with NULL, which ends the silence. */
 void cli_mute(atomic_bool *said);
-/* The same for libwhit's calls that log from threads of their own, as devices do. */
+/* A log with the same effect, for calls of libwhit that log from their own threads, as devices
+   do. */
 whit_log cli_muted_log(atomic_bool *said);
 
-/* Whether errors of libwhit are kept to itself, as where something is tried that may be refused. */
+/* true: errors of libwhit are not printed, for attempts that may be refused. */
 void cli_hush(bool on);
 
-/* The exit code for a failed call; makes sure that something was said. */
+/* The exit code for a failed call; prints an error where none was printed yet. */
 int cli_exit_of(whit_result result);
 
 /* ---- Interrupts and time limits ---- */
@@ -76,43 +78,46 @@ int cli_exit_of(whit_result result);
    ends the process, with all unfinished files removed. */
 extern volatile bool cli_cancel;
 void cli_catch_interrupts(void);
-/* SIGPIPE ends the process without a word and without unfinished files. A crash for want of memory
-   or descriptors is an error, any other one stays what it is. */
+/* SIGPIPE ends the process without a word and without unfinished files. A crash caused by a lack of
+   memory or descriptors becomes an error with a message; any other crash stays a crash. */
 void cli_catch_ends(void);
 /* _exit() for signal handlers. AddressSanitizer allocates before a call that it knows not to
-   return, and waits for ever where the signal came while it did: it is not told of this one. */
+   return, and waits for ever where the signal came while it did: this wrapper is hidden from it. */
 void cli_leave(int code);
-/* For signal handlers that end the process: KIND WHY, and what was written, unless it is said. */
+/* For signal handlers that end the process: prints KIND WHY and what was written, unless the reason
+   was printed already. */
 void cli_put_end(const char *kind, const char *why);
 /* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
    was written. */
 void cli_set_written(uint32_t written, uint32_t count);
-/* For the message of interrupted work from the first file on that is saved: it cannot know how far
-   that got. */
+/* For the message of interrupted work once it saves files: the handler cannot know which files are
+   complete, so the message says that each is whole or as it was. */
 void cli_set_saving(void);
-/* Interrupted work gets this long to save what is done, before the handler ends the process. A
+/* Interrupted work gets `grace_ms` to save its results before the handler ends the process. A
    second signal ends it at once. */
 void cli_keep_what_is_done(int grace_ms);
 /* For the message of interrupted work: "12 of 40 WHAT". */
 void cli_set_kept(uint32_t done, uint32_t count, const char *what);
-/* For the message of interrupted work, and of a time limit that has passed: the command that goes
-   on with it, and a line end. It has to stay. */
+/* For the message of interrupted work, and of a time limit that has passed: the command that
+   continues the work, ended by a newline. It is borrowed for good. */
 void cli_set_next(const char *command);
-/* Ends the process with EXIT_TIME some time after `seconds`, for what does not watch the time by
-   itself. */
+/* Ends the process with EXIT_TIME a little after `seconds`, in case the work does not watch the
+   limit itself. */
 void cli_limit_time(double seconds);
-/* Time left of the limit, at least a little; 0: no limit. */
+/* Seconds left of the time limit, never quite 0; 0: no limit. */
 double cli_time_left_s(void);
 bool cli_time_over(void);
 
 /* ---- Output ---- */
 
-/* Says so and returns false when `path` cannot be written; leaves pipes and devices alone. */
+/* Prints an error and returns false where the file `path` cannot be written; pipes and devices are
+   not tested. */
 bool cli_can_write(const char *path);
-/* As whit_text_show, for names and all else that is not whit's own. Valid until the fourth call
-   from here, of one thread at a time. NULL is as "". */
+/* Escapes names and other text that whit did not write, by whit_text_show. The result is valid
+   until the fourth call after this one; only one thread may use it at a time. NULL counts as "". */
 const char *cli_shown(const char *text);
-/* Flushes standard output; a failure is an error, for `whit ... > /dev/full`. */
+/* Flushes standard output; a failed write is an error, as with `whit ... > /dev/full`. Returns the
+   exit code, else `status`. */
 int cli_finish_stdout(int status);
 /* Prints a jansson value, keys in the order they were added. Takes over the reference; NULL means
    that memory ran out. */
@@ -127,7 +132,7 @@ struct cli_progress {
 };
 void cli_progress_init(struct cli_progress *progress, bool quiet);
 void cli_progress_update(void *progress, double done); /* whit_renderer_params.progress */
-/* With what is being done, and the seconds that are left by the caller's own reckoning. */
+/* Draws the bar with the caller's own estimate of the seconds left, and `what` is being done. */
 void cli_progress_tell(struct cli_progress *progress, double done, double seconds_left,
                        const char *what);
 void cli_progress_finish(struct cli_progress *progress);

@@ -1,4 +1,5 @@
-/* Reads the tables of commands and options through cli_option_at, as --help does. */
+/* Prints options for shells, docs/cli.md and manual pages. Reads them through cli_option_at, as
+   --help does. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,7 @@ static void print_options(const struct cli_command *command)
     }
 }
 
-/* Nothing for values that are no words, such as files. */
+/* Prints the words that an option accepts; prints nothing for numbers and files. */
 static void print_values(const struct cli_command *command, const char *name)
 {
     const struct setting *option;
@@ -78,7 +79,7 @@ static bool takes_as_is(const struct cli_command *command, const struct setting 
     return false;
 }
 
-/* One row, with all commands that take the option with this very help. */
+/* Prints one row of the table, for all commands that take the option with exactly the same help. */
 static void print_row(const struct cli_command *const *commands, uint32_t count, uint32_t first,
                       const struct setting *option)
 {
@@ -121,7 +122,7 @@ int describe_table(const struct cli_command *const *commands, uint32_t count)
 
 /* ---- Manual pages ---- */
 
-/* Text that troff takes for nothing but text. */
+/* Prints text with all characters escaped that are special to troff. */
 static void put_text(FILE *to, const char *text)
 {
     for (bool begins = true; *text; begins = *text++ == '\n') {

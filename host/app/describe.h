@@ -5,14 +5,14 @@
 
 #include "app/cli.h"
 
-/* Lines of "WORD<tab>ABOUT" on standard output. `words` ends with NULL: none: commands; a command:
-   its options; a command and an option: the words that its value may be, or begin with; nothing
-   where it is a number or a file. */
+/* Prints lines of "WORD<tab>ABOUT" on standard output for what may follow `words`, which end with
+   NULL. No word: the commands; a command: its options; a command and an option: the words that its
+   value may be or begin with, and nothing for numbers and files. */
 int describe_complete(const struct cli_command *const *commands, uint32_t count,
                       const char *const *words);
 /* Prints the options of all commands as a table of Markdown, for docs/cli.md. */
 int describe_table(const struct cli_command *const *commands, uint32_t count);
-/* Writes whit.1 and a page a command, whit-COMMAND.1, into a folder that there is. */
+/* Writes whit.1 and a page for each command, whit-COMMAND.1, into an existing folder. */
 int describe_manual(const struct cli_command *const *commands, uint32_t count, const char *folder);
 
 #endif

@@ -148,8 +148,8 @@ void document_numbers(json_t *object, const char *key, const double *values, uin
     document_put(object, key, array);
 }
 
-/* Not by json_dumps: jansson 2.14 drops a key that it has no memory for, and goes on. The stream
-   remembers that. NULL: memory ran out. */
+/* Does not use json_dumps: jansson 2.14 silently drops a key that it has no memory for, while a
+   stream remembers the failure. NULL: memory ran out. */
 static char *dump_all(const json_t *value, size_t flags)
 {
     char *text = NULL;
@@ -163,7 +163,8 @@ static char *dump_all(const json_t *value, size_t flags)
     return NULL;
 }
 
-/* JSON has the characters that steer a terminal in strings alone, where an escape says the same. */
+/* Escapes characters that control a terminal. In JSON they occur only inside strings, where an
+   escape means the same. */
 static char *dump(json_t *value, size_t flags)
 {
     char *text = dump_all(value, flags | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));

@@ -1,7 +1,7 @@
-/* JSON documents. Values that JSON cannot hold become null. Text keeps all that it has: a byte that
-   is not UTF-8 is the characters `\xff` in it, a backslash before an x is `\x5c`, so that
-   putting a byte where `\x` and two digits are gives back what it was. What would steer a terminal
-   is written as JSON's escapes. When memory runs out the program ends. */
+/* JSON documents. Values that JSON cannot hold become null. Text loses nothing: a byte that is not
+   UTF-8 becomes the characters `\xff`, and a backslash before an x becomes `\x5c`, so that
+   replacing each `\x` and two digits by that byte gives back the original. Characters that control
+   a terminal are written as JSON escapes. When memory runs out the program ends. */
 #ifndef APP_DOCUMENT_H
 #define APP_DOCUMENT_H
 
@@ -13,8 +13,8 @@
 #include "whit/whit.h"
 
 json_t *document_object(void);
-/* An object with the version of whit and that of the names of keys, which begin every document.
-   From 2 on keys are added, and none is renamed or removed while the number stays. */
+/* Every document begins with the version of whit and this format number. While the number stays the
+   same, keys may be added, but none is renamed or removed. */
 enum { DOCUMENT_FORMAT = 2 };
 json_t *document_root(void);
 json_t *document_array(void);
@@ -24,7 +24,8 @@ void document_put(json_t *object, const char *key, json_t *value); /* likewise *
 void document_text(json_t *object, const char *key, const char *text); /* NULL: null */
 void document_number(json_t *object, const char *key, double value);
 void document_ms(json_t *object, const char *key, double time_ms); /* in whole microseconds */
-void document_float(json_t *object, const char *key, float value); /* shortest that reads back */
+void document_float(json_t *object, const char *key, float value); /* the shortest text that reads
+                                                                      back as the same float */
 void document_count(json_t *object, const char *key, uint64_t value);
 void document_flag(json_t *object, const char *key, bool value);
 void document_hash(json_t *object, const char *key, uint64_t value); /* 16 hex digits */
@@ -32,9 +33,10 @@ void document_floats(json_t *object, const char *key, const float *values, uint3
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
 /* Writes it to a file, indented. Takes over `value`. */
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
-/* Writes a text that is free()d; NULL: memory ran out for it. Failures were said. */
+/* Writes `text` to a file and frees it; `text` NULL: memory ran out before. Errors were printed. */
 WHIT_CHECK whit_result document_save_text(char *text, const char *path);
-/* In one line, and as what is saved; free() it. NULL: memory ran out. Takes over `value`. */
+/* The text of a document: in one line, or indented as document_save writes it; free() it. NULL:
+   memory ran out. Takes over `value`. */
 char *document_line(json_t *value);
 char *document_lines(json_t *value);
 

@@ -1,5 +1,5 @@
-/* Ends that the program has no say in: nobody reads its output, or a driver or a library crashes
-   because it got no memory. */
+/* Handles two ways in which the process is ended from outside: nobody reads its output any more
+   (SIGPIPE), or a driver or a library crashes because it got no memory. */
 #include <signal.h>
 #include <stdalign.h>
 #include <stdio.h>
@@ -11,7 +11,8 @@
 enum { STACK_BYTES = 64 << 10 };
 static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT};
 enum { CRASH_COUNT = sizeof crashes / sizeof crashes[0] };
-/* More than a library asks for at a time, and too little to go on with. */
+/* If this much memory cannot be had, a crash counts as caused by lack of memory. It is more than
+   libraries allocate at a time, and too little to continue with. */
 #define CRASH_ROOM_BYTES ((uint64_t)16 << 20)
 static struct sigaction before[CRASH_COUNT];
 
@@ -31,7 +32,8 @@ static void on_crash(int number, siginfo_t *info, void *context)
         cli_put_end("whit: error: ", lacks);
         cli_leave(EXIT_USAGE);
     }
-    /* It comes again when the handler returns, unless it was sent. */
+    /* A fault raises the signal again when the handler returns; one that was sent by kill() must be
+       raised again here. */
     for (int i = 0; i < CRASH_COUNT; ++i)
         if (crashes[i] == number)
             sigaction(number, &before[i], NULL);
@@ -41,7 +43,8 @@ static void on_crash(int number, siginfo_t *info, void *context)
 
 void cli_catch_ends(void)
 {
-    /* The first thread's own may be what cannot grow. */
+    /* Handlers run on a stack of their own, as the crash may be that the first thread's stack
+       cannot grow. */
     static alignas(max_align_t) char memory[STACK_BYTES];
     const stack_t stack = {.ss_sp = memory, .ss_size = sizeof memory};
     struct sigaction action = {.sa_sigaction = on_crash, .sa_flags = SA_ONSTACK | SA_SIGINFO};
@@ -52,5 +55,6 @@ void cli_catch_ends(void)
     action = (struct sigaction){.sa_handler = on_pipe};
     struct sigaction pipe_before;
     if (sigaction(SIGPIPE, NULL, &pipe_before) == 0 && pipe_before.sa_handler != SIG_IGN)
-        sigaction(SIGPIPE, &action, NULL); /* else it is an error of writing */
+        sigaction(SIGPIPE, &action, NULL); /* where SIGPIPE is ignored, writing to a closed pipe
+                                              gives an error instead */
 }

@@ -100,8 +100,8 @@ whit_result job_load(struct job *job)
     double limit_s = job->settings.time_limit_s, start_ms = whit_clock_ms();
     params.time_limit_s = limit_s > 0.0 && limit_s < 60.0 ? cli_time_left_s() : 0.0;
     params.cancel = &cli_cancel;
-    /* Rays, boxes and triangles are told in the file's own coordinates: `--up auto` turns nothing.
-     */
+    /* Rays, boxes and triangles are printed in the file's own coordinates, so `--up auto` must not
+       turn the model. */
     if (job->keeps_axes && !settings_given(&job->settings, "up"))
         params.up = WHIT_UP_Y;
     whit_result result =

@@ -11,47 +11,51 @@ struct job {
     whit_accel *accel;
     whit_device *device;
     whit_device_opening *opening;
-    whit_shader_compiler *compiler; /* of --shader */
+    whit_shader_compiler *compiler; /* for --shader */
     whit_shader *shader;
-    uint64_t recipe_hash;  /* of the scene, as a picture's recipe says; 0: nothing does */
-    char recipe_part[512]; /* which part of a picture it was drawn as, likewise; "": the whole */
-    bool keeps_axes;       /* `--up auto` turns no model: see job_load */
-    const whit_log *log;   /* of the device; NULL: cli_log */
-    double start_ms, load_ms, accel_ms, device_ms; /* of the device: that the program waited */
+    uint64_t recipe_hash;  /* hash of the scene in the recipe of the picture that is repeated; 0:
+                              none */
+    char recipe_part[512]; /* the PART_KEY text in that recipe: which part of a picture it is; "": a
+                              whole picture */
+    bool keeps_axes;       /* `--up auto` does not turn a model: see job_load */
+    const whit_log *log;   /* log of the device; NULL: cli_log */
+    double start_ms, load_ms, accel_ms, device_ms; /* device_ms: how long the program waited for the
+                                                      device */
 };
 
-/* With the settings that are usual for the command. */
+/* Sets the job's settings to the defaults of the command. */
 void job_init(struct job *job, const struct cli_command *command);
-/* Reads all options, checks settings against each other, and takes the first argument for the
-   scene, which need not be there where `optional`. */
+/* Reads all options, checks that settings go together, and takes the first argument as the scene;
+   `optional`: it may be missing. */
 bool job_read(struct job *job, struct cli_reader *reader, void *own, bool optional);
 /* Prepares the caches and starts the clock of --time-limit. */
 void job_start(const struct job *job);
 
-/* Starts to open the device in a thread, for job_open_device to wait for; what fails is said
-   there, and nowhere if the program ends before. */
+/* Starts to open the device in a thread, for which job_open_device waits. Errors are printed there,
+   and not at all if the program ends before. */
 void job_begin_device(struct job *job);
-/* The process that compiles shaders, which logs to `log`; NULL: nothing. */
+/* Starts the process that compiles shaders, which logs to `log`; NULL: it logs nothing. */
 WHIT_CHECK whit_result job_begin_compiler(struct job *job, const whit_log *log);
-/* Compiles the file of --shader and the stages of --stages, where there are any, by the job's
-   compiler, which begins unless it has. Before anything else is loaded: the compiler's process has
-   the memory that the program has then. */
+/* Compiles the file of --shader and the stages of --stages, if given, by the job's compiler, which
+   is started if it is not running. Call it before anything else is loaded: the compiler's process
+   is forked with the memory that the program has then. */
 WHIT_CHECK whit_result job_load_shader(struct job *job);
-/* Each step before the next one. Failures were said. */
+/* The steps of a job, to be called in this order. Errors were printed. */
 whit_result job_load(struct job *job);
-/* Fits the settings to the job's scene, which was loaded before: what job_load does behind it. */
+/* Fits the settings to the job's scene where it was loaded before; job_load does this itself. */
 WHIT_CHECK whit_result job_take_scene(struct job *job);
 whit_result job_build(struct job *job);
 whit_result job_open_device(struct job *job);
-/* Whether nobody has stopped the program, and its time limit has not passed. */
+/* WHIT_OK unless the user has stopped the program or its time limit has passed. */
 whit_result job_still_wanted(void);
-/* Prints the notes of the scene: warnings, and with `all` what was added as well. */
+/* Prints the notes of the scene: warnings, and with `all` also notes on what whit added. */
 void job_print_notes(const struct job *job, bool all);
-/* Names of the functions that a shader stands in for; gives their number. */
+/* Writes the names of the functions that a shader replaces; gives their number. */
 uint32_t job_functions(const whit_shader_info *shader, const char *names[WHIT_HOOKS]);
-/* A renderer's params for the settings, within what is left of the time limit; borrows them. */
+/* The renderer params for the job's settings, with the rest of the time limit; they borrow from the
+   job. */
 whit_renderer_params job_picture(const struct job *job);
-/* EXIT_DIFFERS when the validation layers had anything to say. */
+/* EXIT_DIFFERS where the validation layers reported anything. */
 int job_check_validation(const struct job *job);
 void job_finish(struct job *job);
 

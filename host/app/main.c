@@ -77,7 +77,8 @@ static bool has_display(void)
 #endif
 }
 
-/* model.png in the working folder, of `folder/model.glb`; false: there is such a file. */
+/* Names the picture for `folder/model.glb`: model.png in the working folder. False: this file
+   exists already. */
 static bool name_picture(const char *path, char *out, size_t bytes)
 {
     if (is_input(path))
@@ -89,8 +90,8 @@ static bool name_picture(const char *path, char *out, size_t bytes)
     return !is_file(out);
 }
 
-/* `whit FILE [options]`, or `whit -`, looks at it where there is a display, and makes a picture
-   where there is none. */
+/* Runs `whit FILE [options]` or `whit -` as `whit view` where there is a display, and as `whit
+   render` where there is none. */
 static int open_file(int argc, char **argv)
 {
     char picture[4096], render[] = "render", output[] = "-o", view[] = "view";

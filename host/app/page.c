@@ -5,7 +5,7 @@
 
 #include "app/cli.h"
 
-/* RFC 4648, behind what `to` has. */
+/* Appends base64 (RFC 4648) to `to`. */
 static void put_base64(FILE *to, const uint8_t *data, size_t size_bytes)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -34,7 +34,8 @@ void page_put_png(json_t *object, const char *key, const uint8_t *data, size_t s
     free(uri);
 }
 
-/* JSON inside of HTML: no `<` of a text may end the element. */
+/* Writes JSON into an HTML element: each `<` is escaped, as `</script>` in a text would end the
+   element. */
 static void put_report(FILE *to, const char *line)
 {
     for (; *line; ++line)

@@ -4,8 +4,8 @@
 
 #include "app/settings_json.h"
 
-/* Whether the JSON of a command tells a setting: those of heat maps (SETTING_PAINT) mean nothing
-   for pictures of colours. */
+/* Whether the JSON of a command lists a setting. Settings of heat maps (SETTING_PAINT) have no
+   meaning for pictures of colours. */
 static bool is_described(const struct setting *row, const struct settings *settings,
                          enum settings_command command)
 {
@@ -14,7 +14,7 @@ static bool is_described(const struct setting *row, const struct settings *setti
            (settings->paint != PAINT_COLOR || row->change != SETTING_PAINT);
 }
 
-/* A number where the text is one. */
+/* Adds the text as a JSON number where it is one, else as a string. */
 static void put_text(json_t *object, const char *key, const char *text)
 {
     char *end;
@@ -39,7 +39,7 @@ static void put(json_t *object, const struct setting *row, const struct settings
     } else if (row->kind == SETTING_SIZE) {
         document_count(object, "width", settings->picture.width);
         document_count(object, "height", settings->picture.height);
-    } else if (row->kind == SETTING_TEXT) { /* a camera of the name 1 is no number */
+    } else if (row->kind == SETTING_TEXT) { /* a camera named 1 stays a string */
         document_text(object, key, text[0] ? text : NULL);
     } else {
         put_text(object, key, text);
@@ -50,8 +50,8 @@ void settings_describe(const struct settings *settings, enum settings_command co
                        json_t *object)
 {
     struct settings told = *settings;
-    told.exposure_auto = false;              /* the number that it chose */
-    if (told.picture.effects_removed == 0) { /* kernels with more in them draw the same */
+    told.exposure_auto = false;              /* lists the exposure that `auto` chose as a number */
+    if (told.picture.effects_removed == 0) { /* added effects do not change the picture */
         told.picture.effects_added = 0;
         told.picture.all_effects = false;
     }

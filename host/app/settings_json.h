@@ -5,8 +5,8 @@
 #include "app/document.h"
 #include "settings/settings.h"
 
-/* Adds to an object what decides the pixels of a picture, by those rows of the table of settings
-   that a command takes. */
+/* Adds to an object the settings that decide the pixels of a picture, of those that a command
+   takes. */
 void settings_describe(const struct settings *settings, enum settings_command command,
                        json_t *object);
 

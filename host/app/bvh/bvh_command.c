@@ -122,7 +122,7 @@ static bool any_device(void)
     return usable;
 }
 
-/* A device that was not asked for may be missing. */
+/* Opens the device, which may be missing unless the user named one. */
 static whit_result open_device(struct study *study)
 {
     if (study->no_trace)

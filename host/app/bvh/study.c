@@ -16,7 +16,7 @@ whit_result study_step(struct study *study)
     return job_still_wanted();
 }
 
-/* A tree is the same whatever the number of threads that built it. */
+/* Checks that the tree is the same for every number of threads. */
 static whit_result check_same(const struct study_row *row, const whit_accel_info *info)
 {
     bool same = row->info.node_count == info->node_count &&

@@ -9,7 +9,7 @@ enum { STUDY_ROWS_MAX = 32, STUDY_THREADS_MAX = 16, STUDY_RUNS_MAX = 1000 };
 enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };
 
 struct study_row {
-    whit_accel_params trees; /* of which only what --build names is read */
+    whit_accel_params trees; /* only the fields that --build sets are read */
     char name[96];
     whit_accel *accel;
     whit_renderer *renderer; /* NULL: not traced */
@@ -33,21 +33,22 @@ struct study {
     struct cli_progress progress;
     uint32_t steps, steps_done;
     struct study_rays rays[STUDY_KINDS];
-    uint64_t compared, differing; /* hits */
+    uint64_t compared, differing; /* numbers of hits */
     bool traced;
 };
 
 /* The name of a kind: "primary". */
 const char *study_kind_name(enum study_kind kind);
-/* One of study->steps is done; an error when the time is over or the user stopped it. */
+/* Counts one of study->steps as done. An error where the time limit has passed or the user stopped
+   the program. */
 whit_result study_step(struct study *study);
 
 /* Builds every row with every number of threads, in turns (study.c). */
 whit_result study_build(struct study *study);
-/* Trees checked when asked for, and reported on. */
+/* Validates the trees where asked for, and makes their reports. */
 whit_result study_report(struct study *study);
-/* Traces the same rays through all rows, in turns, and compares their hits; EXIT_DIFFERS's result
-   is WHIT_ERROR_STATUS (study_trace.c). With a device opened. */
+/* Traces the same rays through all rows, in turns, and compares their hits; WHIT_ERROR_STATUS where
+   hits differ (study_trace.c). Needs an open device. */
 whit_result study_trace(struct study *study);
 void study_finish(struct study *study);
 

@@ -173,7 +173,7 @@ static json_t *build_document(const struct study *study, const struct study_row 
     return list;
 }
 
-/* Up to the last one that is not empty. */
+/* A list of the bins up to the last one that is not empty. */
 static json_t *bins_document(const uint64_t *bins, uint32_t count)
 {
     json_t *list = document_array();

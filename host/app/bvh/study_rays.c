@@ -30,7 +30,8 @@ static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
 /* ---- Primary ---- */
 
 struct view {
-    struct dvec3 eye, right, up, ahead; /* right and up: half the picture, at `ahead` */
+    struct dvec3 eye, right, up, ahead; /* right and up span half the picture at the distance of
+                                           `ahead` */
     bool parallel, panorama;
 };
 
@@ -59,7 +60,7 @@ static whit_ray panorama_ray(const struct view *view, double x, double y)
     return make_ray(view->eye, dir, 0.0, INFINITY);
 }
 
-/* x and y from -1 to 1, y upwards. A lens has its rays through the middle. */
+/* x and y are from -1 to 1, y upwards. Rays of a lens go through its middle. */
 static whit_ray camera_ray(const struct view *view, double x, double y)
 {
     if (view->panorama)
@@ -71,8 +72,8 @@ static whit_ray camera_ray(const struct view *view, double x, double y)
     return make_ray(view->eye, dvec3_along(view->ahead, aside, 1.0), 0.0, INFINITY);
 }
 
-/* Ray `i` goes through this pixel: line by line, or by tiles of 8x8, and in these by 4x2 pixels,
-   which is how a subgroup of 8 takes them. */
+/* The pixel of ray `i`: row by row, or by tiles of 8x8 pixels, and within a tile by 4x2 pixels, as
+   a subgroup of 8 takes them. */
 static void pixel_of(uint32_t i, uint32_t width, bool tiles, uint32_t *x, uint32_t *y)
 {
     uint32_t across = width / 8, tile = i / 64, k = i % 64;
@@ -108,8 +109,8 @@ whit_result study_primary_rays(struct study *study)
 
 /* ---- From hits ---- */
 
-/* Where rays leave again, in shares of their length or of the scene: clear of the surface that they
-   start on, whatever the unit of the scene. */
+/* Offset of secondary rays from their surface, as a share of the ray's length or of the scene's
+   size, so that it clears the surface in any unit. */
 static const double LEAVE = 1e-4;
 
 struct surface {
@@ -199,7 +200,7 @@ whit_result study_secondary_rays(struct study *study, const whit_hit *hits)
     whit_result result = alloc_rays(shadow, light_count ? primary->count : 0);
     if (result == WHIT_OK)
         result = alloc_rays(diffuse, primary->count);
-    /* As many as primary ones: hits are used again until there are. */
+    /* Makes as many secondary rays as there are primary ones, by going over the hits repeatedly. */
     for (uint32_t i = 0; result == WHIT_OK && done < primary->count; i = (i + 1) % primary->count) {
         if (hits[i].primitive == WHIT_NONE)
             continue;

@@ -5,12 +5,12 @@
 #include "app/bvh/study_rays.h"
 #include "whit/whit_program.h"
 
-/* Hits of the first row, and those to compare with them. */
+/* The hits of the first row, and those of another row to compare with them. */
 struct tracing {
     struct study *study;
     whit_hit *expected[STUDY_KINDS], *hits;
     double *rates; /* [kind][row][run] */
-    uint32_t kind; /* that trace_run traces */
+    uint32_t kind; /* the kind of rays that trace_run traces */
 };
 
 static double *rates_of(const struct tracing *tracing, uint32_t kind, uint32_t row)
@@ -82,7 +82,7 @@ static void compare(struct tracing *tracing, uint32_t row, uint32_t kind)
                   rays->count, study_kind_name((enum study_kind)kind), study->rows[0].name, first);
 }
 
-/* Each row once: warms it up, and gives the hits that are compared. */
+/* Traces each row once, to warm up and to get the hits that are compared. */
 static whit_result trace_once(struct tracing *tracing, uint32_t kind)
 {
     struct study *study = tracing->study;

@@ -6,7 +6,7 @@
 
 struct probe {
     struct job job;
-    uint32_t x, y, max_rays; /* 0: all that there is room for */
+    uint32_t x, y, max_rays; /* max_rays 0: as many as fit */
     bool has_pixel;
     const char *json_path; /* NULL: none */
     whit_probe_report *report;

@@ -40,7 +40,8 @@ static whit_light_info light_of(const struct probe *probe, uint32_t index)
     return light;
 }
 
-/* Rays that were traced, of a kind; what passes blended surfaces is none of its own. */
+/* Counts the traced rays of a kind. Rays that go straight on through a surface have the kind of
+   their parent. */
 static uint32_t count_kind(const whit_probe_report *report, whit_ray_kind kind)
 {
     uint32_t count = 0;
@@ -149,7 +150,7 @@ static void end_text(const whit_probe_ray *ray, uint32_t count, char text[TEXT_M
         snprintf(text, TEXT_MAX, "%s%s", all, name);
 }
 
-/* What the table says of a ray, column by column. */
+/* The columns of the table of rays. */
 enum { COLUMN_RAY, COLUMN_END, COLUMN_DEVICE, COLUMN_TWIN, COLUMN_EXACT, COLUMNS };
 
 static void cell_text(const struct probe *probe, const whit_probe_row *row, int column,

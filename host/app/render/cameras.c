@@ -11,7 +11,7 @@ enum { PIXELS_AT_ONCE = 1 << 22 };
 
 /* ---- Options ---- */
 
-/* What does not go with it; NULL: nothing. */
+/* An option that was given and does not go with --cameras; NULL: none. */
 static const char *other_option(const struct settings *settings,
                                 const struct render_request *request)
 {
@@ -68,12 +68,13 @@ static char *camera_line(const whit_camera *camera)
     return document_line(object);
 }
 
-/* What the files of one view are made of: the images of all that were drawn with it. */
+/* Images of all views that were drawn together, one below the other; the files of a view are cut
+   out of them. */
 struct drawn {
     whit_image *color, *ids, *distances;
 };
 
-/* Rows of the view, into a file whose name has its number. */
+/* Saves the rows of a view in the image `all` to a file whose name has the view's number. */
 static whit_result save_rows(const whit_image *all, uint32_t row, uint32_t height,
                              const char *pattern, uint32_t number, const struct recipe *recipe)
 {
@@ -81,7 +82,7 @@ static whit_result save_rows(const whit_image *all, uint32_t row, uint32_t heigh
     whit_image *image = NULL;
     char *path = frames_path(pattern, number);
     whit_result result = path ? whit_image_rows(all, row, height, &image) : WHIT_ERROR_MEMORY;
-    log.level = WHIT_LOG_ERROR; /* that some distances are infinite is no news */
+    log.level = WHIT_LOG_ERROR; /* no warning that some distances are infinite */
     if (result == WHIT_OK)
         result = whit_image_save(image, path, recipe->texts, recipe->count, &log);
     else
@@ -91,7 +92,8 @@ static whit_result save_rows(const whit_image *all, uint32_t row, uint32_t heigh
     return result;
 }
 
-/* View `number` of the file, which is picture `at` of those that were drawn. */
+/* Saves the files of view `number` of the file of cameras, which is number `at` among those drawn
+   together. */
 static whit_result save_view(const struct job *job, const struct render_request *request,
                              const struct drawn *drawn, uint32_t at, uint32_t number)
 {
@@ -134,7 +136,7 @@ static whit_result read_drawn(whit_renderer *renderer, const struct render_reque
     return result;
 }
 
-/* `count` views from `first` on. */
+/* Draws and saves `count` views from `first` on. */
 static whit_result draw_some(const struct job *job, const struct render_request *request,
                              whit_renderer *renderer, uint32_t first, uint32_t count,
                              struct sequence *sequence)

@@ -12,23 +12,23 @@ struct sequence;
 struct cameras {
     const char *file;      /* NULL: the option was not given */
     const char *distances; /* a pattern, or NULL */
-    whit_camera *all;      /* for cameras_finish */
+    whit_camera *all;      /* released by cameras_finish */
     uint32_t count;
 };
 
-/* Whether the other options go with --cameras; reads its file, and makes a sequence of
-   request->frames, a frame for each camera. */
+/* Checks that the other options go with --cameras, reads its file, and sets request->frames to one
+   frame per camera. */
 bool cameras_check(struct cli_reader *reader, const struct job *job,
                    struct render_request *request);
-/* Draws and saves all views, as many together as memory should hold. What was written before a
-   failure stays. */
+/* Draws and saves all views, as many at a time as should fit into memory. Files written before a
+   failure stay. */
 WHIT_CHECK whit_result cameras_render(const struct job *job, const struct render_request *request,
                                       whit_renderer *renderer, struct frames_progress *progress,
                                       struct sequence *sequence);
 void cameras_finish(struct cameras *cameras);
 
-/* In the recipe of a view of a camera that --camera cannot name: the camera, as a line of a file
-   for --cameras. */
+/* Key in the recipe of a view whose camera cannot be given by --camera: the camera as a line of a
+   file for --cameras. */
 #define VIEW_CAMERA_KEY "whit:camera"
 
 #endif

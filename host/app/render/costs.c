@@ -7,7 +7,7 @@ enum { FIGURES = 7 };
 static const char *const figure_names[FIGURES] = {"inner_nodes", "boxes", "leaves", "triangles",
                                                   "instances",   "stack", "depth"};
 
-/* A ray; stack and depth: of a sample of a pixel. */
+/* Means per ray; for stack and depth, means per sample of a pixel. */
 static void find_means(const whit_cost *cost, double out[FIGURES])
 {
     double rays = cost->rays ? (double)cost->rays : 1.0;
@@ -21,7 +21,7 @@ static void find_means(const whit_cost *cost, double out[FIGURES])
     out[6] = (double)cost->depth_sum / records;
 }
 
-/* In one sample of a pixel. */
+/* The largest in one sample of a pixel. */
 static void find_max(const whit_cost *cost, uint64_t out[FIGURES])
 {
     out[0] = cost->max_inner_nodes;

@@ -46,7 +46,8 @@ bool frames_read(const struct setting *setting, const char *value, void *request
     return true;
 }
 
-/* The last run of # in the name of the file, folders apart; 0: there is none. */
+/* Finds the last run of # in the name of the file, not in its folders. Gives its offset and
+ *length; *length 0: there is none. */
 static size_t find_marks(const char *pattern, size_t *length)
 {
     const char *slash = strrchr(pattern, '/');
@@ -78,7 +79,8 @@ char *frames_path(const char *pattern, uint32_t frame)
     return path;
 }
 
-/* An option whose file gets a number in its name; `file`: NULL where it was not given. */
+/* Checks that the file name of an option has # for the number; `file` NULL: the option was not
+   given. */
 static bool check_marks(struct cli_reader *reader, const struct render_request *request,
                         const char *option, const char *file, const char *ending)
 {
@@ -107,7 +109,8 @@ bool frames_check(struct cli_reader *reader, const struct job *job,
 
 /* ---- Progress ---- */
 
-/* Not before a quarter is done: first parts may be the dear ones. */
+/* Warns when a picture will take longer than its budget. Until a quarter is done the estimate
+   assumes a quarter, because the first parts may be the most expensive ones. */
 static void watch_budget(struct frames_progress *progress, double done)
 {
     double will_ms = (whit_clock_ms() - progress->bar.start_ms) / fmax(done, 0.25);
@@ -189,7 +192,7 @@ static whit_result save_with_layers(const struct job *job, const struct render_r
     return result;
 }
 
-/* `single`: the request of the frame alone. */
+/* `single`: the request with the file names of this frame. */
 static whit_result render_frame(struct job *job, const struct render_request *single,
                                 whit_renderer *renderer, uint32_t frame, struct sequence *sequence)
 {
@@ -221,8 +224,8 @@ static whit_result render_frame(struct job *job, const struct render_request *si
                                                       .save_ms = save_ms});
 }
 
-/* Draws the frame, or with --resume keeps it where it is finished, or leaves it to the process that
-   draws it: *left. */
+/* Draws the frame. With --resume a finished frame is kept, and one that another process is drawing
+   is left to it (*left). */
 static whit_result take_frame(struct job *job, const struct render_request *request,
                               whit_renderer *renderer, uint32_t frame, struct sequence *sequence,
                               bool *left)
@@ -250,8 +253,8 @@ static whit_result take_frame(struct job *job, const struct render_request *requ
     return result;
 }
 
-/* Goes over all frames, and over those that other processes draw until they are there: these may
-   have been stopped. `left`: of each frame. */
+/* Takes all frames, then goes again over those that other processes are drawing until they are
+   finished, because such a process may have been stopped. `left`: room for a flag per frame. */
 static whit_result take_frames(struct job *job, const struct render_request *request,
                                whit_renderer *renderer, struct frames_progress *progress,
                                struct sequence *sequence, bool *left)
@@ -265,7 +268,8 @@ static whit_result take_frames(struct job *job, const struct render_request *req
             if (!left[i])
                 continue;
             progress->done = sequence->written;
-            progress->count = count - sequence->kept; /* what was kept took no time */
+            progress->count = count - sequence->kept; /* kept frames took no time, so the estimate
+                                                         leaves them out */
             cli_set_written(sequence->written + sequence->kept, count);
             result = job_still_wanted();
             if (result == WHIT_OK)

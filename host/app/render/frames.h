@@ -26,34 +26,37 @@ struct sequence {
     struct frame_times *each;
     struct frame_times median;
     uint32_t count, capacity;
-    uint32_t written, kept; /* frames; kept: they were finished before */
-    bool left;              /* another process draws it: render_request.leaves */
+    uint32_t written, kept; /* numbers of frames; kept: finished before this run */
+    bool left;              /* another process draws the picture: render_request.leaves */
     double save_ms;
-    whit_stats stats; /* summed up; upload: before the first frame */
+    whit_stats stats; /* summed over frames; upload_ms is that before the first frame */
 };
 
 /* setting.read of --frames, into a render_request. */
 bool frames_read(const struct setting *setting, const char *value, void *request,
                  char why[SETTING_WHY_BYTES]);
-/* Whether the other options go with --frames. */
+/* Checks that the other options go with --frames. */
 bool frames_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request);
-/* `pattern` with the number in place of its last run of #, zeros in front, at least that many
-   digits. free() it; NULL: out of memory, or no #. */
+/* `pattern` with its last run of # replaced by the number, zero-padded to at least as many digits.
+   free() it; NULL: out of memory, or no #. */
 char *frames_path(const char *pattern, uint32_t frame);
 
 /* whit_renderer_params.progress of one picture or of many. */
 struct frames_progress {
     struct cli_progress bar;
-    uint32_t done, count; /* pictures; or samples of one that is refined, as far as is known */
-    uint32_t parts;       /* of these that are drawn at once; 0: 1 */
-    double budget_ms;     /* of a picture; 0: none. One that will take more is said, once */
+    uint32_t done, count; /* numbers of pictures, or of samples of a picture that is refined, where
+                             `count` is an estimate */
+    uint32_t parts;       /* how many of these are drawn at once; 0: 1 */
+    double budget_ms;     /* budget of a picture; 0: none. A note says, once, that a picture will
+                             take longer */
     bool said;
-    uint32_t line, lines; /* of several such pieces of work; lines 0: the only one */
+    uint32_t line, lines; /* the number of this piece of work, and of how many; lines 0: it is the
+                             only one */
 };
 void frames_progress_update(void *progress, double done);
 
-/* Renders and saves all frames with one renderer. What was written before a failure stays. */
+/* Renders and saves all frames with one renderer. Files written before a failure stay. */
 whit_result frames_render(struct job *job, const struct render_request *request,
                           whit_renderer *renderer, struct frames_progress *progress,
                           struct sequence *sequence);

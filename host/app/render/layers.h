@@ -1,4 +1,4 @@
-/* Functions of a shader that are kept beside the colour, as images of a picture's file. */
+/* Images of a shader's aov functions, saved as layers in the picture's file. */
 #ifndef APP_RENDER_LAYERS_H
 #define APP_RENDER_LAYERS_H
 
@@ -11,18 +11,18 @@ enum { LAYERS_MAX = 16 };
 /* Names live as long as the shader. A zeroed one has none. */
 struct layers {
     whit_image_layer items[LAYERS_MAX];
-    whit_image *images[LAYERS_MAX]; /* of the items, owned */
+    whit_image *images[LAYERS_MAX]; /* the images of the items, owned */
     uint32_t count;
 };
 
-/* All that the shader (NULL: none) has: of the picture that `renderer` has drawn, or where that is
-   NULL of `refine`. After an error there are none. */
+/* Reads the aov images of the shader (NULL: none) from `renderer`, which has drawn the picture, or
+   from `refine` where `renderer` is NULL. After an error there are none. */
 WHIT_CHECK whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
                                    const whit_refine *refine, struct layers *layers);
-bool layers_is_exr(const char *path); /* what holds layers */
+bool layers_is_exr(const char *path); /* whether the file format can hold layers */
 void layers_finish(struct layers *layers);
 
-/* Whether the shader of --aov NAME has that function; says so where it has not. */
+/* Whether the shader has the function of --aov NAME; prints an error where it does not. */
 bool layers_check(const struct job *job);
 /* Writes the image of --aov NAME, which layers_check has found: all four numbers into an .exr, the
    first three, as red, green and blue, into other files. */

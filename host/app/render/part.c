@@ -61,7 +61,7 @@ bool part_read_samples(const struct setting *setting, const char *value, void *r
     return read_share(value, &part->set, &part->sets, why);
 }
 
-/* The option that only a whole picture can have, or NULL. */
+/* An option that was given and only whole pictures can have, or NULL. */
 const char *part_not_of(const struct settings *settings, const struct render_request *request)
 {
     if (settings->picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
@@ -88,8 +88,8 @@ static bool is_power_of_2(uint32_t n)
     return n && (n & (n - 1)) == 0;
 }
 
-/* Sums of pairs are the same in parts as in one run where parts are blocks of the sequence, and so
-   are all pairs in them. */
+/* Kernels add samples in pairs. The sum over parts has the same bits as that of one run only where
+   each part is an aligned block of the sequence whose size is a power of 2. */
 static bool check_samples(struct cli_reader *reader, const struct settings *settings,
                           const struct render_request *request)
 {
@@ -310,7 +310,7 @@ whit_result part_save_beside(const char *path, const struct recipe *recipe)
     return result;
 }
 
-/* All strings of the object, in one block with the list of them. */
+/* Gives all strings of the object as a list of texts, in one block. */
 static whit_text *texts_of_object(json_t *object, uint32_t *count)
 {
     const char *key;

@@ -9,8 +9,9 @@
 struct recipe;
 struct render_request;
 
-/* Which tile of how many, and which run of the samples of how many; 1 is the first. A count of 0:
-   the option was not given, and the part has all of them. */
+/* Tile `tile` of `tiles`, and block `set` of `sets` equal blocks of the samples; both count from 1.
+   `tiles` or `sets` 0: the option was not given, and the part has the whole picture or all
+   samples. */
 struct part {
     uint32_t tile, tiles;
     uint32_t set, sets;
@@ -22,27 +23,29 @@ bool part_read_tile(const struct setting *setting, const char *value, void *requ
                     char why[SETTING_WHY_BYTES]);
 bool part_read_samples(const struct setting *setting, const char *value, void *request,
                        char why[SETTING_WHY_BYTES]);
-/* Whether the other options go with them. */
+/* Checks that the other options go with --tile and --samples-part. */
 bool part_check(struct cli_reader *reader, const struct job *job,
                 const struct render_request *request);
 /* An option that was given and is for whole pictures of one camera; NULL: none. */
 const char *part_not_of(const struct settings *settings, const struct render_request *request);
-/* Whether the functions of the job's shader do, of which a merged picture has to have all. */
+/* Checks that the functions of the job's shader go with a part: the merged picture could not have
+   all images of aovs beside its colours, nor post() of all samples. */
 bool part_check_shader(const struct job *job, const struct render_request *request);
 
-/* The rows of the part's tile: from `first` on `count` of them. */
+/* The rows of the part's tile: `count` rows from `first` on. */
 void part_rows(const struct part *part, uint32_t height, uint32_t *first, uint32_t *count);
-/* What of `params` of the whole picture the part draws. */
+/* Limits `params` of the whole picture to what the part draws. */
 void part_take(const struct part *part, whit_renderer_params *params);
-/* How messages name it, such as "tile 2/4, samples 1/16"; gives `text`. */
+/* The part's name in messages, such as "tile 2/4, samples 1/16"; gives `text`. */
 const char *part_name(const struct part *part, char text[64]);
 
-/* Makes sums of the means of the part's samples, of `samples` in all. */
+/* Turns the image's means over the part's samples into sums. `samples`: those of the whole
+   picture. */
 void part_sum(const struct part *part, uint32_t samples, whit_image *image);
 /* Colours times `factor`; alpha stays. */
 void part_scale(float factor, whit_image *image);
 
-/* What a recipe says of a part: itself, and the picture that it is of. */
+/* What a recipe says of a part: which part it is, and of which picture. */
 struct part_place {
     struct part part;
     uint32_t width, height, samples; /* of the whole picture */
@@ -53,15 +56,16 @@ struct json_t;
 struct json_t *part_document(const struct part *part, const struct settings *settings);
 /* In one line; free() it. NULL: memory ran out, which was said. */
 char *part_line(const struct part *part, const struct settings *settings);
-/* False: `line` is none of whit's. */
+/* Reads such a line. False: it was not written by whit. */
 bool part_of_line(const char *line, struct part_place *place);
 
 /* A PFM has no room for a recipe: it is kept in NAME.pfm.part beside it, with a hash of the
    picture's file. */
 bool part_is_pfm(const char *path);
 WHIT_CHECK whit_result part_save_beside(const char *path, const struct recipe *recipe);
-/* The recipe of a part, of the picture or from beside it; *texts for whit_memory_destroy.
-   WHIT_ERROR_INPUT, said: it is missing, damaged, or not that of the picture as it is. */
+/* Loads the recipe of a part, from the picture or from the file beside it; *texts is for
+   whit_memory_destroy. WHIT_ERROR_INPUT, with a message: it is missing, damaged, or belongs to
+   another version of the picture's file. */
 WHIT_CHECK whit_result part_load_texts(const char *path, const whit_load_params *params,
                                        whit_text **texts, uint32_t *count);
 

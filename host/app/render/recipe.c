@@ -7,7 +7,8 @@
 
 enum { COMMAND_BYTES = 16384 };
 
-/* `-o` names a file of the same kind, not this one: a copy under another name is the same. */
+/* The recipe's command has `-o whit.EXT` with the ending of the file, not its name, so that the
+   same picture under another name has the same bytes. */
 static char *command_line(const struct settings *settings, const char *output)
 {
     const char *dot = strrchr(output, '.');
@@ -22,7 +23,7 @@ static char *options_line(const struct settings *settings)
 {
     json_t *options = document_object();
     struct settings told = *settings;
-    told.paint = PAINT_COLOR; /* that is told beside it */
+    told.paint = PAINT_COLOR; /* recipe_add_view adds the options of heat maps */
     settings_describe(&told, IN_RENDER, options);
     return document_line(options);
 }
@@ -78,7 +79,7 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     recipe->command = command_line(settings, output);
     recipe->options = options_line(settings);
     recipe->counters = stats ? recipe_counters(stats) : NULL;
-    /* Other programs print what pictures hold, as it is. */
+    /* Other programs print the texts of pictures unescaped. */
     recipe->scene = strdup(cli_shown(settings->scene));
     recipe->name = strdup(cli_shown(recipe->device.name));
     recipe->driver = strdup(cli_shown(recipe->device.driver));

@@ -1,4 +1,4 @@
-/* What a picture says of how it was made. */
+/* The recipe: texts in a picture's file that say how it was made. */
 #ifndef APP_RENDER_RECIPE_H
 #define APP_RENDER_RECIPE_H
 
@@ -18,12 +18,12 @@ struct recipe {
     whit_device_info device;
 };
 
-/* False when memory ran out, which was said. `shader`: NULL without one. `output`: whose ending
-   says what is saved. */
+/* False when memory ran out, with a message. `shader`: NULL without one. `output`: its ending is
+   the format of the picture. */
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
                  const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
                  const char *output);
-/* Adds what a picture of costs shows; false as above. */
+/* Adds view, scale and figures of a picture of costs; false as above. */
 bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);
 /* Adds which part of a picture it is; false as above. */
@@ -31,7 +31,7 @@ bool recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings);
 /* How many rays of each kind there were, as an object. */
 json_t *recipe_rays(const whit_stats *stats);
-/* whit:counters of these numbers; free() it. NULL: memory ran out. */
+/* The text of whit:counters for these statistics; free() it. NULL: memory ran out. */
 char *recipe_counters(const whit_stats *stats);
 void recipe_finish(struct recipe *recipe);
 

@@ -59,10 +59,11 @@ struct refine_steps {
     whit_refine *refine;
     whit_refine_info now;
     whit_stats stats;      /* of all steps */
-    double ms_of_a_sample; /* of those drawn last */
+    double ms_of_a_sample; /* mean time of a sample in the last step */
 };
 
-/* Twice as many samples take as long again as those that are there, by those drawn last. */
+/* Whether the next step fits into the time limit. It doubles the samples, each of which is expected
+   to take as long as one of the last step. */
 static bool has_time(const struct refine_goal *goal, const struct refine_steps *steps)
 {
     double next_ms = steps->ms_of_a_sample * steps->now.samples;
@@ -70,8 +71,8 @@ static bool has_time(const struct refine_goal *goal, const struct refine_steps *
            steps->stats.render_ms + next_ms <= goal->limit_ms;
 }
 
-/* Also true where rays that were cut, which more samples do not bring back, leave too large an
-   error already. */
+/* Also true where the error of cut rays alone, which more samples do not reduce, is too large
+   already. */
 static bool is_done(const struct refine_goal *goal, const whit_refine_info *now)
 {
     enum { SAMPLES_TO_TELL = 4 };
@@ -80,10 +81,10 @@ static bool is_done(const struct refine_goal *goal, const whit_refine_info *now)
            (told && now->samples >= SAMPLES_TO_TELL && now->error_of_cuts > goal->error);
 }
 
-/* How many samples there may be in the end: what is done is told beside them. */
+/* Estimates the final number of samples, for the progress bar. */
 static uint32_t foresee_samples(const struct refine_goal *goal, const struct refine_steps *steps)
 {
-    const double falls = 0.6; /* by which errors fall with twice as many samples, about */
+    const double falls = 0.6; /* about the factor by which twice as many samples reduce the error */
     double doublings = 1.0;
     if (steps->now.samples == 0)
         return REFINE_SAMPLES_USUAL;
@@ -118,7 +119,8 @@ static whit_result take_step(const struct refine_goal *goal, struct refine_steps
     return WHIT_OK;
 }
 
-/* Steps leave identities of no sample, or of a part of the picture. */
+/* Draws the first sample again for the hit identities: after steps the renderer has none, or those
+   of a part of the picture. */
 static whit_result draw_first_sample(const struct job *job, whit_renderer *renderer)
 {
     whit_renderer_params params = job_picture(job);

@@ -176,10 +176,10 @@ whit_result render_create(const struct job *job, const struct render_request *re
     params.progress_user = progress;
     params.count |= request->counters;
     part_take(&request->part, &params);
-    if (refine_is_wanted(&request->refine)) /* what kernels are chosen for */
+    if (refine_is_wanted(&request->refine)) /* the number of samples for which kernels are chosen */
         params.sampling.count = REFINE_SAMPLES_USUAL;
     whit_result result = whit_renderer_create(job->device, job->accel, &params, renderer);
-    /* The renderer counts its time from its creation on. */
+    /* The renderer's time limit starts at its creation. */
     return result == WHIT_OK ? job_still_wanted() : result;
 }
 
@@ -196,7 +196,8 @@ static whit_result save_ids(whit_renderer *renderer, const char *path, const str
     return result;
 }
 
-/* File managers give names of their own, and write about the file into the PNG. */
+/* Saves a PNG whatever the name of the file and without texts: file managers choose names of their
+   own and add texts of their own. */
 static whit_result save_thumbnail(const whit_image *image, const char *path)
 {
     uint8_t *data = NULL;
@@ -251,7 +252,8 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
     return result;
 }
 
-/* Whether the picture's file has the shader's functions beside the colour, or one in its place. */
+/* Whether the picture's file holds images of the shader's aovs, beside the colour or (--aov) in its
+   place. */
 static bool keeps_layers(const struct settings *settings, const struct render_request *request)
 {
     bool beside = layers_is_exr(request->output) && !request->thumbnail;
@@ -298,7 +300,8 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     return result;
 }
 
-/* Whether another renderer is made when the picture is done. */
+/* Whether the shader expects something of the picture: then another renderer is made when the
+   picture is done. */
 static bool expects_something(const whit_shader *shader)
 {
     whit_shader_info info = {.expectation_count = 0};
@@ -307,7 +310,7 @@ static bool expects_something(const whit_shader *shader)
     return info.expectation_count > 0;
 }
 
-/* Scene and trees, and a device for them. */
+/* Makes what the job lacks: scene, trees, device. */
 static whit_result make_missing(struct job *job, const struct render_request *request)
 {
     bool loads = !job->scene, opens = !job->device;
@@ -386,7 +389,7 @@ static void say_done(const struct job *job, const struct render_request *request
                                               : "");
 }
 
-/* *color: NULL where it is the renderer's. */
+/* *color: NULL where the renderer has the colours. */
 static whit_result draw_one(struct job *job, const struct render_request *request,
                             whit_renderer *renderer, struct frames_progress *progress,
                             struct refined *refined, whit_image **color, struct layers *layers,
@@ -528,7 +531,7 @@ static bool check_choice(struct cli_reader *reader, const struct settings *setti
     return true;
 }
 
-/* Options first without the scene, which a picture may stand for. */
+/* Reads the options first and the scene after them, because a picture may be given in its place. */
 static bool read_all(struct job *job, struct cli_reader *reader, struct render_request *request,
                      int argc, char **argv)
 {

@@ -1,4 +1,4 @@
-/* What `whit render` is told, and its pieces that stand alone. */
+/* The options of `whit render`, and its steps, for other commands too. */
 #ifndef APP_RENDER_RENDER_COMMAND_H
 #define APP_RENDER_RENDER_COMMAND_H
 
@@ -14,44 +14,49 @@
 /* The options of `whit render` itself; those of the picture are in the job's settings. */
 struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
-    bool counters;            /* costs in --stats */
-    bool fresh;               /* for a choice what is kept with the scene is measured anew */
+    bool counters;            /* count costs for --stats */
+    bool fresh;               /* --fresh: measure costs anew for --budget-ms and --max-error, in
+                                 place of those kept for the scene */
     struct refine_goal refine;
     struct repeat repeat;
-    struct frames frames; /* with them `output` and `ids` are patterns */
+    struct frames frames; /* with --frames `output` and `ids` are patterns */
     struct cameras cameras;
     struct part part;
-    bool resume;        /* what is finished is kept */
-    bool many;          /* one of many pictures by one device */
-    bool keep_unread;   /* what no function of the shader reads is to be seen */
-    bool scene_stays;   /* whole, for another renderer */
+    bool resume;        /* --resume: finished files are kept */
+    bool many;          /* it is one of many pictures that one device draws */
+    bool keep_unread;   /* compile also what no function of the shader reads:
+                           whit_renderer_params.keep_unread */
+    bool scene_stays;   /* keep the scene's texels, for another renderer */
     bool leaves;        /* with `resume`: a picture that another process draws is not waited for */
     uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 
-/* From the scene to a renderer on a device; what the job has already is taken as it is, and a
-   renderer that is there, of the same kernels, becomes one of this picture. Failures were said. */
+/* Makes all that drawing needs: shader, scene, trees, device, renderer. Things that the job has
+   already are reused; an existing *renderer, which must have the same kernels, is set to this
+   picture. Errors were printed. */
 WHIT_CHECK whit_result render_prepare(struct job *job, const struct render_request *request,
                                       struct frames_progress *progress, whit_renderer **renderer);
 
-/* Reads what `whit render` is told: reader->status is < 0 where there is work to do. */
+/* Reads the command line of `whit render`. reader->status is < 0 afterwards where there is work to
+   do. */
 bool render_read(struct job *job, struct cli_reader *reader, struct render_request *request,
                  int argc, char **argv);
-/* Draws and saves what `request` says, and tells of it; gives the exit code. `sequence`: zeroed,
-   for sequence_finish. */
+/* Draws and saves what `request` asks for, and prints notes and --stats; gives the exit code.
+   `sequence`: zeroed, for sequence_finish. */
 int render_draw(struct job *job, const struct render_request *request, whit_renderer *renderer,
                 struct frames_progress *progress, struct sequence *sequence);
 
-/* Whether the job's scene has its camera, before trees are built; else says what there is. */
+/* Checks, before trees are built, that the scene has the job's camera; else prints which cameras
+   there are. */
 WHIT_CHECK whit_result render_check_camera(const struct job *job);
 
-/* A renderer of what `request` says. */
+/* Makes a renderer for `request`. */
 WHIT_CHECK whit_result render_create(const struct job *job, const struct render_request *request,
                                      struct frames_progress *progress, whit_renderer **renderer);
 
-/* Saves what `request` names of the picture just rendered. `color`: its colours
-   where they are not the renderer's, else NULL; what is drawn over is drawn into it. `layers`: the
-   shader's functions beside them, those of the renderer where `color` is NULL. */
+/* Saves the files that `request` names for the picture just rendered. `color`: its colours, or NULL
+   where the renderer has them; overlays are drawn into it. `layers`: the images of the shader's
+   aovs, which are read from the renderer where `color` is NULL. */
 whit_result render_save(const struct job *job, const struct render_request *request,
                         whit_renderer *renderer, whit_image *color, struct layers *layers,
                         const whit_stats *stats);

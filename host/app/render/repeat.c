@@ -15,13 +15,13 @@
 
 enum { WORDS_MAX = 256, COMMAND_BYTES = 16384, LEFT_BYTES = 256, SAID_BYTES = 1024 };
 
-/* A picture, and what it says. */
+/* A picture and the recipe read from it. */
 struct recipe_read {
     const char *picture;
     whit_text *texts;
     uint32_t text_count;
     char *command;         /* cut into words */
-    char left[LEFT_BYTES]; /* " --NAME --NAME": what it says and may not */
+    char left[LEFT_BYTES]; /* " --NAME --NAME": options in its recipe that recipes may not set */
 };
 
 const char *repeat_picture(const struct cli_reader *reader, const struct repeat *repeat)
@@ -111,8 +111,8 @@ static bool read_command(struct recipe_read *recipe, const char *command, struct
 
 /* ---- What it names ---- */
 
-/* NULL, or why a file that the picture names is not opened. `path`: the name, which becomes one
-   from where whit was started. */
+/* Resolves `path`, a file name in the recipe, which is relative to the picture, into one relative
+   to the working folder. Gives NULL, or the reason why the file may not be opened. */
 static const char *find_file(const char *picture, char *path, size_t path_bytes)
 {
     struct roots roots;
@@ -178,8 +178,8 @@ static uint32_t count_lines(const whit_shader_file *file)
     return lines;
 }
 
-/* Tells the user what the picture would load and compile. Its functions were read before, and are
-   not damaged. */
+/* Prints what the picture would load and compile. Its functions were unpacked before without an
+   error. */
 static void tell(const struct recipe_read *recipe, const struct settings *settings,
                  const whit_shader_file *files, uint32_t count)
 {
@@ -254,7 +254,8 @@ static bool load(struct recipe_read *recipe, const struct job *job, struct setti
     return command && read_command(recipe, command, settings);
 }
 
-/* `settings` become the job's, and the command line is read over them. */
+/* Sets the job's settings to those of the recipe, then reads the command line, which overrides
+   them. */
 static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_reader *reader,
                       void *own, int argc, char **argv)
 {
@@ -270,7 +271,8 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
     memcpy(scene, settings.scene, sizeof scene);
     job_init(job, command);
     job->settings = settings;
-    job->settings.given = 0; /* what it says and the command line says too is no quarrel */
+    job->settings.given = 0; /* no conflict where the command line repeats an option of the
+                                recipe */
     const char *hash = find_text(recipe->texts, recipe->text_count, "whit:scene_hash");
     job->recipe_hash = hash ? strtoull(hash, NULL, 16) : 0;
     const char *part = find_text(recipe->texts, recipe->text_count, PART_KEY);

@@ -6,13 +6,14 @@
 #include "app/arguments.h"
 #include "app/job.h"
 
-/* The options with which a command draws again what a picture says of itself. */
+/* The options of a command that repeat a picture by its recipe. */
 struct repeat {
     const char *picture; /* --recipe; NULL: a picture in the place of the scene */
     bool yes;            /* --yes */
 };
 
-/* Rows of the options of a command whose record `type` has a struct repeat. */
+/* The rows of these options in a command's table; `type` is its record, with a struct repeat at
+   `member`. */
 #define REPEAT_OPTIONS(type, member)                                                               \
     {"recipe", 0, "PICTURE",                                                                       \
      "what PICTURE, a .png or .exr of whit's, says of itself:\n"                                   \
@@ -24,19 +25,20 @@ struct repeat {
             SETTING_AT_FLAG(type, member.yes)                                                      \
     }
 
-/* The picture whose recipe is wanted, of what was read; NULL: none. */
+/* The picture whose recipe is to be repeated: that of --recipe, or the first argument where it is a
+   picture; NULL: none. */
 const char *repeat_picture(const struct cli_reader *reader, const struct repeat *repeat);
 
-/* Puts what the picture says into the job, and over it what the command line says, which is read
-   once more, into `own` too. Nothing that the picture names outside of its folder is taken, nor an
-   option that is no part of a picture: those that widen what files and functions may are said by
-   the user alone. Shows what is to be loaded and compiled, and asks on the terminal. False: exit
-   with reader->status; why was said. */
+/* Reads the picture's recipe into the job, then the command line again, which overrides it, also
+   into `own`. Files that the recipe names outside of the picture's folder are refused, and options
+   that do not describe a picture are skipped: only the user may widen the rights of files and
+   functions. Shows what is to be loaded and compiled, and asks on the terminal. False: exit with
+   reader->status; the reason was printed. */
 bool repeat_read(struct job *job, struct cli_reader *reader, void *own, const struct repeat *repeat,
                  int argc, char **argv);
 
 /* The text that a picture carries under `key`, which lives in *texts, for whit_memory_destroy.
-   NULL, and why was said: it cannot be read, or has none. */
+   NULL, with a message: the picture cannot be read, or has no such text. */
 const char *repeat_text(const char *picture, const whit_load_params *params, const char *key,
                         whit_text **texts);
 

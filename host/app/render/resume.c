@@ -41,7 +41,8 @@ bool resume_check(struct cli_reader *reader, const struct job *job,
 
 /* ---- What is finished ---- */
 
-/* Devices and what they counted are none of what was asked for. */
+/* Whether a text of the recipe must match. Those on the device, and its counters, were not asked
+   for by the user. */
 static bool decides(const char *key)
 {
     return strcmp(key, "whit:device") != 0 && strcmp(key, "whit:driver") != 0 &&
@@ -61,7 +62,7 @@ static bool same_recipe(const struct recipe *wanted, const whit_text *texts, uin
     return true;
 }
 
-/* What is wrong with a file is no error: it is drawn again. */
+/* A damaged file is not an error: it is drawn again. */
 static bool is_finished(const struct job *job, const char *path, const struct recipe *wanted)
 {
     const char *folders[SETTING_FOLDERS_MAX];
@@ -112,7 +113,8 @@ whit_result resume_begin(const struct job *job, const struct render_request *sin
         return WHIT_ERROR_OUTPUT;
     if (end == LOCK_OTHERS)
         return WHIT_OK;
-    /* Not before it is locked: who held the lock may just have finished it. */
+    /* Checked only after locking: the process that held the lock before may just have finished the
+       file. */
     whit_result result = find_finished(job, single, &finished);
     *state = finished ? RESUME_KEPT : RESUME_DRAW;
     if (result != WHIT_OK || finished)

@@ -10,25 +10,25 @@
 struct render_request;
 
 enum resume_state {
-    RESUME_DRAW,   /* it is this process's to draw, then resume_end */
-    RESUME_KEPT,   /* it is finished */
+    RESUME_DRAW,   /* this process draws it, then releases the lock */
+    RESUME_KEPT,   /* it is finished and kept */
     RESUME_OTHERS, /* another process draws it */
 };
 
-/* What is to become of the files that `single` names, as the job's settings say what is drawn. A
-   file is finished that decodes, and whose recipe is the one that it would get. Errors were said,
-   and nothing is locked. */
+/* Decides what to do with the files that `single` names, and locks them for RESUME_DRAW. A file is
+   finished where it decodes and its recipe equals the one that the job's settings would write.
+   After an error, which was printed, nothing is locked. */
 WHIT_CHECK whit_result resume_begin(const struct job *job, const struct render_request *single,
                                     enum resume_state *state, struct lock *lock);
-/* Whether the other options go with --resume. */
+/* Checks that the other options go with --resume. */
 bool resume_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request);
 /* Waits a moment for other processes. */
 whit_result resume_wait(void);
-/* Whether what is interrupted leaves finished files, which --resume keeps. */
+/* Whether interrupted work leaves finished files, which --resume would keep. */
 bool resume_leaves_files(const struct render_request *request);
-/* Keeps the line that goes on, for the message of interrupted work: the words of the command, which
-   has --resume already where `resumed`. */
+/* Prepares the command that continues interrupted work, for its message: the words of this command,
+   plus --resume unless `resumed`. */
 void resume_keep_line(bool resumed, int argc, char **argv);
 
 #endif

@@ -9,7 +9,7 @@ struct figures {
     whit_scene_info scene;
     whit_accel_info tree;
     whit_device_info device;
-    whit_kernel_info kernel; /* zeros where it cannot be known */
+    whit_kernel_info kernel; /* zeros where it is not known */
     const whit_stats *render;
     const struct sequence *sequence; /* or NULL */
     const struct refined *refined;   /* likewise */
@@ -288,7 +288,7 @@ static void print_times(const struct job *job, const struct figures *figures)
     print_time("total", figures->total_ms, "");
 }
 
-/* Nothing where no ray was cut. */
+/* Prints nothing where no ray was cut. */
 static void print_cut(const char *name, uint64_t count, double weight)
 {
     if (count)
@@ -320,7 +320,7 @@ static void print_rays(const struct figures *figures)
         puts("  how far off a pixel can be because of --bailout is not known for this scene");
 }
 
-/* Prints the materials that a hundredth of the stage's hits and more wear. */
+/* Prints the materials that at least a hundredth of the stage's hits have. */
 static void print_shares(const struct job *job, const struct figures *figures, uint32_t stage)
 {
     for (uint32_t i = 0; i < figures->render->share_count; ++i) {
@@ -392,7 +392,8 @@ static void print_frames(const struct sequence *sequence)
     print_frame("median", &sequence->median);
 }
 
-/* Some drivers begin with the device's name: "llvmpipe (LLVM 15)", "llvmpipe Mesa 22.3". */
+/* The driver's text without the device's name, with which some drivers begin: "llvmpipe (LLVM 15)",
+   "llvmpipe Mesa 22.3". */
 const char *stats_driver(const whit_device_info *device)
 {
     size_t word = strcspn(device->name, " ");

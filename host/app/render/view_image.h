@@ -8,14 +8,15 @@ struct json_t;
 
 /* The mean, the largest value and the scale of a picture of costs. */
 struct view_figures {
-    double mean, max, scale; /* over pixels; scale: of the heat map, used or not */
+    double mean, max, scale; /* mean and max over pixels; scale of the heat map, whether or not one
+                                is drawn */
 };
 
-/* True for files that get colours in place of numbers. */
+/* True for .png files, which get the colours of a heat map in place of numbers. */
 bool view_is_png(const char *path);
 
-/* The numbers of the picture just rendered: as a heat map with legend for a .png, as they are for
-   other files. */
+/* The cost image of the picture just rendered: as a heat map with a legend for a .png, as numbers
+   for other files. */
 WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct settings *settings,
                                   const char *output, struct view_figures *figures,
                                   whit_image **out);

@@ -9,8 +9,8 @@ int listing_print_text(const struct job *job, const whit_scene_info *info, bool 
 /* listing_output.c */
 int listing_print_json(const struct job *job, const whit_scene_info *info);
 
-/* triangles.c: all triangles of the scene at a time, into the file `path`. Failures were
-   said. */
+/* triangles.c: writes all triangles of the scene at `time_s` to the file `path`. Errors were
+   printed. */
 WHIT_CHECK whit_result triangles_write(const whit_scene *scene, double time_s, const char *path);
 
 #endif

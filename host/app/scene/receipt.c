@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* All frames of all effects take about this long, but are never fewer than give an interval. */
+/* Time to spend on the frames of all effects together, unless the fewest rounds that give a
+   confidence interval take longer. */
 static const double MEASURE_MS = 15e3;
 
 static uint32_t rounds_for(const struct receipt *receipt, uint32_t effects)
@@ -62,7 +63,7 @@ static whit_result measure(struct receipt *receipt)
     return result;
 }
 
-/* What the scene does not call for may not show. */
+/* An effect that the scene does not need must not change the picture. */
 static int check_promises(const struct receipt *receipt)
 {
     int status = EXIT_FINE;

@@ -1,4 +1,5 @@
-/* The receipt of `whit scene --effects`: what each effect costs here, and what it gives. */
+/* The report of `whit scene --effects`: what each effect costs in this scene, and how much it
+   changes the picture. */
 #ifndef APP_SCENE_RECEIPT_H
 #define APP_SCENE_RECEIPT_H
 
@@ -10,7 +11,8 @@ struct receipt {
     const struct job *job;
     struct cli_progress progress;
     whit_kernel_info kernel;
-    struct sample_median frame_ms; /* of the picture as it is, by the clock that counts */
+    struct sample_median frame_ms; /* time of the picture with the scene's own effects; by the
+                                      device's clock where it has one */
     uint32_t row_count;
     struct cost_effect rows[RECEIPT_ROWS_MAX]; /* by the index of whit_effect_name */
 };

@@ -27,7 +27,7 @@ static void print_head(const struct receipt *receipt)
 static struct sample_median cost_of(const struct cost_effect *row)
 {
     struct sample_median cost = row->price.difference[row->clock];
-    if (row->compiled) /* the picture without it is the other one */
+    if (row->compiled) /* the priced picture is the one without the effect */
         cost = (struct sample_median){.median = -cost.median,
                                       .low = -cost.high,
                                       .high = -cost.low,
@@ -57,7 +57,8 @@ static void print_price(const struct cost_effect *row)
 
 #define NOT_ASKED "; the shader does not ask for it"
 
-/* The scene calls for it, and no function of the shader's asks. */
+/* Whether the scene needs the effect, but the kernel leaves it out because no function of the
+   shader reads it. */
 static bool is_left_out(const struct receipt *receipt, const struct cost_effect *row)
 {
     whit_effect_info effect;

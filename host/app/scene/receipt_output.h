@@ -1,4 +1,4 @@
-/* The receipt as text, and as JSON. */
+/* The report of `whit scene --effects` as text and as JSON. */
 #ifndef APP_SCENE_RECEIPT_OUTPUT_H
 #define APP_SCENE_RECEIPT_OUTPUT_H
 

@@ -51,7 +51,8 @@ static int work(struct job *job, const struct scene_request *request)
     return job->settings.quiet ? EXIT_FINE : listing_print_text(job, &info, request->all);
 }
 
-/* Options of pictures, which a list of what is in the scene has no use for. */
+/* Whether an option was given that only matters for pictures, not for the list of what is in the
+   scene. */
 static bool is_for_picture(const struct settings *settings)
 {
     static const char *const names[] = {"size", "camera", "aa", "depth", "numerics", "shader"};

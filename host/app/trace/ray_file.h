@@ -13,8 +13,9 @@ struct ray_file {
     uint64_t read_count; /* so far */
 };
 
-/* Both say what is wrong by cli_error. A length that is no whole number of rays is refused here
-   where it is known, else at its end. Close it in any case. */
+/* Both functions print errors by cli_error. A length that is not a whole number of rays is refused
+   by ray_file_open where it is known, else at the end of the file. Call ray_file_close also after
+   an error. */
 WHIT_CHECK whit_result ray_file_open(const char *path, struct ray_file *file);
 /* Reads the next rays, at most `max`; *count is 0 at the end. */
 WHIT_CHECK whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t max,

@@ -6,7 +6,7 @@
 #include "app/job.h"
 #include "app/trace/ray_file.h"
 
-/* Rays in memory at a time. */
+/* Number of rays in memory at a time. */
 enum { CHUNK = 1 << 20 };
 
 static const struct setting_value values_on[] = {{"device", WHIT_TRACE_DEVICE, NULL},
@@ -43,8 +43,8 @@ static const struct setting options[] = {
     {0},
 };
 
-/* Boxes take components of a direction below 2^-126 for 0, so that what only they lead to would be
-   missed, which exact arithmetic would not (docs/numerics-method.md). */
+/* Refuses rays with a subnormal direction component (below 2^-126). Box tests take it for 0 and
+   would miss boxes that exact arithmetic hits (docs/numerics-method.md). */
 static whit_result check_exact(const struct trace *trace, uint64_t count)
 {
     for (uint64_t i = 0; i < count; ++i) {
@@ -94,7 +94,7 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
 
 static whit_result allocate(struct trace *trace)
 {
-    /* A small file needs no large blocks. */
+    /* A small file touches only the first pages of these blocks. */
     trace->rays = malloc((size_t)CHUNK * sizeof *trace->rays);
     trace->hits = malloc((size_t)CHUNK * sizeof *trace->hits);
     if (trace->rays && trace->hits)
@@ -181,7 +181,7 @@ static bool check_request(struct cli_reader *reader, const struct trace *trace)
     return false;
 }
 
-/* A renderer that draws nothing. */
+/* The renderer only traces rays, so its picture is kept small. */
 static void set_usual(struct settings *settings)
 {
     settings->picture.width = settings->picture.height = 16;
