@@ -1,4 +1,5 @@
-/* Many pictures and parts in one process: lines share scene, trees, kernels and device. */
+/* `whit batch`: draws many pictures and parts in one process, whose lines share scene, trees,
+   kernels and device. */
 #include <stdlib.h>
 
 #include "app/arguments.h"
@@ -25,14 +26,15 @@ struct batch {
     struct lines lines;
     struct line line;
     struct job job;   /* of the line drawn last, with what the next one may share */
-    bool scene_whole; /* of the job: another renderer can be made of it */
+    bool scene_whole; /* the job's scene still has its texels, so another renderer can be made from
+                         it */
     whit_renderer *renderer;
     struct frames_progress progress;
     struct batch_made made;
     whit_stats stats; /* of all lines */
     double start_ms, compile_ms, save_ms;
     uint32_t done, written, kept;
-    uint32_t lines_kept; /* of `done`: nothing of them was drawn */
+    uint32_t lines_kept; /* those of `done` that needed no drawing */
 };
 
 static const struct setting_value values_stats[] = {{"json", 1, NULL}, {0}};
@@ -59,7 +61,7 @@ static void drop(struct batch *batch)
     batch->job = (struct job){0};
 }
 
-/* The compiler's process has limits and the memory that the program had when it began. */
+/* Whether the compiler's process can be reused: it keeps the limits that it was started with. */
 static bool same_compiler(const struct settings *a, const struct settings *b)
 {
     return a->load.import_limit_s == b->load.import_limit_s &&
@@ -92,7 +94,7 @@ static void keep_shared(struct batch *batch, const struct settings *next)
         drop(batch);
 }
 
-/* `before`: what of the job was there already. */
+/* `before`: the job before the line was prepared, to see what was made for this line. */
 static void count_made(struct batch *batch, const struct job *before)
 {
     struct batch_made *made = &batch->made;
@@ -127,13 +129,15 @@ static whit_result prepare(struct batch *batch, const struct line_place *place)
     return result;
 }
 
-/* A bar over all lines: it ends with each, to say what was drawn. */
+/* Starts the progress bar over all lines anew: it ends with each line, so that a message about the
+   line can be printed. */
 static void show_progress(struct batch *batch)
 {
     struct frames_progress *progress = &batch->progress;
     cli_progress_init(&progress->bar, batch->lines.own->quiet);
     progress->bar.start_ms = batch->start_ms;
-    progress->line = batch->done - batch->lines_kept; /* what was kept took no time */
+    progress->line = batch->done - batch->lines_kept; /* kept lines took no time, so the estimate
+                                                         leaves them out */
     progress->lines = batch->lines.count - batch->lines_kept;
 }
 
@@ -169,7 +173,8 @@ static int draw_line(struct batch *batch, struct line_place *place)
     return status;
 }
 
-/* Lines that other processes draw come again until they are there: these may have been stopped. */
+/* Draws all lines, then goes again over those that other processes are drawing until they are
+   finished, because such a process may have been stopped. */
 static int draw(struct batch *batch)
 {
     int status = EXIT_FINE;

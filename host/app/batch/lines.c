@@ -13,7 +13,8 @@ enum { WORDS_MAX = 256, FILE_BYTES_MAX = 256 << 20 };
 
 /* ---- A line ---- */
 
-/* Words of the line, without `whit render` in front: argv[0] is the command. */
+/* Splits a line into words behind argv[0], the command's name; a leading `whit render` is
+   dropped. */
 static bool split(struct cli_reader *reader, char *text, char *argv[WORDS_MAX + 1])
 {
     bool whole = true;
@@ -135,7 +136,8 @@ static void sort(struct lines *lines)
         qsort(lines->places, lines->count, sizeof *lines->places, compare_places);
 }
 
-/* In place of a hash, in lines that have this one and those before it: the first line's number. */
+/* Replaces hash `group` of each line by the smallest line number among lines with the same hashes
+   up to `group`, so that groups sort by their first line in the file. */
 static void number_group(struct lines *lines, int group)
 {
     struct line_place *places = lines->places;

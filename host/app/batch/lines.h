@@ -1,4 +1,4 @@
-/* The file of `whit batch`: a picture or a part a line. */
+/* The file of `whit batch`: each line is a picture or a part of one. */
 #ifndef APP_BATCH_LINES_H
 #define APP_BATCH_LINES_H
 
@@ -12,7 +12,7 @@ enum { LINE_SCENE, LINE_KERNEL, LINE_GROUPS };
 /* A line of the text: `bytes` bytes from byte `at` on, without its end. */
 struct line_place {
     size_t at, bytes;
-    uint64_t group[LINE_GROUPS]; /* equal in lines of one LINE_* group */
+    uint64_t group[LINE_GROUPS]; /* for each LINE_* grouping, equal in lines of the same group */
     uint32_t number;
     bool left; /* it is still to be drawn */
 };
@@ -20,8 +20,8 @@ struct line_place {
 struct lines {
     const char *path;
     char *text;
-    const struct settings *own; /* of the whole command */
-    bool resume;                /* of all lines */
+    const struct settings *own; /* settings of the command itself */
+    bool resume;                /* --resume of the command, for all lines */
     struct line_place *places;  /* in the order in which they are drawn */
     uint32_t count, capacity;
     bool compile; /* a line has functions or stages that are compiled */
@@ -30,17 +30,18 @@ struct lines {
 /* A line that was read; its words are in `text`. */
 struct line {
     char where[SETTING_PATH_BYTES + 16], text[LINE_BYTES_MAX];
-    struct job job; /* settings alone */
+    struct job job; /* only its settings are used */
     struct render_request request;
 };
 
-/* Reads the file `path` and all its lines, and puts those next to each other that are of one scene,
-   and among these those of the same kernels; what comes first in the file comes first. `line`: room
-   for one. Gives the exit code; errors were said. For lines_finish in any case. */
+/* Reads and checks all lines of the file `path`, and sorts them so that lines of one scene, and
+   within it lines of the same kernels, follow each other; groups are in the order of their first
+   lines. `line`: scratch memory. Gives the exit code; errors were printed. Call lines_finish in any
+   case. */
 int lines_init(struct lines *lines, struct line *line);
-/* False: the line is not to be drawn, and why was said. */
+/* Reads a line. False: the line cannot be drawn, and the reason was printed. */
 bool line_read(struct line *line, const struct lines *lines, const struct line_place *place);
-/* Whether lines of other kernels are of the same scene. */
+/* Whether other lines have the same scene but other kernels. */
 bool lines_share_scene(const struct lines *lines, const struct line_place *place);
 void lines_finish(struct lines *lines);
 

@@ -1,4 +1,4 @@
-/* `whit bench` runs the program whit-bench in its own place. */
+/* `whit bench` replaces its process by the program whit-bench. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ static bool find_programs(char whit[2048], char bench[2200])
     return false;
 }
 
-/* Comes back where it cannot be run. */
+/* Returns only where whit-bench cannot be run. */
 static int run_bench(int argc, char **argv)
 {
     char whit[2048], bench[2200];

@@ -52,7 +52,7 @@ const struct setting bench_options[] = {
     {0},
 };
 
-/* BENCH_COUNT when there is none of that name, which was said. */
+/* BENCH_COUNT where there is no bench of that name, with a message. */
 static enum bench_which find_bench(struct cli_reader *reader)
 {
     const char *names[BENCH_COUNT];
@@ -70,7 +70,7 @@ static enum bench_which find_bench(struct cli_reader *reader)
     return BENCH_COUNT;
 }
 
-/* Misuse, and false, where the bench does not take what is given. */
+/* Refuses by cli_misuse, and gives false, where the bench does not take an option or argument. */
 static bool check_request(struct cli_reader *reader, const struct bench_request *request)
 {
     const struct bench_kind *kind = &bench_kinds[request->which];

@@ -20,7 +20,7 @@ struct bench_kind {
     const char *name, *summary;
     uint32_t width, height; /* of its pictures */
     bool has_goals;         /* rows have verdicts, which --plot draws */
-    bool takes_names;       /* of models or scenes */
+    bool takes_names;       /* takes names of models or scenes */
     bool is_single;         /* one sample, no bounces */
 };
 extern const struct bench_kind bench_kinds[BENCH_COUNT];

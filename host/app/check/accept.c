@@ -1,4 +1,4 @@
-/* Takes what was drawn into the golden. */
+/* Accepts drawn pictures into the golden. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +12,8 @@ static bool can_accept(const struct check_result *result)
            result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW;
 }
 
-/* The reason for which a case that is in the golden is to be another is kept in it. */
+/* Checks that --reason is given where a case that the golden has is to be replaced: the golden
+   keeps the reason. */
 static bool check_reason(const struct check *check)
 {
     uint32_t other = 0;
@@ -44,7 +45,7 @@ static bool put_case(struct check *check, const struct check_result *result)
     item.reason = old ? old->reason : NULL;
     if (is_new)
         item.reason = check->reason ? whit_text_show(check->reason, shown, sizeof shown) : NULL;
-    item.reason = string_copy(item.reason); /* the case that has it goes */
+    item.reason = string_copy(item.reason); /* a copy, because golden_put frees the old case */
     bool put = golden_put(&check->golden, &item) && put_parts(&check->golden, &result->found);
     free(item.reason);
     return put;

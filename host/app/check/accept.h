@@ -4,12 +4,12 @@
 
 #include "app/check/check.h"
 
-/* Takes into the golden what was found of the cases that --accept names, and saves it.
-   What cannot be accepted was said. Gives the exit code. */
+/* Puts the results of the cases that --accept names into the golden, and saves it. Prints which
+   cannot be accepted. Gives the exit code. */
 int check_accept(struct check *check);
 
-/* Takes out of the golden those cases that the suite has not, and saves it. Gives the
-   exit code. */
+/* Removes from the golden the cases that the suite does not have, and saves it. Gives the exit
+   code. */
 int check_prune(struct check *check);
 
 #endif

@@ -1,4 +1,5 @@
-/* Takes into the golden what the JSON reports of other runs, such as those of CI, say of cases. */
+/* --accept-from: reads results of cases from JSON reports of other runs, such as those of CI, to
+   accept them into the golden. */
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +12,7 @@
 
 enum { REPORT_BYTES_MAX = 256 << 20 };
 
-/* Undoes in place how document_text writes a backslash that stands before an x. */
+/* Undoes in place the `\x5c` that document_text writes for a backslash before an x. */
 static void restore_text(char *text)
 {
     char *to = text;
@@ -23,7 +24,7 @@ static void restore_text(char *text)
     *to = '\0';
 }
 
-/* The golden of one case, as its lines in a report say. */
+/* Reads the golden lines of one case in a report. */
 static bool read_lines(struct golden *found, const char *where, const char *lines)
 {
     char *text =
@@ -50,7 +51,7 @@ static struct check_result *find_result(struct check *check, const char *name)
     return NULL;
 }
 
-/* Whether two reports say the same of a case. */
+/* Whether two reports have the same golden lines of a case. */
 static bool agrees(const struct check_result *result, const struct golden *found)
 {
     char *one = golden_text(&result->found), *other = golden_text(found);
@@ -60,7 +61,7 @@ static bool agrees(const struct check_result *result, const struct golden *found
     return same;
 }
 
-/* NULL, or why what a report says is not taken. */
+/* NULL, or why the result in a report is not taken. */
 static const char *why_not(const struct check_result *result, const struct golden *found)
 {
     if (strcmp(result->item->made_by, found->cases[0].made_by) != 0)
@@ -86,7 +87,8 @@ static bool take_lines(struct check *check, struct check_result *result, const c
     return verdict_find(result, &check->old);
 }
 
-/* Cases that were refused stay what they are; what one run did not come to, another may have. */
+/* Takes a case from a report. A verdict that was refused (CHECK_UNMET and above) in one report
+   stays; for a case that one run did not draw, another report may have a result. */
 static bool take_case(struct check *check, const char *path, const json_t *item)
 {
     const char *name = json_string_value(json_object_get(item, "name"));
@@ -117,7 +119,8 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
 
 /* ---- Files ---- */
 
-/* A report without the word is of a device. */
+/* Whether the report's pictures were drawn by the same kind (device or reference). A report without
+   "on" is of a device. */
 static bool is_of_kind(const struct check *check, const char *path, const json_t *root)
 {
     const char *on = json_string_value(json_object_get(root, "on"));
@@ -163,7 +166,7 @@ static int is_report(const struct dirent *entry)
     return entry->d_name[0] != '.' && strcmp(extension, "json") == 0;
 }
 
-/* All .json files in a folder, by name. */
+/* Reads all .json files in a folder, in the order of their names. */
 static bool read_folder(struct check *check, const char *folder)
 {
     struct dirent **entries = NULL;

@@ -7,19 +7,19 @@
 
 struct base {
     struct worktree tree;
-    char *folder, *root, *path; /* of the suite, in the tree; root: NULL as below */
+    char *folder, *root, *path; /* of the suite in the worktree; root: NULL as in base_open */
     struct suite suite;
 };
 
-/* Reads the suite as `revision` has it; `root`: as of suite_read. What fails was said; base_close()
-   it either way. Before the device is opened. */
+/* Reads the suite as `revision` has it; `root`: as of suite_read. Errors were printed; call
+   base_close() in any case. Call it before the device is opened. */
 WHIT_CHECK whit_result base_open(struct base *base, const char *suite, const char *root,
                                  const char *revision);
-/* Draws the case as it was, and says how and why `drawing` is other: "214 pixels other, 96 hit
-   something else; cause: ..."; free() it, and destroy *before,
-   its colours, or NULL. `accepted`: the case of the golden, or NULL. What fails
-   was said, and *text is NULL then; also where a picture of before cannot be drawn, which is no
-   error of this run. */
+/* Draws the case as it was at the revision. *text says how and why `drawing` differs: "214 pixels
+   other, 96 hit something else; cause: ..."; free() it. *before: the colours of the old picture,
+   for the caller to destroy, or NULL. `accepted`: the case of the golden, or NULL. Errors were
+   printed, and *text is NULL then. It is also NULL where the old picture cannot be drawn, which is
+   no error of this run. */
 WHIT_CHECK whit_result base_explain(const struct base *base, struct studio *studio,
                                     const struct check_case *item,
                                     const struct golden_case *accepted,

@@ -1,4 +1,4 @@
-/* Reads a case's scene and options: the settings of `whit render` but those in refused[]. */
+/* Reads a case's scene and options: all settings of `whit render` except those in refused[]. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,11 +54,11 @@ static const struct setting refused[] = {
     {0},
 };
 
-/* Named as the command whose help lists them. */
+/* It is named after the command whose help lists the options. */
 static const struct cli_command case_command = {
     .name = "render", .arguments = "", .summary = "", .options = refused, .settings = IN_RENDER};
 
-/* Pictures are the same on every device: the setting that sees to it, where there is one. */
+/* Sets `--portable on`, so that pictures are the same on every device. */
 static bool make_portable(struct settings *settings, char why[SETTING_WHY_BYTES])
 {
     for (const struct setting *row = settings_table; row->name; ++row) {
@@ -68,7 +68,8 @@ static bool make_portable(struct settings *settings, char why[SETTING_WHY_BYTES]
     return true;
 }
 
-/* Makes of a name in the suite a path from where whit was started; false, with the reason. */
+/* Resolves a file name in the suite into a path relative to the working folder; false, with the
+   reason. */
 static bool find_file(const struct suite *suite, const char *option, char *name, size_t name_bytes,
                       struct cli_reader *reader)
 {
@@ -113,7 +114,8 @@ static void put_text(void *user, const char *part)
     fputs(part, user);
 }
 
-/* The scene and options of these settings. NULL: out of memory, or they are too long. */
+/* Writes the scene and options of these settings as words. NULL: out of memory, or they are too
+   long. */
 static char *words_of(const struct settings *settings)
 {
     char options[OPTIONS_BYTES], *text = NULL;

@@ -20,8 +20,8 @@ static bool add_change(struct cause *cause, struct cause_change change)
     return ARRAY_PUSH(cause->changes, cause->count, cause->capacity, change);
 }
 
-/* Adds the settings that differ as possible causes, but for those that stand for parts of the scene
-   and those that change no picture. */
+/* Adds the settings that differ as possible causes, except those that act through parts of the
+   scene and those that do not change the picture. */
 static bool add_settings(struct cause *cause)
 {
     bool good = true;
@@ -51,7 +51,8 @@ static const whit_part *find_part(const whit_part *parts, uint32_t count, const 
     return NULL;
 }
 
-/* A part that one side alone has is a matter of objects. */
+/* Adds the parts of the scene that differ. Parts that only one of the scenes has are not added:
+   they come and go with WHIT_PART_OBJECTS. */
 static whit_result add_parts(struct cause *cause)
 {
     whit_part *now;
@@ -85,7 +86,8 @@ static whit_result find_changes(struct cause *cause)
 
 /* ---- Pictures without it ---- */
 
-/* The settings and functions; gives whether parts go back too, which `parts` says. */
+/* Takes settings and functions in `back` back into `input`, and marks in `parts` the scene's parts
+   to take back. Gives whether there are any. */
 static bool take_back(const struct cause *cause, const bool *back, struct trial_input *input,
                       bool *parts)
 {
@@ -108,8 +110,8 @@ static bool take_back(const struct cause *cause, const bool *back, struct trial_
     return any;
 }
 
-/* Draws with some changes taken back. A mixture that cannot be made or drawn counts as another
-   picture than the old one, without a message. */
+/* Draws with some changes taken back. A mixture of old and new that cannot be made or drawn counts
+   as different from the old picture, without a message. */
 static whit_result draw(void *user, const bool *back, bool *same)
 {
     const struct cause *cause = user;
@@ -163,7 +165,7 @@ static const char *value_of(const struct setting *row, const struct settings *se
     return setting_write(row, settings, 0, text) && text[0] ? text : "none";
 }
 
-/* `mesh "ball"`, and with `how` what of it is other. */
+/* Writes a change, as `mesh "ball"`; `how`: also how it differs. */
 static void write_change(const struct cause *cause, const struct cause_change *change, bool how,
                          FILE *to)
 {

@@ -1,43 +1,43 @@
-/* Why a picture is other than it was: which parts of its input give the old bytes when they are
-   taken back. */
+/* Finds why a picture changed: which changes of its input, when they are taken back, give the old
+   bytes. */
 #ifndef APP_CHECK_CAUSE_H
 #define APP_CHECK_CAUSE_H
 
 #include "app/check/search.h"
 #include "app/check/trial.h"
 
-/* So many pictures are drawn for one cause at most. */
+/* The most pictures that are drawn to find one cause. */
 enum { CAUSE_PICTURES_MAX = 64 };
 
 enum cause_kind {
-    CAUSE_PART,      /* of the scene */
+    CAUSE_PART,      /* a part of the scene */
     CAUSE_SETTING,   /* an option */
-    CAUSE_FUNCTIONS, /* of a shader, or what they include */
+    CAUSE_FUNCTIONS, /* functions of a shader, with the files that they include */
 };
 
-/* Something that is other than it was. */
+/* A difference between the old and the new input. */
 struct cause_change {
     enum cause_kind kind;
-    uint32_t part;             /* of `parts` */
-    const struct setting *row; /* of the table of settings */
+    uint32_t part;             /* CAUSE_PART: index into cause.parts */
+    const struct setting *row; /* CAUSE_SETTING: its row in the table of settings */
 };
 
 struct cause {
-    struct trial_input before, after; /* borrowed, as is the picture that was */
+    struct trial_input before, after; /* old and new input, borrowed like `was`, the old picture */
     const struct trial *was;
-    whit_part *parts; /* of the scene before */
+    whit_part *parts; /* parts of the old scene */
     uint32_t part_count;
     struct cause_change *changes;
     uint32_t count, capacity;
     struct search search; /* over `changes` */
 };
 
-/* Finds what changed, and what of that is the cause. What fails was said; cause_finish() it either
-   way. */
+/* Finds the changes, and which of them are the cause. Errors were printed; call cause_finish() in
+   any case. */
 WHIT_CHECK whit_result cause_find(struct cause *cause, const struct trial_input *before,
                                   const struct trial *was, const struct trial_input *after);
-/* "cause: mesh "ball", vertices 2716 and 2717 moved by up to 0.0013", with what is other and not
-   seen behind it. Names are as the files have them. */
+/* "cause: mesh "ball", vertices 2716 and 2717 moved by up to 0.0013", followed by changes that do
+   not show in the picture. Names are as the files have them. */
 void cause_write(const struct cause *cause, FILE *to);
 void cause_finish(struct cause *cause);
 

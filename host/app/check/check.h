@@ -20,27 +20,27 @@ struct check {
     const char *json, *junit, *report; /* or NULL */
     struct check_names accept, only;
     bool list, prune, thumbnails, power;
-    uint32_t on;     /* enum golden_kind: what draws */
-    uint32_t mutate; /* faults that are put into the suite's scenes; 0: none */
-    uint32_t seed;   /* of them */
+    uint32_t on;     /* enum golden_kind: device or reference */
+    uint32_t mutate; /* number of faults to put into the suite's scenes; 0: none */
+    uint32_t seed;   /* seed of these faults */
 
     struct suite suite;
     char *golden_path;
-    struct golden old, golden; /* as it was read; and as it is to be saved */
-    bool *wanted;              /* of each case of the suite */
+    struct golden old, golden; /* the golden as it was read; as it will be saved */
+    bool *wanted;              /* per case of the suite: it is to be drawn */
     struct check_result *results;
     struct base past;        /* with --base */
-    whit_device_info device; /* once something was drawn */
+    whit_device_info device; /* known once something was drawn */
 };
 
 /* Whether one of the patterns is `name`; "all" stands for every name. */
 bool check_names_match(const struct check_names *names, const char *name);
 
-/* accept_from.c: fills the results of cases that --accept names with what the reports of
-   --accept-from say. False, with an error, where one is damaged, or does not fit the suite. */
+/* accept_from.c: fills the results of the cases that --accept names from the reports of
+   --accept-from. False, with an error, where a report is damaged or does not fit the suite. */
 bool check_read_reports(struct check *check);
 
-/* report.c, junit.c, page.c: what came of all cases that were run. */
+/* report.c, junit.c, page.c: reports on all cases that were run. */
 struct json_t;
 struct json_t *check_document(const struct check *check, int status);
 WHIT_CHECK whit_result check_save_junit(const struct check *check);

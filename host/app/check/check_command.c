@@ -11,8 +11,8 @@
 #include "app/document.h"
 #include "base/array.h"
 
-/* A driver that makes a kernel, which nothing stops, has this long before a run ends without the
-   reports that it was to write. */
+/* Time to stop after a signal, before the run ends without its reports: a driver that compiles a
+   kernel cannot be stopped. */
 enum { GRACE_MS = 20000 };
 
 /* ---- Options ---- */
@@ -152,7 +152,7 @@ static bool check_request(struct cli_reader *reader, struct check *check)
 
 /* ---- Which cases ---- */
 
-/* Each pattern is to stand for a case. */
+/* Checks that each pattern matches a case. */
 static bool check_patterns(const struct check *check, const struct check_names *names,
                            const char *option)
 {
@@ -200,7 +200,7 @@ static bool counts(const struct check_case *item)
     return false;
 }
 
-/* Puts what is not as it is expected to be behind the result's text. */
+/* Appends expectations that do not hold to the result's text. */
 static whit_result check_expectations(const struct drawing *drawing, struct check_result *result)
 {
     const struct check_case *item = result->item;
@@ -218,7 +218,7 @@ static whit_result check_expectations(const struct drawing *drawing, struct chec
     return WHIT_OK;
 }
 
-/* Says by --base why a picture differs, in place of what the golden knows. */
+/* With --base: says why a picture differs, in place of the differences from the golden. */
 static whit_result explain(const struct check *check, struct studio *studio,
                            const struct drawing *drawing, struct check_result *result)
 {
@@ -255,7 +255,8 @@ static whit_result find_verdict(struct check *check, struct studio *studio,
     return found;
 }
 
-/* Small pictures, where somebody is to see them; with what was, where that is not what is. */
+/* Makes small pictures for --report and --thumbnails; for a case that differs, also of the old
+   picture and the difference. */
 static whit_result make_pictures(const struct check *check, const struct drawing *drawing,
                                  struct check_result *result)
 {
@@ -292,14 +293,15 @@ static whit_result draw_case(struct check *check, struct studio *studio, uint32_
     drawing_finish(&drawing);
     result->time_ms = whit_clock_ms() - start_ms;
     result->error = drawn;
-    if (ends_all(drawn)) { /* it may be that half of it is known */
+    if (ends_all(drawn)) { /* the result may be incomplete */
         verdict_finish(result);
         *result = (struct check_result){.item = result->item, .error = drawn};
     }
     return drawn;
 }
 
-/* The same, with what fails as a verdict unless no other case can be drawn either. */
+/* As draw_case, but an error becomes a verdict unless it keeps all other cases from being drawn
+   too. */
 static whit_result run_case(struct check *check, struct studio *studio, uint32_t index)
 {
     struct check_result *result = &check->results[index];
@@ -333,7 +335,7 @@ static const char *why_undrawn(whit_result result)
                                             : whit_result_name(result);
 }
 
-/* Says of cases that a run which has failed was still to draw that nothing is known of them. */
+/* After a run that failed, marks the cases that were not drawn as CHECK_UNDRAWN. */
 static void mark_undrawn(struct check *check, whit_result result)
 {
     uint32_t wanted = 0, drawn = 0;
@@ -363,7 +365,8 @@ static whit_result run_cases(struct check *check)
             print_result(check, &check->results[i]);
     }
     lanes_end(lanes);
-    for (; i < check->suite.count; ++i) { /* where the first was cut off */
+    for (; i < check->suite.count; ++i) { /* the cases drawn by lanes, behind the one at which this
+                                             thread stopped */
         if (check->results[i].verdict != CHECK_NOT_RUN)
             print_result(check, &check->results[i]);
     }
@@ -446,8 +449,8 @@ static whit_result save_reports(const struct check *check, int status)
     return result;
 }
 
-/* Draws, or reads reports. *read: false where a report, or the suite of --base, is damaged; said.
- */
+/* Draws the cases, or reads reports. *read: false, with a message, where a report or the suite of
+   --base is damaged. */
 static whit_result find_results(struct check *check, bool *read)
 {
     *read = !check->accept_from || take_reports(check);
@@ -471,7 +474,7 @@ static int judge(struct check *check)
     return cli_finish_stdout(accepted == EXIT_FINE ? sum_up(check) : accepted);
 }
 
-/* Reports are written also where the run could not go on: with what was known by then. */
+/* Reports are also written where the run stopped early, with the results so far. */
 static int work(struct check *check)
 {
     bool read;

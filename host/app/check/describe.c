@@ -58,8 +58,8 @@ static void find_mean(const whit_image *image, double mean[3])
 
 /* ---- Parts ---- */
 
-/* Puts one thing of which the picture was made: `kind` "mesh", `name` that is the same from run to
-   run, and a hash of all that the picture depends on. */
+/* Adds a part of the picture's input: `kind` as "mesh", a `name` that is the same in every run, and
+   a hash of its content. */
 static bool put_part(struct golden *found, const struct check_case *item, const char *kind,
                      const char *name, uint64_t content)
 {

@@ -4,13 +4,13 @@
 
 #include "app/check/draw.h"
 
-/* Hashes of colours, or whatever is painted in floats, and of hit identities. Devices give NaN any
-   sign and any bits: it counts as one value. */
+/* Hashes of an image of floats (colours, costs) and of hit identities. All NaN count as one value,
+   because their sign and bits depend on the device. */
 uint64_t drawing_hash_floats(const whit_image *image);
 uint64_t drawing_hash_ids(const whit_image *image);
 
-/* Makes the golden of one drawing; its name is the case's. *found gets the keys of parts too, as
-   the parts of a golden with that one case. WHIT_ERROR_MEMORY, said. */
+/* Makes a golden with one case, named like `item`, from a drawing, with its parts.
+   WHIT_ERROR_MEMORY, with a message. */
 WHIT_CHECK whit_result drawing_describe(const struct drawing *drawing,
                                         const struct check_case *item, struct golden *found);
 

@@ -36,7 +36,7 @@ whit_result studio_open(struct studio *studio, enum golden_kind kind, const stru
     whit_result result = WHIT_OK;
     if (kind == GOLDEN_OF_REFERENCE)
         return WHIT_OK;
-    /* The compiler's process has the memory that this one has now. */
+    /* The compiler's process is forked with the memory that this one has now. */
     if (any_compiles(studio))
         result = job_begin_compiler(&studio->job, log);
     if (result == WHIT_OK)
@@ -73,7 +73,7 @@ static bool is_needed(const struct studio *studio, const struct settings *settin
     return false;
 }
 
-/* Frees scenes that neither case `from` nor one that comes later has. */
+/* Frees scenes that neither case `from` nor a later one uses. */
 static void drop_scenes(struct studio *studio, uint32_t from)
 {
     for (uint32_t i = studio->scene_count; i-- > 0;) {
@@ -93,7 +93,7 @@ static whit_result out_of_memory(void)
     return WHIT_ERROR_MEMORY;
 }
 
-/* The job's scene, loaded where no case before has done so. */
+/* Gives the job its scene, which is loaded unless an earlier case did so. */
 static whit_result take_scene(struct studio *studio, struct job *job, struct studio_scene **out)
 {
     for (uint32_t i = 0; i < studio->scene_count; ++i) {
@@ -117,7 +117,7 @@ static whit_result take_scene(struct studio *studio, struct job *job, struct stu
     return result;
 }
 
-/* The trees that the job asks for over its scene. */
+/* Gives the job trees over its scene, which are built unless an earlier case did so. */
 static whit_result take_trees(struct job *job, struct studio_scene *scene)
 {
     for (uint32_t i = 0; i < scene->tree_count; ++i) {
@@ -163,7 +163,8 @@ whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer)
                : whit_reference_create(job->accel, &drawing->params, 0, &drawing->reference);
 }
 
-/* Gives the drawing a renderer: that of the case before where its kernels serve, else a new one. */
+/* Gives the drawing a renderer: that of the case before where it has the same kernels, else a new
+   one. */
 static whit_result make_renderer(struct studio *studio, struct drawing *drawing, bool counts)
 {
     const struct job *job = &drawing->job;
@@ -184,7 +185,7 @@ static whit_result make_renderer(struct studio *studio, struct drawing *drawing,
     return result;
 }
 
-/* Costs as numbers, a function of the shader's, or colours with what is drawn over them. */
+/* Reads what the case paints: costs as numbers, an aov of the shader, or colours with overlays. */
 static whit_result read_color(struct drawing *drawing)
 {
     const struct settings *settings = &drawing->job.settings;

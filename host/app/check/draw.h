@@ -12,42 +12,45 @@ struct studio_scene;
 
 struct studio {
     const struct suite *suite;
-    const bool *wanted; /* of each case of the suite: it will be drawn */
-    bool backwards;     /* the last one first */
-    struct job job;     /* with the settings of the command line; its device, NULL where the
-                           reference draws, and compiler */
+    const bool *wanted; /* per case of the suite: it will be drawn */
+    bool backwards;     /* cases are drawn from the last to the first */
+    struct job job;     /* holds the settings of the command line, the compiler, and the device,
+                           NULL where the reference draws */
     struct studio_scene *scenes;
     uint32_t scene_count, scene_capacity;
-    whit_renderer *renderer; /* of the case before, with its settings: the next may take it over */
+    whit_renderer *renderer; /* renderer of the case before; the next case may take it over.
+                                drawn_as: its settings */
     struct settings drawn_as;
     bool counted;
 };
 
-/* What one case came to. */
+/* The picture of one case, and what it was drawn with. */
 struct drawing {
-    struct job job;          /* with scene, accel and device, which are the studio's */
-    whit_renderer *renderer; /* likewise, up to the next case; NULL: the reference draws */
+    struct job job;          /* its scene, accel and device belong to the studio */
+    whit_renderer *renderer; /* the studio's, valid until the next case; NULL: the reference
+                                draws */
     whit_reference *reference;
     whit_renderer_params params;
     whit_stats stats;
-    whit_image *color, *ids; /* linear floats, as they are hashed; instance and primitive */
+    whit_image *color, *ids; /* color: linear floats; ids: instance and primitive. Both are hashed
+                                as they are */
 };
 
-/* Opens the device, which has `log`, borrowed; none where `kind` is of the reference. `common`: the
-   settings of the command line, whose device and limits stand for all cases. What fails was said.
-   studio_close() it either way. */
+/* Opens the device, unless `kind` is the reference; it logs to `log`, which is borrowed. `common`:
+   the settings of the command line, whose device and limits hold for all cases. Errors were
+   printed. Call studio_close() in any case. */
 WHIT_CHECK whit_result studio_open(struct studio *studio, enum golden_kind kind,
                                    const struct settings *common, const struct suite *suite,
                                    const bool *wanted, const whit_log *log);
-/* Draws case `index`; `counts`: with what traversals cost. What fails was said.
-   drawing_finish() it either way, before the next. */
+/* Draws case `index`; `counts`: counts traversal costs. Errors were printed. Call drawing_finish()
+   in any case, before the next one. */
 WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool counts,
                                    struct drawing *drawing);
 void drawing_finish(struct drawing *drawing);
-/* The case's own settings, with what the command line says for all cases. */
+/* The case's own settings, with those of the command line that hold for all cases. */
 struct settings studio_settings(const struct studio *studio, const struct check_case *item);
-/* Makes of the drawing's job and parameters a renderer, the caller's, or the drawing's reference
-   where the job has no device. */
+/* Makes a renderer, which the caller owns, for the drawing's job and params, or the drawing's
+   reference where the job has no device. */
 WHIT_CHECK whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer);
 /* Renders, and reads what the drawing's settings ask for. */
 WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
@@ -55,16 +58,16 @@ WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
    shader's camera() sends none. */
 WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
                                      whit_probe_ray *ray);
-/* on_reference.c: WHIT_ERROR_USAGE, said, where the job has no device and its settings ask for what
-   the reference cannot draw. */
+/* on_reference.c: WHIT_ERROR_USAGE, with a message, where the job has no device and its settings
+   ask for something that the reference cannot draw. */
 WHIT_CHECK whit_result reference_check(const struct job *job);
-/* Drops scenes and functions, which are loaded again for the next case, and say again what they
-   have to say. */
+/* Drops scenes and functions, so that they are loaded again for the next case, with their
+   messages. */
 void studio_forget(struct studio *studio);
 void studio_close(struct studio *studio);
 
-/* Whether the picture is one that could not fail (vacuous.c): *why says it, else it is NULL.
-   WHIT_ERROR_MEMORY, said. */
+/* vacuous.c: whether the picture would be the same whatever goes wrong: *why is the reason, else
+   NULL. WHIT_ERROR_MEMORY, with a message. */
 WHIT_CHECK whit_result drawing_refuse(const struct drawing *drawing, const char **why);
 
 #endif

@@ -7,8 +7,8 @@
 
 /* ---- Pixels ---- */
 
-/* The largest step of a channel, where NaN is one value; what is not finite on one side is the
-   farthest off. Below 0: no bit is other. */
+/* The largest difference of a channel. All NaN are equal; a value that is not finite on one side
+   only is infinitely far off. Below 0: all bits are equal. */
 static double distance_of(const float *a, const float *b, uint32_t channels)
 {
     double largest = -1.0;
@@ -39,7 +39,7 @@ void drawing_difference_find(const struct drawing *before, const struct drawing 
             continue;
         ++out->others;
         if (hit && !out->hits++)
-            largest = -2.0; /* from here on of those */
+            largest = -2.0; /* from now on the largest among pixels with another hit */
         if (!(by > largest) || hit != (out->hits > 0))
             continue;
         largest = by;
@@ -65,7 +65,7 @@ void drawing_difference_write(const struct drawing_difference *difference, char 
 
 struct seen {
     whit_probe_hit hit;
-    char value[80]; /* of the pixel: its colour, or a count */
+    char value[80]; /* the pixel's colour or count as text */
     char name[256];
 };
 

@@ -6,9 +6,10 @@
 
 struct drawing_difference {
     bool same_size;
-    uint64_t others; /* pixels whose colour or hit is other, by any bit */
-    uint64_t hits;   /* of these, what hits something else */
-    uint32_t x, y;   /* where the colour is off most, of `hits` if there are any */
+    uint64_t others; /* pixels whose colour or hit differs in any bit */
+    uint64_t hits;   /* those of them with another hit */
+    uint32_t x, y;   /* pixel with the largest colour difference, among those with another hit if
+                        there are any */
 };
 
 void drawing_difference_find(const struct drawing *before, const struct drawing *after,
@@ -16,8 +17,8 @@ void drawing_difference_find(const struct drawing *before, const struct drawing 
 /* "214 pixels other, 96 hit something else" */
 void drawing_difference_write(const struct drawing_difference *difference, char *text,
                               size_t bytes);
-/* "pixel 212,87: was ball 5532 at 4.1021, is floor 0 at 5.87": probes the pixel by both renderers;
-   "" where one cannot. Names are as the files have them. */
+/* "pixel 212,87: was ball 5532 at 4.1021, is floor 0 at 5.87": the two hits of the pixel, probed by
+   both renderers; "" where one cannot. Names are as the files have them. */
 void drawing_difference_write_pixel(const struct drawing_difference *difference,
                                     const struct drawing *before, const struct drawing *after,
                                     char *text, size_t bytes);

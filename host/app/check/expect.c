@@ -30,7 +30,7 @@ static const char *skip(const char *at)
 
 /* ---- The field ---- */
 
-/* pixel(X,Y): leaves `at` behind it. */
+/* Reads the (X,Y) of pixel(X,Y) and advances `at`. */
 static bool read_place(const char **at, struct check_expectation *one, char *why)
 {
     int length = -1;
@@ -58,7 +58,7 @@ static bool find_field(const char *name, bool of_pixel, uint32_t *out, char *why
                           nearest ? "`" : "");
 }
 
-/* Words of letters, digits, _ and ., and after `pixel` a place. */
+/* Reads the name of a field, of letters, digits, _ and ., and for `pixel` its (X,Y). */
 static bool read_field(const char **at, struct check_expectation *one, char *why)
 {
     char name[64] = "";
@@ -124,7 +124,7 @@ static bool read_numbers(const char *at, struct check_expectation *one, bool col
                                      : "one number is needed");
 }
 
-/* In double quotes, or the word none. */
+/* Reads a name in double quotes, or the word none. */
 static bool read_word(const char *at, struct check_expectation *one, char *why)
 {
     at = skip(at);

@@ -17,29 +17,29 @@ enum expect_op {
 struct check_expectation {
     char *text; /* "leaks == 0" */
     uint32_t line;
-    uint32_t field; /* of the table in expect.c */
-    uint32_t x, y;  /* of a pixel's field */
+    uint32_t field; /* index into expect_fields */
+    uint32_t x, y;  /* for fields of a pixel */
     enum expect_op op;
     double numbers[3];
-    uint32_t count;   /* of numbers: 1, or 3 */
-    char *word;       /* of fields that are names; NULL: none */
+    uint32_t count;   /* how many numbers there are: 1 or 3 */
+    char *word;       /* for fields that are names; NULL: none */
     double tolerance; /* WITHIN */
 };
 
 struct drawing;
 
-/* Reads one expectation, of `length` bytes, about a picture with these settings. False, with why
-   in words that quote what is wrong. expectation_finish() it either way. */
+/* Reads one expectation, of `length` bytes, about a picture with these settings. False, with the
+   reason in `why`. Call expectation_finish() in any case. */
 bool expectation_read(struct check_expectation *one, const char *text, size_t length,
                       const struct settings *settings, char why[SETTING_WHY_BYTES]);
 void expectation_finish(struct check_expectation *one);
 
-/* Whether pictures are to be drawn with what traversals cost. */
+/* Whether the picture must be drawn with traversal costs counted. */
 bool expectation_counts(const struct check_expectation *one);
 
-/* Whether it is so of a drawing (expect_check.c); *is gets what is: free() it. Some fields take
-   longer: exact arithmetic for leaks, a kernel for what a probe tells. Errors of these were said.
-   WHIT_ERROR_FAILED: it is not so. */
+/* Checks the expectation on a drawing (expect_check.c); *is gets the actual value as text: free()
+   it. Some fields take longer: leaks need exact arithmetic, fields of a probe need a kernel. Their
+   errors were printed. WHIT_ERROR_FAILED: the expectation does not hold. */
 WHIT_CHECK whit_result expectation_check(const struct check_expectation *one,
                                          const struct drawing *drawing, char **is);
 
@@ -57,7 +57,8 @@ struct expect_field {
     const char *name;
     enum expect_kind kind;
     bool of_pixel, counts;
-    /* WHIT_ERROR_FAILED, in silence: a number that there is none of. */
+    /* Reads the field's value from a drawing. WHIT_ERROR_FAILED, without a message: the drawing has
+       no such value. */
     whit_result (*read)(const struct drawing *drawing, const struct check_expectation *one,
                         struct expect_value *value);
 };

@@ -1,4 +1,4 @@
-/* The fields that suites may expect something of, and whether it is so. */
+/* The fields that suites may have expectations of, and the check of these. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ static const float *pixels_of(drawing_t *drawing, size_t *count, uint32_t *chann
     return whit_image_floats(drawing->color);
 }
 
-/* Red, green and blue; of one channel three times that. */
+/* Gives red, green and blue; a single channel is repeated three times. */
 static void get_color(const float *pixel, uint32_t channels, double rgb[3])
 {
     for (int k = 0; k < 3; ++k)
@@ -141,7 +141,8 @@ static whit_result read_cut_bailout(drawing_t *drawing, expectation_t *one,
     return WHIT_OK;
 }
 
-/* Whether a device drew it; where not, the case is one that cannot be drawn. */
+/* Whether a device drew the picture; else prints an error, and the case counts as one that cannot
+   be drawn. */
 static bool by_device(drawing_t *drawing, expectation_t *one)
 {
     if (drawing->reference)
@@ -281,7 +282,7 @@ static bool holds(enum expect_op op, double a, double b, double tolerance)
     }
 }
 
-/* Each channel of a colour is to hold; to be other one of them is enough. */
+/* All channels of a colour must hold; for != one channel is enough. */
 static bool compare_numbers(expectation_t *one, const struct expect_value *value)
 {
     uint32_t count = expect_fields[one->field].kind == EXPECT_COLOR ? 3 : 1, held = 0;

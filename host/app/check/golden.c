@@ -65,7 +65,7 @@ bool golden_case_add_part(struct golden_case *item, uint32_t hash)
     return true;
 }
 
-/* Where the name stands, or would. */
+/* The index of the case with this name, or where it would be inserted. */
 static uint32_t place_of(const struct golden *golden, const char *name)
 {
     uint32_t at = 0;
@@ -113,7 +113,7 @@ static bool copy_case(const struct golden_case *from, struct golden_case *to)
     return whole;
 }
 
-/* Takes over what is in `item`. */
+/* Takes over the contents of `item`. */
 static bool insert(struct golden *golden, struct golden_case *item)
 {
     uint32_t at = place_of(golden, item->name);
@@ -168,7 +168,7 @@ struct reading {
     struct golden *golden;
     const char *where;
     uint32_t line;
-    char *key; /* of the part at hand; NULL: there is none */
+    char *key; /* key of the part being read; NULL: none */
 };
 
 static bool refuse(const struct reading *reading, const char *format, ...) WHIT_PRINTF(2, 3);
@@ -183,7 +183,7 @@ static bool refuse(const struct reading *reading, const char *format, ...)
     return false;
 }
 
-/* What stands behind the word at the start of a line; NULL: another word does. */
+/* The rest of a line that starts with `word`; NULL: it starts with something else. */
 static char *behind(char *line, const char *word)
 {
     size_t length = strlen(word);
@@ -246,7 +246,7 @@ static bool read_parts(struct reading *reading, struct golden_case *item, const 
     return true;
 }
 
-/* A text that is there once, or says the same again. */
+/* Keeps a text of a case; a second one must be equal. */
 static bool keep_text(struct reading *reading, struct golden_case *item, char **place,
                       const char *text)
 {
@@ -256,7 +256,7 @@ static bool keep_text(struct reading *reading, struct golden_case *item, char **
     return *place || refuse(reading, "out of memory");
 }
 
-/* A line of a case, from its name on. */
+/* Reads a line of a case, from its name on. */
 static bool read_case(struct reading *reading, char *name)
 {
     char *rest = name + strcspn(name, " "), *text;
@@ -283,7 +283,7 @@ static bool read_case(struct reading *reading, char *name)
                   name);
 }
 
-/* A hash of the part at hand, or a line that says its case. */
+/* Reads an indented line: a hash of the part being read, or a line that names its case. */
 static bool read_inner(struct reading *reading, char *line)
 {
     uint32_t hash;
@@ -398,8 +398,8 @@ char *golden_path(const char *suite, enum golden_kind kind)
                          kind == GOLDEN_OF_REFERENCE ? ".reference" : "");
 }
 
-/* Each line says which case it is of, so that it stands for itself wherever a merge puts it, and no
-   two cases have one that is the same. */
+/* Each line names its case, so that it is understood wherever a merge puts it, and no two cases
+   have equal lines. */
 static void put_case(FILE *to, const struct golden_case *item)
 {
     const char *name = item->name;
@@ -427,8 +427,8 @@ static bool names_part(const struct golden_case *item, uint32_t hash)
     return i < item->part_count;
 }
 
-/* Those that one of the `count` cases names. Behind each stands a line that never changes, behind
-   the last one too: git merges changes that have such a line between them. */
+/* Writes the parts that one of the `count` cases names. Each, also the last, is followed by an
+   empty line, which never changes: git merges changes that have such a line between them. */
 static void put_parts(FILE *to, const struct golden *golden, const struct golden_case *cases,
                       uint32_t count)
 {

@@ -6,8 +6,8 @@
 #include "base/array.h"
 #include "base/threads.h"
 
-/* A lane opens a device, and loads scenes and makes kernels that another may have: fewer cases than
-   these are drawn sooner than that pays. */
+/* A lane opens a device of its own, and loads scenes and makes kernels that another lane may have
+   too. This only pays with at least CASES_A_LANE cases per lane. */
 enum { LANES_MAX = 3, CASES_A_LANE = 8 };
 
 enum case_state { CASE_FREE, CASE_TAKEN, CASE_DRAWN, CASE_LEFT };
@@ -15,20 +15,20 @@ enum case_state { CASE_FREE, CASE_TAKEN, CASE_DRAWN, CASE_LEFT };
 struct lane {
     struct lanes *lanes;
     struct thread *thread;
-    atomic_bool said; /* something, since the case began */
+    atomic_bool said; /* a message was suppressed since the case began */
 };
 
 struct lanes {
     struct check *check;
     lanes_draw *draw;
-    pthread_mutex_t lock; /* of all below */
+    pthread_mutex_t lock; /* guards all fields below */
     pthread_cond_t changed;
-    enum case_state *states; /* of each case of the suite */
+    enum case_state *states; /* per case of the suite */
     bool ends;
     struct lane lanes[LANES_MAX];
 };
 
-/* The last case that nobody has; false: there is none. */
+/* Takes the last case that is still free; false: there is none. */
 static bool take_last(struct lanes *lanes, uint32_t *index)
 {
     const struct check *check = lanes->check;
@@ -84,7 +84,7 @@ static uint32_t count_lanes(const struct check *check, const struct studio *firs
         cases += check->wanted[i];
     uint32_t count = cases / CASES_A_LANE;
     count = count < cores ? count : cores;
-    /* What --base draws as it was is drawn by the first. */
+    /* With --base all cases are drawn by the first device, which also draws the old pictures. */
     if (!count || check->base || !first->job.device || !whit_device_takes_peers(first->job.device))
         return 0;
     return count - 1 < LANES_MAX ? count - 1 : LANES_MAX;

@@ -6,9 +6,10 @@
 #include "app/check/mutate.h"
 #include "base/random.h"
 
-/* One fault in so many has another beside it, which nobody sees. */
+/* One fault in PAIR_EVERY is paired with another one that does not show in the picture. SEEN_MAX
+   and UNSEEN_MAX: tries to find a place for a fault that shows, and for one that does not. */
 enum { PAIR_EVERY = 20, SEEN_MAX = 24, UNSEEN_MAX = 6, NAME_BYTES = 300 };
-enum { PAIRS = WHIT_FAULT_KINDS }; /* the last class */
+enum { PAIRS = WHIT_FAULT_KINDS }; /* index of the class of pairs, the last one */
 
 static double amount_of(whit_fault_kind kind)
 {
@@ -23,8 +24,8 @@ static double amount_of(whit_fault_kind kind)
 
 /* ---- What a fault alters ---- */
 
-/* Whether the part like that is another in `scene` than in `before`; NULL: whether any is. `name`:
-   gets the first such one, or is NULL. */
+/* Whether the part with the kind and name of `like` differs between `before` and `scene`; `like`
+   NULL: whether any part does. `name`: gets the name of the first that differs, or is NULL. */
 static whit_result is_altered(const whit_scene *before, const whit_scene *scene,
                               const whit_part *like, bool *altered, char name[NAME_BYTES])
 {
@@ -97,9 +98,9 @@ static bool order_is_seen(const struct fault_case *item, const whit_scene *made)
     return seen;
 }
 
-/* Whether a probe shows the place of a fault: half as much, of a vertex both ways, or materials
-   that glow, or objects that are hit. `strong`: for a fault that nobody is to see, as much as can
-   be. */
+/* Whether the picture shows the place of a fault. Tests it with half the amount (for a vertex in
+   both directions), for materials with emission, for objects by their hits. `strong`: tests with
+   the strongest amount, for a fault that must not show at all. */
 static whit_result is_seen(const struct fault_case *item, whit_fault fault, bool strong,
                            const whit_scene *made, bool *seen)
 {
@@ -120,8 +121,8 @@ static whit_result is_seen(const struct fault_case *item, whit_fault fault, bool
     return result;
 }
 
-/* A fault that alters something, as materials with the same values do not where they are swapped,
-   and whose place is seen, or is not. */
+/* Finds a fault that alters the scene (swapping two equal materials does not) and whose place the
+   picture shows, or does not show (`seen` false). */
 static whit_result find_place(const struct fault_case *item, whit_fault_kind kind, bool seen,
                               uint64_t *random, whit_fault *fault, bool *found)
 {
@@ -144,7 +145,7 @@ static whit_result find_place(const struct fault_case *item, whit_fault_kind kin
     return result;
 }
 
-/* The kind of which there were fewest, of those that are not in `tried`. */
+/* The kind with the fewest faults so far, of those not in `tried`. */
 static whit_fault_kind rarest(const struct mutate *mutate, uint32_t tried)
 {
     whit_fault_kind best = WHIT_FAULT_KINDS;
@@ -156,7 +157,7 @@ static whit_fault_kind rarest(const struct mutate *mutate, uint32_t tried)
     return best;
 }
 
-/* Kind by kind until the case has a place for one. */
+/* Tries kinds, the rarest first, until the case has a place for such a fault. */
 static whit_result find_any(struct mutate *mutate, const struct fault_case *item, bool seen,
                             uint32_t tried, whit_fault *fault, bool *found)
 {
@@ -171,7 +172,8 @@ static whit_result find_any(struct mutate *mutate, const struct fault_case *item
     return result;
 }
 
-/* `*pair`: with another fault beside it; false afterwards where the case has no place for that. */
+/* Draws the case with one fault. `*pair`: adds a second one that does not show; set to false where
+   the case has no place for it. */
 static whit_result mutate_once(struct mutate *mutate, const struct fault_case *item, bool *pair)
 {
     whit_fault faults[2];

@@ -1,4 +1,4 @@
-/* What the double reference, which stands in for a device, does not draw. */
+/* Refuses settings that the double reference cannot draw in place of a device. */
 #include "app/check/draw.h"
 
 whit_result reference_check(const struct job *job)

@@ -1,12 +1,12 @@
-/* A run of `whit check` as one page: page.html, which draws itself from the JSON that stands in it.
- */
+/* A run of `whit check` as a single HTML file: page.html, whose script draws it from the JSON
+   embedded in it. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/check/check.h"
 #include "app/page.h"
 
-/* All of a page, pictures too: what has no room is left out, thumbnails last. */
+/* Limit on a page with its pictures: those that do not fit are left out, thumbnails last. */
 enum { PAGE_BYTES_MAX = 1000000, ENTRY_BYTES = 64 };
 
 static size_t size_of(const struct check_png *png)
@@ -14,7 +14,7 @@ static size_t size_of(const struct check_png *png)
     return png->data ? (png->size_bytes + 2) / 3 * 4 + ENTRY_BYTES : 0;
 }
 
-/* Where there is room for it. */
+/* Adds a PNG if there is room for it in *left. */
 static bool put_png(json_t *object, const char *key, const struct check_png *png, size_t *left)
 {
     size_t bytes = size_of(png);
@@ -30,7 +30,8 @@ static bool is_wrong(const struct check_result *result)
     return result->verdict >= CHECK_ACCEPTED;
 }
 
-/* First what was and what differs, then a thumbnail of each case, and in its place the picture. */
+/* Adds pictures while there is room: first the old picture and the differences of each case, then
+   thumbnails, then the full pictures in their place. */
 static void put_pictures(const struct check *check, json_t **objects, size_t left)
 {
     uint32_t count = check->suite.count;
@@ -52,7 +53,7 @@ static void put_pictures(const struct check *check, json_t **objects, size_t lef
     }
 }
 
-/* The objects of cases by their places in the suite; NULL: it was not run. */
+/* Finds the JSON object of each case of the suite; NULL: the case was not run. */
 static void find_objects(const struct check *check, json_t *cases, json_t **objects)
 {
     size_t at = 0;

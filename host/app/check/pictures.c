@@ -16,7 +16,7 @@ static whit_result out_of_memory(void)
 
 /* ---- Smaller pictures ---- */
 
-/* The mean of a square of pixels, of as many channels as `out` has room for. */
+/* The mean of a square of `by` x `by` pixels, for `channels` channels. */
 static void average(const whit_image *image, const whit_image_info *info, uint32_t x, uint32_t y,
                     uint32_t by, uint32_t channels, float *out)
 {
@@ -33,7 +33,8 @@ static void average(const whit_image *image, const whit_image_info *info, uint32
         out[k] = (float)(sum[k] / ((double)by * (double)by));
 }
 
-/* Squares of `by` pixels as one, without alpha; what is left at right and below is cut. */
+/* Averages squares of `by` x `by` pixels, without alpha; incomplete squares at the right and bottom
+   are cut. */
 static whit_result shrink(const whit_image *image, uint32_t by, const whit_renderer_params *params,
                           whit_image **out)
 {
@@ -62,8 +63,8 @@ static void png_finish(struct check_png *png)
     *png = (struct check_png){.data = NULL};
 }
 
-/* The largest PNG of the image, in whole parts of its size from 1/`by` on, of at most so many
-   bytes; that of SIDE_MIN pixels where even that has more. */
+/* Makes a PNG of at most `bytes_max`: the image divided by `by`, `by` + 1 and so on until it fits
+   or its sides would be below SIDE_MIN, where a larger PNG is taken. */
 static whit_result encode(const whit_image *image, uint32_t by, const whit_renderer_params *params,
                           size_t bytes_max, struct check_png *png)
 {
@@ -106,7 +107,7 @@ whit_result check_pictures_make(struct check_pictures *pictures, const struct dr
     return result;
 }
 
-/* What PNGs of both hold; free() it. NULL: out of memory. */
+/* The RGBA bytes that a PNG of the image has; free() it. NULL: out of memory. */
 static uint8_t *display(const whit_image *image, const whit_image_info *info)
 {
     uint8_t *bytes = array_alloc((size_t)info->width * info->height, 4);
@@ -115,7 +116,7 @@ static uint8_t *display(const whit_image *image, const whit_image_info *info)
     return bytes;
 }
 
-/* The picture whose PNG would be that of `after`, and what of it is other than in `before`. */
+/* Makes two images: `after` as a PNG would show it, and its difference from `before`. */
 static whit_result show_both(const whit_image *before, const whit_image *after,
                              const whit_image_info *info, whit_image **shown,
                              whit_image **difference)
@@ -135,7 +136,7 @@ static whit_result show_both(const whit_image *before, const whit_image *after,
     return result == WHIT_OK ? result : out_of_memory();
 }
 
-/* Both in the size that `info` says. */
+/* Both images have the size in `info`. */
 static whit_result compare(struct check_pictures *pictures, const whit_image *before,
                            const whit_image *after, const whit_image_info *info)
 {

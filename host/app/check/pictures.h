@@ -1,4 +1,4 @@
-/* Small pictures for people: thumbnails beside a golden, and what a report shows. */
+/* Small pictures for people: thumbnails beside a golden, and pictures in a report. */
 #ifndef APP_CHECK_PICTURES_H
 #define APP_CHECK_PICTURES_H
 
@@ -18,19 +18,19 @@ struct check_png {
 
 struct check_pictures {
     struct check_png thumbnail; /* at most THUMBNAIL_BYTES_MAX */
-    struct check_png after;  /* the picture in its size, or in whole parts of it where it would be
-                                more than PICTURE_BYTES_MAX */
-    struct check_png before; /* what it was; none where nobody has kept it */
+    struct check_png after;  /* the picture in its size, or divided by a whole number where it would
+                                exceed PICTURE_BYTES_MAX */
+    struct check_png before; /* the old picture; none where it was not kept */
     /* In the size of `before`: the difference as displayed, 8 times as bright, and FLIP. */
     struct check_png difference, flip;
     double flip_mean;
 };
 
-/* Encodes a picture that was drawn: `after` and `thumbnail`. WHIT_ERROR_MEMORY, said. */
+/* Encodes a drawn picture as `after` and `thumbnail`. WHIT_ERROR_MEMORY, with a message. */
 WHIT_CHECK whit_result check_pictures_make(struct check_pictures *pictures,
                                            const struct drawing *drawing);
-/* Adds what it was: a picture as it is displayed, in its size or in a whole part of it. One in
-   another size is left out. WHIT_ERROR_MEMORY, said. */
+/* Adds the old picture as displayed, in the size of the drawing or that divided by a whole number;
+   one of another size is left out. WHIT_ERROR_MEMORY, with a message. */
 WHIT_CHECK whit_result check_pictures_compare(struct check_pictures *pictures,
                                               const struct drawing *drawing,
                                               const whit_image *before);

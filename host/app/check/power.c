@@ -3,11 +3,12 @@
 #include "app/check/faults.h"
 #include "app/check/strength.h"
 
-/* Below the strongest change by so much nothing is looked for. */
+/* The smallest change that is tried, relative to the strongest. */
 static const double SMALLEST = 1e-9;
 
 /* Halves the strength, on a logarithmic scale, between one that is seen and one that is not, until
-   they are a factor of 2 apart. Larger changes need not be seen where a smaller one is. */
+   they are a factor of 2 apart. This assumes that larger changes are seen too, which need not be
+   so. */
 static whit_result find_smallest(const struct fault_case *item, whit_fault fault, double *smallest)
 {
     double unseen = SMALLEST * fault.amount, seen = fault.amount;
@@ -38,7 +39,7 @@ whit_result power_case(uint64_t *random, const struct fault_case *item)
         result = fault_find(item, kinds[i], random, &fault, &found);
         if (result == WHIT_OK && found)
             result = find_smallest(item, fault, &smallest);
-        /* A texel goes by whole steps. */
+        /* A texel changes by whole steps of 1/255. */
         if (kinds[i] == WHIT_FAULT_TEXELS)
             smallest = fmax(smallest, 1.0 / 255.0);
         printf("%s %s ", i ? "," : "", whit_fault_kind_name(kinds[i]));

@@ -1,4 +1,4 @@
-/* One pixel of a drawing once more, by whatever drew it. */
+/* Traces one pixel of a drawing again, by the device or reference that drew it. */
 #include <math.h>
 
 #include "app/check/draw.h"

@@ -15,7 +15,7 @@ static json_t *rays_document(const uint64_t rays[WHIT_RAY_KINDS])
     return out;
 }
 
-/* null where there is none. */
+/* Describes a case of a golden; null where there is none. */
 static json_t *picture_document(const struct golden_case *item)
 {
     if (!item)
@@ -37,7 +37,8 @@ static void put_text(void *user, const char *part)
     fputs(part, user);
 }
 
-/* The command that checks one case again: `whit render` has no reference. NULL: out of memory. */
+/* The command that checks one case again, for pictures of the reference, which `whit render` cannot
+   draw. NULL: out of memory. */
 static char *check_command(const struct check *check, const struct check_case *item)
 {
     char *text = NULL;
@@ -55,7 +56,7 @@ static char *check_command(const struct check *check, const struct check_case *i
     return fclose(to) == 0 ? text : NULL;
 }
 
-/* What draws the picture again. */
+/* Adds the command that draws the picture again. */
 static void put_command(json_t *object, const struct check *check, const struct check_case *item)
 {
     bool device = check->on == GOLDEN_OF_DEVICE;

@@ -5,14 +5,15 @@
 
 #include "base/array.h"
 
-/* Numbers of changes: all that is left, and the room to try others. */
+/* The changes that are still suspected, by number, and scratch memory to try subsets of them. */
 struct sets {
     uint32_t *left, count;
     bool *back;
     struct search *search;
 };
 
-/* Whether taking back those of `left` from `begin` to `end`, or all others, is enough. */
+/* Tries whether taking back the changes `begin` to `end` of `left` (`others`: all but these) is
+   enough to get the old picture. */
 static whit_result try_set(struct sets *sets, uint32_t begin, uint32_t end, bool others,
                            bool *enough)
 {
@@ -29,7 +30,7 @@ static whit_result try_set(struct sets *sets, uint32_t begin, uint32_t end, bool
     return search->draw(search->user, sets->back, enough);
 }
 
-/* Leaves those from `begin` to `end`, or all others. */
+/* Keeps in `left` only the changes from `begin` to `end` (`others`: all but these). */
 static void keep(struct sets *sets, uint32_t begin, uint32_t end, bool others)
 {
     uint32_t kept = 0;
@@ -40,8 +41,8 @@ static void keep(struct sets *sets, uint32_t begin, uint32_t end, bool others)
     sets->count = kept;
 }
 
-/* Tries each of `chunks` pieces, or what is left without it. *found: a smaller set is enough, and
-   left. */
+/* Tries each of `chunks` pieces of `left` (`others`: `left` without the piece). *found: one was
+   enough, and only it is left. */
 static whit_result try_chunks(struct sets *sets, uint32_t chunks, bool others, bool *found)
 {
     whit_result result = WHIT_OK;
@@ -63,7 +64,8 @@ static whit_result make_smaller(struct sets *sets)
     while (result == WHIT_OK && sets->count > 1 && sets->search->end != SEARCH_CUT) {
         bool smaller, other = false;
         result = try_chunks(sets, chunks, false, &smaller);
-        if (result == WHIT_OK && !smaller && chunks > 2) /* of two, the others are tried already */
+        if (result == WHIT_OK && !smaller && chunks > 2) /* with two pieces the complements were
+                                                            tried already */
             result = try_chunks(sets, chunks, true, &other);
         if (!smaller && !other && chunks == sets->count)
             break;

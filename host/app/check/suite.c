@@ -11,7 +11,7 @@
 
 enum { SUITE_BYTES_MAX = 1 << 20, WORDS_MAX = 256, SAID_BYTES = 2048, WHERE_BYTES = 600 };
 
-/* A line at hand. */
+/* The line being read. */
 struct line {
     struct suite *suite;
     uint32_t number;
@@ -138,7 +138,7 @@ static bool expect_one(const struct line *line, struct check_case *item, const c
     return refuse(line, "%s", read ? "out of memory" : why);
 }
 
-/* Up to the next comma that is in neither quotes nor brackets, a comment, or the end. */
+/* The length up to the next comma outside of quotes and brackets, a comment, or the end. */
 static size_t find_end(const char *text)
 {
     bool quoted = false;
@@ -170,7 +170,7 @@ static bool expect_all(const struct line *line, struct check_case *item, const c
     }
 }
 
-/* What `text` expects of each case that the name, which may be a pattern, stands for. */
+/* Adds the expectations in `text` to each case that the name, which may be a pattern, matches. */
 static bool add_expectations(const struct line *line, const char *name, const char *text)
 {
     struct suite *suite = line->suite;
@@ -188,7 +188,7 @@ static bool add_expectations(const struct line *line, const char *name, const ch
 
 /* ---- Lines ---- */
 
-/* Behind the word `expect` at the start of `text`; NULL: it does not start so. */
+/* The text behind the word `expect`, if `text` starts with it; else NULL. */
 static const char *behind_expect(const char *text)
 {
     static const char word[] = "expect";
@@ -197,7 +197,7 @@ static const char *behind_expect(const char *text)
     return is_it ? text + length : NULL;
 }
 
-/* `text` with `alternative` in the place of each {}. NULL: out of memory. */
+/* A copy of `text` with each {} replaced by `alternative`. NULL: out of memory. */
 static char *fill_in(const char *text, const char *alternative, size_t length)
 {
     size_t count = 0;
@@ -221,7 +221,8 @@ static bool read_one(const struct line *line, const char *name, char *rest)
     return expected ? add_expectations(line, name, expected) : add_case(line, name, rest);
 }
 
-/* The name before its {a,b}, one of these, and what is behind them. */
+/* Reads a case whose name has {a,b}: the name with one alternative in its place, and the rest of
+   the line. */
 static bool read_alternative(const struct line *line, const char *name, const char *open,
                              const char *alternative, size_t length, const char *rest)
 {

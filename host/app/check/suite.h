@@ -8,13 +8,13 @@
 
 enum { CHECK_NAME_MAX = 64, CHECK_CASES_MAX = 4096 };
 
-/* One picture. All of it is the suite's. */
+/* One picture. The suite owns all of it. */
 struct check_case {
     char *name;
     uint32_t line;
-    struct settings *settings; /* its files by paths from where whit was started */
+    struct settings *settings; /* file names in them are relative to the working folder */
     char *made_by; /* scene and options as the suite names them: `room.json --depth 4` */
-    char *loaded;  /* the same with those options alone that say how the scene is loaded */
+    char *loaded;  /* the same, with only the options that affect how the scene is loaded */
     struct check_expectation *expectations;
     uint32_t expectation_count, expectation_capacity;
 };
@@ -24,21 +24,21 @@ struct suite {
     struct roots roots;       /* where its files may lie */
     struct check_case *cases; /* in the order of the file */
     uint32_t count, capacity;
-    uint32_t wrong; /* lines */
-    bool names;     /* files need not be there */
+    uint32_t wrong; /* number of wrong lines */
+    bool names;     /* files of cases need not exist */
     /* Gets "FILE:LINE: reason" for each wrong line. */
     void (*say)(void *user, const char *text);
     void *user;
 };
 
 /* Reads all lines. `root`: the folder that files lie below and are named from; NULL: the suite's
-   own. Nothing but names of files is looked up on the disk; `names`: not even these, where only the
-   names of cases are wanted. False, with something said, where a line is wrong or the file cannot
-   be read. suite_finish() it either way. */
+   own. On the disk it only checks that files exist; `names`: not even that, where only the names of
+   cases are wanted. False, with messages, where a line is wrong or the file cannot be read. Call
+   suite_finish() in any case. */
 bool suite_read(struct suite *suite, const char *path, const char *root, bool names,
                 void (*say)(void *user, const char *text), void *user);
 void suite_finish(struct suite *suite);
-/* NULL: there is none. */
+/* The case of that name; NULL: there is none. */
 struct check_case *suite_find(const struct suite *suite, const char *name);
 /* Whether a name is `pattern`, in which * stands for any letters and ? for one. */
 bool suite_matches(const char *pattern, const char *name);

@@ -9,7 +9,8 @@
 #include "base/array.h"
 #include "base/file.h"
 
-/* `looks.thumbnails` of `looks.golden`, and in it the file of a case; free() it. */
+/* The path of the thumbnails' folder, `looks.thumbnails` for `looks.golden`, or of the file of case
+   `name` in it; free() it. */
 static char *thumbnail_path(const struct check *check, const char *name)
 {
     size_t length = strlen(check->golden_path) - strlen(".golden");

@@ -1,10 +1,11 @@
-/* One picture more, of an input that is no case of the suite: another scene, other settings. */
+/* Draws an extra picture of an input that is no case of the suite: another scene or other
+   settings. */
 #ifndef APP_CHECK_TRIAL_H
 #define APP_CHECK_TRIAL_H
 
 #include "app/check/draw.h"
 
-/* All that a picture is made of, and what draws it. Borrowed. */
+/* The complete input of a picture, and the device that draws it. Borrowed. */
 struct trial_input {
     struct settings settings;
     whit_scene *scene;
@@ -18,14 +19,14 @@ struct trial {
     uint64_t colors, ids; /* hashes */
 };
 
-/* Draws it. trial_finish() it either way. */
+/* Draws the picture. Call trial_finish() in any case. */
 WHIT_CHECK whit_result trial_draw(struct trial *trial, const struct trial_input *input);
 void trial_finish(struct trial *trial);
-/* The same hashes, of a drawing that the studio made. */
+/* Sets the hashes of `out` from a drawing that the studio made. */
 void trial_hash(const struct drawing *drawing, struct trial *out);
 /* Whether ids and colours are the same bytes. */
 bool trial_same(const struct trial *a, const struct trial *b);
-/* Whether no other picture can be drawn after such a failure. */
+/* Whether, after such an error, no other picture can be drawn either. */
 bool trial_ends_all(whit_result result);
 
 #endif

@@ -1,4 +1,5 @@
-/* Pictures that would be the same whatever goes wrong: no golden is made of them. */
+/* Finds pictures that would be the same whatever goes wrong; they are not accepted into a
+   golden. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +7,8 @@
 #include "app/check/draw.h"
 #include "base/array.h"
 
-/* As displayed: what only floats tell apart is one colour to who looks at it. Of counts and of a
-   shader's values the numbers themselves. */
+/* Whether all pixels are equal: for colours as displayed, because people do not see differences
+   that only floats have; for counts and aovs of a shader by their numbers. */
 static bool has_one_color(const struct drawing *drawing, bool *one)
 {
     whit_image_info info;
@@ -39,7 +40,7 @@ static bool hits_nothing(const struct drawing *drawing)
     return true;
 }
 
-/* The camera of the picture, as the scene has it at time 0. False: it looks to all sides. */
+/* The camera of the picture at time 0. False: it is a panorama. */
 static bool find_camera(const struct drawing *drawing, double eye[3], double target[3])
 {
     const whit_camera *camera = &drawing->params.camera;
@@ -67,8 +68,8 @@ static bool find_camera(const struct drawing *drawing, double eye[3], double tar
     return info.kind != WHIT_CAMERA_PANORAMA;
 }
 
-/* Whether all that stands on the floor, where there is one, lies behind the camera's plane. At
-   other times than 0 of what moves it is not known. */
+/* Whether the scene's objects, without a floor, all lie behind the camera's plane. False where this
+   is not known: in an animated scene at another time than 0. */
 static bool is_behind(const struct drawing *drawing)
 {
     double eye[3], target[3];

@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "settings/values.h"
 
-/* Parts that a line names; the rest is counted. */
+/* How many parts a line names; the rest is only counted. */
 enum { PARTS_NAMED = 4 };
 
 const char *verdict_word(enum check_verdict verdict)
@@ -65,7 +65,7 @@ static void put_part(FILE *to, uint32_t *count, const char *key, const char *wha
         fprintf(to, "%s%s%s", *count > 1 ? ", " : "", key, what);
 }
 
-/* Whether the old case has a part of that key, whatever is in it. */
+/* Whether the old case has a part with that key, whatever its content. */
 static bool knows_key(const struct golden *golden, const struct golden_case *old, const char *key)
 {
     for (uint32_t i = 0; i < old->part_count; ++i) {
@@ -76,7 +76,7 @@ static bool knows_key(const struct golden *golden, const struct golden_case *old
     return false;
 }
 
-/* Parts that are other, new or gone. */
+/* Writes the parts that changed, are new or are gone; gives their number. */
 static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
                                   const struct golden_case *old, const struct golden *found)
 {
@@ -97,7 +97,7 @@ static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
     return count;
 }
 
-/* NULL in *text: nothing is other. False: out of memory. */
+/* Describes the parts and options that changed; *text NULL: none did. False: out of memory. */
 static bool find_changed(const struct golden *golden, const struct golden_case *old,
                          const struct golden *found, char **text)
 {
@@ -205,7 +205,8 @@ bool verdict_find(struct check_result *result, const struct golden *golden)
     return result->text != NULL;
 }
 
-/* Wrong input is worse than a difference, and that is worse than a golden that is missing. */
+/* Exit codes in order: wrong input is worse than a difference, and a difference is worse than a
+   missing golden. */
 int verdict_exit(const struct check_result *result, int worst)
 {
     static const int order[] = {EXIT_FINE, EXIT_MISSING, EXIT_DIFFERS, EXIT_USAGE};

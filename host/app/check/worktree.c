@@ -16,10 +16,11 @@
 
 extern char **environ;
 
-/* The tree in its holder. */
+/* The worktree's folder inside of `holder`. */
 #define TREE "/tree"
 
-/* Starts a program with these as its standard input and output; -1: nothing. 0 or an errno. */
+/* Starts a program with these as its standard input and output; -1: /dev/null. Gives 0 or an
+   errno. */
 static int start(const char *const *words, int in, int out, pid_t *pid)
 {
     posix_spawn_file_actions_t actions;
@@ -36,7 +37,7 @@ static int start(const char *const *words, int in, int out, pid_t *pid)
     return failed;
 }
 
-/* The first line of what a program says; the rest is read and dropped. */
+/* Reads the first line of a program's output; the rest is read and dropped. */
 static void read_line(int from, char *text, size_t bytes)
 {
     char buffer[512];
@@ -50,7 +51,8 @@ static void read_line(int from, char *text, size_t bytes)
     text[strcspn(text, "\n")] = 0;
 }
 
-/* Runs git to its end; the first line of what it says. False: it failed, and the line says why. */
+/* Runs git to its end and gives the first line of its output. False: it failed, and the line says
+   why. */
 static bool run_git(const char *const *words, char *line, size_t bytes)
 {
     int ends[2], status = -1;
@@ -72,8 +74,8 @@ static bool run_git(const char *const *words, char *line, size_t bytes)
     return !failed && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/* A shell that waits for the end of this process, or of the tree, which neither a second signal nor
-   a crash keeps from it. */
+/* Starts a shell that waits until this process ends or closes `line`, and then removes the
+   worktree. This also works after a second signal or a crash. */
 static bool start_keeper(struct worktree *tree, const char *folder)
 {
     static const char script[] =
@@ -116,7 +118,7 @@ static bool make_holder(struct worktree *tree)
     return false;
 }
 
-/* Where a folder stands in its repository: "tests/check/", "" at the top. */
+/* The folder's path in its repository, such as "tests/check/"; "" at the top. */
 static bool find_prefix(const char *folder, char *line, size_t bytes)
 {
     const char *const words[] = {"git",           "-C", folder[0] ? folder : ".", "rev-parse",

@@ -1,5 +1,5 @@
-/* The files of another revision of a git repository, in a folder that is gone when they are not
-   needed any more, whatever the program ends by. */
+/* Checks out another revision of a git repository into a temporary folder, which is removed in the
+   end, however the program ends. */
 #ifndef APP_CHECK_WORKTREE_H
 #define APP_CHECK_WORKTREE_H
 
@@ -10,17 +10,18 @@
 struct worktree {
     const char *revision; /* borrowed */
     char *holder;         /* a temporary folder */
-    pid_t keeper;         /* removes `holder` when `line` ends, which it does with this process */
+    pid_t keeper;         /* process that removes `holder` when the pipe `line` is closed, also by
+                             the end of this process */
     int line;
 };
 
-/* Checks `revision` of the repository that `folder` lies in out beside. What fails was said;
-   worktree_remove() it either way. WHIT_ERROR_INPUT: there is no repository, no such revision or no
-   git; WHIT_ERROR_OUTPUT: no room for it; WHIT_ERROR_CANCELLED. */
+/* Checks out `revision` of the repository that contains `folder`. Errors were printed; call
+   worktree_remove() in any case. WHIT_ERROR_INPUT: there is no repository, no such revision or no
+   git; WHIT_ERROR_OUTPUT: it cannot be written; WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result worktree_add(struct worktree *tree, const char *folder,
                                     const char *revision);
-/* What a folder of the repository is in that revision; free() it. NULL, with the reason said, for
-   one that lies outside or in no repository. */
+/* The path in the worktree of a folder of the repository; free() it. NULL, with a message, for a
+   folder outside of the repository or in none. */
 char *worktree_folder(const struct worktree *tree, const char *folder);
 void worktree_remove(struct worktree *tree);
 

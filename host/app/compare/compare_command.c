@@ -10,7 +10,7 @@ enum metric {
     METRIC_RELMSE,
     METRIC_LARGEST,
     METRIC_MEAN,
-    METRIC_OVER, /* from here on also of pixels that are not finite */
+    METRIC_OVER, /* this metric and the following ones count pixels that are not finite */
     METRIC_DIFFERING,
     METRIC_FLIP,
     METRIC_COUNT
@@ -28,7 +28,7 @@ struct compare {
     uint32_t metric;                /* METRIC_COUNT: not given */
     bool has_metric;
     whit_compare_params params;
-    struct job job; /* how its pictures are read */
+    struct job job; /* its settings say how the pictures are read */
     whit_image *images[2], *flip_map;
     whit_image_info info;
     whit_difference found;
@@ -137,7 +137,7 @@ static int print_text(const struct compare *compare)
     return cli_finish_stdout(EXIT_FINE);
 }
 
-/* Numbers that mean nothing for hit identities are null there. */
+/* Adds a number that has no meaning for images of hit identities, for which it is null. */
 static void put_number(const struct compare *compare, json_t *object, const char *key, double value)
 {
     document_number(object, key, compare->info.integers ? (double)NAN : value);
@@ -181,7 +181,8 @@ static whit_result save_json(const struct compare *compare)
 
 /* ---- Tolerance ---- */
 
-/* Pixels that are not finite in one of the two are in no mean: they pass no tolerance for one. */
+/* Pixels that are not finite in one picture are in no mean, so with such pixels no tolerance for a
+   mean is met. */
 static bool is_within(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
@@ -209,7 +210,7 @@ static int judge(const struct compare *compare)
 
 /* ---- Pictures ---- */
 
-/* As a heat map where it becomes a PNG. */
+/* Saves a .png as a heat map, other files as numbers. */
 static whit_result save_values(const whit_image *values, const char *path,
                                const whit_heat_params *heat)
 {

@@ -1,5 +1,5 @@
-/* --budget-ms and --max-error: settings by what `whit cost` measures of this scene, size and
-   device, once; figures are kept. */
+/* --budget-ms and --max-error: choose settings by the figures that `whit cost` measures for this
+   scene, size and device. They are measured once and kept in the cache. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +8,9 @@
 #include "app/cost/cost_kept.h"
 
 enum { SAMPLES = 16, TRIALS = 5, TRIES = 6 };
-/* What takes less tells more of who else had the processor. */
+/* Shorter trials mostly measure what else the processor was doing. */
 static const double TRIAL_MS_MIN = 50.0;
-/* A try that takes this share of the time is not followed by another. */
+/* No further choice is tried once one takes this share of the budget. */
 static const double ENOUGH = 0.8;
 
 static whit_result measure(struct job *job, struct cost_report **report)
@@ -39,7 +39,7 @@ static whit_result measure(struct job *job, struct cost_report **report)
     return result;
 }
 
-/* As they are kept, or measured and then kept. */
+/* Gives the kept figures, or measures and keeps them. */
 static whit_result find_figures(struct job *job, bool fresh, const struct cost_place *place,
                                 const char *name, struct cost_kept *kept)
 {
@@ -99,7 +99,7 @@ struct choosing {
     const struct render_request *request;
     struct frames_progress *progress;
     struct settings before;
-    whit_renderer **renderer; /* of the choice */
+    whit_renderer **renderer; /* the renderer of the current choice */
 };
 
 static whit_result set_choice(const struct choosing *choosing, const struct cost_choice *choice)
@@ -111,9 +111,9 @@ static whit_result set_choice(const struct choosing *choosing, const struct cost
     return render_create(choosing->job, choosing->request, choosing->progress, choosing->renderer);
 }
 
-/* Cuts down a picture to be tried: to a few of its samples, or to a small size where it has few. By
-   how much; 1: it is quick as it is. From a small picture to the full one it is as far as for the
-   usual settings. */
+/* Makes a trial picture cheaper: fewer samples, or a small size where it has few. Returns the
+   factor from its time to that of the full picture; 1: it was quick enough already. The factor for
+   a small size is that of the usual settings. */
 static double cut_down(const struct cost_report *report, const struct cost_choice *choice,
                        whit_renderer_params *picture)
 {
@@ -131,7 +131,8 @@ static double cut_down(const struct cost_report *report, const struct cost_choic
     return smaller;
 }
 
-/* The choice at this moment: what the full picture takes, the most of TRIALS. */
+/* Estimates from TRIALS trials how long the full picture takes with this choice at this moment, at
+   most. */
 static whit_result try_now(const struct choosing *choosing, const struct cost_choice *choice,
                            double *full_ms)
 {
@@ -142,8 +143,9 @@ static whit_result try_now(const struct choosing *choosing, const struct cost_ch
     whit_result result = cost_time(*choosing->renderer, &tried, TRIALS, &times);
     if (result == WHIT_OK)
         result = whit_renderer_set_view(*choosing->renderer, &full);
-    /* As far beyond the most as half of what is between the trials. By how much they differ evens
-       out where the full picture is as many of them. */
+    /* The estimate lies above the slowest trial by half the spread of the trials. Where the full
+       picture is `larger` trials long their variations average out, so the margin grows only by the
+       square root. */
     const struct sample_median *ms = &times.ms[COST_WALL];
     double beyond_ms = 1.5 * ms->high - 0.5 * ms->low - ms->median;
     *full_ms = larger * ms->median + sqrt(fmax(larger, 1.0)) * beyond_ms;
@@ -156,16 +158,16 @@ static bool is_same(const struct cost_choice *a, const struct cost_choice *b)
            memcmp(a->settings, b->settings, sizeof a->settings) == 0;
 }
 
-/* Tries choices, each for a device that is as fast as the last ones showed, until one takes most of
-   the time, or the next would be the same. *best gets the most careful one that keeps the time;
-   where none does the last one. */
+/* Tries choices, each made for the speed of the device that the last trials showed, until one takes
+   ENOUGH of the budget or the next would be the same. *best gets the slowest one that keeps the
+   budget, or the last one tried where none does. */
 static whit_result find_within(const struct choosing *choosing, struct cost_kept_choice *best)
 {
     const double budget_ms = choosing->before.budget_ms, aim_ms = COST_ROOM * budget_ms;
     struct cost_choice choice = choose_first(choosing->report, &choosing->before);
     struct cost_kept_choice tried = {.budget_ms = budget_ms};
     double slower[2] = {
-        0}; /* than the figures say: of the last try that was too long; that fitted */
+        0}; /* measured / predicted time of the last try: too long; within the budget */
     whit_result result = choice.found ? WHIT_OK : WHIT_ERROR_FAILED;
     for (int i = 0; result == WHIT_OK && i < TRIES; ++i) {
         tried.choice = choice;

@@ -11,9 +11,10 @@
 #include "settings/quote.h"
 
 enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MAX = 1 << 22, SAMPLES_QUICK = 16 };
-/* Quick ones of 16:9 are 160 x 90. */
+/* Smallest sizes in pixels; the second pair is for --quick, and has room for 16:9. */
 enum { WIDTH_MIN = 320, HEIGHT_MIN = 240, WIDTH_MIN_QUICK = 160, HEIGHT_MIN_QUICK = 90 };
-/* Drivers cannot be stopped while they compile a kernel, and some take that long. */
+/* Time to stop after a signal: drivers cannot be stopped while they compile a kernel, which may
+   take this long. */
 enum { GRACE_MS = 20000 };
 
 static const struct setting_value values_metric[] = {
@@ -188,7 +189,8 @@ static whit_result save_all(const struct cost *cost)
     return result;
 }
 
-/* What may change nothing has changed something; what was asked for was not found. */
+/* EXIT_DIFFERS where a setting that must not change the picture changed it, or no settings were
+   found for a goal. */
 static int judge(const struct cost_report *report)
 {
     int status = EXIT_FINE;
@@ -244,7 +246,7 @@ static void put_part(void *user, const char *part)
     fputs(part, user);
 }
 
-/* As a shell takes it; NULL: no memory. */
+/* The command line, quoted for a shell; NULL: no memory. */
 static char *command_line(int argc, char **argv)
 {
     char *line = NULL;

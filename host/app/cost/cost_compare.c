@@ -1,4 +1,4 @@
-/* Two reports of `whit cost --json`, between devices or versions. */
+/* Compares two reports of `whit cost --json`, of different devices or versions. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -131,7 +131,7 @@ static json_t *answer_document(const struct cost_report *report, const struct co
     return out;
 }
 
-/* `cost`: that asked for it; NULL: the report is kept for choices, which know that. */
+/* `cost`: the request; NULL: the report is kept for choices, which need no request. */
 static void put_head(json_t *out, const struct cost_report *report, const struct cost *cost)
 {
     json_t *picture = document_object();
@@ -170,7 +170,7 @@ static json_t *reference_document(const struct cost_report *report)
     return out;
 }
 
-/* The sentence, and what it is made of. */
+/* Adds the sentence that sums up the report, and the findings that it is made of. */
 static void put_findings(json_t *out, const struct cost_report *report)
 {
     struct cost_finding findings[COST_FINDINGS_MAX];
@@ -302,7 +302,7 @@ static void read_hits(const json_t *object, struct cost_hits *hits)
     hits->ms = number(object, "ms", -1.0);
 }
 
-/* The knob and setting of these names, or neither. */
+/* Finds the knob and setting by the names in `row`, or neither of the two. */
 static void find_setting(struct cost_row *row)
 {
     uint32_t count, index = knob_find(row->knob);

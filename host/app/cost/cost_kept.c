@@ -11,7 +11,8 @@
 
 enum { KEPT_VERSION = 5 };
 
-/* All that decides pixels or time but for what is chosen. */
+/* The name is a hash of everything that decides pixels or time, except the settings that are
+   chosen. */
 void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME])
 {
     char key[2048 + SETTING_TEXT_BYTES], line[1024 + SETTING_TEXT_BYTES];
@@ -45,7 +46,7 @@ const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, doub
 
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice)
 {
-    if (kept->choice_count == COST_KEPT_CHOICES) /* the oldest goes */
+    if (kept->choice_count == COST_KEPT_CHOICES) /* drops the oldest */
         memmove(kept->choices, kept->choices + 1, --kept->choice_count * sizeof *kept->choices);
     kept->choices[kept->choice_count++] = *choice;
 }
@@ -165,7 +166,7 @@ bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_fig
     return found;
 }
 
-/* Choices for other times by the same figures stay. */
+/* Choices kept for other budgets by the same figures stay. */
 void cost_kept_save_figures(const struct cost_place *place, const struct cost_kept_figures *figures)
 {
     char name[COST_KEPT_NAME];

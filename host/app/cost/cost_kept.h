@@ -6,24 +6,24 @@
 
 enum { COST_KEPT_CHOICES = 16, COST_KEPT_NAME = 32 };
 struct cost_kept_choice {
-    double budget_ms, tried_ms; /* tried: what the picture was expected to take then */
+    double budget_ms, tried_ms; /* tried_ms: the time that trials predicted for the picture */
     struct cost_choice choice;
 };
 struct cost_kept {
     struct cost_report report;
-    char made[32]; /* when it was measured */
+    char made[32]; /* date of the measurement */
     uint32_t choice_count;
     struct cost_kept_choice choices[COST_KEPT_CHOICES];
 };
-/* Under which name whit's cache has it: another one for each scene, device, driver, version of
-   whit, and for all settings that decide pixels or time. */
+/* The record's name in whit's cache, which differs for each scene, device, driver, version of whit,
+   and setting that decides pixels or time. */
 void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME]);
-/* False: there is none, or it is broken or of something else. */
+/* False: there is no record, or it is damaged or belongs to something else. */
 bool cost_kept_load(const struct cost_place *place, const char *name, struct cost_kept *kept);
 /* Reports that are not complete are not kept. */
 void cost_kept_save(const struct cost_kept *kept, const char *name);
 void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
-/* The choice for that time, or NULL. */
+/* The choice for this budget, or NULL. */
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
 /* view_params.load_figures and save_figures: the same record. */

@@ -1,12 +1,12 @@
-/* The report of `whit cost` as one page: page.html, which draws itself from the JSON that stands in
-   it. */
+/* The report of `whit cost` as a single HTML file: page.html, whose script draws it from the JSON
+   embedded in it. */
 #include "app/cost/cost_json.h"
 #include "app/cost/cost_table.h"
 #include "app/page.h"
 
 /* ---- Pictures ---- */
 
-/* The image as a PNG in a URI of data; null where it cannot be made. */
+/* Adds the image as a PNG in a data URI; null where it cannot be made. */
 static void put_image(json_t *object, const char *key, const whit_image *image)
 {
     uint8_t *data = NULL;

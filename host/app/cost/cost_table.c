@@ -38,7 +38,7 @@ static void put_ms(char cell[COST_CELL], double ms)
         put(cell, "%.*f", ms < 10.0 ? 3 : ms < 100.0 ? 2 : ms < 1e4 ? 1 : 0, ms);
 }
 
-/* The last column: what is to be known of the row. */
+/* The last column: remarks on the row. */
 static void put_remark(const struct cost_report *report, const struct cost_row *row,
                        char cell[COST_CELL])
 {
@@ -168,7 +168,7 @@ static void say_list(const struct cost_report *report, enum cost_use use, const 
         say_it(say, user, "%s: %s.", what, list);
 }
 
-/* After how many pictures a tree has earned what it takes longer to build. */
+/* Says after how many pictures the faster rendering by a tree outweighs its longer build. */
 static void say_break_even(const struct cost_report *report, cost_say *say, void *user)
 {
     const struct cost_row *usual = &report->rows[0];
@@ -360,7 +360,7 @@ int cost_print_text(const struct cost *cost)
     return cli_finish_stdout(EXIT_FINE);
 }
 
-/* What fn writes, as a file. */
+/* Saves what `write` writes as a file. */
 static whit_result save(const struct cost *cost, const char *path,
                         void (*write)(const struct cost *cost, FILE *to))
 {
@@ -396,7 +396,7 @@ whit_result cost_save_markdown(const struct cost *cost)
 
 /* ---- CSV ---- */
 
-/* In quotes, which are doubled inside (RFC 4180). */
+/* Writes a quoted CSV field; quotes inside it are doubled (RFC 4180). */
 static void put_quoted(FILE *to, const char *name)
 {
     fputc('"', to);

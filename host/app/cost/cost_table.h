@@ -4,7 +4,7 @@
 
 #include "app/cost/cost.h"
 
-/* `is_number`: to the right. */
+/* `is_number`: the column is right-aligned. */
 struct cost_column {
     const char *head;
     bool is_number;
@@ -17,7 +17,7 @@ extern const struct cost_column cost_columns[COST_COLUMNS], cost_hit_columns[COS
 void cost_row_cells(const struct cost_report *report, const struct cost_row *row,
                     struct cost_cells *cells);
 void cost_hit_cells(const struct cost_row *row, enum cost_set set, struct cost_cells *cells);
-/* Calls say() with each sentence: how it was measured; what the figures answer. */
+/* Call say() with each sentence: on how it was measured; on what the figures answer. */
 typedef void cost_say(void *user, const char *sentence);
 void cost_say_method(const struct cost_report *report, cost_say *say, void *user);
 void cost_say_answers(const struct cost_report *report, cost_say *say, void *user);

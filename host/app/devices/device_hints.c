@@ -25,8 +25,8 @@ static bool is_there(const char *root, const char *path)
     return access(whole, F_OK) == 0;
 }
 
-/* "580" of "NVRM version: NVIDIA UNIX x86_64 Kernel Module  580.159.04  ..."; "" where it cannot be
-   known. */
+/* "580" of "NVRM version: NVIDIA UNIX x86_64 Kernel Module 580.159.04 ..."; "" where the file
+   cannot be read. */
 static void read_nvidia_series(const char *root, char series[16])
 {
     char path[PATH_BYTES], line[256] = "";

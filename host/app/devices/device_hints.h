@@ -8,7 +8,7 @@ enum { DEVICE_HINTS_MAX = 4, DEVICE_HINT_BYTES = 320 };
 
 struct device_hints {
     uint32_t count;
-    char list[DEVICE_HINTS_MAX][DEVICE_HINT_BYTES]; /* a sentence each */
+    char list[DEVICE_HINTS_MAX][DEVICE_HINT_BYTES]; /* one sentence each */
 };
 
 /* `root`: "" , or a folder in place of `/`, for tests. `asked`: what NVIDIA_DRIVER_CAPABILITIES

@@ -16,7 +16,7 @@ static const struct setting options[] = {
     {0},
 };
 
-/* False: the device cannot be opened, and what it does is not known. */
+/* Finds the device's float behaviour. False: the device cannot be opened. */
 static bool find_floats(const whit_device_info *info, whit_device_floats *floats)
 {
     char selector[16];

@@ -11,12 +11,13 @@ struct hard {
     whit_hard_params params;
     whit_hard_view_params view;
     const char *camera, *json_path, *output; /* NULL: none */
-    uint32_t drawn;                          /* a picture instead of the table */
+    uint32_t drawn;                          /* of values_hard_view: which picture is drawn in place
+                                                of the table; 0: none */
     uint32_t level;                          /* whit_numerics; HARD_ALL: the table has all */
     bool quick;
     whit_hard_report *report;
     struct cli_progress progress;
-    double seconds; /* that it took */
+    double seconds; /* the run took */
 };
 
 #endif

@@ -37,7 +37,7 @@ static whit_result prepare(struct job *job)
         job_print_notes(job, false);
     if (result == WHIT_OK)
         result = job_open_device(job);
-    if (job->device) /* a table has a hundred renderers of a few kernels */
+    if (job->device) /* a table makes a hundred renderers, which share few kernels */
         whit_device_keep_kernels(job->device);
     return result;
 }

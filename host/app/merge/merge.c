@@ -137,7 +137,8 @@ static uint64_t get_rays(const json_t *rays, const char *key)
     return number > 0.0 ? (uint64_t)number : 0;
 }
 
-/* A pixel's bound is that of its tile, and of means of samples no more than the mean of theirs. */
+/* Adds a part's counters. The error bound of the picture is the largest of its tiles; that of a
+   tile is the mean of the bounds of its parts, as its pixels are means of theirs. */
 static void add_counters(struct merge *merge, const struct merge_part *part, double *bounds)
 {
     const char *line = text_of(part, "whit:counters");
@@ -167,7 +168,7 @@ static void sum_up(struct merge *merge, uint32_t sets)
     merge->stats.bailout_bound = largest;
 }
 
-/* The bytes are the same where devices differ only in name. */
+/* Warns where parts were drawn on different devices, though the bytes may be the same. */
 static void warn_of_devices(const struct merge *merge)
 {
     for (uint32_t i = 1; i < merge->count; ++i) {
@@ -261,7 +262,8 @@ static whit_result add_up(const struct merge_part *part, whit_image *image, cons
     return WHIT_OK;
 }
 
-/* Sums of `count` parts, in pairs and pairs of pairs, as resolve.comp adds up samples. */
+/* Sums `count` parts in pairs and pairs of pairs, in the order in which resolve.comp adds
+   samples. */
 static whit_result sum_parts(const struct merge *merge, const struct merge_part *parts,
                              uint32_t count, whit_image **out)
 {
@@ -301,7 +303,7 @@ static whit_result merge_tile(const struct merge *merge, uint32_t tile, whit_ima
 
 /* ---- The picture ---- */
 
-/* What one run would have written of itself. NULL: memory ran out, which was said. */
+/* The recipe that a single run would have written. NULL: memory ran out, with a message. */
 static whit_text *make_texts(const struct merge *merge, char **counters, uint32_t *count)
 {
     const struct merge_part *first = &merge->parts[0];

@@ -1,4 +1,4 @@
-/* Parts of a picture that become the picture of one run: `whit merge`. */
+/* Merges parts of a picture into the picture of a single run: `whit merge`. */
 #ifndef APP_MERGE_MERGE_H
 #define APP_MERGE_MERGE_H
 
@@ -13,22 +13,23 @@ struct merge_part {
 };
 
 struct merge {
-    struct merge_part *parts; /* owned; `count` of them, in their order from merge_check on */
+    struct merge_part *parts; /* owned; sorted by merge_check */
     uint32_t count;
     uint32_t tiles, sets; /* of the picture; 1 where it was not divided in that way */
-    bool ids;             /* hit identities, of the first samples alone */
+    bool ids;             /* the parts are hit identities, which only the first samples have */
     whit_stats stats;     /* the parts' counters as those of one picture */
     const whit_load_params *load;
 };
 
-/* Reads the recipes of `count` files. Errors were said, as in all of these. */
+/* Reads the recipes of `count` files. All functions here print their errors. */
 WHIT_CHECK whit_result merge_read(struct merge *merge, const char *const *paths, uint32_t count,
                                   const whit_load_params *load);
-/* Whether they are of one picture, each there once; puts them in the order of tiles, and of
-   samples in these. WHIT_ERROR_INPUT: says which is missing, doubled, or of another picture. */
+/* Checks that the parts are all parts of one picture, each given once, and sorts them by tile, then
+   by samples. WHIT_ERROR_INPUT, naming a part that is missing, given twice, or of another
+   picture. */
 WHIT_CHECK whit_result merge_check(struct merge *merge);
-/* Writes the picture, tile after tile; no more than one of them, and sums of its samples, are in
-   memory. `progress`: after each tile, with the share that is done. */
+/* Writes the picture tile by tile; only one tile, with sums of its samples, is in memory.
+   `progress` is updated after each tile. */
 WHIT_CHECK whit_result merge_write(const struct merge *merge, const char *output,
                                    struct cli_progress *progress);
 void merge_finish(struct merge *merge);

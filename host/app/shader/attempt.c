@@ -5,7 +5,7 @@
 
 #include "app/cache.h"
 
-/* Pixels of the picture in which expectations are looked at. */
+/* Size in pixels of the picture in which expectations are checked. */
 enum { WIDTH = 160, HEIGHT = 120 };
 
 /* ---- On the device ---- */
@@ -30,7 +30,8 @@ static whit_renderer_params params_of(const struct job *job)
     return params;
 }
 
-/* Every kernel that a picture may have: those of many rays, which are more. */
+/* Lists every kernel that a picture may have, as for a picture of many rays, which uses more
+   kernels. */
 static whit_result list_kernels(const struct job *job, struct attempt *attempt)
 {
     whit_renderer_params params = params_of(job);

@@ -1,4 +1,4 @@
-/* A shader on a device, beside a scene: its kernels, its tests and what it expects. */
+/* Tries a shader on a device with a scene: its kernels, tests and expectations. */
 #ifndef APP_SHADER_ATTEMPT_H
 #define APP_SHADER_ATTEMPT_H
 
@@ -6,16 +6,19 @@
 #include "app/job.h"
 
 struct attempt {
-    bool tried; /* there was a device */
+    bool tried; /* false: there was no device */
     whit_kernel kernels[WHIT_KERNELS_MAX], base[WHIT_KERNELS_MAX];
     uint32_t kernel_count, base_count;
     whit_check_result *checks;            /* of all tests; NULL: none were run */
-    double compile_ms, driver_ms, run_ms; /* of tests: by glslang, by the driver, on the device */
-    bool expected, held;                  /* something; all of it is so */
+    double compile_ms, driver_ms, run_ms; /* times of the tests: compilation by glslang, compilation
+                                             by the driver, run on the device */
+    bool expected, held;                  /* expected: the shader has expectations; held: all of
+                                             them hold */
 };
 
-/* Beside `scene`, or without one whit's own small scene. Where no device can be opened nothing is
-   tried if nothing needs one, which is noted; else it is an error. Failures were said. */
+/* Tries the job's shader with `scene`, or with whit's own small scene where it is NULL. Where no
+   device can be opened: a note if the shader has neither tests nor expectations, else an error.
+   Errors were printed. */
 WHIT_CHECK whit_result attempt_make(struct job *job, const char *scene, struct attempt *attempt);
 void attempt_finish(struct attempt *attempt); /* accepts a zeroed one */
 
@@ -24,7 +27,7 @@ void attempt_say(const struct attempt *attempt, const whit_shader *shader);
 /* Kernels, tests and expectations in text. */
 void attempt_print(const struct attempt *attempt, const whit_shader *shader);
 void attempt_describe(const struct attempt *attempt, const whit_shader *shader, json_t *object);
-/* EXIT_DIFFERS where a test failed or an expectation is not so. */
+/* EXIT_DIFFERS where a test failed or an expectation does not hold. */
 int attempt_status(const struct attempt *attempt, const whit_shader *shader);
 
 #endif

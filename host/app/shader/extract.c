@@ -12,7 +12,7 @@
 
 enum { PATH_BYTES = 4096 };
 
-/* The folder without slashes at its end; false: it has no name. */
+/* Gives the folder's path without trailing slashes; false: it has no name. */
 static bool name_folder(const char *picture, const char *into, char folder[PATH_BYTES])
 {
     const char *name = path_name(picture), *dot = strrchr(name, '.');
@@ -27,7 +27,7 @@ static bool name_folder(const char *picture, const char *into, char folder[PATH_
     return bytes;
 }
 
-/* A hidden folder beside it, open to whom a new folder is. */
+/* Makes a hidden folder beside `folder`, with the permissions of any new folder. */
 static bool make_beside(const char *folder, char beside[PATH_BYTES])
 {
     const char *name = path_name(folder);
@@ -40,7 +40,7 @@ static bool make_beside(const char *folder, char beside[PATH_BYTES])
     return false;
 }
 
-/* The start of `name` behind `root`; both are of limited length, and it fits. */
+/* Joins `root` and the first `bytes` of `name` into `path`; both are short enough to fit. */
 static void join(char path[PATH_BYTES], const char *root, const char *name, size_t bytes)
 {
     size_t used = strlen(root);
@@ -50,7 +50,7 @@ static void join(char path[PATH_BYTES], const char *root, const char *name, size
     path[used + 1 + bytes] = 0;
 }
 
-/* Folders on the way to a file below `root`, whose name stays below it. */
+/* Makes the folders on the way to file `name` below `root`; `name` was checked not to leave it. */
 static bool make_folders(const char *root, const char *name, char path[PATH_BYTES])
 {
     for (const char *slash = strchr(name, '/'); slash; slash = strchr(slash + 1, '/')) {
@@ -75,7 +75,7 @@ static bool write_files(const char *root, const whit_shader_file *files, uint32_
     return true;
 }
 
-/* What write_files may have made, files before their folders. */
+/* Removes what write_files may have made, files before their folders. */
 static void remove_files(const char *root, const whit_shader_file *files, uint32_t count)
 {
     char path[PATH_BYTES];

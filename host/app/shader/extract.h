@@ -4,10 +4,10 @@
 
 #include "app/job.h"
 
-/* Writes them below `into`, or where that is NULL below a folder of the working folder called as
-   the picture is without its ending. The folder must not be there, or be empty: it is filled beside
-   and renamed, so that it appears whole or not at all, and nothing in it was there before. Prints
-   each file's path. The exit code; failures were said. */
+/* Writes the files below the folder `into`; NULL: a folder in the working folder, named like the
+   picture without its ending. The folder must be missing or empty: a folder beside it is filled and
+   renamed, so that it appears whole or not at all. Prints each file's path. Gives the exit code;
+   errors were printed. */
 int extract_run(const char *picture, const char *into, const whit_load_params *params);
 
 #endif

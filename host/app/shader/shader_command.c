@@ -1,4 +1,5 @@
-/* `whit shader`: what a file of hooks is made of, and how one begins. */
+/* `whit shader`: describes and tries a file of functions, prints templates, and extracts functions
+   from pictures. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -192,7 +193,7 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     return attempt_status(attempt, shader);
 }
 
-/* NULL: there is nothing, for a reason that was not said. */
+/* Writes `text` to a file and frees it. `text` NULL is an error, which is printed here. */
 static whit_result dump_text(const char *folder, const char *name, const char *ending, char *text)
 {
     char path[4096];
@@ -248,8 +249,8 @@ static int extract(struct cli_reader *reader, const struct shader_options *reque
     return reader->status;
 }
 
-/* What compiles, on the device. What is written comes last, so that it has the tests' kernel; what
-   was found is told before an error of what follows. */
+/* Tries the compiled shader on the device and prints what was found, before any later error. --dump
+   comes last, so that it includes the tests' kernel. */
 static int examine(struct job *job, const struct shader_options *request, const char *path)
 {
     struct attempt attempt = {0};

@@ -33,7 +33,7 @@ bool state_file_open(struct state_file *file, const char *path, char *said, size
     return false;
 }
 
-/* Whether the line has as many words as it may; argv[0] is the command. */
+/* Splits a line into words behind argv[0], the command's name; false where it has too many. */
 static bool split(struct cli_reader *reader, char *line, char *argv[WORDS_MAX + 1])
 {
     bool whole = true;

@@ -10,11 +10,11 @@ struct state_file {
     char *text;
 };
 
-/* Why not, as "PATH: reason" or "PATH:LINE: reason", goes to `said`. */
+/* After an error `said` has the reason, as "PATH: reason" or "PATH:LINE: reason". */
 bool state_file_open(struct state_file *file, const char *path, char *said, size_t said_bytes);
 
-/* Reads its options into `settings`, by the rows that `command` takes and files may say. Empty
-   lines and those that begin with # are skipped. False after nonsense. */
+/* Reads the file's options into `settings`: those that `command` takes and files may contain. Empty
+   lines and those that begin with # are skipped. False after an invalid line. */
 bool state_file_read(struct state_file *file, const struct cli_command *command,
                      struct settings *settings, char *said, size_t said_bytes);
 

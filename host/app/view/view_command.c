@@ -1,4 +1,4 @@
-/* whit view: the options of `whit render`, on a window. */
+/* `whit view`: takes the options of `whit render` and opens a window. */
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static const char *const start_hint = "Drag turns the camera, the wheel comes ne
 
 enum { REMEMBER_UNSAID = 2 };
 
-/* What the options say; its strings are borrowed. */
+/* The options; strings are borrowed from the command line. */
 struct view_request {
     struct job job;
     struct view_params view;
@@ -64,7 +64,7 @@ static const struct setting options[] = {
     {0},
 };
 
-/* After a signal: the window looks for it four times a second, and keeps the camera. */
+/* Time to save the camera after a signal, for which the window looks four times a second. */
 enum { GRACE_MS = 1000 };
 
 /* ---- Files of settings ---- */
@@ -78,7 +78,7 @@ static bool read_state(struct settings *settings, const char *path, char *said, 
     return read;
 }
 
-/* view_params.load_state. What files may reach stays as the command line says. */
+/* view_params.load_state. The rights of files to read others stay those of the command line. */
 static whit_result load_state(void *user, const char *path, struct settings *settings,
                               char *message, size_t message_bytes)
 {
@@ -175,7 +175,8 @@ static void list_finish(struct scene_list *list)
         free(list->paths[i]);
 }
 
-/* whit's own scene to begin with: beside the installed program, or where it was built. */
+/* Finds the scene that opens when none is given: installed beside the program, or in the source
+   folder that it was built from. */
 static const char *find_start(char *path, size_t bytes)
 {
     char own[SETTING_PATH_BYTES];
@@ -223,7 +224,8 @@ static int work(struct job *job, struct view_params *view)
     cli_keep_what_is_done(GRACE_MS);
     cli_set_saving();
     if (settings_compiles(&job->settings)) {
-        view->settings.picture.skip_sliders = true; /* a file that is written again may have less */
+        view->settings.picture.skip_sliders = true; /* the shader's file may have fewer sliders
+                                                       after an edit */
         if (job_begin_compiler(job, NULL) != WHIT_OK)
             return EXIT_USAGE;
         view->compiler = job->compiler;
@@ -239,7 +241,7 @@ static int work(struct job *job, struct view_params *view)
     return validation > 0 ? EXIT_DIFFERS : EXIT_FINE;
 }
 
-/* The file of --state comes first, so that the command line has the last word. */
+/* The file of --state is read first, so that the command line overrides it. */
 static bool read_all(struct view_request *request, struct cli_reader *reader, int argc, char **argv)
 {
     char said[1024];
@@ -260,7 +262,8 @@ static bool read_all(struct view_request *request, struct cli_reader *reader, in
         reader->status = EXIT_USAGE;
         return false;
     }
-    request->job.settings.given = 0; /* what it says and the command line says too is no quarrel */
+    request->job.settings.given = 0; /* no conflict where the command line repeats an option of the
+                                        file */
     cli_reader_init(reader, &command_view, argc, argv);
     return job_read(&request->job, reader, request, true);
 }
