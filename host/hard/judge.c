@@ -1,4 +1,4 @@
-/* What levels make of hard rays, beside exact arithmetic. */
+/* Judges the hits that the levels of numerics find for hard rays, by exact arithmetic. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -107,11 +107,11 @@ whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t numerics,
 
 /* ---- One ray ---- */
 
-/* The relative offset of rays beside a ray, larger than float errors: the shear and the edge
-   functions of a level round coordinates relative to the origin some 8 times, 2^-24 each. */
+/* Relative offset from a ray to its neighbours, larger than float errors: the shear and the edge
+   functions round coordinates relative to the origin some 8 times, by 2^-24 each. */
 #define BESIDE 0x1p-19
 
-/* Two axes across the direction. */
+/* Two unit vectors perpendicular to the direction and to each other. */
 static void across(const double dir[3], double first[3], double second[3])
 {
     int min = 0;
@@ -126,8 +126,8 @@ static void across(const double dir[3], double first[3], double second[3])
     double3_unit(second);
 }
 
-/* Whether eight rays beside this one hit too: then it goes through the inside of a surface and not
-   along its outline. */
+/* Whether eight neighbouring rays hit too: then the ray passes through the inside of a surface and
+   not along its outline. */
 static bool is_surrounded(struct rational *rational, const struct gpu_ray *ray)
 {
     const double dir[3] = {(double)ray->dir[0], (double)ray->dir[1], (double)ray->dir[2]};
@@ -147,7 +147,7 @@ static bool is_surrounded(struct rational *rational, const struct gpu_ray *ray)
     return true;
 }
 
-/* Spheres have no edges. */
+/* Whether the triangle that was hit has an open edge; spheres have no edges. */
 static bool touches_open_edge(const struct hard_judgement *j, const struct rational_hit *hit)
 {
     uint32_t mesh = j->hard->scene->instances[hit->instance].mesh;
@@ -155,7 +155,8 @@ static bool touches_open_edge(const struct hard_judgement *j, const struct ratio
            j->topology->open[j->topology->first[mesh] + hit->primitive];
 }
 
-/* Whether the hit is so near the ray's origin that rounding may put it on either side of it. */
+/* Whether the hit is so near the ray's origin that rounding may put it before or behind the
+   origin. */
 static bool starts_there(const struct hard_scene *hard, const struct gpu_ray *ray, float t)
 {
     double size = 0.0, dir = 0.0;
@@ -166,8 +167,8 @@ static bool starts_there(const struct hard_scene *hard, const struct gpu_ray *ra
     return (double)t * dir <= BESIDE * size;
 }
 
-/* Whether the ray starts in the plane of the triangle, as far as floats tell: then they do not say
-   on which side, and a ray along the plane may begin far from where it goes through. */
+/* Whether the ray starts in the plane of the triangle within float errors. Then floats do not tell
+   on which side it starts, and a ray along the plane may cross it far from its origin. */
 static bool starts_in_plane(const struct hard_scene *hard, const struct gpu_ray *ray,
                             const struct rational_hit *hit)
 {
@@ -231,8 +232,8 @@ bool hard_goes_far(const struct gpu_ray *ray, float t)
     return t * dir > 0x1p-20f * origin;
 }
 
-/* Hits whose t differ by at most this share are at the same place, but for rounding; exact hits are
-   at different places when they differ by more than four times as much. */
+/* Hits whose t differ by at most this share are at the same place up to rounding. Exact hits are at
+   different places where their t differ by more than four times this share. */
 #define TOGETHER 0x1p-18f
 
 static bool is_together(float t, float next, float share)
@@ -240,8 +241,8 @@ static bool is_together(float t, float next, float share)
     return fabsf(next - t) <= share * fabsf(t);
 }
 
-/* Whether a second primitive, where exactly there is none, is hit at the same place. Traced by the
-   C twin, whose bits are compared with the device elsewhere. */
+/* Whether a second primitive is hit at the same place where exact arithmetic finds none. It is
+   traced by the twin, whose bits are compared with the device elsewhere. */
 static bool is_double(const struct hard_judgement *j, struct rational *rational, uint64_t i,
                       uint32_t *status)
 {
@@ -291,7 +292,7 @@ static void judge_ray(const struct hard_judgement *j, struct rational *rational,
 
 struct judging {
     const struct hard_judgement *judgement;
-    whit_tally *tallies; /* of each chunk */
+    whit_tally *tallies; /* per chunk */
     uint32_t *status;
     uint32_t *failed;
 };

@@ -56,7 +56,7 @@ const struct hard_case *hard_cases(uint32_t *count)
 
 struct maker {
     const struct hard_case *hard;
-    float *positions; /* 9 a triangle */
+    float *positions; /* 9 per triangle */
     uint32_t count, capacity;
     bool failed;
 };
@@ -76,7 +76,7 @@ static void put(struct maker *maker, const double a[3], const double b[3], const
     }
 }
 
-/* A fixed number of 8 bits for a point of the lattice. */
+/* A pseudo-random number of 8 bits that depends only on the lattice point. */
 static uint32_t lattice_bits(const int p[3])
 {
     uint32_t mixed = 0;
@@ -112,7 +112,7 @@ static void put_lattice(struct maker *maker, int corner[3][3], bool turned)
     put(maker, p[0], p[turned ? 2 : 1], p[turned ? 1 : 2]);
 }
 
-/* One of eight faces, divided. */
+/* Adds one of the eight faces, subdivided. */
 static void put_face(struct maker *maker, const int sign[3])
 {
     bool turned = sign[0] * sign[1] * sign[2] < 0;
@@ -187,7 +187,8 @@ static void make_cube(struct maker *maker)
     }
 }
 
-/* A fan of them around one point, each half as wide as the one before. */
+/* A fan of needles around one point. Their widths halve from needle to needle, over and over from
+   2^-20 to 2^-40. */
 static void make_needles(struct maker *maker)
 {
     for (int i = 0; i < 63; ++i) {
@@ -219,7 +220,7 @@ static void make_duplicates(struct maker *maker)
         put_quad(maker, p);
 }
 
-/* Five of them side by side: trees of one node have kernels of their own on some devices. */
+/* Five junctions side by side, because some devices have special kernels for trees of one node. */
 static void make_junctions(struct maker *maker)
 {
     for (int i = 0; i < 5; ++i) {
@@ -283,7 +284,8 @@ static void make_mesh(struct maker *maker)
 
 enum { TRIANGLES_MAX = 8 * STEPS * STEPS };
 
-/* Turned by thirds, which no float holds, mirrored and stretched. */
+/* The instance's transform: a rotation whose entries are thirds, which no float represents,
+   mirrored and stretched. */
 static struct affine place_instance(const struct hard_case *hard)
 {
     static const double rows[3][3] = {{2, -1, 2}, {2, 2, -1}, {-1, 2, 2}};
@@ -302,7 +304,7 @@ static int compare_points(const void *a, const void *b)
     return memcmp(a, b, 3 * sizeof(float));
 }
 
-/* Equal vertices become one: the first of `positions` that are there, sorted. */
+/* Merges equal vertices. `positions` keeps the distinct ones, sorted. */
 static whit_result weld(const struct maker *maker, struct scene_mesh *mesh)
 {
     uint32_t corners = 3 * maker->count, kept = 0;
@@ -312,7 +314,8 @@ static whit_result weld(const struct maker *maker, struct scene_mesh *mesh)
     if (!mesh->positions || !mesh->indices)
         return WHIT_ERROR_MEMORY;
     for (size_t i = 0; i < 3 * (size_t)corners; ++i)
-        mesh->positions[i] = maker->positions[i] + 0.0f; /* one zero */
+        mesh->positions[i] = maker->positions[i] + 0.0f; /* makes -0 a +0, so that equal vertices
+                                                            have equal bits */
     mesh->vertex_count = corners;
     for (uint32_t i = 0; i < corners; ++i)
         mesh->indices[i] = i;
@@ -429,7 +432,7 @@ whit_result hard_scene_init(const whit_log *log, const struct hard_case *hard,
     return result;
 }
 
-/* What is known of any scene. */
+/* Finishes a hard_scene: pose, trees, and the ranges of ray origins. */
 static whit_result take_scene(const whit_log *log, double time_s, struct hard_scene *out)
 {
     whit_result result = pose_and_build(log, time_s, out);
@@ -492,7 +495,7 @@ static struct affine place_variant(const struct hard_variant *variant)
     return place;
 }
 
-/* World triangles under `place`, or as they are. */
+/* Gathers all triangles in world space, transformed by `place` where it is not NULL. */
 static whit_result gather(const whit_log *log, const struct hard_scene *given,
                           const struct affine *place, struct scene_mesh *mesh)
 {

@@ -4,24 +4,26 @@
 
 #include "hard/hard.h"
 
-/* The built-in ones, quick or not. */
+/* The built-in cases, in the order of the table. */
 const struct hard_case *hard_cases(uint32_t *count);
 
 WHIT_CHECK whit_result hard_scene_init(const whit_log *log, const struct hard_case *hard,
                                        struct hard_scene *out);
-/* A scene of the user's at one time; `scene` is borrowed. */
+/* A user's scene at one time; `scene` is borrowed. */
 WHIT_CHECK whit_result hard_scene_borrow(const whit_log *log, const struct scene *scene,
                                          double time_s, bool flatten, struct hard_scene *out);
-/* A frozen scene of one mesh, which is taken over; `place` NULL: where it is. */
+/* A frozen scene of one mesh, which it takes over, as an instance at `place`; NULL: without a
+   transform. */
 WHIT_CHECK whit_result hard_scene_of_mesh(const whit_log *log, const char *name,
                                           struct scene_mesh *mesh, const struct affine *place,
                                           struct scene **out);
 
-/* All triangles of a scene as one mesh, changed: as vertices, each computed in double and rounded
-   to float, which makes a mesh of its own; or as an instance of the mesh as it is in the world. */
+/* A scene made of all triangles of another scene as one mesh with a transform. Either its vertices
+   are transformed, in double and rounded to float; or (`instanced`) the mesh stays and an instance
+   has the transform. */
 struct hard_variant {
     const char *name;
-    double scale, offset; /* offset on every axis: up, down, up */
+    double scale, offset; /* offset: +offset on x and z, -offset on y */
     bool turned, mirrored, instanced;
 };
 const struct hard_variant *hard_variants(uint32_t *count);

@@ -43,7 +43,7 @@ static double draw_sign(uint64_t *state)
     return draw(state) & 1u << 31 ? -1.0 : 1.0;
 }
 
-/* A whole number from -most to most. */
+/* A whole number from -max to max. */
 static double draw_whole(uint64_t *state, uint32_t max)
 {
     return (double)(draw(state) % (2 * max + 1)) - (double)max;
@@ -63,7 +63,8 @@ struct target {
     uint32_t instance, primitive;
     double corner[3][3]; /* world */
     double point[3];
-    double size[3]; /* of what corners are sums of, on the way from the mesh's space */
+    double size[3]; /* per axis: the largest sum of the magnitudes that are added to transform a
+                       corner to world space */
 };
 
 static void mix(double corner[3][3], double u, double v, double out[3])
@@ -99,7 +100,7 @@ static void draw_triangle(const struct hard_scene *hard, uint64_t *state, struct
     }
 }
 
-/* A vertex, a point of an edge, or with `inside` by turns a point between them. */
+/* Draws a vertex, a point on an edge, or, where `inside`, also a point inside of the triangle. */
 static void draw_target(const struct hard_scene *hard, bool inside, uint64_t *state,
                         struct target *target)
 {
@@ -137,7 +138,8 @@ static void aim(struct hard_ray *out, const double at[3])
         out->ray.dir[k] = (float)(at[k] - (double)out->ray.origin[k]);
 }
 
-/* Level with the target on all axes but one, where that keeps the ray within its reach. */
+/* Gives the origin the target's coordinates on all axes but one, exactly or nearly, as far as it
+   stays within reach. */
 static void level_origin(const struct hard_scene *hard, const double at[3], uint64_t *state,
                          double origin[3])
 {
@@ -161,7 +163,8 @@ static void make_aimed(const struct hard_scene *hard, uint64_t *state, struct ha
     aim(out, target.point);
 }
 
-/* In the bounds, made half as large again; near a triangle that is small among others. */
+/* An origin in the bounds, enlarged by half, or near the target's triangle, which may be small
+   among others. */
 static void make_around(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     struct target target;
@@ -200,7 +203,7 @@ static void make_axial(const struct hard_scene *hard, uint64_t *state, struct ha
     set_dir(out, dir);
 }
 
-/* A vertical ray through the landscape at a multiple of a quarter of its squares. */
+/* A vertical ray through HARD_GRID at multiples of a quarter of its squares. */
 static void make_lattice(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     double dir[3], origin[3];
@@ -232,15 +235,15 @@ static void make_cross(const struct hard_scene *hard, uint64_t *state, struct ha
     set_dir(out, dir);
 }
 
-/* A point in the triangle's plane, up to `halves` half edges away from its first corner; half edges
-   are exact where edges are. */
+/* A point in the triangle's plane, up to `halves` half edges from its first corner. Half an edge is
+   exact in floating point where the edge is. */
 static void draw_in_plane(struct target *target, uint32_t halves, uint64_t *state, double out[3])
 {
     double v = 0.5 * draw_whole(state, halves), u = 0.5 * draw_whole(state, halves);
     mix(target->corner, u, v, out);
 }
 
-/* From one point of the triangle's plane to another. */
+/* A ray from one point of the triangle's plane to another. */
 static void make_flat(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     struct target target;
@@ -298,16 +301,16 @@ static void make_far(const struct hard_scene *hard, uint64_t *state, struct hard
     aim(out, target.point);
 }
 
-/* One float further along `side`, as next_float of shaders/lib/spawn.glsl; but from 0 the least
-   denormal, which is harder for the tests of the ray. */
+/* The next float in the direction of `side`, as next_float of shaders/lib/spawn.glsl, except that 0
+   is followed by the smallest denormal, which is harder for intersection tests. */
 static float step_beyond(float x, float side)
 {
     return side == 0.0f ? x : nextafterf(x, side > 0.0f ? INFINITY : -INFINITY);
 }
 
-/* As a secondary ray starts (shaders/bind/surface.glsl, lib/spawn.glsl; Pharr, Jakob and Humphreys
-   2023, section 6.8.6), in world space. Points of moved instances have the rounding of the way
-   there and back besides. */
+/* A ray that starts as secondary rays do (shaders/bind/surface.glsl, lib/spawn.glsl; Pharr, Jakob
+   and Humphreys 2023, section 6.8.6), in world space. With instances the error bound includes the
+   rounding of the transform to object space and back. */
 static void make_leaving(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
     struct target target;
@@ -345,7 +348,7 @@ static void make_leaving(const struct hard_scene *hard, uint64_t *state, struct 
     out->primitive = target.primitive;
 }
 
-/* See make_anchors of hard_mesh.c. */
+/* The rays for make_anchors of mesh.c. */
 static void make_listed(uint64_t index, struct hard_ray *out)
 {
     static const struct gpu_ray listed[] = {

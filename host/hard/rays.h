@@ -1,4 +1,4 @@
-/* Rays at which ray tracers fail. */
+/* Rays that make ray tracers fail. */
 #ifndef HARD_RAYS_H
 #define HARD_RAYS_H
 
@@ -12,7 +12,8 @@ struct hard_ray {
     uint32_t instance, primitive;
 };
 
-/* Ray `index` of the set `seed`. `rays` is one that suits the mesh. The scene has triangles. */
+/* Makes ray `index` of the set `seed`. `rays` must suit the mesh, and the scene must have
+   triangles. */
 struct hard_ray hard_ray_make(const struct hard_scene *hard, enum hard_rays rays, uint64_t seed,
                               uint64_t index);
 

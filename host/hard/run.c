@@ -12,26 +12,27 @@
 #include "hard/rays.h"
 #include "hard/topology.h"
 
-/* Seeds are the cases' numbers: the hash is of the first rays of each. */
+/* The seed of a case is its number. The report's hash is of the first RAYS_HASHED rays of each
+   case. */
 enum {
     LEVELS = 3,
     RAYS_DEFAULT = 20000,
     RAYS_HASHED = 512,
-    PIECE = 1 << 20, /* rays in memory */
+    PIECE = 1 << 20, /* rays in memory at a time */
 };
 
 struct hard_run {
     const whit_hard_params *params;
     whit_log log;
-    const struct hard_device *device; /* NULL: the twin alone */
+    const struct hard_device *device; /* NULL: only the twin traces */
     uint32_t levels;
-    uint64_t ray_count; /* of a row */
-    uint64_t piece;     /* of them in memory now */
+    uint64_t ray_count; /* rays per row */
+    uint64_t piece;     /* number of rays in memory now */
     double deadline_ms; /* 0: none */
     whit_hard_report *report;
     uint32_t row_capacity;
     struct hard_ray *rays;
-    struct gpu_ray *plain; /* the same, as the device takes them */
+    struct gpu_ray *plain; /* the same rays, as the device takes them */
     struct rational_hit *exact;
     struct gpu_hit *hits, *twin;
 };
@@ -68,7 +69,7 @@ static void say_progress(const struct hard_run *run, double done)
         run->params->progress(run->params->progress_user, done);
 }
 
-/* The last error, until it is known whether it is one. */
+/* Holds the last error message until it is known whether it must be logged. */
 struct held_log {
     char text[512];
 };
@@ -80,7 +81,8 @@ static void hold_back(void *user, whit_log_level level, const char *message)
         snprintf(held->text, sizeof held->text, "%s", message);
 }
 
-/* *cut: the device says that its hits are not to be trusted, which the table tells. */
+/* *cut: the device reported that its hits cannot be trusted; this is shown in the table and is no
+   error. */
 static whit_result trace_on_device(struct hard_run *run, const struct hard_scene *hard,
                                    uint32_t numerics, double *device_ms, bool *cut)
 {
@@ -98,7 +100,7 @@ static whit_result trace_on_device(struct hard_run *run, const struct hard_scene
     return result;
 }
 
-/* NULL: no hits, which no set of rays has. */
+/* Continues the hash `value` by the ids of hits; `hits` NULL: leaves it unchanged. */
 static uint64_t hash_hits(uint64_t value, const struct gpu_hit *hits, uint64_t count)
 {
     for (uint64_t i = 0; i < count && hits; ++i) {
@@ -109,7 +111,7 @@ static uint64_t hash_hits(uint64_t value, const struct gpu_hit *hits, uint64_t c
     return value;
 }
 
-/* The rays in run->rays at one level. */
+/* Traces and judges the rays in run->rays at one level. */
 static whit_result trace_level(struct hard_run *run, const struct hard_scene *hard,
                                const struct hard_topology *topology, whit_hard_row *row)
 {
@@ -170,7 +172,7 @@ static void make_rays(struct hard_run *run, const struct hard_scene *hard, enum 
     }
 }
 
-/* All rays of a row at every level. Names of the rows are the caller's. */
+/* Traces all rays of a case at every level, a row for each. The rows' names come from `names`. */
 static whit_result shoot(struct hard_run *run, const struct hard_scene *hard, enum hard_rays kind,
                          uint64_t seed, const whit_hard_row *names)
 {

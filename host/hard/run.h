@@ -4,11 +4,11 @@
 
 #include "hard/hard.h"
 
-/* What traces rays on a device, which this module knows nothing of. */
+/* An interface to trace rays on a device; this module does not know Vulkan. */
 struct hard_device {
-    /* Closest hits of `count` rays with `accel`, which is posed at `time_s`, at NUMERICS_*;
-       *device_ms: what the traversals took. WHIT_ERROR_STATUS, logged like other errors, where the
-       hits are not to be trusted. */
+    /* Finds the closest hits of `count` rays in `accel`, which is posed at `time_s`, at level
+       `numerics` (NUMERICS_*); *device_ms: time of the traversals. WHIT_ERROR_STATUS, logged like
+       other errors, where the hits cannot be trusted. */
     whit_result (*trace)(const struct hard_device *device, const whit_log *log, struct accel *accel,
                          double time_s, uint32_t numerics, const struct gpu_ray *rays,
                          uint64_t count, struct gpu_hit *hits, double *device_ms);
@@ -16,7 +16,7 @@ struct hard_device {
     bool equal_bits; /* as of whit_hard_report */
 };
 
-/* As whit_hard_run; `device` and `scene` may be NULL; `flatten`: the scene as one tree. */
+/* As whit_hard_run; `device` and `scene` may be NULL; `flatten`: a single tree for the scene. */
 WHIT_CHECK whit_result hard_run(const struct hard_device *device, const struct scene *scene,
                                 bool flatten, const whit_hard_params *params, const whit_log *log,
                                 whit_hard_report **out);

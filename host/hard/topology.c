@@ -1,4 +1,4 @@
-/* Which edges are open, crowded or flipped, and which triangles are there twice. */
+/* Finds edges that are open, crowded or flipped, and triangles that are there twice. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ struct corner {
 struct edge {
     uint32_t from, to; /* from < to */
     uint32_t triangle;
-    bool turned; /* the triangle goes from `to` to `from` */
+    bool turned; /* the triangle's winding goes from `to` to `from` */
 };
 
 struct face {
@@ -49,7 +49,7 @@ static int compare_faces(const void *a, const void *b)
     return compare_words(((const struct face *)a)->corners, ((const struct face *)b)->corners, 3);
 }
 
-/* Equal vertices get one number, into `welded`, 3 a triangle. */
+/* Numbers vertices in `welded`, 3 per triangle; equal vertices get the same number. */
 static whit_result weld(const struct scene_mesh *mesh, uint32_t *welded)
 {
     uint32_t count = 3 * mesh->triangle_count, number = 0;
@@ -69,7 +69,8 @@ static whit_result weld(const struct scene_mesh *mesh, uint32_t *welded)
     return WHIT_OK;
 }
 
-/* Edges [first, end) are one. */
+/* Counts one edge of the mesh, which is entries [first, end) of `edges`, one for each triangle on
+   it. */
 static void count_edge(struct hard_topology *topology, const struct edge *edges, uint32_t first,
                        uint32_t end, uint8_t *vertex_open)
 {

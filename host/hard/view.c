@@ -1,4 +1,4 @@
-/* Pictures of where levels of numerics are wrong. */
+/* `whit hard --view`: pictures that show where a level of numerics is wrong. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -34,7 +34,8 @@ static whit_result open_scene(struct view *view, const struct scene *scene, bool
     return hard_scene_borrow(&view->log, scene, view->params->time_s, flatten, &view->hard);
 }
 
-/* The built-in sphere is seen from outside here. */
+/* Allocates and makes the rays. The case of the built-in sphere promises hits from inside, but here
+   it is seen from outside, so the truth is HARD_ORACLE. */
 static whit_result prepare(struct view *view)
 {
     size_t count = (size_t)view->width * view->height;
@@ -67,7 +68,7 @@ static whit_result trace(struct view *view, const struct hard_device *device)
                   : hard_trace_twin(&view->hard, numerics, view->rays, count, threads, view->hits);
 }
 
-/* |cosine| between ray and normal, on a dark ground. */
+/* Grey by |cosine| between ray and normal; misses are nearly black. */
 static float headlight(const struct gpu_ray *ray, const struct gpu_hit *hit)
 {
     double dir[3], n[3] = {(double)hit->ng_x, (double)hit->ng_y, (double)hit->ng_z};

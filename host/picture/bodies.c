@@ -1,5 +1,6 @@
-/* Bodies of media, and how near their surfaces come: where those of two bodies are farther apart
-   than what kernels take for one place (shaders/bind/crossing.glsl), none has to look for them. */
+/* Lists bodies of media and bounds the distance between their surfaces. Where it exceeds the
+   distance within which kernels treat surfaces as being at one place (shaders/bind/crossing.glsl),
+   kernels need not search for such surfaces. */
 #include "picture/bodies.h"
 
 #include <float.h>
@@ -11,7 +12,7 @@
 #include "base/hash.h"
 #include "base/vec.h"
 
-/* Pairs of boxes that are compared before any two are taken to touch: some 50 ms. */
+/* After comparing this many pairs of boxes, some 50 ms, bodies are assumed to touch. */
 enum { PAIRS_MAX = 1 << 23 };
 
 bool bodies_bounded_by(const struct scene_material *m)
@@ -78,7 +79,8 @@ static bool list_mesh(const struct scene *scene, const struct scene_mesh *mesh,
     return true;
 }
 
-/* To world space, wider by what placing a box rounds, and more than hits are off by. */
+/* The body's box in world space, widened by more than the rounding of its transform and the error
+   of hits. */
 static struct body place_body(const struct body *body, const struct affine *placed)
 {
     struct body out = empty_body(body->material);
@@ -149,9 +151,9 @@ void bodies_finish(struct bodies *bodies)
 struct surface {
     uint32_t body;
     bool round; /* a sphere: corners[0] is its centre */
-    bool vague; /* only its box is known: a sphere that is stretched */
+    bool vague; /* only its box is known, as for a stretched sphere */
     double corners[3][3], radius;
-    double lo[3], hi[3]; /* with the rounding of its body */
+    double lo[3], hi[3]; /* box, widened by the rounding of its body */
 };
 
 struct surfaces {
@@ -159,7 +161,7 @@ struct surfaces {
     uint32_t count, capacity;
 };
 
-/* The nearest point of a segment to p. */
+/* The distance from p to the segment from a to b. */
 static double segment_distance(const double a[3], const double b[3], const double p[3])
 {
     const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
@@ -170,7 +172,8 @@ static double segment_distance(const double a[3], const double b[3], const doubl
     return double3_distance(at, p);
 }
 
-/* To its edges, or to its plane where p is above it. */
+/* The distance from p to the triangle: to its edges, or to its plane where p lies above its
+   inside. */
 static double triangle_distance(const double corners[3][3], const double p[3])
 {
     double e1[3], e2[3], n[3], nearest = INFINITY;
@@ -193,7 +196,8 @@ static double triangle_distance(const double corners[3][3], const double p[3])
     return above ? fabs(double3_dot(n, ap)) / sqrt(double3_dot(n, n)) : nearest;
 }
 
-/* From the sphere's surface, which the triangle may be outside or inside of. */
+/* The distance between a triangle and a sphere's surface; the triangle may be outside or inside of
+   the sphere. */
 static double sphere_to_triangle(const struct surface *sphere, const struct surface *triangle)
 {
     const double *c = sphere->corners[0];
@@ -220,7 +224,8 @@ static double box_to_box(const struct surface *a, const struct surface *b)
     return sqrt(d2);
 }
 
-/* At least; two triangles are as far apart as their boxes. */
+/* A lower bound of the distance between two surfaces; for two triangles, the distance of their
+   boxes. */
 static double surface_distance(const struct bodies *bodies, const struct surface *a,
                                const struct surface *b)
 {
@@ -249,7 +254,7 @@ static void set_box(struct surface *s, int corners, double radius, double roundi
     }
 }
 
-/* By how much the transform makes all lengths longer; 0: not all alike. */
+/* The factor by which the transform scales all lengths; 0: it does not scale uniformly. */
 static double scale_of(const struct affine *placed)
 {
     const double *m = placed->m;
@@ -291,7 +296,7 @@ static bool boxes_meet(const double *alo, const double *ahi, const double *blo, 
     return true;
 }
 
-/* A body that another one comes near to: the box of all these. */
+/* For a body: the box around all other bodies that come near it. */
 struct near {
     double lo[3], hi[3];
 };
@@ -304,7 +309,7 @@ static void near_add(struct near *near, const struct body *other)
     }
 }
 
-/* Triangles of one instance that come near to what their bodies are near to. */
+/* Adds the triangles of one instance that lie within `within` of the `near` box of their body. */
 static bool add_triangles(const struct scene *scene, const struct scene_pose *pose,
                           const struct bodies *bodies, const struct near *nears, uint32_t first,
                           uint32_t end, double within, struct surfaces *out)
@@ -365,8 +370,8 @@ static int by_low_x(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The least distance between surfaces of two different bodies, not both spheres, and at most `gap`;
-   0 where there are more than PAIRS_MAX pairs to look at. */
+/* The smallest distance between surfaces of two different bodies, not both spheres, or `gap` if
+   that is less; 0 where more than PAIRS_MAX pairs would have to be compared. */
 static double sweep_surfaces(const struct bodies *bodies, const struct surfaces *surfaces,
                              double gap)
 {
@@ -400,8 +405,8 @@ static int by_lo(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The same for pairs of spheres. For other pairs of bodies it only finds which come near to each
-   other. */
+/* As sweep_surfaces, but only for pairs of spheres. Other pairs of bodies that come near to each
+   other are noted in `nears`. */
 static double sweep_bodies(const struct scene *scene, const struct scene_pose *pose,
                            const struct bodies *bodies, struct ranked *ranked, double gap,
                            struct near *nears, bool *any)
@@ -463,7 +468,10 @@ static double search(const struct scene *scene, const struct scene_pose *pose,
 bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
                         struct bodies *bodies, double distance_max)
 {
-    enum { ROOM = 4 }; /* a camera that moves away is not searched for at each of its pictures */
+    enum {
+        ROOM = 4
+    }; /* searches farther than needed, so that a camera that moves away needs no
+          new search for each picture */
     if (bodies->count < 2)
         return false;
     if (bodies->gap > 0.0 || bodies->searched == 0.0) {

@@ -1,4 +1,4 @@
-/* Bodies of media: what is of one medium, in one instance; each sphere is one of its own. */
+/* Bodies of media: a body is all triangles of one medium in one instance, or one sphere. */
 #ifndef PICTURE_BODIES_H
 #define PICTURE_BODIES_H
 
@@ -9,9 +9,9 @@
 
 struct body {
     uint32_t instance, material;
-    uint32_t sphere;     /* of its mesh, or SCENE_NONE: triangles */
-    double lo[3], hi[3]; /* world space, with what placing them rounds */
-    double rounding;     /* as much */
+    uint32_t sphere;     /* index in its mesh, or SCENE_NONE: the body is triangles */
+    double lo[3], hi[3]; /* world space, widened by `rounding` */
+    double rounding;     /* bound of rounding errors, world units */
 };
 
 /* The bodies of a scene in one pose. A zeroed struct is empty. */

@@ -1,4 +1,5 @@
-/* From a camera of the scene, or the caller's own, to the vectors that camera rays are made of. */
+/* Converts a camera of the scene, or the caller's own, to the vectors of gpu_frame that camera rays
+   are made of. */
 #include "picture/camera.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@ static void subtract(const double a[3], const double b[3], double out[3])
         out[i] = a[i] - b[i];
 }
 
-/* False for the zero vector and for what is not finite. */
+/* False for the zero vector and for one that is not finite. */
 static bool normalize(double v[3])
 {
     double size = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
@@ -73,7 +74,8 @@ static void scale_to_float(const double v[3], double scale, float out[3])
         out[i] = (float)(v[i] * scale);
 }
 
-/* Any up that is not along the view; the file's, where it can be. */
+/* Makes the camera's axes. The file's up is used unless it lies along the view direction; then
+   another one. */
 static bool make_basis(const struct scene_camera *camera, double forward[3], double right[3],
                        double up[3])
 {
@@ -110,7 +112,7 @@ static whit_result refuse(const whit_log *log, const struct scene_camera *camera
     return WHIT_ERROR_USAGE;
 }
 
-/* Half the height of the picture: in the picture plane at distance 1, or in the world. */
+/* Half the height of the picture: at distance 1 from the eye, or (orthographic) in world units. */
 static double half_height(const struct scene_camera *camera)
 {
     switch (camera->kind) {
@@ -186,8 +188,8 @@ double camera_pixel_area(const struct gpu_frame *frame, uint32_t kind)
     return sides / ((double)frame->width * (double)frame->height);
 }
 
-/* A square onto the disk, keeping areas and neighbours (Shirley and Chiu 1997, A Low Distortion Map
-   Between Disk and Square). Both -1..1. */
+/* Maps the square to the disk, preserving areas and neighbourhoods (Shirley and Chiu 1997, A Low
+   Distortion Map Between Disk and Square). Both have coordinates -1..1. */
 static void square_to_disk(const double square[2], double disk[2])
 {
     double a = square[0], b = square[1], radius, angle;
@@ -242,7 +244,7 @@ void sine_cosine_pi(float a, float *sine, float *cosine)
     *cosine = quarters == 0 ? c : quarters == 1 ? -s : -c;
 }
 
-/* As camera_line of the kernel. */
+/* The twin of camera_line in shaders/bind/camera.glsl. */
 static void camera_line(const struct gpu_frame *frame, uint32_t kind, const float lens_xy[2],
                         const float at[2], float origin[3], float dir[3])
 {
@@ -274,7 +276,7 @@ static void camera_line(const struct gpu_frame *frame, uint32_t kind, const floa
     }
 }
 
-/* inverse_square_root of shaders/lib/angles.glsl. */
+/* The twin of inverse_square_root in shaders/lib/angles.glsl. */
 static float inverse_square_root(float x)
 {
     float y, half_x = 0.5f * x;
@@ -287,7 +289,7 @@ static float inverse_square_root(float x)
     return y;
 }
 
-/* mirror_sample of the kernel. */
+/* The twin of mirror_sample in shaders/bind/camera.glsl. */
 void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2])
 {
     out[0] = (x ^ y) & 1u ? -xy[0] : xy[0];

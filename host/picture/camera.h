@@ -9,32 +9,34 @@
 #include "scene/scene.h"
 #include "whit/whit_types.h"
 
-/* The camera `wanted` in `pose`, and its CAMERA_*. WHIT_ERROR_USAGE, logged, where there is no such
-   camera, or it sees nothing. */
+/* Fills in the camera `wanted` in `pose`; *kind is its CAMERA_*. WHIT_ERROR_USAGE, logged, where
+   there is no such camera, or it is degenerate. */
 WHIT_CHECK whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
                                     const whit_camera *wanted, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
 
-/* The area of the pixel in the middle of the picture, across its ray at distance 1 from the eye;
-   orthographic: in the world. What texel_area of bind/camera.glsl begins with. */
+/* The area of the pixel in the middle of the picture, perpendicular to its ray at distance 1 from
+   the eye; orthographic: in world units. texel_area of bind/camera.glsl starts from it. */
 double camera_pixel_area(const struct gpu_frame *frame, uint32_t kind);
 
-/* bind/camera.glsl's camera_ray in C, bit for bit: of pixel (x, y) from the upper left, for a
-   camera of `kind` (CAMERA_*). Of `sample` only sample_xy and lens_xy are read. */
+/* bind/camera.glsl's camera_ray in C, bit for bit: for pixel (x, y), counted from the upper left,
+   and a camera of `kind` (CAMERA_*). Only sample_xy and lens_xy of `sample` are read. */
 void camera_ray(const struct gpu_frame *frame, uint32_t kind, uint32_t x, uint32_t y,
                 const struct gpu_chunk *sample, struct gpu_ray *ray);
 
-/* lib/angles.glsl in C, bit for bit: of pi * a, for a in -1..1, within 1.2e-7. */
+/* lib/angles.glsl in C, bit for bit: sine and cosine of pi * a, for a in -1..1, with an error of at
+   most 1.2e-7. */
 void sine_cosine_pi(float a, float *sine, float *cosine);
 
-/* Where a sample is in pixel (x, y), from sample_xy or lens_xy: neighbours have mirror images. */
+/* The place of a sample in pixel (x, y), from sample_xy or lens_xy; neighbouring pixels use mirror
+   images of the pattern. */
 void camera_mirror_sample(const float xy[2], uint32_t x, uint32_t y, float out[2]);
 
-/* Sample `index` into chunk->sample_index, sample_xy, lens_xy and light_index. */
+/* Sets chunk->sample_index, sample_xy, lens_xy and light_index for sample `index`. */
 void camera_sample(const struct gpu_frame *frame, uint32_t index, struct gpu_chunk *chunk);
 
-/* The first sample's camera ray of every pixel of a picture, row by row: those of the
-   kernels, bit for bit. */
+/* Makes the first sample's camera ray of every pixel of a picture, row by row, bit for bit as
+   kernels do. WHIT_ERROR_USAGE as camera_frame. */
 WHIT_CHECK whit_result camera_all_rays(const whit_log *log, const struct scene_pose *pose,
                                        const whit_camera *camera, uint32_t width, uint32_t height,
                                        struct gpu_ray *rays);

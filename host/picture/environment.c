@@ -75,7 +75,7 @@ bool environment_resample(const struct scene_environment *environment, uint32_t 
     *texels = NULL;
     if (environment->kind != WHIT_ENVIRONMENT_MAP || !environment->rgb)
         return true;
-    /* As many texels as the map has. */
+    /* The square has about as many texels as the map. */
     double count = (double)environment->width * (double)environment->height;
     uint32_t side = (uint32_t)fmin(ceil(sqrt(count)), ENVIRONMENT_SIDE_MAX);
     struct resample job = {.from = environment, .size = side < 2 ? 2 : side};

@@ -4,8 +4,8 @@
 
 #include "scene/scene.h"
 
-/* A map as an octahedral square of *size texels a side, RGBA, free(); NULL for a gradient. False
-   when memory runs out. */
+/* Resamples the map to an octahedral square of *size texels a side, RGBA; free() it. NULL for a
+   gradient. False when memory runs out. */
 bool environment_resample(const struct scene_environment *environment, uint32_t *size,
                           float **texels);
 

@@ -4,7 +4,7 @@
 
 #include "base/same.h"
 
-/* Where the ground is, and where its lines are. */
+/* The height of the ground, the spacing of its lines, and the centre and radius of the grid. */
 struct ground {
     double height, step, center[2], radius;
 };
@@ -20,12 +20,12 @@ static struct ground find_ground(const struct scene_pose *pose)
 {
     const double *lo = pose->lo, *hi = pose->hi;
     double size = fmax(fmax(hi[0] - lo[0], hi[1] - lo[1]), hi[2] - lo[2]);
-    if (!(size >= 0.0)) /* nothing is there */
+    if (!(size >= 0.0)) /* the scene is empty */
         return (struct ground){.step = 0.2, .radius = 2.0};
     if (!(size > 0.0))
         size = 1.0;
     return (struct ground){
-        /* Below floors that are the bottom of the scene. */
+        /* Slightly below a floor that is the bottom of the scene. */
         .height = lo[1] - 1e-4 * size,
         .step = round_down(size / 5.0),
         .center = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[2] + hi[2])},
@@ -33,7 +33,7 @@ static struct ground find_ground(const struct scene_pose *pose)
     };
 }
 
-/* Where a ray meets the ground: its t, or below 0. */
+/* The t at which a ray meets the ground, and the place `at`; below 0: it does not. */
 static double meet(const struct ground *ground, const struct gpu_ray *ray, double at[2])
 {
     double t = (ground->height - (double)ray->origin[1]) / (double)ray->dir[1];
@@ -44,8 +44,9 @@ static double meet(const struct ground *ground, const struct gpu_ray *ray, doubl
     return t;
 }
 
-/* Tells how much of the pixel at `at` the grid's lines cover. `right` and `below` are the places of
-   its neighbours. Lines are about a pixel wide, and gone where two fall on a pixel. */
+/* The share of a pixel that grid lines cover. `at`, `right` and `below` are the points on the
+   ground that the pixel and its two neighbours see. Lines are about a pixel wide, and vanish where
+   two would fall into one pixel. */
 static double cover_of(const struct ground *ground, const double at[2], const double right[2],
                        const double below[2])
 {
@@ -66,7 +67,8 @@ void grid_cover(const struct scene_pose *pose, uint32_t width, uint32_t height,
     const struct ground ground = find_ground(pose);
     for (uint32_t y = 0; y < height; ++y) {
         for (uint32_t x = 0; x < width; ++x) {
-            /* Neighbours to the right and below, or at the last ones to the left and above. */
+            /* Neighbours to the right and below; in the last column or row, to the left or
+               above. */
             size_t here = (size_t)y * width + x;
             size_t right = x + 1 < width ? here + 1 : x ? here - 1 : here;
             size_t below = y + 1 < height ? here + width : y ? here - width : here;

@@ -1,4 +1,4 @@
-/* Media of a scene: which of them may meet, and which of them the camera is in. */
+/* Media of a scene: whether bodies of media may touch, and which media the camera is in. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -21,10 +21,10 @@ static bool any_medium(const struct scene *scene)
 
 /* ---- Media that touch ---- */
 
-/* How far apart surfaces may be that a ray crosses at one place, at most: crossing_slack and
-   crossing_contact of shaders/bind/crossing.glsl. Rays start in the scene or at the camera and end
-   on a body; the two edges of a triangle are no longer than its body, those of a sphere's
-   coordinates together three times pi of its radius. */
+/* An upper bound of the distance between surfaces that a ray crosses at one place, by
+   crossing_slack and crossing_contact of shaders/bind/crossing.glsl. It assumes that rays start in
+   the scene or at the camera and end on a body, that the edges e1, e2 of a triangle are no longer
+   than its body, and that those of a sphere together are at most 3 pi times its radius. */
 static double crossing_reach(const struct scene *scene, const struct scene_pose *pose,
                              const struct bodies *bodies, const struct gpu_frame *frame)
 {
@@ -61,8 +61,8 @@ bool media_touch(const struct scene *scene, const struct bodies *bodies,
 /* A body as one ray from the camera meets it. */
 struct around {
     uint32_t instance, material;
-    int32_t left[DIRECTIONS]; /* how often it was left less how often entered */
-    float exit_t;             /* where it was left last along the first direction that left it */
+    int32_t left[DIRECTIONS]; /* number of exits minus number of entries */
+    float exit_t;             /* t of the last exit along direction 0 */
 };
 
 struct surroundings {
@@ -80,11 +80,11 @@ static struct around *find_around(struct surroundings *s, uint32_t instance, uin
     return ARRAY_PUSH(s->all, s->count, s->capacity, empty) ? &s->all[s->count - 1] : NULL;
 }
 
-/* All bodies that a ray from `eye` crosses, until it is out of the scene. */
+/* Adds all bodies that a ray from `eye` crosses until it leaves the scene. */
 static bool look_around(const struct accel *accel, const float eye[3], int direction,
                         struct surroundings *s)
 {
-    /* Along no axis and no diagonal, where models have edges. */
+    /* Directions away from axes and diagonals, along which models have edges. */
     static const float directions[DIRECTIONS][3] = {
         {0.5377f, 0.8339f, 0.1249f}, {-0.7647f, 0.3189f, -0.5601f}, {0.2319f, -0.6343f, 0.7375f}};
     const struct scene *scene = accel->scene;
@@ -95,7 +95,7 @@ static bool look_around(const struct accel *accel, const float eye[3], int direc
     }
     struct gpu_hit hit;
     uint32_t status = 0;
-    /* At an edge both neighbours are met, as one. */
+    /* At an edge both triangles are met; they count as one crossing. */
     uint32_t last_instance = SCENE_NONE, last_material = SCENE_NONE;
     float last_t = 0.0f;
     bool last_left = false;
@@ -124,7 +124,8 @@ static bool look_around(const struct accel *accel, const float eye[3], int direc
     return true;
 }
 
-/* How often the camera is inside, as most directions say. An open mesh may say anything: then 0. */
+/* How often the camera is inside of the body: the median over the directions. It may be anything
+   for an open mesh; below 0 counts as 0. */
 static int32_t times_inside(const struct around *around)
 {
     const int32_t *n = around->left;
@@ -137,14 +138,14 @@ static int32_t times_inside(const struct around *around)
     return middle > 0 ? middle : 0;
 }
 
-/* The body that ends farthest away was entered first. */
+/* Sorts by distance of the exit: the body that ends farthest away was entered first. */
 static int by_exit(const void *a, const void *b)
 {
     float x = ((const struct around *)a)->exit_t, y = ((const struct around *)b)->exit_t;
     return (x < y) - (x > y);
 }
 
-/* Into the frame's list: by priority, of equal ones in the order of entering. */
+/* Inserts a medium into the frame's list, which is sorted by priority, then by order of entry. */
 static bool add_medium(const struct scene *scene, uint32_t material, uint32_t *list,
                        uint32_t *count)
 {

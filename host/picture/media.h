@@ -1,4 +1,4 @@
-/* Media of a scene: which of them may meet, and which of them the camera is in. */
+/* Media of a scene: whether bodies of media may touch, and which media the camera is in. */
 #ifndef PICTURE_MEDIA_H
 #define PICTURE_MEDIA_H
 
@@ -7,20 +7,20 @@
 #include "picture/bodies.h"
 #include "whit/whit_types.h"
 
-/* Fills in the media that the camera of *frame is in, whether media meet, and `contact`, for a pose
-   that `accel` has; `bodies` keeps what was found for the next call. WHIT_ERROR_USAGE for more
-   materials than can be told apart, WHIT_ERROR_STATUS where the camera is in too many media;
-   logged. */
+/* Fills in the media that the camera of *frame is in, whether bodies of media may touch (`nested`),
+   and `contact`, for the pose that `accel` has. `bodies` keeps the results for the next call.
+   WHIT_ERROR_USAGE for more materials than can be told apart, WHIT_ERROR_STATUS where the camera is
+   in too many media; logged. */
 WHIT_CHECK whit_result media_frame(const whit_log *log, const struct accel *accel,
                                    const struct scene_pose *pose, struct bodies *bodies,
                                    struct gpu_frame *frame);
-/* Whether surfaces of two bodies may be at one place, for a frame that was filled in; in a scene
-   that moves, at some time. */
+/* Whether surfaces of two bodies may be at one place, for a filled-in frame; in an animated scene,
+   at any time. */
 bool media_touch(const struct scene *scene, const struct bodies *bodies,
                  const struct gpu_frame *frame);
 
-/* Fills in the camera of *frame, the media that it is in, whether media meet, and `contact`; the
-   rest is 0. `kind` gets CAMERA_*. `accel` has the pose. */
+/* Fills in the camera of *frame and the fields of media_frame; the rest is 0. *kind is its
+   CAMERA_*. `accel` must have the pose. */
 WHIT_CHECK whit_result media_view(const whit_log *log, struct accel *accel,
                                   const struct scene_pose *pose, const whit_camera *camera,
                                   uint32_t width, uint32_t height, struct gpu_frame *frame,

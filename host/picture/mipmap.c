@@ -33,7 +33,7 @@ enum mipmap_kind mipmap_kind_of(const struct scene_material *m, enum scene_slot 
                  (slot == SCENE_SLOT_SPECULAR && m->model == WHIT_MODEL_METAL_ROUGH);
     if (slot == SCENE_SLOT_OPACITY && m->alpha == SCENE_ALPHA_MASK)
         return MIPMAP_NONE;
-    /* Without an opacity map it is this one's alpha that covers. */
+    /* Without an opacity map the alpha of the diffuse texture is the opacity. */
     if (slot == SCENE_SLOT_DIFFUSE && m->alpha != SCENE_ALPHA_OPAQUE &&
         m->textures[SCENE_SLOT_OPACITY].texture == SCENE_NONE)
         return MIPMAP_COVER;
@@ -42,10 +42,10 @@ enum mipmap_kind mipmap_kind_of(const struct scene_material *m, enum scene_slot 
 
 /* ---- Averages ---- */
 
-/* The codes of light between 0 and 1, and back. */
+/* Conversion between 8-bit codes and linear values 0..1. */
 struct curve {
     float linear[256];
-    float upper[256]; /* what is above it has a larger code */
+    float upper[256]; /* largest linear value that has this code */
     uint8_t guess[4097];
 };
 
@@ -64,7 +64,7 @@ static void curve_init(struct curve *curve, bool srgb)
     }
 }
 
-/* The nearest code, as codes are seen: halfway between two of them. */
+/* The code nearest to a linear value; the limit is halfway between two codes. */
 static uint8_t encode(const struct curve *curve, float linear)
 {
     uint32_t code = curve->guess[(uint32_t)(linear * 4096.0f)];
@@ -73,8 +73,9 @@ static uint8_t encode(const struct curve *curve, float linear)
     return (uint8_t)code;
 }
 
-/* Which texels of a side of `from` texel `at` of half that side covers, and how much of itself each
-   is: of 2n + 1 texels each of n covers one, and parts of its two neighbours. */
+/* The texels, in one dimension of `from` texels, that texel `at` of the next smaller level covers,
+   and their weights. Where 2n + 1 texels become n, each covers one texel and parts of its two
+   neighbours. */
 struct cover {
     uint32_t first, count;
     float weights[3];
@@ -95,12 +96,12 @@ static struct cover cover_of(uint32_t from, uint32_t at)
     return cover;
 }
 
-/* A level as it is read: bytes of level 0, later ones unrounded. */
+/* A level as source of the next one: level 0 as bytes, later ones as unrounded floats. */
 struct level {
     const uint8_t *bytes;
     const float *values; /* or NULL: `bytes` */
     uint32_t width, height;
-    const struct curve *light, *plain; /* of red, green and blue, and of alpha */
+    const struct curve *light, *plain; /* light: curve of red, green and blue; plain: of alpha */
 };
 
 static void read_texel(const struct level *level, size_t at, float rgba[4])
@@ -112,8 +113,8 @@ static void read_texel(const struct level *level, size_t at, float rgba[4])
     }
 }
 
-/* The mean of a texel of the next level; `covering`: of colours by their alpha, where there is any.
- */
+/* Computes a texel of the next level as a mean; `covering`: colours are weighted by alpha, unless
+   all alpha is 0. */
 static void average(const struct level *level, uint32_t x, uint32_t y, bool covering, float out[4])
 {
     const struct cover across = cover_of(level->width, x), down = cover_of(level->height, y);
@@ -134,8 +135,8 @@ static void average(const struct level *level, uint32_t x, uint32_t y, bool cove
         out[c] = plain[c] < 1.0f ? plain[c] : 1.0f; /* weights add up to 1 within rounding */
 }
 
-/* The same of two by two texels of even sides, whose weights are a quarter each: bit by bit what
-   average() gives, as products with a power of 2 are not rounded. */
+/* As average(), for even sides, where four texels have weights of a quarter each. The bits are the
+   same, as products with a power of 2 are not rounded. */
 static void average_even(const struct level *level, uint32_t x, uint32_t y, float out[4])
 {
     size_t at = (size_t)(2 * y) * level->width + 2 * x;
@@ -148,7 +149,7 @@ static void average_even(const struct level *level, uint32_t x, uint32_t y, floa
         out[i] = 0.25f * (((a[i] + b[i]) + c[i]) + d[i]);
 }
 
-/* A level in the making, by several threads. */
+/* A level that several threads make, in bands of rows. */
 enum { BAND_ROWS = 64 };
 struct making {
     const struct level *from;

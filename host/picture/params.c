@@ -19,7 +19,7 @@ static bool is_power_of_4(uint32_t n)
     return (n & (n - 1)) == 0 && (n & 0x55555555u) != 0;
 }
 
-/* Enumerations are not checked by C. */
+/* Checks enumerations, which in C may have any value. */
 static bool is_known(const whit_renderer_params *params)
 {
     return (uint32_t)params->traversal <= WHIT_TRAVERSAL_BASIC &&
@@ -37,7 +37,7 @@ uint32_t params_rows(const whit_renderer_params *params)
     return params->row_count ? params->row_count : params->height;
 }
 
-/* Pixels are drawn in blocks of 8 x 8. */
+/* Checks the rows, which consist of whole blocks of 8 x 8 pixels. */
 static whit_result check_rows(const whit_log *log, const whit_renderer_params *params)
 {
     uint32_t first = params->first_row, count = params->row_count;
@@ -66,7 +66,7 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
         params->height = 480;
     }
     if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
-        params->sampling.count = 4; /* to begin with */
+        params->sampling.count = 4; /* the samples of the first pass */
     else if (params->sampling.count == 0)
         params->sampling.count = 1;
     if (params->width == 0 || params->height == 0 || params->width > 65535 ||

@@ -1,7 +1,7 @@
-/* Where samples are: one sequence of points for the pixel, the lens and flat emitters. The first is
-   the middle of the square. Of the first 4^k one is in each of 4^k columns, in each of as many
-   rows, and in each box of 2^i columns and 2^(2k - i) rows, so in each square of a grid of 2^k x
-   2^k; so are those of every later block of 4^k whose first index is a multiple of that. */
+/* The places of samples: one sequence of points in the unit square for the pixel, the lens and flat
+   emitters. The first point is the middle. Divide the square into any grid of 2^i x 2^(2k - i)
+   equal boxes (rows, columns and squares among them): each box has one of the first 4^k points. The
+   same holds for every later block of 4^k points whose first index is a multiple of 4^k. */
 #include "picture/sequence.h"
 
 static uint32_t reverse_bits(uint32_t value)
@@ -12,8 +12,9 @@ static uint32_t reverse_bits(uint32_t value)
     return reversed;
 }
 
-/* The binomial coefficients modulo 2 times the index: digits of Sobol's second coordinate (1967),
-   the lowest bit first; those of the first are the index itself. */
+/* The digits, lowest bit first, of the second coordinate of Sobol's sequence (1967): the matrix of
+   binomial coefficients modulo 2 times the index. The digits of the first coordinate are the index
+   itself. */
 static uint32_t rows_of(uint32_t index)
 {
     index ^= index >> 1 & 0x55555555u;
@@ -23,11 +24,12 @@ static uint32_t rows_of(uint32_t index)
     return index ^ index >> 16;
 }
 
-/* Sobol's points are at corners of boxes, and the first few lean to one side. So digits are turned
-   round, each with regard to those before it alone (Owen 1995), which keeps one point to a box. The
-   first digit always is, which puts the first point in the middle; digit i of the next four where
-   `turns` has bit 2^i + (the i digits before it); those behind by turns, which is two thirds of the
-   way from one corner to the other. */
+/* Sobol's points lie at corners of boxes, and the first few are not centred. So digits are flipped
+   depending only on the digits before them (Owen 1995), which keeps one point in each box. Digit 0
+   is always flipped, which puts the first point in the middle. Digits 2 to 5 are flipped where
+   `turns` has bit 2^i + (the i digits before digit i). Digit 1 is not flipped. From digit 6 on
+   every second digit is flipped, unless the first six are 0, which places a point at two thirds
+   between two corners of its box. */
 static uint32_t place_of(uint32_t digits, uint64_t turns)
 {
     uint32_t flips = digits & 63u ? 0x55555541u : 1u;
@@ -36,8 +38,8 @@ static uint32_t place_of(uint32_t digits, uint64_t turns)
     return reverse_bits(digits ^ flips);
 }
 
-/* The turns are those of least error, of many tried at random, at straight edges through 3 x 3
-   pixels, for 4, 16 and 64 samples (docs/effects.md). */
+/* The constants `turns` were found by random search: they have the smallest error at straight edges
+   through 3 x 3 pixels, for 4, 16 and 64 samples (docs/effects.md). */
 void sequence_point(uint32_t index, uint32_t xy[2])
 {
     xy[0] = place_of(index, 0x21a3e51a026472e0u);
@@ -52,9 +54,10 @@ static uint32_t reorder(const uint16_t columns[SEQUENCE_BITS], uint32_t sample)
     return index;
 }
 
-/* Found by trying at random, two columns after two: of the first 16 samples each has a quarter of
-   the pixel and of the lens of its own, so have 256 with sixteenths, 4096 with sixty-fourths; so it
-   is with the pixel and the emitter, and with the lens and the emitter. */
+/* The columns were found by random search, two at a time. Divide pixel and lens into quarters each:
+   every one of the 16 pairs of quarters has one of the first 16 samples. The same holds for 256
+   samples with sixteenths and 4096 with sixty-fourths, and for pixel and emitter, and lens and
+   emitter. */
 uint32_t sequence_lens(uint32_t sample)
 {
     static const uint16_t columns[SEQUENCE_BITS] = {0x2,  0x1,  0xf,   0x8,   0x31,  0x23,

@@ -1,5 +1,5 @@
-/* Names of tree builders: binned[:K], median, sweep, spatial[:ALPHA[,BUDGET]], each with `+opt`;
-   and none. */
+/* Reads and writes the names of tree builders: binned[:K], median, sweep, spatial[:ALPHA[,BUDGET]],
+   each optionally with `+opt`; and none. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static bool refuse(const char *text, char *why)
                           value_list(values_build, ", ", list, sizeof list));
 }
 
-/* A number that ends at the end of the text, or at a comma when `*rest` is wanted. */
+/* Reads a number that ends at the end of the text, or, where `rest` is not NULL, at a comma. */
 static bool read_number(const char *text, double min, double max, double *out, const char **rest)
 {
     char *end;

@@ -1,4 +1,4 @@
-/* What --camera takes: a name, a number, auto, or ten numbers with commas between them. */
+/* Reads the values of --camera: a name, a number, auto, or ten numbers with commas between them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

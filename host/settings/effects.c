@@ -1,4 +1,4 @@
-/* What --effects takes: "auto", "all", "+NAME,-NAME" or "all,-NAME". */
+/* Reads and writes the values of --effects: "auto", "all", "+NAME,-NAME" or "all,-NAME". */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 
 enum { NAMES_MAX = 64 };
 
-/* Whether kernels can be made with effect `index` more, or less, and its bit is taken over. */
+/* Adds effect `index` to the kernels, or removes it; false, with the reason, where that is not
+   possible. */
 static bool switch_effect(uint32_t index, bool adds, whit_renderer_params *picture, char *why)
 {
     uint64_t bit = UINT64_C(1) << index;
@@ -87,6 +88,6 @@ void effects_set(whit_renderer_params *picture, uint32_t index, bool called, boo
     bool base = picture->all_effects || called;
     picture->effects_added &= ~bit;
     picture->effects_removed &= ~bit;
-    if (base != on) /* only what is other than the base gives is said */
+    if (base != on) /* only a difference from what `base` gives is written */
         *(on ? &picture->effects_added : &picture->effects_removed) |= bit;
 }

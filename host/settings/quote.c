@@ -13,7 +13,8 @@ static bool is_plain(const char *word)
     return word[0] && word[strspn(word, plain)] == '\0';
 }
 
-/* Between quotes: ends these, and begins them again. */
+/* Writes bytes as $'...' inside a word in single quotes: ends these quotes before, and begins them
+   again behind. */
 static void put_bytes(const char *bytes, size_t count, void (*put)(void *user, const char *part),
                       void *user)
 {

@@ -162,7 +162,8 @@ static bool read_folder(const char *text, folder *out, char *why)
     return true;
 }
 
-/* Where the pair of that name stands in `list`, and its length; at the end: there is none. */
+/* The offset of the pair with the same name in `list`, and its length; the end of `list` where
+   there is none. */
 static size_t find_pair(const char *list, const char *pair, size_t *length)
 {
     size_t name = strcspn(pair, "=") + 1, at = 0;
@@ -176,7 +177,7 @@ static size_t find_pair(const char *list, const char *pair, size_t *length)
     return at;
 }
 
-/* False: `list` has no room for the pair. */
+/* Adds a pair to `list`, or replaces the one of the same name. False: `list` has no room for it. */
 static bool put_pair(char list[SETTING_TEXT_BYTES], const char *pair)
 {
     char joined[2 * SETTING_TEXT_BYTES + 2];

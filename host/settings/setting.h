@@ -1,6 +1,6 @@
-/* An option as a row of a table: what it is called, what it takes, and where its value stands in a
-   record. Parsing, help, completion, manual pages, recipes, JSON, keys and panels read these rows.
- */
+/* An option as a row of a table: its name, its values, and the offset of its value in a record (a
+   struct with the values of all options of the table). Parsing, help, completion, manual pages,
+   recipes, JSON, keys and panels read these rows. */
 #ifndef SETTINGS_SETTING_H
 #define SETTINGS_SETTING_H
 
@@ -13,76 +13,84 @@ enum { SETTING_VALUE_BYTES = SETTING_PATH_BYTES, SETTING_WHY_BYTES = 1400 };
 enum setting_kind {
     SETTING_FLAG,    /* bool: the option has no argument and sets it */
     SETTING_CHOICE,  /* an enumeration or uint32_t: one of the words of `values` */
-    SETTING_EITHER,  /* bool: the same */
+    SETTING_EITHER,  /* bool: one of the two words of `values` */
     SETTING_COUNT,   /* uint32_t: min to max */
     SETTING_NUMBER,  /* double: min to max */
-    SETTING_BYTES,   /* uint64_t: more than 0; a whole number, or one with K, M or G behind it */
+    SETTING_BYTES,   /* uint64_t: more than 0; a whole number, optionally with K, M or G behind
+                        it */
     SETTING_SIZE,    /* uint32_t[2]: WxH */
     SETTING_TEXT,    /* char[SETTING_TEXT_BYTES]; "": not given */
-    SETTING_PAIRS,   /* the same: "NAME=VALUE,NAME=VALUE"; the option adds pairs, or replaces those
-                        of the same name */
-    SETTING_FOLDERS, /* char[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]: the option adds one */
+    SETTING_PAIRS,   /* as SETTING_TEXT, "NAME=VALUE,NAME=VALUE"; the option adds pairs, or replaces
+                        pairs of the same name */
+    SETTING_FOLDERS, /* char[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]: the option adds one folder */
     SETTING_NAME,    /* const char *, of the command line; NULL: not given */
-    SETTING_OWN,     /* by `read` and `write` */
-    SETTING_GONE, /* none: the option is refused with `help`, which says what stands in its place */
-    SETTING_HELP, /* none: --help and --help-all */
+    SETTING_OWN,     /* any type: read and written by `read` and `write` */
+    SETTING_GONE, /* no value: a removed option, refused with `help`, which names its replacement */
+    SETTING_HELP, /* no value: --help and --help-all */
 };
 
-/* What another value may change. */
+/* What a change of the value may change. */
 enum setting_change {
-    SETTING_RUN,   /* nothing of a picture, nor how it is made */
-    SETTING_COST,  /* time and memory alone: ids and pixels are the same bytes */
-    SETTING_LIGHT, /* colours, and not what camera rays meet */
-    SETTING_HITS,  /* what rays meet */
-    SETTING_PLACE, /* what is looked at, in which size and at which time */
-    SETTING_PAINT, /* what of it is painted: colours, or costs */
+    SETTING_RUN,   /* neither the picture nor how it is made */
+    SETTING_COST,  /* only time and memory: ids and pixels keep their bytes */
+    SETTING_LIGHT, /* colours, but not what camera rays hit */
+    SETTING_HITS,  /* what rays hit */
+    SETTING_PLACE, /* camera, size and time of the picture */
+    SETTING_PAINT, /* what is painted: colours or costs */
 };
 
-/* What has to be made anew for another value. */
+/* What must be made anew for another value. */
 enum setting_need {
-    SETTING_NEEDS_VIEW,   /* nothing: whit_renderer_set_view */
+    SETTING_NEEDS_VIEW,   /* nothing: whit_renderer_set_view is enough */
     SETTING_NEEDS_KERNEL, /* a renderer */
     SETTING_NEEDS_TREES,  /* trees, and a renderer over them */
-    SETTING_NEEDS_SCENE,  /* all of it */
+    SETTING_NEEDS_SCENE,  /* everything: scene, trees and renderer */
 };
 
 struct setting {
     const char *name;     /* "light-samples" */
     char letter;          /* the short option; 0: none */
-    const char *argument; /* how help names it; NULL: by the words of `values`, or there is none */
+    const char *argument; /* the argument's name in help; NULL: the words of `values`, or no
+                             argument */
     const char *help;     /* one line or more */
-    const char *usual;    /* how help names the default; NULL: as it is written; "": not at all */
+    const char *usual;    /* the default's name in help; NULL: the text of its value; "": not
+                             named */
     enum setting_kind kind;
     size_t offset; /* of the value in its record */
     const struct setting_value *values;
     double min, max;
-    /* Used by SETTING_OWN alone. `why` is the reason for a refusal, printed behind "--NAME".
-       False from `write`: there is nothing to say. */
+    /* Only for SETTING_OWN. `why` gets the reason for a refusal, printed behind "--NAME". `write`
+       gives false where there is nothing to write. */
     bool (*read)(const struct setting *setting, const char *text, void *record,
                  char why[SETTING_WHY_BYTES]);
     bool (*write)(const void *record, char text[SETTING_VALUE_BYTES]);
-    bool developer; /* for those who work on whit: --help-all alone lists it */
+    bool developer; /* for developers of whit: only --help-all lists it */
 
-    /* Used by the table of settings (settings.h) alone. */
+    /* Only for the table of settings (settings.h). */
     uint32_t commands; /* bits of enum settings_command */
     enum setting_change change;
     enum setting_need need;
-    const char *json; /* its key; NULL: `name` with _ for - */
-    bool always;      /* recipes and JSON name it though it is at its default */
-    bool trusted;     /* says what files may reach: no file of settings may */
-    bool of_machine;  /* says where a picture is made: no recipe does */
-    /* Whether a value other than the default says something of this picture; NULL: always. */
+    const char *json; /* its key in JSON; NULL: `name` with _ for - */
+    bool always;      /* recipes and JSON have it even at its default */
+    bool trusted;     /* grants access to files: a file of settings must not set it */
+    bool of_machine;  /* describes the machine: recipes leave it out */
+    /* Whether a value other than the default matters for the picture of these settings; NULL:
+       always. */
     bool (*tells)(const void *record, bool recipe);
     /* Used by the viewer. */
-    const char *title;                      /* in the panel of settings; NULL: not there */
-    const struct setting_value *steps;      /* of keys and panel; NULL: `values`, or numbers */
-    const struct setting_value *more_steps; /* behind those, of the panel alone; or NULL */
-    double step, shown_min, shown_max;      /* of numbers: of the key, and of the slider */
-    int key, key_back;     /* capital letters; key_back 0: with Shift; key 0: it has none */
-    const char *key_skips; /* a word that keys pass over, which another key is for; or NULL */
+    const char *title;                      /* its name in the viewer's panel of settings; NULL: it
+                                               is not in the panel */
+    const struct setting_value *steps;      /* the values that keys and panel offer; NULL: `values`,
+                                               or numbers */
+    const struct setting_value *more_steps; /* further values that only the panel offers; or NULL */
+    double step, shown_min, shown_max;      /* numbers: step of the key, and range of the slider */
+    int key, key_back;     /* capital letters; key_back 0: Shift with `key` goes back; key 0: it has
+                              no key */
+    const char *key_skips; /* a word that keys skip because another key sets it; or NULL */
 };
 
-/* Where a value is, checked to be of the kind's type. An enumeration is a uint32_t to C. */
+/* The offset of a value, checked at compile time to have type `c_type`. C treats an enumeration as
+   uint32_t. */
 #define SETTING_AT(type, member, c_type)                                                           \
     (offsetof(type, member) + 0 * sizeof(_Generic(((type *)NULL)->member, c_type : 1)))
 #define SETTING_AT_FLAG(type, member) .kind = SETTING_FLAG, .offset = SETTING_AT(type, member, bool)
@@ -102,27 +110,28 @@ struct setting {
     .kind = SETTING_TEXT, .offset = SETTING_AT(type, member, char *)
 #define SETTING_AT_PAIRS(type, member)                                                             \
     .kind = SETTING_PAIRS, .offset = SETTING_AT(type, member, char *)
-/* `member` and `second` are neighbours. */
+/* Checks that `second` follows `member` directly. */
 #define SETTING_AT_SIZE(type, member, second)                                                      \
     .kind = SETTING_SIZE,                                                                          \
     .offset = SETTING_AT(type, member, uint32_t) +                                                 \
               0 * sizeof(char[offsetof(type, second) == offsetof(type, member) + 4 ? 1 : -1])
 
-/* Puts what `text` says into `record`; false, with why it is refused and nothing changed. `text` is
-   not read where the option has no argument, and is borrowed by SETTING_NAME. */
+/* Stores the value in `text` in `record`; false, with the reason, where it is refused and nothing
+   changed. `text` is not read where the option has no argument, and is borrowed for
+   SETTING_NAME. */
 bool setting_read(const struct setting *setting, const char *text, void *record,
                   char why[SETTING_WHY_BYTES]);
-/* The text that reads back as the value of `record`; of SETTING_FOLDERS that of entry `index`.
-   False: there is nothing to say. */
+/* Writes the text that reads back as the value in `record`; for SETTING_FOLDERS that of entry
+   `index`. False: there is nothing to write. */
 bool setting_write(const struct setting *setting, const void *record, uint32_t index,
                    char text[SETTING_VALUE_BYTES]);
 /* Whether two records have the same value. */
 bool setting_same(const struct setting *setting, const void *a, const void *b);
-/* Takes over the value. */
+/* Copies the value from one record to another. */
 void setting_copy(const struct setting *setting, const void *from, void *to);
 bool setting_has_argument(const struct setting *setting);
 
-/* Says why in printf's words; false. */
+/* Writes the reason by a printf format; gives false. */
 bool setting_refuse(char why[SETTING_WHY_BYTES], const char *format, ...) WHIT_PRINTF(2, 3);
 /* The shortest decimal that reads back as `number`. */
 void setting_write_number(double number, char *text, size_t text_bytes);

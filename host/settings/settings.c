@@ -50,7 +50,8 @@ bool settings_read(const struct setting *row, const char *text, struct settings 
 
 /* ---- Options that do not go together ---- */
 
-/* Colours by --aa and the like, which --budget-ms and --max-error choose by themselves. */
+/* Whether an option was given that changes colours, such as --aa: --budget-ms and --max-error
+   choose these themselves. */
 static bool light_is_given(const struct settings *settings)
 {
     for (const struct setting *row = settings_table; row->name; ++row) {
@@ -125,7 +126,7 @@ whit_renderer_params settings_picture(const struct settings *settings)
     params.camera = camera_of_text(settings->camera);
     params.sliders = settings->sliders;
     params.count = params.count || settings->paint != PAINT_COLOR;
-    if (settings->paint != PAINT_COLOR) /* costs are those of a fixed pattern */
+    if (settings->paint != PAINT_COLOR) /* costs need a fixed number of samples */
         params.sampling.kind = WHIT_SAMPLING_FIXED;
     return params;
 }
@@ -202,7 +203,7 @@ static bool is_of_picture(const struct setting *row)
     return row->change != SETTING_RUN && row->commands & IN_RENDER;
 }
 
-/* The viewer draws over its pictures too. */
+/* Whether the row changes what is seen: pictures, or heat maps and overlays over them. */
 static bool is_seen(const struct setting *row)
 {
     return is_of_picture(row) || row->change == SETTING_PAINT;
@@ -235,8 +236,8 @@ bool settings_compiles(const struct settings *settings)
     return settings->shader[0] || settings->stages[0];
 }
 
-/* Kernels know whether rays are counted, whether there are bounces, and whether pixels are picked
-   for more samples. */
+/* Beside the rows of the table, kernels depend on whether costs are counted, whether there are
+   bounces, and whether samples are adaptive. */
 bool settings_same_kernel(const struct settings *a, const struct settings *b)
 {
     const whit_renderer_params p = settings_picture(a), q = settings_picture(b);
@@ -314,8 +315,8 @@ uint64_t settings_hash_kernel(const struct settings *settings)
 
 /* ---- Writing ---- */
 
-/* Whether a setting is written. In a picture of costs trees and traversals decide the pixels
-   too. */
+/* Whether a setting is written. Settings of trees and traversal are in a recipe only for pictures
+   of costs, whose pixels they decide. */
 static bool is_written(const struct setting *row, const struct settings *settings,
                        enum settings_words which)
 {
@@ -327,7 +328,7 @@ static bool is_written(const struct setting *row, const struct settings *setting
     return !row->tells || row->tells(settings, which == SETTINGS_RECIPE);
 }
 
-/* Whether a row is to be written, and what its option takes. */
+/* Whether a row is written; gives the text of its value. */
 static bool settings_word(const struct setting *row, const struct settings *settings,
                           enum settings_words which, uint32_t index, char text[SETTING_VALUE_BYTES])
 {
@@ -361,7 +362,7 @@ static void put_option(struct words *words, const struct setting *row, const cha
     }
 }
 
-/* Rows of `commands` alone. */
+/* Writes all rows that one of `commands` takes. */
 static void put_all(struct words *words, const struct settings *settings, enum settings_words which,
                     const char *separator, uint32_t commands)
 {

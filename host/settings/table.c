@@ -106,7 +106,7 @@ static bool write_build(const void *record, char text[SETTING_VALUE_BYTES])
     return true;
 }
 
-/* `number` is left as it is for auto. */
+/* Reads auto or a number; for auto `number` is unchanged. */
 static bool read_auto(const struct setting *row, const char *text, bool *is_auto, double *number,
                       char *why)
 {
@@ -191,7 +191,7 @@ static bool write_background(const void *record, char text[SETTING_VALUE_BYTES])
     return true;
 }
 
-/* Costs are those of a fixed pattern of samples. */
+/* Adaptive samples mean nothing for costs, which use a fixed number of samples. */
 static bool aa_tells(const void *record, bool recipe)
 {
     const struct settings *settings = record;
@@ -199,13 +199,13 @@ static bool aa_tells(const void *record, bool recipe)
     return settings->paint == PAINT_COLOR || settings->picture.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
-/* Nothing is drawn over heat maps. */
+/* Overlays mean nothing for heat maps. */
 static bool overlays_tell(const void *record, bool recipe)
 {
     return !recipe || ((const struct settings *)record)->paint == PAINT_COLOR;
 }
 
-/* Kernels with more in them draw the same picture. */
+/* Added effects do not change the picture, so recipes only need removed ones. */
 static bool effects_tell(const void *record, bool recipe)
 {
     return !recipe || ((const struct settings *)record)->picture.effects_removed != 0;
@@ -491,7 +491,7 @@ const struct setting settings_table[] = {
      AT(CHOICE, picture.segments), .values = values_segments, .developer = true,
      .commands = IN_RENDER},
 
-    /* Behind all others: settings.given has 64 bits, and none for these. */
+    /* Removed options come last: settings.given has only 64 bits, and none for these rows. */
     {"tree", 0, NULL, "is gone: trees are built for each run", .kind = SETTING_GONE,
      .commands = IN_TREES & ~IN_BVH},
     {"no-bvh", 0, NULL, "is `--build none` now", .kind = SETTING_GONE,
