@@ -8,16 +8,16 @@
 #include <unistd.h>
 
 static const double SHARE_MAX = 0.1, RELIEF_MIN = 2.0;
-/* A model that stays this close to a plane, as a share of the longest side of its box, is a board,
-   which shows no relief. */
+/* A model counts as a flat board, which shows no relief, if it stays this close to a plane, as a
+   share of the longest side of its box. */
 static const double FLAT = 0.1;
-/* By how much a sum of samples of 1 may be more. */
+/* Bound of the rounding error of a mean of samples of 1. */
 static const double ROUNDING = 1e-4;
 
 enum { PATH_BYTES = 4096 };
 
-/* A new file in the folder for temporary ones; the caller closes and removes it. NULL, and `path`
-   empty, where it could not be made. */
+/* Makes a file in the folder for temporary files; the caller closes and removes it. NULL, and
+   `path` empty, where it could not be made. */
 static FILE *open_temporary(const char *ending, char path[PATH_BYTES])
 {
     const char *folder = getenv("TMPDIR");
@@ -70,7 +70,7 @@ void appearance_shader_finish(struct appearance_shader *shader)
     *shader = (struct appearance_shader){0};
 }
 
-/* What is displayed of a picture of the shader's. */
+/* A picture by the shader, and its displayed bytes. */
 struct wished {
     whit_image *color;
     uint8_t *rgba;
@@ -101,7 +101,7 @@ static whit_result draw_wished(whit_renderer *renderer, struct wished *out)
     return result == WHIT_OK ? display(out->color, &out->rgba) : result;
 }
 
-/* `glow` as bright as the picture is displayed, `furnace` as bright as it is. */
+/* Draws both pictures: `glow` is displayed with the exposure of the params, `furnace` without. */
 static whit_result draw_wishes(const struct appearance_shader *shader,
                                const struct appearance_of *of, struct wished *glow,
                                struct wished *furnace)
@@ -203,7 +203,7 @@ static bool write_triangle(void *user, const whit_triangle *triangle)
     return fputs("f -3 -2 -1\n", user) >= 0;
 }
 
-/* An OBJ without materials, for temporary use; the caller removes it. */
+/* Writes the scene's triangles to a temporary OBJ without materials; the caller removes it. */
 static whit_result write_clay(const whit_scene *scene, char path[PATH_BYTES])
 {
     FILE *stream = open_temporary(".obj", path);
@@ -234,7 +234,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Gives the mean of the levels from place `from` on, before place `to`. */
+/* The mean of levels[i] for `from` <= i < `to`. */
 static double mean_of(const double *levels, double from, double to)
 {
     double sum = 0.0;
@@ -299,7 +299,7 @@ static whit_result draw_clay(whit_device *device, const char *path, whit_rendere
 /* ---- Boards ---- */
 
 struct plane {
-    double normal[3]; /* as long as twice the area of the largest triangle */
+    double normal[3]; /* its length is twice the area of the largest triangle */
     double area, lo, hi;
 };
 
@@ -335,7 +335,7 @@ static bool find_sides(void *user, const whit_triangle *triangle)
     return true;
 }
 
-/* All of it is close to the plane of its largest triangle, whichever way that lies. */
+/* Whether the whole model is close to the plane of its largest triangle. */
 static whit_result find_board(const whit_scene *scene, bool *board)
 {
     struct plane plane = {.lo = INFINITY, .hi = -INFINITY};

@@ -1,31 +1,34 @@
-/* Whether a model looks right at once: figures of its picture, and of the same shape in clay. */
+/* Judges whether a model looks right without any options, by its picture and a picture of the same
+   shape in clay. */
 #ifndef TOOLS_APPEARANCE_H
 #define TOOLS_APPEARANCE_H
 
 #include "whit.h"
 
-/* What a file itself wants to be white or black is told by a shader: two more pictures, of what
-   each surface sends by itself, and of what it would send if light of 1 came from everywhere. */
+/* A shader that finds surfaces that the file itself makes white or black, by two more pictures: the
+   light that each surface emits, and the light that it would send if light of 1 came from all
+   directions. */
 struct appearance_shader {
     whit_shader_compiler *compiler;
     whit_shader *shader;
 };
-/* Zeroed on failure. WHIT_ERROR_OUTPUT: no file for temporary use could be written. */
+/* Zeroed on failure. WHIT_ERROR_OUTPUT: no temporary file could be written. */
 WHIT_CHECK whit_result appearance_shader_init(const whit_log *log, struct appearance_shader *out);
 void appearance_shader_finish(struct appearance_shader *shader);
 
-/* This tells how the pixels look that show a surface. */
+/* Figures over the pixels that show a surface. */
 struct appearance {
-    double burnt; /* share with a channel displayed as 255, that does not glow white by itself: with
-                     1, and no more */
-    double black; /* share displayed as 0 in all channels, but not so under light of 1 */
+    double burnt;  /* share with a channel displayed as 255, without surfaces that are to be white
+                      because they emit exactly 1 */
+    double black;  /* share displayed as 0 in all channels, without surfaces that would be black
+                      under light of 1 too */
     double relief; /* in clay: mean luminance of the brightest tenth over the darkest fifth */
     bool is_flat;  /* no relief was measured: no surface is seen, or the model is a board */
 };
 
-/* `renderer` has drawn `scene` as `accel` has it, and `color` is what it gave. Clay is every
-   triangle as grey matte surface under whit's own light, seen by the scene's first camera where
-   that is a pinhole. */
+/* `renderer` has drawn `scene` with the trees `accel`, and `color` is its picture. In clay every
+   triangle is grey and matte, under whit's own light, and seen by the scene's first camera if that
+   is a pinhole. */
 struct appearance_of {
     whit_device *device;
     const whit_scene *scene;

@@ -29,7 +29,7 @@ struct sheet {
     uint32_t sheet_width, sheet_height;
     float *pixels; /* sheet_width * sheet_height * 3 */
     bool check;
-    struct appearance_shader shader; /* with `check` */
+    struct appearance_shader shader; /* only with `check` */
 };
 
 static char *files[FILES_MAX];
@@ -99,7 +99,7 @@ static void fill(struct sheet *sheet, uint32_t x, uint32_t y, uint32_t width, ui
     }
 }
 
-/* The end of a text that is too long says more than its start. */
+/* Writes a label; a text that is too long is cut at its start, as its end says more. */
 static void write_text(struct sheet *sheet, uint32_t x, uint32_t y, const char *text)
 {
     struct {
@@ -125,7 +125,7 @@ static void write_text(struct sheet *sheet, uint32_t x, uint32_t y, const char *
     }
 }
 
-/* What goes over the tile is cut off. */
+/* Copies an image to a tile; pixels beyond the tile are cut off. */
 static void place(struct sheet *sheet, uint32_t x, uint32_t y, const whit_image *image)
 {
     whit_image_info info;
@@ -147,7 +147,7 @@ static bool is_picture(const char *path)
     return dot && strcasecmp(dot, ".png") == 0;
 }
 
-/* As the viewer and `whit render` show it. */
+/* Converts colours to what the viewer and `whit render` display. */
 static whit_result read_displayed(const whit_image *color, whit_image **image)
 {
     whit_image_info info;
@@ -206,7 +206,7 @@ static whit_result render(const struct sheet *sheet, whit_device *device, const 
     return result;
 }
 
-/* Says what was measured; whether it is right. */
+/* Prints the figures; gives whether the model looks right. */
 static bool say_appearance(const struct appearance *a)
 {
     char relief[32] = "flat";
@@ -218,7 +218,7 @@ static bool say_appearance(const struct appearance *a)
     return right;
 }
 
-/* The number of scenes that failed. */
+/* Fills all tiles; gives the number of scenes that failed. */
 static uint32_t fill_sheet(struct sheet *sheet, whit_device *device)
 {
     static const float dark[3] = {0.03f, 0.004f, 0.004f};

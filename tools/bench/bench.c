@@ -1,4 +1,4 @@
-/* whit-bench: all benches in one program, which `whit bench` runs in its own place. */
+/* whit-bench: all benches in one program, by which `whit bench` replaces its process. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ whit_result bench_write(const struct bench *bench, const char *name, const void 
 
 whit_result bench_find(const struct bench *bench, const char *name, char path[BENCH_PATH])
 {
-    /* Beside the program, where it is built or installed. */
+    /* Places relative to the program, for a build and an installation. */
     static const char *const beside[] = {"../scenes", "../../scenes", "../share/whit/scenes"};
     const char *scenes = bench->ask.scenes ? bench->ask.scenes : "scenes";
     const char *slash = strrchr(bench->whit, '/');

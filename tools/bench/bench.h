@@ -10,20 +10,20 @@ enum { BENCH_PATH = 2200, BENCH_GRACE_MS = 3000 };
 
 struct bench {
     struct bench_request ask;
-    const char *whit; /* the program */
+    const char *whit; /* path of the program whit */
     whit_device *device;
     whit_device_info device_info;
-    bool is_cpu;             /* the device: times are those of the processor, else by the clock */
-    char folder[BENCH_PATH]; /* for files: --keep, or it is removed at the end */
+    bool is_cpu;             /* the device is a CPU: times are processor times, else wall clock */
+    char folder[BENCH_PATH]; /* for files: that of --keep, or one that is removed at the end */
     struct cli_progress progress;
-    uint32_t step, step_count; /* of the table at hand */
-    bool has_head;             /* what is above the first table is printed */
+    uint32_t step, step_count; /* progress within the current table */
+    bool has_head;             /* the text above the first table is printed already */
     json_t *tables;
 };
 
-/* One more of the table's steps; an error when the user stopped it. */
+/* Counts one step of the current table as done; an error where the user stopped the bench. */
 WHIT_CHECK whit_result bench_step(struct bench *bench);
-/* Where whit's scene of this name is, `name` without .json: from the root on. */
+/* Finds the absolute path of whit's scene `name`, given without .json. */
 WHIT_CHECK whit_result bench_find(const struct bench *bench, const char *name,
                                   char path[BENCH_PATH]);
 void bench_file(const struct bench *bench, const char *name, char path[BENCH_PATH]);

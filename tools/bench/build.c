@@ -1,6 +1,6 @@
-/* `whit bench build`: one tree over all triangles of a model, by whit's builders and by Embree, and
-   what rays make of whit's. The linker sends whit's allocations here (tools/CMakeLists.txt), to be
-   counted while trees are made. */
+/* `whit bench build`: builds a single tree over all triangles of a model by whit's builders and by
+   Embree, and measures frames with whit's trees. The linker redirects whit's allocations to this
+   file (tools/CMakeLists.txt), which counts them while trees are built. */
 #include <malloc.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -62,13 +62,14 @@ void __wrap_free(void *memory)
 
 /* ---- Builds ---- */
 
-/* Triangles above which there is no room for all trees, to be drawn in turns. */
+/* Above this number of triangles there is no memory for all trees at once, so pictures are not
+   drawn in turns. */
 enum { LARGE = 200000 };
 
 static const struct builder {
     const char *name;
     whit_accel_params params;
-    const char *quality; /* Embree's; NULL: whit's */
+    const char *quality; /* Embree's build quality; NULL: one of whit's builders */
     bool in_quick;
 } builders[] = {
     {.name = "median", .params.build = WHIT_BUILD_MEDIAN},
@@ -94,9 +95,10 @@ enum { BUILDERS = sizeof builders / sizeof builders[0] };
 struct building {
     struct bench *bench;
     struct peer peer;
-    struct bench_case cases[BUILDERS]; /* whit's, and then Embree's; build: by one thread a core */
+    struct bench_case cases[BUILDERS]; /* whit's builders, then Embree's; their `build` times are
+                                          with one thread per core */
     struct builder builders[BUILDERS];
-    struct sample_runs alone[BUILDERS]; /* ms by one thread */
+    struct sample_runs alone[BUILDERS]; /* times in ms with one thread */
     double bytes[BUILDERS];             /* peak memory of a build, with its result */
     uint32_t count, own_count, cores, threads;
     bool is_alone;
@@ -106,7 +108,7 @@ static whit_result build_here(struct building *b, uint32_t index, double *ms)
 {
     struct bench_case *c = &b->cases[index];
     c->accel_params.threads = b->threads;
-    whit_accel_destroy(c->accel); /* which is not to be counted */
+    whit_accel_destroy(c->accel); /* the old tree is freed before counting starts */
     c->accel = NULL;
     bytes_now = bytes_peak = 0;
     is_counting = true;
@@ -121,7 +123,7 @@ static whit_result build_here(struct building *b, uint32_t index, double *ms)
     return result;
 }
 
-/* Round 0 warms up. */
+/* Round 0 is a warm-up. */
 static whit_result build_once(void *user, uint32_t index, uint32_t round)
 {
     struct building *b = user;

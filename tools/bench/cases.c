@@ -102,7 +102,7 @@ static whit_result build_once(void *user, uint32_t index, uint32_t run)
     return result == WHIT_OK ? bench_step(turns->bench) : result;
 }
 
-/* The first run warms up. */
+/* The first run is a warm-up. */
 static whit_result render_once(void *user, uint32_t index, uint32_t run)
 {
     const struct turns *turns = user;

@@ -1,16 +1,18 @@
-/* Scenes with trees of some kind, drawn and counted in turns. */
+/* Cases: scenes with a kind of tree, timed and counted in turns. */
 #ifndef BENCH_CASES_H
 #define BENCH_CASES_H
 
 #include "bench/bench.h"
 
 struct bench_case {
-    const char *label, *scene; /* by its name; neighbours with the same one share it */
+    const char *label, *scene; /* scene: its name; neighbouring cases with the same name share the
+                                  scene */
     whit_accel_params accel_params;
     whit_traversal traversal;
     whit_shadows shadows;
-    uint32_t shrink;             /* its picture has 1/shrink of width and height; 0: all */
-    double report_s, report_fps; /* what the report says; 0: nothing */
+    uint32_t shrink;             /* its picture has 1/shrink of width and height; 0: the full
+                                    size */
+    double report_s, report_fps; /* figures of the report that whit started from; 0: none */
     struct bench_scene loaded;
     uint32_t width, height;
     whit_accel *accel;
@@ -22,23 +24,24 @@ struct bench_case {
 
 WHIT_CHECK whit_result cases_load(const struct bench *bench, struct bench_case *cases,
                                   uint32_t count);
-/* Its trees, once, in place of those that it has. */
+/* Builds the case's trees once, in place of those that it has. */
 WHIT_CHECK whit_result case_build(struct bench_case *c);
-/* Builds each case's trees as often as the bench has runs, in turns; the last ones stay. */
+/* Builds the trees of all cases in turns, as often as the bench has runs; the last trees stay. */
 WHIT_CHECK whit_result cases_build(struct bench *bench, struct bench_case *cases, uint32_t count);
-/* Renders each case's picture, once before the clock counts and then as often, in turns; and once
-   more with counters. Quick benches count while they are timed, which spares pipelines. */
+/* Renders the pictures of all cases in turns, once as a warm-up and then as often as the bench has
+   runs, and once more with counters. Quick benches count during the timed runs, which needs fewer
+   pipelines. */
 WHIT_CHECK whit_result cases_draw(struct bench *bench, struct bench_case *cases, uint32_t count);
-/* What cases_draw makes of the progress for each case. */
+/* The number of progress steps of cases_draw per case. */
 uint32_t cases_steps(const struct bench *bench);
 void cases_finish(struct bench_case *cases, uint32_t count);
 
-/* Figures of cases_draw; 0 without. */
+/* Figures from cases_draw; 0 before it. */
 double case_fps(const struct bench_case *c);
-/* Nodes opened a ray (pairs, leaves, instances), over all rays; triangles tested a ray. */
+/* Nodes opened (inner nodes, leaves, instances) and triangles tested, per ray, over all rays. */
 double case_visits(const struct bench_case *c);
 double case_triangle_tests(const struct bench_case *c);
-/* The depth of the deepest level whose boxes a camera ray looked at, its mean over camera rays. */
+/* The deepest level of the trees whose boxes a camera ray tested, as mean over camera rays. */
 double case_depth_mean(const struct bench_case *c);
 json_t *case_document(const struct bench_case *c);
 

@@ -1,20 +1,21 @@
 /* whit-embree TRIANGLES: Embree's side of `whit bench`, a program of its own, so that whit needs no
    Embree. TRIANGLES, rays and hits are records of `whit scene --triangles` and `whit trace`. It
-   answers each line of standard input by one:
+   answers each line of standard input by one line:
 
-       rays FILE closest|any     `rays COUNT`: what the next lines trace
+       rays FILE closest|any     `rays COUNT`: loads the rays that the next lines trace
        trace WAY forth|back coherent|scattered
                                  `time CPU_MS WALL_MS`, of all threads; WAY: single, packets or
-                                 stream; `none`: not in this build of Embree. back: from the end of
-                                 each ray, which has one, to its origin. coherent: Embree is told
-                                 that neighbours go the same way
-       build QUALITY THREADS     `built WALL_MS BYTES`: a tree of medium or high quality, and
-   the most memory that it held by Embree's own monitor hits FILE                 `hits COUNT`: of
-   the last trace, written; of them t, primitive and instance mean something, where any will do only
-   whether it is one
+                                 stream; `none`: this build of Embree lacks it. back: traces from
+                                 the end of each ray, which must have one, to its origin. coherent:
+                                 tells Embree that neighbouring rays are coherent
+       build QUALITY THREADS     `built WALL_MS BYTES`: builds a tree of medium or high quality;
+                                 BYTES: peak memory by Embree's own monitor
+       hits FILE                 `hits COUNT`: writes the hits of the last trace. Only t, primitive
+                                 and instance have a meaning; for any-hit rays only whether there is
+                                 a hit
 
-   The first line that it prints is `embree VERSION THREADS`. What goes wrong is said on standard
-   error, and ends it with exit code 2. Scenes are ROBUST, of medium quality. */
+   The first line that it prints is `embree VERSION THREADS`. Errors are printed on standard error,
+   and end it with exit code 2. Scenes are ROBUST, of medium quality. */
 #include <embree3/rtcore.h>
 #include <math.h>
 #include <pthread.h>
@@ -38,10 +39,10 @@ struct peer {
     RTCScene scene;
     whit_triangle *triangles;
     uint64_t triangle_count;
-    whit_ray *rays, *turned; /* as they are in the file, and from their ends */
+    whit_ray *rays, *turned; /* as in the file; turned: from their ends back */
     whit_hit *hits;
     uint64_t count;
-    bool any, wide; /* wide: packets of 16 */
+    bool any, wide; /* wide: packets have 16 rays */
     int threads;
     /* The trace that is running: */
     const whit_ray *traced;
@@ -68,7 +69,7 @@ static double clock_of(clockid_t clock)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* All records of a file, in one block. */
+/* Reads all records of a file into one block. */
 static void *read_records(const char *path, size_t record, uint64_t *count)
 {
     struct stat info;
@@ -93,7 +94,7 @@ static RTCDevice open_device(int threads)
     return rtcNewDevice(config);
 }
 
-/* All triangles, not committed yet. */
+/* Makes a scene of all triangles, not committed yet. */
 static RTCScene make_scene(const struct peer *peer, RTCDevice device, enum RTCBuildQuality quality)
 {
     RTCScene scene = rtcNewScene(device);
@@ -129,7 +130,7 @@ static void build(struct peer *peer)
         fail("Embree cannot build the scene");
 }
 
-/* Threads of Embree's call it. */
+/* Memory of a build, counted by Embree's monitor, which is called from its threads. */
 struct memory {
     _Atomic int64_t now, peak;
 };
@@ -201,7 +202,7 @@ static struct RTCRayHit query_of(const whit_ray *ray)
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .primID = RTC_INVALID_GEOMETRY_ID}};
 }
 
-/* Embree ends a ray that meets something, where any will do, by a negative tfar. */
+/* For any-hit queries Embree marks a hit by a negative tfar. */
 static void keep_hit(const struct peer *peer, uint64_t i, float t, uint32_t primitive)
 {
     whit_hit *hit = &peer->hits[i];

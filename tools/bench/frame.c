@@ -1,5 +1,5 @@
-/* `whit bench frame`: whole pictures beside POV-Ray, another whit, the levels, and their own rays.
- */
+/* `whit bench frame`: compares whole pictures with POV-Ray, another version of whit, other levels
+   of numerics, and the tracing of only their rays by Embree. */
 #include "bench/frame_peers.h"
 
 #include <stdlib.h>
@@ -12,7 +12,8 @@
 
 static const char BAILOUT[] = "0.0009765625", POV_BAILOUT[] = "0.0005";
 
-/* What pictures must reach, beside one peer each; POV-Ray's have the depth of tests/peers/pov. */
+/* Goals for pictures, each compared with one peer; pictures for POV-Ray have the depth of
+   tests/peers/pov. */
 static const struct frame_goal {
     const char *name;
     enum frame_side beside;
@@ -51,8 +52,7 @@ static bool is_pov(const char *name)
 
 /* ---- Rows ---- */
 
-/* `what` of the frame beside `beside`, as the share of time of the former side in that of the
-   latter. */
+/* Adds a row: the time of `side` divided by that of `other`. `what` and `beside` name the two. */
 static void put_ratio(struct table *table, const struct frame *frame, const char *what,
                       enum frame_side side, const char *beside, enum frame_side other,
                       struct goal goal)
@@ -161,7 +161,7 @@ static whit_result measure(struct frame *frame, struct table *table, bool pov)
     return bench_step(frame->bench);
 }
 
-/* `path`: of its scene; "": one of POV-Ray's. */
+/* `path`: file of the scene; "": a scene of POV-Ray's. */
 static whit_result run_frame(const struct peers *peers, struct table *table, const char *name,
                              const char *path)
 {
@@ -207,7 +207,8 @@ static void say_how(struct table *table)
         ask->width * 3 / 4, ask->height);
 }
 
-/* One of POV-Ray's, a scene of whit's by its name, or a file. Sets `path`, "" for the former. */
+/* Finds a scene of POV-Ray's, a scene of whit's by its name, or a file. `path` is "" for
+   POV-Ray's. */
 static whit_result find_scene(const struct bench *bench, const char *word, char name[40],
                               char path[BENCH_PATH])
 {

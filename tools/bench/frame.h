@@ -1,25 +1,26 @@
-/* One picture, drawn in turns by all who can. */
+/* One picture, drawn in turns by all programs and modes that can. */
 #ifndef BENCH_FRAME_H
 #define BENCH_FRAME_H
 
 #include "bench/peer.h"
 #include "bench/table.h"
 
-/* What is here to compare with. */
+/* The programs on this machine to compare with. */
 struct peers {
-    char pov_scenes[BENCH_PATH]; /* scenes.sh */
-    char against[BENCH_PATH];    /* --against from the root on, or a name that PATH has; or "" */
+    char pov_scenes[BENCH_PATH]; /* path of scenes.sh */
+    char against[BENCH_PATH];    /* program of --against: an absolute path, or a name found by PATH;
+                                    or "" */
     bool has_pov, has_embree;
 };
 
 enum frame_side {
-    FRAME_WHIT, /* at `watertight` */
+    FRAME_WHIT, /* whit at `watertight` */
     FRAME_FAST,
     FRAME_EXACT,
     FRAME_AGAINST,
     FRAME_POV,
-    FRAME_REFERENCE, /* whit's own, in double */
-    FRAME_EMBREE,    /* the rays of the picture alone */
+    FRAME_REFERENCE, /* whit's reference in double */
+    FRAME_EMBREE,    /* Embree tracing only the rays of the picture */
     FRAME_SIDES,
 };
 
@@ -29,14 +30,15 @@ struct frame {
     char name[40], path[BENCH_PATH]; /* absolute */
     const char *bailout;
     uint32_t depth, width, height;
-    uint32_t small_width, small_height; /* a picture whose time is taken off; 0: none */
+    uint32_t small_width, small_height; /* size of a small picture whose time is subtracted; 0:
+                                           none */
     struct bench_scene loaded;
     whit_accel *accel;
     whit_reference *reference;
     struct peer peer;
-    enum frame_side sides[FRAME_SIDES]; /* who draws */
+    enum frame_side sides[FRAME_SIDES]; /* the sides that draw */
     uint32_t side_count;
-    struct sample_runs ms[FRAME_SIDES]; /* by side: of the processor, or by the clock */
+    struct sample_runs ms[FRAME_SIDES]; /* by side: processor time, or wall clock */
 };
 
 #endif

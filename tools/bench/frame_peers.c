@@ -5,7 +5,7 @@
 #include "bench/frame_peers.h"
 #include "bench/process.h"
 
-/* Whether `program --version` runs, and its line with `word` into `line`. */
+/* Whether `program --version` runs; `line` gets the line of its output that has `word`. */
 static bool ask_version(const struct bench *bench, const char *program, const char *word,
                         char line[128])
 {

@@ -4,9 +4,10 @@
 
 #include "bench/frame.h"
 
-/* The whit that --against names, or says that there is none. WHIT_ERROR_INPUT: it is no whit. */
+/* Finds the program of --against, or says in the table that none was given. WHIT_ERROR_INPUT: it is
+   not whit. */
 WHIT_CHECK whit_result peers_find_against(struct peers *peers, struct table *table);
-/* Looks who else is here, and says who is left out. */
+/* Finds the other programs on this machine, and says in the table which are left out. */
 void peers_find(struct peers *peers, struct table *table, bool wants_pov);
 
 #endif

@@ -1,4 +1,4 @@
-/* The rays that a picture calls for, as the reference says which these are, for Embree to trace. */
+/* Lists the rays of a picture, by the reference, for Embree to trace. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,7 +8,7 @@
 static const char closest_name[] = "closest.rays", shadow_name[] = "shadow.rays";
 
 struct own_ray {
-    uint32_t light; /* 0 of rays that look for none */
+    uint32_t light; /* 0 for rays that are not shadow rays */
     whit_ray ray;
 };
 struct own_rays {
@@ -21,7 +21,7 @@ static bool add_ray(struct own_rays *to, uint32_t light, const whit_ray *ray)
     return ARRAY_PUSH(to->rays, to->count, to->capacity, (struct own_ray){light, *ray});
 }
 
-/* A shadow ray as long as the way to its light, the others without end. */
+/* Makes a ray: shadow rays end at their light, other rays do not end. */
 static whit_ray ray_of(const struct frame *frame, const whit_probe_ray *from)
 {
     bool shadow = from->kind == WHIT_RAY_SHADOW;
@@ -65,7 +65,7 @@ static whit_result take_pixel(struct frame *frame, uint32_t x, uint32_t y, struc
     return !room ? WHIT_ERROR_MEMORY : cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
 }
 
-/* Light by light, as one would trace them. */
+/* Writes the rays sorted by light, as a renderer would trace them. */
 static whit_result write_rays(const struct frame *frame, const char *name,
                               const struct own_rays *rays)
 {

@@ -4,9 +4,10 @@
 
 #include "bench/frame.h"
 
-/* The rays of the picture as files, and whit-embree on its triangles: for FRAME_EMBREE. */
+/* For FRAME_EMBREE: writes the picture's rays to files, and starts whit-embree on its triangles. */
 WHIT_CHECK whit_result frame_prepare_rays(struct frame *frame);
-/* Single rays; shadow rays from the end where Embree is quicker. */
+/* Times Embree on these rays, one at a time; shadow rays start from the end where Embree is
+   faster. */
 WHIT_CHECK whit_result frame_trace_rays(struct frame *frame, double *ms);
 
 #endif

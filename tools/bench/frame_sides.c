@@ -41,7 +41,8 @@ void frame_finish(struct frame *frame)
 
 /* ---- Programs ---- */
 
-/* What a device that is no CPU computes shows by the clock alone. */
+/* Runs a process. On a CPU device its time is processor time; the work of other devices shows only
+   in wall clock time. */
 static whit_result run_process(const struct frame *frame, struct process *process, double *ms)
 {
     struct process_times times = {0};
@@ -70,7 +71,8 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
                 "--light-samples", "16", "--quiet", NULL);
     if (side == FRAME_FAST || side == FRAME_EXACT)
         process_add(&process, "--numerics", side == FRAME_FAST ? "fast" : "exact", NULL);
-    /* For small pictures as for large ones: what is made before the first ray is to cancel out. */
+    /* The same kernels for the small picture as for the large one, so that the time before the
+       first ray cancels out. */
     if (!is_other)
         process_add(&process, "--packets", "on", "--classes", "many", NULL);
     process_add_device(&process, frame->bench);
@@ -123,7 +125,7 @@ static whit_result draw(struct frame *frame, enum frame_side side, double *ms)
     return result;
 }
 
-/* Round 0 fills caches, but in quick benches, which have none to quote. */
+/* Round 0 only fills caches; quick benches count it too. */
 static whit_result run_side(void *user, uint32_t index, uint32_t round)
 {
     struct frame *frame = user;
@@ -170,7 +172,7 @@ whit_result frame_memory(const struct frame *frame, double *megabytes)
     whit_result result = device_bytes(frame, &whole, &with);
     if (result == WHIT_OK)
         result = device_bytes(frame, &min, &without);
-    /* A pixel takes 24 bytes, its colour and its two ids; the small picture has 256 pixels. */
+    /* A pixel takes 24 bytes: its colour and two ids. The small picture has 256 pixels. */
     double pixels = 24.0 * ((double)frame->width * frame->height - 256.0);
     *megabytes = ((double)with - (double)without - pixels) * 1e-6;
     return result;

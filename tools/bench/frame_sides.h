@@ -4,11 +4,11 @@
 
 #include "bench/frame.h"
 
-/* The scene, its trees and the reference. */
+/* Loads the scene, builds its trees and makes the reference. */
 WHIT_CHECK whit_result frame_prepare(struct frame *frame);
-/* All sides, once before the clock counts and then as often as the bench has runs. */
+/* Runs all sides in turns, once as a warm-up and then as often as the bench has runs. */
 WHIT_CHECK whit_result frame_run(struct frame *frame);
-/* Device memory of the picture beyond what the scene and the pixels take, in MB. */
+/* Device memory for drawing the picture, in MB, without that of the scene and the pixels. */
 WHIT_CHECK whit_result frame_memory(const struct frame *frame, double *megabytes);
 void frame_finish(struct frame *frame);
 

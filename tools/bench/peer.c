@@ -29,7 +29,7 @@ const char *peer_why_not(const whit_scene_info *scene)
     return scene && scene->sphere_count ? "its side has triangles alone, not spheres" : NULL;
 }
 
-/* Waits for its end, which may be on its way already. */
+/* Waits until whit-embree ends, and gives the error. */
 static whit_result lost(struct peer *peer)
 {
     whit_result result = process_end(&peer->process, NULL);
@@ -90,7 +90,7 @@ whit_result peer_begin(struct peer *peer, const struct bench *bench, const whit_
     return result;
 }
 
-/* It ends with its input. */
+/* whit-embree ends when its input is closed. */
 void peer_end(struct peer *peer)
 {
     if (peer->answers)

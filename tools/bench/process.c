@@ -80,10 +80,11 @@ whit_result process_start(struct process *process)
 
 /* ---- End ---- */
 
-/* The last line of what it said, for the error. */
+/* The last line of the process's messages, for the error. */
 static void last_line(const struct process *process, char *line, size_t bytes)
 {
-    static const char head[] = "whit: error: "; /* which the error that quotes the line has too */
+    static const char head[] = "whit: error: "; /* dropped, as the error that quotes the line has it
+                                                   too */
     char path[BENCH_PATH], next[256];
     bool is_whole = process->err && process->err[0] == '/';
     line[0] = 0;
@@ -113,7 +114,8 @@ static whit_result judge_end(const struct process *process, int status)
         return WHIT_ERROR_FAILED;
     last_line(process, said, sizeof said);
     bool no_device = is_whit && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_DEVICE;
-    if (no_device && strcmp(process->arguments[1], "view") == 0) /* the bench has a device */
+    if (no_device && strcmp(process->arguments[1], "view") == 0) /* so the window is missing, as the
+                                                                    bench itself has a device */
         cli_error("this bench needs a window, and `whit view` opens none%s; where there is no "
                   "screen, `xvfb-run -s '-screen 0 1280x1024x24' whit bench ...` makes one up",
                   said);
@@ -124,7 +126,7 @@ static whit_result judge_end(const struct process *process, int status)
     return no_device ? WHIT_ERROR_NO_DEVICE : WHIT_ERROR_FAILED;
 }
 
-/* Looks every 2 ms, so that an interrupt reaches it. */
+/* Waits for a process, polling every 2 ms so that an interrupt can be passed on. */
 static int wait_for(pid_t pid, struct rusage *usage)
 {
     const struct timespec pause = {.tv_nsec = 2000000};

@@ -1,4 +1,4 @@
-/* `whit bench rays`: whit's kernels beside Embree's, on the same ray files. */
+/* `whit bench rays`: compares whit's kernels with Embree's on the same files of rays. */
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "base/path.h"
 #include "bench/rays_batch.h"
 
-enum { LARGE = 200000 }; /* triangles: above it the second goal counts */
+enum { LARGE = 200000 }; /* number of triangles above which the second goal counts */
 
 /* The goals for each kind of rays: for small models, and for large ones. */
 static const struct goal goals[RAYS_KINDS][2] = {
@@ -101,8 +101,8 @@ static whit_result run_kind(struct model *model, uint32_t kind)
 
 /* ---- Models ---- */
 
-/* Names a model after the file of `path`, without its extension; letters that may be no part of a
-   file name everywhere become `_`. */
+/* Names a model after the file of `path`, without its extension; characters that not every file
+   system allows become `_`. */
 static void name_model(struct model *model, const char *path)
 {
     const char *from = path_name(path), *dot = strrchr(from, '.');
@@ -145,7 +145,7 @@ static whit_result prepare(struct model *model, const char *path)
 static whit_result begin_peer(struct model *model, char file[96])
 {
     const char *why_not = peer_why_not(&model->loaded.info);
-    if (why_not && !peer_why_not(NULL)) /* else it was said once for all models */
+    if (why_not && !peer_why_not(NULL)) /* else the table says it once for all models */
         table_leave_out(model->table, "Embree", why_not);
     if (why_not)
         return WHIT_OK;

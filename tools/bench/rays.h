@@ -1,4 +1,4 @@
-/* Rays of one kind in one order, through whit and Embree in turns. */
+/* Batches of rays of one kind in one order, traced by whit and Embree in turns. */
 #ifndef BENCH_RAYS_H
 #define BENCH_RAYS_H
 
@@ -9,14 +9,14 @@
 enum rays_side { RAYS_WHIT, RAYS_SINGLE, RAYS_PACKETS, RAYS_STREAM, RAYS_BACK, RAYS_SIDES = 7 };
 enum rays_kind { RAYS_CAMERA, RAYS_SHADOW, RAYS_BOUNCE, RAYS_KINDS };
 
-/* One set of rays in one order, and what it took each side in ms. */
+/* One set of rays in one order, and the times of each side in ms. */
 struct batch {
     struct sample_runs sides[RAYS_SIDES];
-    bool any, coherent; /* any: any hit will do; coherent: neighbours go the same way */
+    bool any, coherent; /* any: any-hit rays; coherent: neighbouring rays are coherent */
 };
 
-/* Hits of both sides beside each other. Of two triangles that a ray meets at once, at an edge, each
-   side may name another one. */
+/* How the hits of both sides differ. Where a ray meets two triangles at an edge, the sides may name
+   different ones. */
 struct agreement {
     uint64_t rays, one_alone, other_ids, other_t;
 };
@@ -24,15 +24,15 @@ struct agreement {
 struct model {
     struct bench *bench;
     struct table *table;
-    char name[40]; /* letters and digits of the file's, which is a name in the folder */
+    char name[40]; /* made from the file's name, with only characters that file names allow */
     struct bench_scene loaded;
     whit_accel *accel;
     whit_renderer *renderer;
     struct peer peer;
     bool has_peer;
     struct study_rays camera;
-    whit_hit *hits; /* of camera rays: there the others begin */
-    /* The batch that is being traced; arrays have room for as many rays as the camera has: */
+    whit_hit *hits; /* hits of camera rays, where shadow and bounce rays start */
+    /* The batch that is being traced; arrays have room for the number of camera rays: */
     struct batch *batch;
     whit_ray *rays;
     whit_hit *traced;

@@ -12,7 +12,7 @@ static const char *const ways[] = {"single", "packets", "stream"};
 
 /* ---- Rays ---- */
 
-/* By Fisher and Yates. */
+/* Shuffles by the Fisher-Yates algorithm. */
 static void shuffle(whit_ray *rays, uint64_t count)
 {
     for (uint64_t i = count; i > 1; --i) {
@@ -23,8 +23,8 @@ static void shuffle(whit_ray *rays, uint64_t count)
     }
 }
 
-/* Rays of a kind, in tiles: all of the camera, or one for each of its hits. The light is above one
-   corner of the scene's box. */
+/* Makes rays of a kind in tiles: all camera rays, or one for each hit of these. The light is above
+   one corner of the scene's box. */
 static uint64_t make_rays(const struct model *model, enum rays_kind kind, whit_ray *rays)
 {
     static const double where[3] = {0.7, 1.8, 0.6};
@@ -54,8 +54,9 @@ static double thread_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* From rays in device memory to hits in device memory: this thread puts them in and takes them out,
-   a driver on the CPU computes in threads of its own. Of other devices it is their own time. */
+/* The time from rays in device memory to hits in device memory. On a CPU device it is the processor
+   time of all threads but this one, which only copies rays and hits while the driver computes in
+   threads of its own. On other devices it is the device's time. */
 static whit_result trace_here(struct model *model, double *ms)
 {
     double all = whit_clock_cpu_ms(), own = thread_ms();
@@ -66,11 +67,11 @@ static whit_result trace_here(struct model *model, double *ms)
     return result;
 }
 
-/* Round 0 warms up. */
+/* Round 0 is a warm-up. */
 static whit_result run_side(void *user, uint32_t side, uint32_t round)
 {
     struct model *model = user;
-    double ms[2] = {0.0}; /* of the processor, by the clock */
+    double ms[2] = {0.0}; /* processor time, wall clock */
     whit_result result = side == RAYS_WHIT
                              ? trace_here(model, ms)
                              : peer_trace(&model->peer, ways[(side - RAYS_SINGLE) % 3],
@@ -137,7 +138,7 @@ static whit_result read_hits(const char *path, whit_hit *hits, uint64_t count)
     return WHIT_ERROR_INPUT;
 }
 
-/* Writes what both sides met, and compares it. */
+/* Writes the hits of both sides to files, and compares them. */
 static whit_result keep_hits(struct model *model, const char *own, const char *other,
                              struct agreement *agreement)
 {

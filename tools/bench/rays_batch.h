@@ -4,11 +4,11 @@
 
 #include "bench/rays.h"
 
-/* Makes the rays, in tiles of 8x8 pixels or shuffled, and their file; times all sides; compares
-   their hits. With --keep the files stay. */
+/* Makes the rays, in tiles of 8x8 pixels or shuffled, and writes their file; times all sides and
+   compares their hits. With --keep the files stay. */
 WHIT_CHECK whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind,
                                  bool shuffled, struct agreement *agreement);
-/* Shadow rays go both ways: the times of the one that Embree is quicker in. */
+/* Embree traces shadow rays in both directions: gives the times of the faster one. */
 const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_side side);
 
 #endif

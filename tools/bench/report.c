@@ -1,12 +1,13 @@
-/* The tables of the report that whit comes from, on whit's scenes of the same sizes. It names no
-   machine like this one. */
+/* The tables of the report that whit started from, on whit's scenes of the same sizes. The machine
+   of that report is not known. */
 
 #include "bench/cases.h"
 #include "bench/table.h"
 
 /* ---- Cells ---- */
 
-/* A case in a small picture stands for one of the bench's size: times the share of its pixels. */
+/* The frame time of a case, scaled by the number of pixels from the size of its picture to that of
+   the bench. */
 static double frame_ms(const struct table *table, const struct bench_case *c)
 {
     const struct bench_request *ask = &table->bench->ask;
@@ -74,7 +75,7 @@ static void put_depth(struct table *table, const struct bench_case *c)
 
 /* ---- Sentences ---- */
 
-/* 1: `b` takes longer; -1: `a` does; 0: not to be distinguished, as sample_compare says. */
+/* 1: `b` takes longer; -1: `a` takes longer; 0: sample_compare finds no difference. */
 static int compare(const struct bench_case *a, const struct bench_case *b)
 {
     const struct sample_runs *x = &a->frame, *y = &b->frame;
@@ -82,7 +83,7 @@ static int compare(const struct bench_case *a, const struct bench_case *b)
     return sample_compare(y->values, x->values, x->count, differences, NULL);
 }
 
-/* Whether `faster` is, as the report says. */
+/* Says whether `faster` is faster here than `slower`, as the report says. */
 static const char *holds(const struct bench_case *faster, const struct bench_case *slower)
 {
     int found = compare(faster, slower);
@@ -149,7 +150,7 @@ static void judge_orders(struct table *table, const struct bench_case *cases)
 
 #define BUILD(label_, ...) .label = (label_), .accel_params = {__VA_ARGS__}
 
-/* The picture of 34k without a tree has 32x24 pixels of 640x480. */
+/* The picture of 34k without a tree has only 32x24 pixels in place of 640x480. */
 static struct bench_case trees[] = {
     {BUILD("tree", .bins = 7), .scene = "cube", .report_fps = 120.0},
     {BUILD("no tree", .build = WHIT_BUILD_NONE), .scene = "cube", .report_fps = 40.0},

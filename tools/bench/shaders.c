@@ -1,6 +1,6 @@
-/* `whit bench shaders`: what follows a save of a user's file. Saves are seen by a `whit view` on
-   the display that there is, which is told by a replay when to look; fuel is measured by the
-   library. */
+/* `whit bench shaders`: measures what follows when a shader's file is saved. A `whit view` with a
+   window, driven by a replay, reloads the saved file; the cost of fuel (the limit on loops) is
+   measured by the library. */
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,12 +13,12 @@
 #include "bench/table.h"
 
 enum { TEXT_BYTES = 1024, MOVES = 60, MOVES_QUICK = 8, MOVE_MS = 16, HELD_SAVES = 2 };
-enum { PATIENCE_S = 60 }; /* with a window that says nothing */
+enum { PATIENCE_S = 60 }; /* time to wait for a window that prints nothing */
 
-/* `%.9g` is another number in each save, so that no cache has the kernel. */
+/* `%.9g` is replaced by another number in each save, so that no cache has the kernel. */
 static const struct edited {
     const char *label, *text;
-    const char *aov; /* that the window shows; NULL: the colour */
+    const char *aov; /* the aov that the window shows; NULL: the colour */
     bool traces;
 } edits[] = {
     {"shade", "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.color * %.9g; }\n", NULL,
@@ -62,8 +62,8 @@ static const char looping[] =
     "    return sum * 0.05; }\n";
 static const char broken[] = "vec3 miss(vec3 dir) { return vec3(%.9g) + dirr; }\n";
 
-/* What saves must reach, seconds: to the first changed picture, by what the file does; to the whole
-   one, by what is drawn. Nothing is asked of other scenes. */
+/* Limits in seconds after a save: to the first changed picture, by whether the file traces rays; to
+   the whole picture, by scene and function. Other scenes have no limits. */
 static const double FIRST_MUST_S = 0.15, FIRST_TRACES_MUST_S = 0.35;
 static const double INTERSECT_MUST_S = 1.2;
 static const double ERROR_MUST_S = 0.05, FUEL_MUST = 1.02, TESTS_MUST_S = 2.0;
@@ -75,9 +75,9 @@ enum { MUSTS = sizeof musts / sizeof *musts };
 
 enum { TESTS = 10, CHECKS_EACH = 100 };
 
-/* What of a scene has a bar, beside its saves; 0: not run. */
+/* The figures of a scene that have limits; 0: not run. */
 struct reached {
-    double saves_ms[EDITS][2]; /* p95 to the first and the whole picture */
+    double saves_ms[EDITS][2]; /* 95th percentile to the first and to the whole picture */
     double error_ms, fuel, tests_ms;
 };
 
@@ -89,19 +89,20 @@ struct saves {
     whit_shader_compiler *compiler;
     whit_log silent;
     char path[BENCH_PATH];
-    uint32_t number; /* of the save */
+    uint32_t number; /* number of the save */
     double start_ms;
     whit_shader *looping[2];
-    whit_renderer *renderers[2]; /* with fuel, and trusted */
+    whit_renderer *renderers[2]; /* with fuel; trusted, without fuel */
     struct sample_runs loops[2], errors, tests;
 };
 
-/* The number of the save is near 1: the shape of `intersect` has to stay in its box. */
+/* Saves a version of the file. Its number is near 1, because the shape of `intersect` has to stay
+   in its box. */
 static whit_result save(struct saves *s, const char *form)
 {
     char text[TEXT_BYTES];
     double number = 1.0 + 1e-6 * ++s->number + 1e-10 * (double)((uint64_t)whit_clock_ms() % 9973);
-    snprintf(text, sizeof text, form, number); /* of the tables above */
+    snprintf(text, sizeof text, form, number); /* the format is from the tables above */
     s->start_ms = whit_clock_ms();
     return whit_file_write(s->path, text, strlen(text), &cli_log);
 }
@@ -119,18 +120,20 @@ static whit_renderer_params params_of(struct saves *s, const whit_shader *shader
 
 /* ---- Saves ---- */
 
-/* What is done while a version is made: nothing, the mouse moves over the picture, or drags it. */
+/* What the mouse does while a version is compiled: nothing, it moves over the picture, or drags it.
+   HAND_ERROR: the saved file has an error. */
 enum hand { HAND_NONE, HAND_OVER, HAND_DRAGS, HAND_ERROR };
 
-/* The longest times of each round with a hand on the mouse, ms. */
+/* The longest times of each round in which the mouse moves, ms. */
 struct hand_times {
-    struct sample_runs over, drags; /* from one drawing of the window to the next */
-    struct sample_runs pictures;    /* from one new picture to the next while it is dragged */
+    struct sample_runs over, drags; /* between two frames of the window */
+    struct sample_runs pictures;    /* between two new pictures while the view is dragged */
 };
 
 struct save_times {
-    struct sample_runs first, whole; /* to the first changed picture, to the whole one; ms */
-    struct hand_times saved, alone;  /* with saves, and without one */
+    struct sample_runs first, whole; /* from the save to the first changed and to the whole picture,
+                                        ms */
+    struct hand_times saved, alone;  /* in rounds with a save, and in rounds without */
 };
 
 struct viewer {
@@ -139,8 +142,8 @@ struct viewer {
     char replay[BENCH_PATH], err[BENCH_PATH];
 };
 
-/* What is done in a window in its order: a hand on the mouse without a save; saves that are timed,
-   behind one that makes the second session; saves with a hand on the mouse; those with an error. */
+/* The rounds in a window, in order: mouse moves without a save; one save that starts the second
+   session, then saves that are timed; saves during mouse moves; saves with an error. */
 enum { ALONE = 2 };
 static enum hand hand_of(const struct saves *s, uint32_t at)
 {
@@ -178,8 +181,8 @@ static void write_hand(FILE *to, const struct saves *s, enum hand hand)
         fprintf(to, "button left up\n");
 }
 
-/* Each state `saved` tells the bench to save, and what came of the save before; `moved` what it was
-   like to move the mouse meanwhile. */
+/* Writes the replay. Each state `saved` tells the bench to save again, and has the figures of the
+   save before; `moved` has the figures of the mouse moves. */
 static whit_result write_replay(const struct saves *s, bool errors)
 {
     char *text = NULL;
@@ -199,7 +202,7 @@ static whit_result write_replay(const struct saves *s, bool errors)
             fprintf(to, "until shader.first = %u\n", ++first);
         if (hand != HAND_ERROR)
             fprintf(to, "still\n");
-        fprintf(to, "state saved\nmove 20 20\n"); /* which ends what is measured of the change */
+        fprintf(to, "state saved\nmove 20 20\n"); /* the move ends the measurement of the change */
     }
     whit_result result =
         fclose(to) == 0 ? bench_write(s->bench, "replay", text, bytes) : WHIT_ERROR_MEMORY;
@@ -233,7 +236,7 @@ static whit_result start_viewer(const struct saves *s, const char *scene, const 
     return result == WHIT_OK && !viewer->states ? WHIT_ERROR_MEMORY : result;
 }
 
-/* The next state, for the caller to give back; NULL: the viewer has ended, or has nothing to say
+/* Reads the next state, which the caller releases; NULL: the viewer has ended, or printed nothing
    for too long, such as after a save that it refuses. */
 static json_t *read_state(struct viewer *viewer)
 {
@@ -265,14 +268,14 @@ static void note_hand(enum hand hand, const json_t *state, struct hand_times *ti
         sample_add(&times->pictures, number_at(state, "measure", "gap_ms", "max"));
 }
 
-/* A person saves after looking at what the last save made. Without this second a save would fall
-   into the moment in which the window compares two pictures. */
+/* Waits a second, as a person looks at the last picture before saving again. Without it a save
+   would fall into the moment in which the window compares two pictures. */
 static void look_on(void)
 {
     nanosleep(&(struct timespec){.tv_sec = 1}, NULL);
 }
 
-/* One round: a save but in the first ones, and what the viewer says of it. */
+/* One round: a save, except in the first rounds, and the viewer's figures for it. */
 static whit_result watch_round(struct saves *s, struct viewer *viewer, const struct edited *edit,
                                uint32_t at, struct save_times *times)
 {
@@ -296,7 +299,7 @@ static whit_result watch_round(struct saves *s, struct viewer *viewer, const str
     return result == WHIT_OK ? bench_step(s->bench) : result;
 }
 
-/* All saves of one function in one window. */
+/* Runs all rounds for one function in one window. */
 static whit_result watch_saves(struct saves *s, struct viewer *viewer, const struct edited *edit,
                                bool errors, struct save_times *times)
 {
@@ -322,8 +325,8 @@ static whit_result view_saves(struct saves *s, const char *scene, uint32_t edit,
     if (viewer.states)
         fclose(viewer.states);
     if (result != WHIT_OK && viewer.process.pid > 0)
-        kill(viewer.process.pid, SIGKILL); /* it waits for what does not come; its last message,
-                                              which process_end quotes, says why */
+        kill(viewer.process.pid, SIGKILL); /* the viewer waits for something that does not come;
+                                              process_end quotes its last message */
     whit_result end = viewer.process.pid > 0 ? process_end(&viewer.process, NULL) : WHIT_OK;
     return end == WHIT_OK ? result : end;
 }
@@ -348,7 +351,7 @@ static void put_times(struct table *table, json_t *row, const char *name,
     table_cell(table, "%.0f", quantile(runs, 0.95));
 }
 
-/* The longest time with saves, and without one. */
+/* Adds the longest times of rounds with saves and of rounds without. */
 static void put_max(struct table *table, json_t *row, const char *name,
                     const struct sample_runs *saved, const struct sample_runs *alone)
 {
@@ -377,7 +380,7 @@ static void put_row(struct table *table, const char *scene, const struct edited 
     table_keep(table, row);
 }
 
-/* NULL: nothing is asked of the scene. */
+/* NULL: the scene has no limits. */
 static struct reached *reached_of(struct saves *s, const char *scene)
 {
     for (int i = 0; i < MUSTS; ++i) {
@@ -397,7 +400,7 @@ static void keep_reached(struct saves *s, const char *scene, uint32_t edit,
     reached->saves_ms[edit][1] = quantile(&times->whole, 0.95);
 }
 
-/* Errors are those of the first function alone: the file that is broken is the same. */
+/* Errors are measured only with the first function, as the broken file is the same for all. */
 static whit_result measure_saves(struct saves *s, struct table *table, const char *scene,
                                  const char *path)
 {
@@ -421,7 +424,7 @@ static whit_result draw_loops(void *user, uint32_t way, uint32_t round)
     whit_stats stats;
     whit_result result = whit_renderer_render(s->renderers[way]);
     whit_renderer_get_stats(s->renderers[way], &stats);
-    if (result == WHIT_OK && round > 0) /* kernels are made in the first one */
+    if (result == WHIT_OK && round > 0) /* kernels are made in the first round */
         sample_add(&s->loops[way], stats.render_ms);
     return result;
 }
@@ -460,7 +463,7 @@ static whit_result measure_fuel(struct saves *s, struct table *table, const char
 
 /* ---- Tests ---- */
 
-/* Other numbers in each file, so that no cache has the kernel. */
+/* Writes a file of tests with other numbers each time, so that no cache has the kernel. */
 static whit_result write_tests(struct saves *s)
 {
     char *text = NULL;
@@ -482,7 +485,7 @@ static whit_result write_tests(struct saves *s)
     return result;
 }
 
-/* From a file to what its checks have found. */
+/* Loads, compiles and runs the file of tests. */
 static whit_result run_tests(struct saves *s, whit_shader **shader, whit_renderer **renderer)
 {
     static whit_check_result results[TESTS * CHECKS_EACH];
@@ -556,7 +559,7 @@ static whit_result run_scene(struct saves *s, struct table *table, const char *s
     return result;
 }
 
-/* What was reached of one function in one scene. */
+/* Adds rows that compare the times of one function in one scene with their limits. */
 static void put_must(struct table *table, const struct stage_must *must, const struct edited *edit,
                      const double reached_ms[2])
 {

@@ -1,5 +1,5 @@
-/* `whit bench start`: the first picture, whole processes with empty caches, beside another whit;
-   and the same on the lavapipe that tools/second-driver unpacks. */
+/* `whit bench start`: measures the time to the first picture of whole processes with empty caches,
+   beside another version of whit; also on the lavapipe that tools/second-driver unpacks. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,10 +8,11 @@
 
 enum { SIDES = 2 };
 
-/* Goals are times the time of the other whit; 77b2e52 is what they were set beside. */
+/* Goals are ratios to the time of the other whit; they were set for a comparison with version
+   77b2e52. */
 static const struct start {
     const char *label, *scene, *size; /* size: NULL: a probe of the middle of 640x480 */
-    bool warm, second;                /* caches filled; on the second driver */
+    bool warm, second;                /* warm: caches are filled; second: on the second driver */
     struct goal clock, cpu;
 } starts[] = {
     {"34k, 320x240", "34k", "320x240", false, false, {1.0, 0.6, false}, {1.3, 1.0, false}},
@@ -35,10 +36,11 @@ struct starting {
     struct peers peers;
     const struct start *start;
     char scene[BENCH_PATH], second[BENCH_PATH];
-    struct sample_runs clock[SIDES], cpu[SIDES]; /* of this whit, of the other */
+    struct sample_runs clock[SIDES], cpu[SIDES]; /* of this whit; of the other one */
 };
 
-/* Round 0 fills files and caches; of those that are to be empty nothing is left. */
+/* Runs one side. Round 0 fills file and whit's caches; where caches are to be empty, they are
+   removed before each run. */
 static whit_result run_side(void *user, uint32_t side, uint32_t round)
 {
     struct starting *s = user;
@@ -99,7 +101,7 @@ static whit_result run_start(struct starting *s, const struct start *start)
     memset(s->clock, 0, sizeof s->clock);
     memset(s->cpu, 0, sizeof s->cpu);
     if (start->second && !s->second[0])
-        return WHIT_OK; /* said once */
+        return WHIT_OK; /* the table says once that it is missing */
     whit_result result = bench_find(s->bench, start->scene, s->scene);
     if (result == WHIT_OK)
         result = sample_in_turns(s->peers.against[0] ? 2 : 1, s->bench->ask.runs + 1, run_side, s);
@@ -110,7 +112,7 @@ static whit_result run_start(struct starting *s, const struct start *start)
     return result == WHIT_OK ? bench_step(s->bench) : result;
 }
 
-/* Where tools/second-driver leaves its manifest, in the checkout that the scenes are of. */
+/* Finds the manifest that tools/second-driver writes, in the checkout of the scenes. */
 static void find_second(struct starting *s)
 {
     char path[BENCH_PATH], manifest[BENCH_PATH + 64];

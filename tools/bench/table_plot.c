@@ -1,4 +1,4 @@
-/* How far each figure is from what it must reach, one below the other on a logarithmic axis. */
+/* Plots how far each figure is from its limit, one below the other on a logarithmic axis. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ struct axis {
     double low, high;
 };
 
-/* 1: as good as it must be, 2: twice as good. */
+/* The figure relative to its limit: 1 is just reached, 2 twice as good. */
 static double share_of(const struct goal *goal, double value)
 {
     return goal->more ? value / goal->must : goal->must / value;
@@ -30,7 +30,7 @@ static void include(struct axis *axis, double share)
     axis->high = fmax(axis->high, share);
 }
 
-/* Names of models and scenes are those of files. */
+/* Escapes text for XML, as names of models and scenes come from files. */
 static void put_text(FILE *to, double x, double y, const char *anchor, const char *text)
 {
     fprintf(to, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);

@@ -1,5 +1,5 @@
-/* Measures how the viewer responds: replays input to `whit view`, in a process of its own, on the
-   display that there is, and reads the figures from the states that it prints. */
+/* `whit bench view`: measures how the viewer responds. Replays input to a `whit view` process on
+   the current display, and reads the figures from the states that it prints. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -9,12 +9,12 @@
 #include "whit/whit_program.h"
 
 enum { MOVES = 120, MOVES_QUICK = 8, STEP_MS = 16, IDLE_MS = 5000, IDLE_MS_QUICK = 300 };
-static const double BLINK_MS = 100.0; /* a frame that takes longer is seen to */
+static const double BLINK_MS = 100.0; /* longer frames are visibly slow */
 
 struct view_case {
     const char *scene, *label, *depth; /* --depth, or NULL */
     uint32_t width, height;
-    double first_ms;               /* from the command to the first picture */
+    double first_ms;               /* from the start of the process to the first picture */
     json_t *whole, *moving, *idle; /* "measure" of states */
 };
 
@@ -85,7 +85,7 @@ static double number_of(const json_t *measure, const char *key, const char *part
     return json_number_value(part ? json_object_get(value, part) : value);
 }
 
-/* By replay, in a process of its own, on the display that there is. */
+/* Runs the viewer twice with a replay, first to fill caches, and reads its figures. */
 static whit_result measure(const struct bench *bench, struct view_case *c)
 {
     char replay[BENCH_PATH], out[BENCH_PATH];

@@ -1,5 +1,5 @@
-/* `whit bench views`: small pictures of many cameras, drawn together, beside one picture of as many
-   pixels. */
+/* `whit bench views`: compares small pictures of many cameras, drawn together, with one picture of
+   as many pixels. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,21 +10,24 @@
 
 enum { VIEW_SIDE = 64, APART_EVERY = 8 };
 enum side { TOGETHER, ONE, APART, SIDES };
-static const double TURN = 0.5; /* radians that the cameras of the views go about the target */
+static const double TURN = 0.5; /* angle in radians over which the cameras of the views are spread
+                                   around the target */
 
 struct views {
     struct bench *bench;
     const char *name;
-    bool around; /* cameras about the scene's first; else of tiles of what that sees */
+    bool around; /* cameras are turned around the target of the scene's first camera; else each sees
+                    a tile of that camera's picture */
     struct bench_scene loaded;
     whit_camera camera;
     uint32_t side;
     whit_accel *accel;
-    whit_renderer *renderers[SIDES]; /* of views; of one picture; of views one after another */
+    whit_renderer *renderers[SIDES]; /* for views together; for one picture; for views one after
+                                        another */
     whit_camera *cameras;
     uint32_t count;
     struct sample_runs ms[SIDES];
-    double rays[SIDES]; /* a pixel, of all kinds */
+    double rays[SIDES]; /* rays per pixel, of all kinds */
 };
 
 /* The scene's first camera as a pinhole. */
@@ -40,7 +43,7 @@ static whit_camera camera_of(const whit_camera_info *from)
     return camera;
 }
 
-/* The same turned about its target, as view `index` of all. */
+/* The camera of view `index`: the scene's camera turned around its target. */
 static whit_camera camera_around(const struct views *views, uint32_t index)
 {
     whit_camera camera = views->camera;
@@ -51,7 +54,7 @@ static whit_camera camera_around(const struct views *views, uint32_t index)
     return camera;
 }
 
-/* The one that sees tile `index` of the picture, and little else. */
+/* The camera that sees tile `index` of the picture, and little else. */
 static whit_camera camera_of_tile(const struct views *views, uint32_t index)
 {
     whit_camera camera = views->camera;
@@ -72,7 +75,8 @@ static whit_camera camera_of_tile(const struct views *views, uint32_t index)
     return camera;
 }
 
-/* Tiles are too unlike for some of them to stand for all. */
+/* The number of sides to run. APART draws only some views, and tiles are too different for some to
+   stand for all. */
 static uint32_t sides_of(bool around)
 {
     return around ? SIDES : APART;
@@ -107,7 +111,7 @@ static whit_result create_renderers(struct views *views)
     return result;
 }
 
-/* The picture, and its pixels on the host. */
+/* Draws the picture and reads its pixels to the host. */
 static whit_result draw_picture(whit_renderer *renderer)
 {
     whit_image *image = NULL;
@@ -142,7 +146,7 @@ static whit_result draw_side(struct views *views, enum side side)
     return result;
 }
 
-/* The first run warms up. */
+/* The first run is a warm-up. */
 static whit_result draw(void *user, uint32_t side, uint32_t run)
 {
     struct views *views = user;
