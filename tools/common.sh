@@ -4,7 +4,7 @@ say() {
     printf '\n== %s\n' "$*"
 }
 
-# missing_packages KIND...: those of tools/packages that are not installed.
+# missing_packages KIND...: prints the packages of these kinds in tools/packages that are not installed.
 missing_packages() {
     wanted=$(for kind in "$@"; do awk -v kind="$kind" '$1 == kind { print $2 }' "$root/tools/packages"; done)
     # shellcheck disable=SC2086
@@ -15,7 +15,7 @@ missing_packages() {
     done
 }
 
-# install_packages KIND...: touches neither network nor system when nothing is missing.
+# install_packages KIND...: installs missing packages; touches neither network nor system when none is missing.
 install_packages() {
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         say "This is no Debian: install what tools/packages names, by its names here. Going on."
@@ -40,7 +40,7 @@ install_packages() {
         $packages
 }
 
-# build FOLDER OPTION...: configured once, or again when the options changed; then what is stale.
+# build FOLDER OPTION...: configures FOLDER once, or again when the options changed, and builds what is stale.
 build() {
     folder=$1
     shift

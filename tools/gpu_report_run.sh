@@ -1,12 +1,12 @@
 #!/bin/sh
-# How whit does on the GPU of this machine: ./run [FOLDER] [DEVICE]
+# Tests and measures whit on the GPU of this machine: ./run [FOLDER] [DEVICE]
 # Made by whit's tools/gpu-report. Needs an x86-64 Linux with a Vulkan driver and glibc 2.36 or later (2.35
-# where it has a C++ library of its own), and no network. Writes nothing but FOLDER (whit-gpu-report), within
+# where it has its own C++ library), and no network. Writes only FOLDER (whit-gpu-report), within
 # 8 minutes:
 #     report.txt    all results as text: read this first
 #     devices.json check.json kernels.json hard.json rays.json frame.json    figures of single parts
 #                   (hard.json: with --portable on)
-#     log.txt       what went wrong
+#     log.txt       errors
 # DEVICE: a number or a part of a name, as in `whit render --device` (auto: the best GPU).
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
@@ -40,7 +40,7 @@ say() {
     echo "$*" | "$busybox" tee -a "$report"
 }
 
-# whit LIMIT_S ARGUMENT...: at most so long, and never beyond the end of all.
+# whit LIMIT_S ARGUMENT...: runs whit for at most LIMIT_S seconds, and never beyond the end of the whole report.
 whit() {
     limit=$1
     shift
@@ -53,7 +53,7 @@ whit() {
     LD_LIBRARY_PATH=$libraries "$busybox" timeout -k 8 "$limit" "$programs/bin/whit" "$@" 2>>"$log"
 }
 
-# The machine's own C++ library where it will do: its driver may need a newer one than whit's.
+# Uses the machine's own C++ library where whit runs with it: the driver may need a newer one than whit brings.
 libraries=$programs/lib
 if ! LD_LIBRARY_PATH=$libraries "$programs/bin/whit" --version >/dev/null 2>&1; then
     libraries=$programs/lib:$programs/cxx
@@ -65,7 +65,7 @@ if ! version=$(whit 20 --version); then
 fi
 say "$version, commit $(cat "$here/commit.txt" 2>/dev/null), $(date -u +%Y-%m-%dT%H:%MZ)"
 
-# A container may have the driver, and no manifest where the loader looks.
+# A container may have the driver, but no manifest where the Vulkan loader looks.
 if [ -z "${VK_DRIVER_FILES:-}" ] && ! whit 30 devices --json | "$busybox" grep -q '"kind": "[diov]'; then
     for manifest in /usr/local/nvidia/share/vulkan/icd.d/*.json /opt/*/share/vulkan/icd.d/*.json; do
         [ -f "$manifest" ] || continue
@@ -89,7 +89,7 @@ fi
 say ""
 say "== Hits: rays whose hits differ by a bit from lavapipe's"
 "$busybox" printf '%-28s %-11s %8s %10s %10s\n' rays numerics rays differing portable | "$busybox" tee -a "$report"
-# count_differing NAME NUMERICS HASH PORTABLE: rays whose hits are not lavapipe's, or what went wrong.
+# count_differing NAME NUMERICS HASH PORTABLE: prints how many rays have other hits than on lavapipe, or what failed.
 count_differing() {
     scene=$here/scenes/${1%%-*}.json
     rm -f "$scratch/hits" "$scratch/twin"
@@ -166,7 +166,7 @@ for portable in off on; do
 done
 say "lavapipe's $("$busybox" grep -o '"hash_met": "[^"]*"' "$here/hard.json")"
 
-# bench NAME LIMIT_S ARGUMENT...: what is done when the time is over is kept.
+# bench NAME LIMIT_S ARGUMENT...: runs a bench; results so far are kept when the time is over.
 bench() {
     name=$1
     most=$2

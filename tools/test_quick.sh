@@ -1,9 +1,9 @@
 #!/bin/sh
 # The tests that a change can reach, unit tests first, for up to a minute; tools/test --quick calls it.
 #     tools/test_quick.sh ROOT FOLDER [COMMIT]
-# FOLDER is where Ninja built ROOT: it knows what each program is made of, included headers among it.
-# COMMIT is HEAD where something is not committed, else HEAD~1. The last line says how many of how many
-# tests ran. Exit code 1 where one failed.
+# FOLDER is where Ninja built ROOT: Ninja knows the inputs of each program, included headers among them.
+# COMMIT is by default HEAD where there are uncommitted changes, else HEAD~1. The last line says how many of
+# the tests that the change can reach were run. Exit code 1 where one failed.
 set -eu
 root=$1
 folder=$2
@@ -20,8 +20,8 @@ limit_s=60
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# write_stale: $work/stale, the paths that differ from COMMIT, new files included, the objects that were
-# compiled from them or include them, and the scripts that source them.
+# write_stale: writes $work/stale: the paths that differ from COMMIT, new files included, the objects that
+# were compiled from them or include them, and the scripts that source them.
 write_stale() {
     {
         git -C "$root" diff --name-only "$commit"
@@ -39,8 +39,8 @@ write_stale() {
     } | sort -u >"$work/stale"
 }
 
-# is_stale WORD: WORD of a test's command is a program that is made of something stale, something stale
-# itself, or a folder with something stale in it.
+# is_stale WORD: whether WORD, a word of a test's command, is a program made from a stale file, a stale file
+# itself, or a folder with a stale file in it.
 is_stale() {
     case $1 in
     "$folder"/*) ninja -C "$folder" -t inputs "${1#"$folder"/}" 2>/dev/null | grep -qxFf "$work/stale" ;;
@@ -49,8 +49,8 @@ is_stale() {
     esac
 }
 
-# write_reached: $work/reached, the names of the tests with a stale word in their command, those without
-# a device first. Where a file of CMake changed that is every test.
+# write_reached: writes $work/reached: the names of the tests with a stale word in their command, those
+# without a device first. Where a file of CMake changed, these are all tests.
 write_reached() {
     ctest --test-dir "$folder" --show-only=json-v1 -LE long >"$work/tests.json"
     jq -r '.tests[].command[]? | split("=")[-1]' "$work/tests.json" | sort -u | while read -r word; do
@@ -68,8 +68,8 @@ write_reached() {
         | .[].name' "$work/tests.json" >"$work/reached"
 }
 
-# run_one NAME END_S: runs a test that is not begun after END_S, a time of `date +%s`, and is stopped then.
-# Leaves $work/passed-NAME, failed-NAME or skipped-NAME, none where it was stopped.
+# run_one NAME END_S: runs a test until END_S, a time of `date +%s`, at which it is stopped; later it is not
+# begun. Leaves $work/passed-NAME, failed-NAME or skipped-NAME, or none of them where it was stopped.
 cat >"$work/run_one" <<'END'
 left_s=$(($2 - $(date +%s)))
 [ "$left_s" -gt 0 ] || exit 0

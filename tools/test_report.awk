@@ -1,5 +1,5 @@
-# The end of ctest's output once more, behind the 20 entries that took longest: its summary, whose count
-# of passed and failed tests becomes the last line.
+# Prints the 20 tests that took longest, and then the summary at the end of ctest's output again, with its
+# count of passed and failed tests as the last line.
 /^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / {
     name = $0
     sub(/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: /, "", name)

@@ -1,7 +1,7 @@
 #!/bin/sh
-# How long `whit check` takes for 60 pictures of 256x192, the first 60 cases of tests/check/whit.suite:
+# Measures how long `whit check` takes for 60 pictures of 256x192, the first 60 cases of tests/check/whit.suite:
 #     tools/time_check.sh WHIT...
-# with empty caches of its own, and then with these filled; several programs in turns. The golden is made by the first.
+# with empty caches, and then with filled ones; several programs take turns. The first program makes the golden.
 set -eu
 [ $# -gt 0 ] || { echo "usage: $0 WHIT..." >&2; exit 2; }
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 sed -E '/ expect /d; s/--size [0-9]+x[0-9]+/--size 256x192/' "$root/tests/check/whit.suite" >"$work/all.suite"
 "$1" check "$work/all.suite" --root "$root" --list | head -n 60 | sed 's/^/--only=/' >"$work/only"
 
-# Prints seconds to the first line, seconds in all, and what the counts are.
+# Prints the seconds to the first line of output, the seconds in all, and the line with the counts.
 time_once() {
     export XDG_CACHE_HOME="$work/caches/$2"
     mkdir -p "$XDG_CACHE_HOME"

@@ -1,4 +1,4 @@
-# Pages of reports as arrays: no file is searched for at run time.
+# Embeds the HTML pages of reports as arrays, so that no file is searched for at run time.
 foreach(command check cost)
   set(page ${CMAKE_CURRENT_SOURCE_DIR}/app/${command}/page.html)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
@@ -40,7 +40,7 @@ add_executable(whit_program
   app/trace/ray_file.c app/trace/trace_command.c)
 set_target_properties(whit_program PROPERTIES
   OUTPUT_NAME whit RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-# What a program made of these sources links; tests make some more of them.
+# The libraries that a program made of these sources links; tests make further such programs.
 add_library(whit_program_needs INTERFACE)
 target_include_directories(whit_program_needs INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
@@ -48,12 +48,12 @@ if(WHIT_VIEWER)
   target_sources(whit_program PRIVATE app/view/state_file.c app/view/view_command.c)
   target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER
     WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
-  # In front of the library, whose modules they call.
+  # These come before the library in the link order, because they call its modules.
   target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_view> glfw
     PkgConfig::IMGUI PkgConfig::FONTCONFIG stdc++)
   add_dependencies(whit_program_needs whit_view)
 endif()
-# In front of the library, which it calls.
+# These come before the library in the link order, because they call it.
 target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_settings>
   $<TARGET_OBJECTS:whit_cost>)
 add_dependencies(whit_program_needs whit_settings whit_cost)
@@ -73,7 +73,7 @@ install(FILES app/completion/whit.bash
 install(FILES app/completion/_whit DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 install(FILES app/completion/whit.fish
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-# What file managers and desktops look for.
+# Files for file managers and desktops.
 install(FILES app/desktop/whit.thumbnailer DESTINATION ${CMAKE_INSTALL_DATADIR}/thumbnailers)
 install(FILES app/desktop/whit.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
 if(WHIT_VIEWER)
