@@ -316,7 +316,7 @@ static void take(struct cli_reader *reader, const struct setting *option, void *
     }
     bool is_barred = !reader->trusted && (!is_setting || (option->trusted && !reader->takes_files));
     if (reader->where && !reader->left && is_barred) {
-        /* No file of settings may widen what files may be read. */
+        /* A file of settings must not extend which files may be read. */
         cli_misuse(reader, "--%s is nothing to be saved", option->name);
         return;
     }

@@ -18,7 +18,7 @@ struct cli_reader {
     uint32_t other_count;
     bool done;         /* no option is left, or there was an error, or help was printed; see
                           `status` */
-    int status;        /* < 0: go on with the work; else exit with it */
+    int status;        /* < 0: the command goes on with its work; else the exit code */
     const char *where; /* "FILE:LINE" where the options come from a file, NULL for the command
                           line */
     bool trusted;      /* with `where`: the file may use every option that a command line may */

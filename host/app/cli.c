@@ -14,7 +14,7 @@
 #include "app/document.h"
 #include "whit/whit_program.h"
 
-/* Time that interrupted work has to stop by itself; Ctrl+C takes 0.2 s at most. */
+/* Time in which interrupted work must stop by itself, so that Ctrl+C takes at most 0.2 s. */
 enum { GRACE_MS = 80 };
 
 volatile bool cli_cancel;

@@ -87,8 +87,8 @@ void cli_leave(int code);
 /* For signal handlers that end the process: prints KIND WHY and what was written, unless the reason
    was printed already. */
 void cli_put_end(const char *kind, const char *why);
-/* For the message of interrupted work: `written` of `count` frames are there. Without it, nothing
-   was written. */
+/* For the message of interrupted work: `written` of `count` frames were written. Without this call
+   the message says that nothing was written. */
 void cli_set_written(uint32_t written, uint32_t count);
 /* For the message of interrupted work once it saves files: the handler cannot know which files are
    complete, so the message says that each is whole or as it was. */

@@ -38,7 +38,8 @@ uint64_t hard_count_differing(const struct gpu_hit *a, const struct gpu_hit *b, 
 /* Hashes the (instance, primitive) pairs of exact hits; `value` is the hash to continue from. */
 uint64_t hard_hash(uint64_t value, const struct rational_hit *exact, uint64_t count);
 
-/* Whether all promises of the level `numerics` are kept; `promised`: no leaks is one of them. */
+/* Whether all promises of the level `numerics` are kept; `promised`: they include that there are no
+   leaks. */
 bool hard_promise_kept(uint32_t numerics, bool promised, const whit_tally *tally);
 
 #endif

@@ -28,8 +28,8 @@ bool bodies_bounded_by(const struct scene_material *m);
 /* Lists all bodies of the scene, unless those of this pose are listed already. False: memory ran
    out. */
 bool bodies_list(const struct scene *scene, const struct scene_pose *pose, struct bodies *bodies);
-/* Whether surfaces of two bodies may come nearer than `distance_max`, in world units; also where
-   it takes too long to tell, or memory runs out. */
+/* Whether surfaces of two bodies may come nearer than `distance_max`, in world units. Also true
+   where finding out would take too long, or memory runs out. */
 bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
                         struct bodies *bodies, double distance_max);
 void bodies_finish(struct bodies *bodies);

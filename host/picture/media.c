@@ -58,7 +58,7 @@ bool media_touch(const struct scene *scene, const struct bodies *bodies,
 
 /* ---- What is around the camera ---- */
 
-/* A body as one ray from the camera meets it. */
+/* A body that rays from the camera cross, with the numbers of its crossings. */
 struct around {
     uint32_t instance, material;
     int32_t left[DIRECTIONS]; /* number of exits minus number of entries */

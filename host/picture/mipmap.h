@@ -1,5 +1,6 @@
-/* Smaller pictures of a texture, each of half the side, for surfaces that show it smaller than it
-   is (Williams 1983, Pyramidal Parametrics). Kernels and reference read the same bytes. */
+/* Mipmaps: smaller levels of a texture, each with half the side of the one before, for surfaces
+   that show it minified (Williams 1983, Pyramidal Parametrics). Kernels and reference read the same
+   bytes. */
 #ifndef PICTURE_MIPMAP_H
 #define PICTURE_MIPMAP_H
 

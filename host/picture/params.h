@@ -5,8 +5,8 @@
 #include "base/log.h"
 #include "whit/whit_renderer.h"
 
-/* A shadow ray is not traced where it can add at most this times the bailout times the radiance of
-   its light. This cuts off highlights, which never fade to 0, far from their middle. */
+/* A shadow ray is not traced where it can add at most this times the bailout of the light that its
+   light sends. This cuts off highlights, which never fade to 0, far from their middle. */
 #define BAILOUT_SHADOW_SHARE 0x1p-14
 
 enum { TILE_MIN = 16, TILE_MAX = 1024 }; /* sides of tiles, pixels */

@@ -30,7 +30,8 @@ struct settings {
     whit_load_params load;                                 /* its pointers are not used: see
                                                               settings_load */
     char environment[SETTING_TEXT_BYTES];                  /* "": the file's */
-    char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]; /* folders; "" behind the last */
+    char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]; /* allowed folders; the last is followed
+                                                              by "" */
     whit_accel_params trees;
     whit_renderer_params picture;    /* its camera and pointers are not used: see
                                         settings_picture */

@@ -36,7 +36,7 @@ typedef enum whit_result {
     WHIT_ERROR_NO_DEVICE,  /* no Vulkan device that whit can use */
     WHIT_ERROR_DEVICE,     /* a Vulkan call failed, or the device was lost */
     WHIT_ERROR_MEMORY,     /* host or device memory ran out */
-    WHIT_ERROR_STATUS,     /* a kernel or a check says that a result is not to be trusted */
+    WHIT_ERROR_STATUS,     /* a kernel or a check reports that a result cannot be trusted */
     WHIT_ERROR_TIME_LIMIT, /* the caller's time limit passed */
     WHIT_ERROR_CANCELLED,  /* the caller asked to stop */
 } whit_result;

@@ -60,7 +60,8 @@ typedef struct whit_device_floats {
                              values */
     bool keeps_denormals; /* sums and products do not flush numbers below 2^-126 to 0 */
     bool rounds_nearest;  /* sums and products are rounded to nearest */
-    bool own_comparison;  /* comparisons and absolute values tell numbers below 2^-126 from 0 */
+    bool own_comparison;  /* comparisons and absolute values distinguish numbers below 2^-126 from
+                             0 */
 } whit_device_floats;
 
 /* Measured once for a device and its driver, which takes about a second; the result is kept in the

@@ -80,8 +80,8 @@ typedef struct whit_hard_report {
 
 /* `scene` NULL: runs the built-in cases. `device` NULL: judges the twin's hits. Gives WHIT_OK also
    where promises are broken: see `broken`. WHIT_ERROR_USAGE for params out of range or a filter
-   that matches no case, WHIT_ERROR_INPUT and WHIT_ERROR_DEVICE as of accels and renderers,
-   WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_CANCELLED. */
+   that matches no case, WHIT_ERROR_INPUT and WHIT_ERROR_DEVICE as of whit_accel_create and
+   whit_renderer_create, WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
                                      const whit_hard_params *params, const whit_log *log,
                                      whit_hard_report **out);
@@ -101,7 +101,8 @@ typedef struct whit_hard_view_params {
    within these bounds. Cut-outs count as solid. `scene` NULL: the sphere of the built-in cases.
    `wrong_pixels` and `other_pixels` count red and yellow ones. Other arguments as for
    whit_hard_run. WHIT_ERROR_USAGE for a size or camera that is not possible, WHIT_ERROR_INPUT and
-   WHIT_ERROR_DEVICE as of accels and renderers, WHIT_ERROR_STATUS where hits cannot be trusted. */
+   WHIT_ERROR_DEVICE as of whit_accel_create and whit_renderer_create, WHIT_ERROR_STATUS where hits
+   cannot be trusted. */
 WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
                                       const whit_hard_view_params *params, const whit_log *log,
                                       uint64_t *wrong_pixels, uint64_t *other_pixels,
@@ -124,8 +125,8 @@ typedef struct whit_judge_params {
     whit_instances instances; /* must match the trees that the judged hits come from */
     uint32_t threads;         /* 0: one a core */
 } whit_judge_params;
-/* WHIT_ERROR_USAGE where too many rays are asked for or the scene has no such camera,
-   WHIT_ERROR_INPUT as of accels. */
+/* WHIT_ERROR_USAGE for too many rays or a camera that the scene does not have, WHIT_ERROR_INPUT as
+   of whit_accel_create. */
 WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
                                          const whit_log *log, whit_judge **out);
 void whit_judge_destroy(whit_judge *judge);

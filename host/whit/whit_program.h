@@ -112,7 +112,8 @@ bool whit_device_takes_peers(const whit_device *device);
 
 /* ---- Kernels, looked at ---- */
 
-/* A number that a driver tells of a kernel that it made, under a name of the driver's. */
+/* A statistic that the driver gives for a kernel, under the driver's name for it
+   (VK_KHR_pipeline_executable_properties). */
 typedef struct whit_statistic {
     char name[64];
     double value;
@@ -126,7 +127,7 @@ typedef struct whit_kernel {
     uint32_t instructions; /* SPIR-V, of its functions */
     double create_ms;      /* wall clock; lavapipe compiles more at the first dispatch */
     whit_statistic statistics[WHIT_STATISTICS_MAX];
-    uint32_t statistic_count; /* 0: the driver tells nothing */
+    uint32_t statistic_count; /* 0: the driver gives none */
 } whit_kernel;
 
 /* Sizes of the kernels as specialized for this renderer, and (general) with every effect compiled
@@ -249,8 +250,9 @@ WHIT_CHECK whit_result whit_scene_fault(const whit_scene *scene, const whit_faul
    or where WHIT_NO_CACHE is set. Files have a checksum; beyond 512 MiB, or $WHIT_CACHE_LIMIT MiB,
    the least recently used are removed. libwhit keeps pipelines there. */
 
-/* Reads what was kept under `name`. The caller releases *data, which has one zero byte behind its
-   size, by whit_memory_destroy. False: nothing was kept, or it was damaged and is thrown away. */
+/* Reads the file kept under `name`. *data is followed by one zero byte that *size_bytes does not
+   count; release it by whit_memory_destroy. False: there is no such file, or it was damaged and has
+   been removed. */
 bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes);
 /* `name`: says what the data is and its version; no slash, at most 200 bytes. Fails silently where
    the data cannot be kept. */

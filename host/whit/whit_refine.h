@@ -1,4 +1,4 @@
-/* Part of whit.h: a picture that gets better, and an estimate of what is still wrong with it. */
+/* Part of whit.h: a picture that is refined step by step, with an estimate of its error. */
 #ifndef WHIT_REFINE_H
 #define WHIT_REFINE_H
 

@@ -83,8 +83,8 @@ typedef struct whit_renderer_params {
     whit_sampling sampling;
     uint32_t depth; /* most bounces; 0: only camera rays and their shadow rays */
     double bailout; /* rays that can add less than this to a pixel are not traced, nor are shadow
-                       rays that can add at most 2^-14 of this times the radiance of their light; 0:
-                       all rays are traced */
+                       rays that can add at most this * 2^-14 of the light that their light sends;
+                       0: all rays are traced */
     whit_shadows shadows;
     uint32_t light_samples; /* of an area light: 1, 4, 16 or 64; 0: 16 */
     bool schlick;           /* Schlick's approximation in place of exact Fresnel */

@@ -20,7 +20,7 @@ typedef enum whit_up {
                      model */
 } whit_up;
 
-/* What lights a scene. */
+/* Which lights a scene has. */
 typedef enum whit_lights {
     WHIT_LIGHTS_AUTO = 0, /* the file's lights; lights made by whit where those light nothing that
                              is seen */
@@ -85,7 +85,7 @@ typedef struct whit_scene_info {
         camera_count, note_count, effect_count;
     uint64_t mesh_triangle_count; /* counts each mesh once */
     uint64_t triangle_count;      /* over all instances */
-    uint64_t sphere_count;        /* likewise */
+    uint64_t sphere_count;        /* over all instances */
     uint64_t file_bytes;          /* of all files read */
     uint64_t hash;
     uint32_t channel_count; /* animated properties of nodes */
@@ -170,8 +170,8 @@ typedef struct whit_instance_info {
 } whit_instance_info;
 typedef struct whit_effect_info {
     const char *name;
-    bool called;
-    const char *reason; /* "" when not called for */
+    bool called;        /* the scene needs it */
+    const char *reason; /* why the scene needs it; "" where it does not */
 } whit_effect_info;
 typedef struct whit_note_info {
     bool warning;

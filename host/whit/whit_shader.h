@@ -12,7 +12,7 @@ extern "C" {
 /* The version of the functions that such files may use; they state it as `//@ whit 1`. */
 #define WHIT_SHADER_VERSION 1
 
-/* Compiles such files, in a process of its own that is kept for the next file. */
+/* A compiler of such files, in a separate process that is reused for the next file. */
 typedef struct whit_shader_compiler whit_shader_compiler;
 
 /* A zeroed one means the defaults. */
@@ -31,7 +31,7 @@ WHIT_CHECK whit_result whit_shader_compiler_create(const whit_shader_limits *lim
                                                    const whit_log *log, whit_shader_compiler **out);
 void whit_shader_compiler_destroy(whit_shader_compiler *compiler);
 
-/* What is wrong with a file, and where. */
+/* An error in a file. */
 typedef struct whit_shader_error {
     const char *file; /* as it was named */
     uint32_t line;    /* from 1; 0: the file as a whole */
@@ -126,7 +126,7 @@ typedef enum whit_hook {
 /* "camera", "surface", ... as files name them. */
 const char *whit_hook_name(whit_hook hook);
 
-/* What a file is made of. All texts live as long as the shader. */
+/* Describes a loaded file. All texts live as long as the shader. */
 typedef struct whit_shader_info {
     const char *const *files; /* the file and what it includes, as whit opened them */
     uint32_t file_count;

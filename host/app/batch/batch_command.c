@@ -25,7 +25,8 @@ struct batch {
     struct batch_request request;
     struct lines lines;
     struct line line;
-    struct job job;   /* of the line drawn last, with what the next one may share */
+    struct job job;   /* job of the line drawn last; the next line may share its scene, trees and
+                         device */
     bool scene_whole; /* the job's scene still has its texels, so another renderer can be made from
                          it */
     whit_renderer *renderer;

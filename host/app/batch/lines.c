@@ -34,8 +34,8 @@ static bool split(struct cli_reader *reader, char *text, char *argv[WORDS_MAX + 
     return true;
 }
 
-/* Refuses options in a line that hold for the whole process, and those that are of one picture
-   alone or choose settings by measuring. */
+/* Refuses options that hold for the whole process, that only make sense for a single picture, or
+   that choose settings by measuring. */
 static bool check(struct cli_reader *reader, const struct line *line)
 {
     const struct settings *settings = &line->job.settings;

@@ -86,8 +86,9 @@ static whit_result find_changes(struct cause *cause)
 
 /* ---- Pictures without it ---- */
 
-/* Takes settings and functions in `back` back into `input`, and marks in `parts` the scene's parts
-   to take back. Gives whether there are any. */
+/* Fills `input` with the new input in which the settings and functions marked in `back` have their
+   old values, and marks in `parts` the parts of the scene to take back. Gives whether there are any
+   such parts. */
 static bool take_back(const struct cause *cause, const bool *back, struct trial_input *input,
                       bool *parts)
 {

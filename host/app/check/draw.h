@@ -7,7 +7,7 @@
 #include "app/check/suite.h"
 #include "app/job.h"
 
-/* A scene and the trees over it that cases have asked for. */
+/* A loaded scene, and the trees over it that were built for cases. */
 struct studio_scene;
 
 struct studio {

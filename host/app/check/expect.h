@@ -23,7 +23,7 @@ struct check_expectation {
     double numbers[3];
     uint32_t count;   /* how many numbers there are: 1 or 3 */
     char *word;       /* for fields that are names; NULL: none */
-    double tolerance; /* WITHIN */
+    double tolerance; /* for EXPECT_WITHIN */
 };
 
 struct drawing;

@@ -5,7 +5,7 @@
 #include "app/check/mutate.h"
 #include "app/check/trial.h"
 
-/* A case as it is, and its picture. */
+/* A case without faults, and its picture. */
 struct fault_case {
     const char *name;
     struct trial_input input;

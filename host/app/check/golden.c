@@ -190,8 +190,8 @@ static char *behind(char *line, const char *word)
     return strncmp(line, word, length) == 0 && line[length] == ' ' ? line + length + 1 : NULL;
 }
 
-/* Refuses a second line of a case that says something else than the first: two people have accepted
-   the case differently. Lines that say the same count as one. */
+/* Refuses a second line of a case that contradicts the first: two people have accepted the case
+   differently. Equal lines count as one. */
 static bool refuse_other(const struct reading *reading, const struct golden_case *item)
 {
     return refuse(

@@ -17,7 +17,7 @@ enum golden_kind { GOLDEN_OF_DEVICE, GOLDEN_OF_REFERENCE };
 
 /* A part of a picture's input: a mesh, a material, a light of a scene. */
 struct golden_part {
-    char *key;     /* `mesh ball of room.json`: what and where it is */
+    char *key;     /* `mesh ball of room.json`: kind, name and file */
     uint32_t hash; /* of the key and of all that a picture depends on */
 };
 

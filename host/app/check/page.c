@@ -6,7 +6,8 @@
 #include "app/check/check.h"
 #include "app/page.h"
 
-/* Limit on a page with its pictures: those that do not fit are left out, thumbnails last. */
+/* Limit on a page with its pictures: those that do not fit are left out, in the order of
+   put_pictures. */
 enum { PAGE_BYTES_MAX = 1000000, ENTRY_BYTES = 64 };
 
 static size_t size_of(const struct check_png *png)
@@ -31,7 +32,7 @@ static bool is_wrong(const struct check_result *result)
 }
 
 /* Adds pictures while there is room: first the old picture and the differences of each case, then
-   thumbnails, then the full pictures in their place. */
+   thumbnails, then, in place of the thumbnail, the full picture of each case that is not fine. */
 static void put_pictures(const struct check *check, json_t **objects, size_t left)
 {
     uint32_t count = check->suite.count;

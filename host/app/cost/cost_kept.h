@@ -26,7 +26,7 @@ void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
 /* The choice for this budget, or NULL. */
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
-/* view_params.load_figures and save_figures: the same record. */
+/* view_params.load_figures and save_figures, which use the same record. */
 bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures);
 void cost_kept_save_figures(const struct cost_place *place,
                             const struct cost_kept_figures *figures);

@@ -1,4 +1,4 @@
-/* What `whit hard` was asked for, and what it found. */
+/* The request of `whit hard`, and its results. */
 #ifndef APP_HARD_HARD_H
 #define APP_HARD_HARD_H
 

@@ -1,4 +1,4 @@
-/* What `whit probe` was asked for, and what it found. */
+/* The request of `whit probe`, and its results. */
 #ifndef APP_PROBE_PROBE_H
 #define APP_PROBE_PROBE_H
 

@@ -1,4 +1,4 @@
-/* What `whit probe` found, as text and as JSON. */
+/* The results of `whit probe`, as text and as JSON. */
 #ifndef APP_PROBE_PROBE_OUTPUT_H
 #define APP_PROBE_PROBE_OUTPUT_H
 

@@ -13,7 +13,7 @@ struct frames {
     uint32_t first, last;
 };
 
-/* What one frame took. */
+/* The times of one frame. */
 struct frame_times {
     uint32_t frame;
     double time_s;
@@ -21,7 +21,7 @@ struct frame_times {
     double upload_ms, render_ms, save_ms;
 };
 
-/* What a sequence took. `each` is kept for --stats only. */
+/* The times and statistics of a sequence. `each` has the times of each frame, for --stats only. */
 struct sequence {
     struct frame_times *each;
     struct frame_times median;

@@ -1,5 +1,5 @@
-/* Parts of a picture that are drawn alone, anywhere and in any order, and merge to the bytes of one
-   run: `whit render --tile I/N --samples-part I/N`. */
+/* Parts of a picture that are drawn separately, on any machines and in any order, and merge to the
+   bytes of a single run: `whit render --tile I/N --samples-part I/N`. */
 #ifndef APP_RENDER_PART_H
 #define APP_RENDER_PART_H
 
@@ -51,10 +51,10 @@ struct part_place {
     uint32_t width, height, samples; /* of the whole picture */
 };
 #define PART_KEY "whit:part"
-/* The same as JSON. */
+/* A part_place as JSON. */
 struct json_t;
 struct json_t *part_document(const struct part *part, const struct settings *settings);
-/* In one line; free() it. NULL: memory ran out, which was said. */
+/* This JSON in one line; free() it. NULL: memory ran out, with a message. */
 char *part_line(const struct part *part, const struct settings *settings);
 /* Reads such a line. False: it was not written by whit. */
 bool part_of_line(const char *line, struct part_place *place);

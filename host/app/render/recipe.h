@@ -26,7 +26,7 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
 /* Adds view, scale and figures of a picture of costs; false as above. */
 bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);
-/* Adds which part of a picture it is; false as above. */
+/* Adds to the recipe which part of a picture was drawn; false as above. */
 bool recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings);
 /* How many rays of each kind there were, as an object. */

@@ -451,8 +451,8 @@ static whit_result render_one(struct job *job, const struct render_request *requ
     return result;
 }
 
-/* Says how many frames were written when a sequence ends too early. After an interrupt its handler
-   says so. */
+/* Prints how many frames were written when a sequence ends early. After an interrupt the signal
+   handler prints it. */
 static void say_written(const struct job *job, const struct render_request *request,
                         const struct frames_progress *progress, const struct sequence *sequence)
 {

@@ -11,7 +11,7 @@
 #include "app/render/refine.h"
 #include "app/render/repeat.h"
 
-/* The options of `whit render` itself; those of the picture are in the job's settings. */
+/* The options of `whit render` itself; the settings of the picture are in the job. */
 struct render_request {
     const char *output, *ids; /* ids: NULL when not given */
     bool counters;            /* count costs for --stats */

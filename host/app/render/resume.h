@@ -1,5 +1,5 @@
-/* Work that goes on: `whit render --resume` keeps what is finished and draws the rest, and several
-   processes share it. */
+/* `whit render --resume`: continues interrupted work. It keeps finished files and draws the rest,
+   and several processes may share the work. */
 #ifndef APP_RENDER_RESUME_H
 #define APP_RENDER_RESUME_H
 

@@ -70,7 +70,8 @@ static json_t *picture_document(const struct job *job, const struct render_reque
     return picture;
 }
 
-/* Rays that were not traced: how many, and what they could have added to a pixel. */
+/* The number of rays that were not traced, and the largest weight that they could have added to a
+   pixel. */
 static json_t *cut_document(uint64_t count, double weight)
 {
     json_t *cut = document_object();

@@ -16,9 +16,9 @@ struct attempt {
                                              them hold */
 };
 
-/* Tries the job's shader with `scene`, or with whit's own small scene where it is NULL. Where no
-   device can be opened: a note if the shader has neither tests nor expectations, else an error.
-   Errors were printed. */
+/* Tries the job's shader with `scene`, or with whit's own small scene where it is NULL. Without a
+   device nothing is tried: a note says so if the shader has neither tests nor expectations, else it
+   is an error. Errors were printed. */
 WHIT_CHECK whit_result attempt_make(struct job *job, const char *scene, struct attempt *attempt);
 void attempt_finish(struct attempt *attempt); /* accepts a zeroed one */
 
