@@ -94,7 +94,7 @@ WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint3
 typedef struct whit_device_opening whit_device_opening;
 WHIT_CHECK whit_device_opening *whit_device_open_begin(const whit_device_params *params,
                                                        const whit_log *log);
-/* Waits for the thread, frees `opening` and gives the result of its whit_device_create. */
+/* Waits for the thread, frees `opening` and gives what whit_device_create gave in the thread. */
 WHIT_CHECK whit_result whit_device_open_end(whit_device_opening *opening, whit_device **out);
 /* Call this in place of whit_device_open_end to drop the device: nothing is logged. Takes NULL. */
 void whit_device_open_abandon(whit_device_opening *opening);
@@ -149,8 +149,8 @@ WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                                          const whit_renderer_params *params, whit_kernel *kernels,
                                          uint32_t *count);
-/* As whit_kernels_list, with the same errors, but only counts the instructions of kernels and makes
-   none: other figures are 0. */
+/* Counts the instructions of these kernels without making them: other figures are 0. It gives what
+   whit_kernels_list gives. */
 WHIT_CHECK whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
                                           const whit_renderer_params *params, whit_kernel *kernels,
                                           uint32_t *count);

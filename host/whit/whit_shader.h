@@ -53,9 +53,10 @@ WHIT_CHECK whit_result whit_shader_load(whit_shader_compiler *compiler, const ch
                                         bool trust, whit_shader **out);
 /* As whit_shader_load, with the stages of a source checkout in place of the built-in ones: `stages`
    is its folder shaders/, from which kernel/ is compiled with all its includes. `path` NULL: only
-   the stages. They are trusted as whit's own: their loops and indices are not bounded. Errors as of
-   whit_shader_load, also for errors in the stages, which are logged with file and line, and for a
-   file of abi/ that differs from the one whit was built with. */
+   the stages. They are trusted as whit's own: their loops and indices are not bounded.
+   WHIT_ERROR_INPUT and others as of whit_shader_load, also for errors in the stages, which are
+   logged with file and line, and for a file of abi/ that differs from the one whit was built
+   with. */
 WHIT_CHECK whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *path,
                                                const char *stages, bool trust, whit_shader **out);
 void whit_shader_destroy(whit_shader *shader);
