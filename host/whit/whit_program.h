@@ -149,8 +149,8 @@ WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                                          const whit_renderer_params *params, whit_kernel *kernels,
                                          uint32_t *count);
-/* Counts the instructions of these kernels without making them: other figures are 0. It gives what
-   whit_kernels_list gives. */
+/* Counts the instructions of these kernels without making them: other figures are 0.
+   WHIT_ERROR_USAGE and others as of whit_kernels_list. */
 WHIT_CHECK whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
                                           const whit_renderer_params *params, whit_kernel *kernels,
                                           uint32_t *count);
