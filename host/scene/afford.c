@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 enum {
-    NAME_BYTES = 32, /* a short one, as malloc rounds it up */
-    DEVICE_COPIES = 2,
+    NAME_BYTES = 32,   /* a short name, as malloc rounds it up */
+    DEVICE_COPIES = 2, /* one array on the host, one on the device */
 };
 
 uint64_t scene_node_cost(uint64_t count)

@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "scene/fields.h"
 
-/* A description names at most so many differences, and says how many more there are. */
+/* A description names at most TOLD_MAX differences, and says how many more there are. */
 enum { TOLD_MAX = 4 };
 
 struct words {
@@ -29,7 +29,7 @@ static void WHIT_PRINTF(2, 3) put(struct words *words, const char *format, ...)
         words->used += (size_t)length < room ? (size_t)length : room - 1;
 }
 
-/* Begins one more difference; false where there are enough. */
+/* Begins one more difference; false where TOLD_MAX are described already. */
 static bool begin(struct words *words)
 {
     if (words->told == TOLD_MAX) {
@@ -59,7 +59,7 @@ static double number_of(const void *record, const struct scene_field *field, uin
     return *(const bool *)at;
 }
 
-/* The shortest decimal that reads back, from 6 digits on. */
+/* Writes the shortest decimal of at least 6 digits that reads back as the same number. */
 static void put_number(struct words *words, const char *before, double number, bool is_float)
 {
     char text[32];
@@ -102,7 +102,7 @@ static void compare_fields(struct words *words, const void *a, const void *b,
         put_value(words, b, field);
     }
 }
-/* A record that is named by another. */
+/* Compares the names of the record that a reference points to on either side; "": none. */
 static void compare_names(struct words *words, const char *what, const char *a, const char *b)
 {
     if (strcmp(a, b) == 0 || !begin(words))
@@ -158,13 +158,13 @@ static void compare_cameras(struct words *words, const struct scene_camera *a,
 
 /* ---- Arrays ---- */
 
-/* Which elements of an array are other. */
+/* Which elements of an array differ between the two sides. */
 struct others {
     uint32_t count, first, last;
-    double by; /* the largest distance of two */
+    double by; /* the largest distance between an element's two values */
 };
 
-/* Elements of `width` floats, whose distance is that of their first `space` ones. */
+/* Compares `count` elements of `width` floats; distances are of the first `space` floats alone. */
 static struct others find_others(const float *a, const float *b, uint32_t count, uint32_t width,
                                  uint32_t space)
 {
@@ -205,7 +205,7 @@ static void compare_counts(struct words *words, uint32_t a, uint32_t b, const ch
         put(words, "%u %s in place of %u", b, what, a);
 }
 
-/* Values at vertices, which one side may lack. */
+/* Compares one vertex attribute; either side may lack it (NULL). */
 static void compare_attribute(struct words *words, const float *a, const float *b, uint32_t count,
                               uint32_t width, const char *what)
 {
@@ -227,7 +227,7 @@ static void compare_indices(struct words *words, const struct scene_mesh *a,
         put(words, "%u %s of other vertices", count, count == 1 ? "triangle" : "triangles");
 }
 
-/* The first that wears another one is told of. */
+/* Compares the materials of primitives: describes the first primitive whose material differs. */
 static void compare_worn(struct words *words, const struct scene_side *before,
                          const struct scene_mesh *a, const struct scene_side *after,
                          const struct scene_mesh *b)
@@ -326,7 +326,7 @@ static void compare_environments(struct words *words, const struct scene *a, con
 
 /* ---- Objects ---- */
 
-/* What one side has and the other has not. */
+/* Describes parts that side `has` has and side `other` lacks. */
 static void compare_lists(struct words *words, const struct scene_parts *has,
                           const struct scene_parts *other, const char *how)
 {
@@ -344,7 +344,7 @@ static struct affine node_matrix(const struct scene_node *node)
                             : affine_from_trs(node->translation, node->rotation, node->scale);
 }
 
-/* A node whose own transform is other. */
+/* Describes how a node's local transform differs. */
 static void compare_node(struct words *words, const char *name, const struct scene_node *a,
                          const struct scene_node *b)
 {

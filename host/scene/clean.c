@@ -9,7 +9,8 @@
 
 #define LARGEST_COORDINATE 1e18f
 #define LARGEST_UV         1e9f
-/* Radians between a normal and that of its face: what files of four decimals round away. */
+/* Largest angle in radians between a vertex normal and its face's normal that counts as rounding:
+   files with four decimals are that far off. */
 #define NORMAL_SLACK       1e-4
 
 struct cleaned {
@@ -61,7 +62,7 @@ static bool keep_triangle(const struct scene_mesh *mesh, uint32_t triangle, stru
     return true;
 }
 
-/* Groups are ranges: their ends move down by what was dropped before them. */
+/* Groups are ranges of triangles: both ends move down by the triangles dropped before them. */
 static void shrink_groups(struct scene_mesh *mesh, const uint32_t *kept_before)
 {
     for (uint32_t i = 0; i < mesh->group_count; ++i) {
@@ -116,7 +117,8 @@ static void drop_spheres(struct scene_mesh *mesh, struct cleaned *count)
     mesh->sphere_count = kept;
 }
 
-/* Vertices that only dropped triangles used; nothing may meet their values later. */
+/* Zeroes vertices that are not finite or beyond 1e18: only dropped triangles used them, and later
+   stages may go over all vertices. */
 static void zero_unusable_vertices(struct scene_mesh *mesh)
 {
     for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
@@ -148,7 +150,7 @@ static void set_bounds(struct scene_mesh *mesh)
     }
 }
 
-/* As long as the triangle's area, doubled. */
+/* The face's normal; its length is twice the triangle's area. */
 static void face_normal(const struct scene_mesh *mesh, uint32_t triangle, double n[3])
 {
     const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
@@ -185,7 +187,8 @@ static void mend_normal(float *normal, const double sum[3])
         normal[k] = usable ? (float)(sum[k] / length) : k == 2 ? 1.0f : 0.0f;
 }
 
-/* Unit length, since interpolation would weigh a longer normal more. False when it has none. */
+/* Makes the normal unit, since interpolation would weigh a longer one more. False when its length
+   is 0 or not finite. */
 static bool normalize(float *normal)
 {
     double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
@@ -270,7 +273,7 @@ static uint32_t mend_tangents(struct scene_mesh *mesh)
     return count;
 }
 
-/* Whether unit `normal` is that of the face, on either side. */
+/* Whether unit `normal` is parallel to the face's normal, in either direction. */
 static bool says_the_face(const float *normal, const double face[3])
 {
     const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
@@ -279,7 +282,8 @@ static bool says_the_face(const float *normal, const double face[3])
     return double3_length(across) <= NORMAL_SLACK * double3_length(face);
 }
 
-/* Normals that say what the faces say are none: then nothing has to interpolate them. */
+/* Frees the vertex normals where all of them equal the normals of their faces, so that no kernel
+   has to interpolate them. */
 static void drop_flat_normals(struct scene_mesh *mesh)
 {
     for (uint32_t t = 0; mesh->normals && t < mesh->triangle_count; ++t) {

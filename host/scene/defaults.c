@@ -11,12 +11,14 @@
 #include "scene/pose.h"
 #include "scene/viewpoint.h"
 
-/* Where less than this share of what is seen gets light, whit adds some. */
+/* whit adds a light where the model's own lights reach less than this share of what is seen. */
 static const double LIT_ENOUGH = 0.5;
-/* Where less gets that one, with a sky beside it, a lamp too: shadows alone are no closed box. */
+/* Where even with the added directional light less than this share is lit, the camera is taken to
+   be in a closed box, and a lamp is added: shadows alone would leave more lit. */
 static const double BOXED = 0.25;
 
-/* What lights a scene whose file has no light, or none that helps. */
+/* What was added to light a scene: whit's own light (`key`), lights made from emissive surfaces
+   (`emitters`), whose intensity was scaled (`exposed`). */
 struct light_kinds {
     bool key, emitters, exposed;
 };
@@ -66,8 +68,8 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
     return WHIT_OK;
 }
 
-/* Walls keep light from outside off a room: one lamp at the eye and a stronger one ahead of it, to
-   the left and above, whose shadows are seen. `why`: as notes begin. */
+/* Lights a room, whose walls keep out light from outside: one lamp at the eye, and a stronger one
+   ahead, to the left and above, so that its shadows are seen. `why`: beginning of the note. */
 static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint,
                                    const char *why)
 {
@@ -95,8 +97,8 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
     return WHIT_OK;
 }
 
-/* One directional light from over the camera's left shoulder; from less far aside where it is to
-   reach into a box. */
+/* Adds a directional light from over the camera's left shoulder. VIEWPOINT_STRAIGHT may look into
+   an open box: there the light comes from closer to the view's axis, so that it reaches inside. */
 static whit_result add_key_light(struct scene *scene, const struct scene_camera *camera,
                                  enum viewpoint_kind kind)
 {
@@ -177,7 +179,7 @@ static whit_result add_emitters(struct scene *scene, const struct scene_pose *po
     return WHIT_OK;
 }
 
-/* A light by whit, which suits the view. */
+/* Adds whit's own light: lamps where the camera is in a room, else a directional light. */
 static whit_result add_own_light(struct scene *scene, const struct scene_pose *pose,
                                  const struct viewpoint *viewpoint, const char *why)
 {
@@ -189,7 +191,8 @@ static whit_result add_own_light(struct scene *scene, const struct scene_pose *p
     return add_key_light(scene, &camera, viewpoint->kind);
 }
 
-/* What keeps all light from outside off what a camera of the file sees. */
+/* Adds a lamp at a camera of the file that sees a closed box, which the directional light does not
+   reach. `share`: how much of what is seen it did reach. */
 static whit_result add_lamp_at_eye(struct scene *scene, const struct scene_pose *pose, double share)
 {
     const struct scene_camera *camera = pose->camera_count ? pose->cameras : scene->cameras;
@@ -208,7 +211,7 @@ static whit_result add_lamp_at_eye(struct scene *scene, const struct scene_pose 
     return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 
-/* Lights of a model count if they light what is seen; where they do not, there are whit's too. */
+/* Adds whit's own light where a model's lights leave most of what is seen dark. */
 static whit_result help_lights(struct scene *scene, const struct scene_pose *pose,
                                const struct viewpoint *viewpoint, struct light_kinds *found)
 {
@@ -223,7 +226,7 @@ static whit_result help_lights(struct scene *scene, const struct scene_pose *pos
         found->key = true;
         result = add_own_light(scene, pose, viewpoint, why);
     }
-    /* Whit's own camera is not in a box, or has lamps there. */
+    /* Only a camera of the file can be in a box without lamps: whit's own one has them there. */
     bool boxed = found->key && !scene->cameras[0].made_by_whit;
     if (result == WHIT_OK && boxed)
         result = freeze_lit_share(scene, &share);
@@ -257,7 +260,8 @@ static whit_result add_lights(struct scene *scene, const struct scene_pose *pose
 
 static void add_ambient(struct scene *scene, const struct light_kinds *lights)
 {
-    /* Emission that was scaled stands for a bright picture, one that was stated for itself. */
+    /* Scaled emission stands for the lights of a bright picture, which has more ambient light;
+       emission at its stated strength is a lamp in the dark. */
     float level = lights->key || lights->exposed ? 0.1f : lights->emitters ? 0.03f : 0.0f;
     set_color(scene->ambient, level, level, level);
     if (level > 0.0f)

@@ -52,7 +52,7 @@ static const char *file_name(const char *path)
 static void call(struct scene_effects *out, enum scene_effect effect, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
-/* The first reason is the one kept. */
+/* Marks an effect as called for; only the first reason is kept. */
 static void call(struct scene_effects *out, enum scene_effect effect, const char *format, ...)
 {
     if (out->called[effect])
@@ -101,8 +101,8 @@ static bool is_glossy_metal_rough(const struct scene_material *m)
     return m->model == WHIT_MODEL_METAL_ROUGH && (m->specular_level > 0.0f || m->metallic > 0.0f);
 }
 
-/* What glass calls for. Light that leaves a dense medium at a grazing angle is reflected as a
-   whole, whatever the material says of reflection. */
+/* Effects of a transmissive material. Total internal reflection calls for reflection, even where
+   the material states none. */
 static void scan_glass(struct scene_effects *out, const struct scene_material *m)
 {
     call_by_material(out, SCENE_EFFECT_REFRACTION, m, "");
@@ -117,7 +117,7 @@ static void scan_glass(struct scene_effects *out, const struct scene_material *m
 static void scan_optics(struct scene_effects *out, const struct scene_material *m)
 {
     bool metal_rough = is_glossy_metal_rough(m);
-    /* Roughness 1 leaves nothing of a mirror image, unless a texture makes it less. */
+    /* Roughness 1 leaves nothing of a mirror image, unless a texture lowers the roughness. */
     bool mirrors = metal_rough && (m->roughness < 1.0f || has(m, SCENE_SLOT_METAL_ROUGH));
     if (any(m->emission))
         call_by_material(out, SCENE_EFFECT_EMISSION, m, "");
@@ -144,7 +144,8 @@ static void scan_optics(struct scene_effects *out, const struct scene_material *
         call_by_material(out, SCENE_EFFECT_METAL_ROUGH, m, "");
 }
 
-/* A mask or blend that is opaque everywhere needs no any-hit test. */
+/* Whether alpha may let light pass: a mask or blend that is opaque everywhere needs no test of
+   opacity at each hit. */
 static bool lets_through(const struct scene *scene, const struct scene_material *m)
 {
     if (m->alpha == SCENE_ALPHA_OPAQUE)
@@ -197,7 +198,7 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
         call_by_material(out, SCENE_EFFECT_TINTED_SHADOWS, m, blends ? "alpha blend" : "");
 }
 
-/* A switch, so that a kind without an effect does not compile. */
+/* A switch without a default, so that the compiler warns of a kind that is missing here. */
 static enum scene_effect effect_of_light(whit_light_kind kind)
 {
     switch (kind) {
@@ -267,8 +268,8 @@ static void scan_camera(struct scene_effects *out, const struct scene_camera *ca
 
 enum { WORN_BY_TRIANGLES = 1, WORN_BY_SPHERES = 2 };
 
-/* Only what some primitive of some mesh wears counts: libraries of materials cost nothing.
-   NULL (all count) when memory runs out. */
+/* Marks the materials that primitives use, by WORN_BY_* bits: effects of unused ones, as in
+   material libraries, are not compiled. NULL when memory runs out; then all count as used. */
 static uint8_t *worn_materials(const struct scene *scene)
 {
     uint8_t *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);

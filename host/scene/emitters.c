@@ -1,6 +1,6 @@
-/* Emissive surfaces as lights. A few flat ones become triangle and rectangle lights, of which the
-   kernel takes as many points as it is asked for. Lamps of many triangles become a handful of
-   points, spread evenly over their area. */
+/* Emissive surfaces as lights. A few flat ones become triangle and rectangle lights, which the
+   kernel samples at as many points as the settings say. Lamps of many triangles become at most
+   SAMPLES_MAX point samples, spread evenly over their emitted power. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,15 +10,15 @@
 #include "scene/freeze.h"
 
 #define SAMPLES_MAX   16
-/* The most flat lights: each costs every lit point as many shadow rays as it has points, 16 by
-   default. */
+/* The most flat lights: each costs a shadow ray per light sample, 16 by default, at every lit
+   point. */
 #define FLAT_MAX      8
-/* How far the corners of two triangles may be off those of a parallelogram, per length of a side.
- */
+/* Two triangles merge into a parallelogram if their corners are off by at most this share of a
+   side's length. */
 #define CORNER_SLACK  1e-5
 #define TRIANGLES_MAX (4u << 20)
-/* Emitted power per area of the scene's great circle, below which emission decorates but does not
-   light: the lamps of a car do not make its daylight. */
+/* Emitted power per area of the great circle of the scene's bounding sphere. Below it emission is
+   decoration and makes no lights: the lamps of a car do not replace daylight. */
 #define POWER_MIN     0.004
 
 struct emitter {
@@ -37,7 +37,8 @@ static double luminance(const float rgb[3])
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
 
-/* Textured emission is left out: signs and screens glow, but their average is no lamp. */
+/* Whether a material's surfaces become lights. Textured emission does not: signs and screens glow,
+   but are no lamps of the texture's average colour. */
 static bool lights_up(const struct scene_material *material)
 {
     return material->model != WHIT_MODEL_UNLIT && luminance(material->emission) > 0.0 &&
@@ -54,7 +55,7 @@ static void triangle_corners(const struct scene_mesh *mesh, uint32_t triangle,
     }
 }
 
-/* Gives twice the area of the triangle; *out is its normal of that length. */
+/* Gives twice the triangle's area; *out is its normal, with that as its length. */
 static double normal_of(double corners[3][3], double out[3])
 {
     double a[3], b[3];
@@ -117,7 +118,7 @@ static void point_in(double corners[3][3], double u, double v, double out[3])
                  corners[2][i] * root * v;
 }
 
-/* What all lights of an emitter's material have in common. */
+/* A light with the fields that all lights of this emitter's material share. */
 static struct scene_light light_of(struct scene *scene, const struct emitter *emitter)
 {
     const struct scene_material *material = &scene->materials[emitter->material];
@@ -130,7 +131,7 @@ static struct scene_light light_of(struct scene *scene, const struct emitter *em
         .falloff = true,
         .cos_inner = 1.0f,
         .cos_outer = 0.0f,
-        /* OBJ files wind their lamps either way, so only glTF's are taken at their word. */
+        /* Winding gives the lit side only in glTF: OBJ files wind their lamps either way. */
         .two_sided = material->two_sided || material->model != WHIT_MODEL_METAL_ROUGH,
         .made_by_whit = true,
     };
@@ -153,7 +154,7 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     double twice_area = normal_of(corners, normal);
     double side = affine_determinant(&local) < 0.0 ? -1.0 : 1.0;
-    /* A one-sided sample floats a little above its surface, out of its own shadow. */
+    /* A one-sided sample lies a little above its surface, which would else shadow it. */
     double lift = light.two_sided ? 0.0 : 1e-4 * sqrt(twice_area);
     point_in(corners, u, v, light.position);
     for (int i = 0; i < 3; ++i) {
@@ -165,7 +166,7 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     return scene_add_light(scene, light) != SCENE_NONE;
 }
 
-/* `samples` points at even steps of power through one run of emitters. */
+/* Adds `samples` lights at even steps of accumulated power over `count` emitters. */
 static bool sample_run(struct scene *scene, const struct emitter *run, uint32_t count,
                        uint32_t samples)
 {
@@ -203,7 +204,8 @@ static uint32_t count_runs(const struct emitter_list *list)
     return runs;
 }
 
-/* Every emissive surface gets a sample and its share of the rest; too many are sampled as one. */
+/* Every run of emitters (run_length) gets one sample and, by its power, a share of the rest. More
+   than SAMPLES_MAX runs are sampled as one. */
 static bool sample_all(struct scene *scene, const struct emitter_list *list)
 {
     uint32_t runs = count_runs(list);
@@ -245,15 +247,16 @@ static void make_flat(const struct scene *scene, const struct emitter *emitter, 
     }
 }
 
-/* Corner `k` of a triangle. */
+/* Corner `k`, 0 to 2, of a flat that is a triangle. */
 static void flat_corner(const struct flat *flat, int k, double out[3])
 {
     for (int i = 0; i < 3; ++i)
         out[i] = flat->corner[i] + (k ? flat->sides[k - 1][i] : 0.0);
 }
 
-/* Whether triangle `b`, its corners taken from `turn` on, is `a` turned by half about the middle of
-   the side that faces corner `k` of `a`: corner k is then that of a parallelogram. */
+/* Whether triangle `b`, with its corners counted from `turn` on, is `a` rotated by 180 degrees
+   about the middle of the side opposite corner `k`: together they are a parallelogram whose
+   `corner` is corner k. */
 static bool is_other_half(const struct flat *a, int k, const struct flat *b, int turn)
 {
     double at[3][3], other[3][3], far[3];
@@ -268,7 +271,7 @@ static bool is_other_half(const struct flat *a, int k, const struct flat *b, int
            double3_distance(other[2], at[1]) <= slack;
 }
 
-/* Makes `a` the parallelogram of both, if that is what they are. */
+/* Makes `a` the parallelogram of both, where they form one; else gives false. */
 static bool merge_flats(struct flat *a, const struct flat *b)
 {
     if (a->rectangle || a->emitter->instance != b->emitter->instance ||
@@ -291,7 +294,7 @@ static bool merge_flats(struct flat *a, const struct flat *b)
     return false;
 }
 
-/* False: there are more than FLAT_MAX. */
+/* Collects triangles and parallelograms of all emitters; false: there are more than FLAT_MAX. */
 static bool gather_flats(const struct scene *scene, const struct emitter_list *list,
                          struct flat *flats, uint32_t *count)
 {
@@ -302,7 +305,7 @@ static bool gather_flats(const struct scene *scene, const struct emitter_list *l
         bool merged = false;
         for (uint32_t k = 0; !merged && k < *count; ++k)
             merged = merge_flats(&flats[k], &flat);
-        /* Twice as many on the way: their other halves may follow. */
+        /* Up to 2 * FLAT_MAX meanwhile: triangles that follow may merge with these. */
         if (!merged && *count == 2 * FLAT_MAX)
             return false;
         if (!merged)

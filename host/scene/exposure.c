@@ -13,14 +13,16 @@
 #include "scene/pose.h"
 
 #define PROBES      1024
-/* This share of the lit surface is to be at most that bright, for a white surface. */
+/* Lights are scaled so that SHARE of the probed surface area would be at most BRIGHTNESS bright if
+   it were white. */
 #define SHARE       0.9
 #define BRIGHTNESS  0.8
-/* Stated lights are left alone between these. */
+/* Stated lights are scaled only where that brightness is below MIN or above MAX. */
 #define MIN         0.02
 #define MAX         2.0
-/* Exposure is left alone unless that much of what is seen would be burnt out, or nearly all would
-   be black; half of what is seen stays above LOW. */
+/* A model's exposure changes only where BURNT_SHARE of what is seen is brighter than BURNT, or
+   where SHARE of it would be below BLACK if it were white. Lowering it keeps half of what is seen
+   above LOW. */
 #define BURNT       1.25
 #define BURNT_SHARE 0.25
 #define BLACK       0.02
@@ -37,7 +39,8 @@ static double luminance(const float rgb[3])
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
 
-/* Corner and edges of a triangle that receives light; its area, or 0 for a lamp. */
+/* Gives a triangle's area in world space, with its corner, edges and unit normal; 0 for an emissive
+   one, which counts as a lamp and not as a receiver. */
 static double receiver(const struct scene *scene, const struct scene_pose *pose, uint32_t instance,
                        uint32_t triangle, double corner[3], double edges[2][3], double normal[3])
 {
@@ -65,8 +68,8 @@ static double receiver(const struct scene *scene, const struct scene_pose *pose,
     return isfinite(length) ? 0.5 * length : 0.0;
 }
 
-/* Light along the unit way, before the surface's cosine and without shadows: as the shader has it.
- */
+/* Irradiance from a light that is not flat, before the surface's cosine and without shadows, as the
+   shader computes it. `way`: unit direction in which the light travels. */
 static double arriving(const struct scene_light *light, const double way[3], double distance)
 {
     double value = luminance(light->color), along = double3_dot(way, light->direction);
@@ -81,8 +84,8 @@ static double arriving(const struct scene_light *light, const double way[3], dou
     return light->range > 0.0f && distance > (double)light->range ? 0.0 : value;
 }
 
-/* Light of a flat emitter, with the surface's cosine and without shadows: from the middles of a
-   grid over its parallelogram, of which a triangle fills a half. */
+/* Brightness by a flat emitter, with the surface's cosine and without shadows: the sum over cells
+   of a grid on its parallelogram, of which a triangle covers half. */
 static double brightness_of_emitter(const struct scene_light *light, const double point[3],
                                     const double normal[3])
 {
@@ -132,7 +135,8 @@ static double brightness_at(const struct scene_pose *pose, const double point[3]
     return sum;
 }
 
-/* Points at even steps of area, in the order of the triangles. */
+/* Probes an instance's surface at even steps of area, in the order of its triangles. `before`: area
+   of all triangles so far. */
 static void probe_instance(const struct scene *scene, const struct scene_pose *pose,
                            uint32_t instance, double step, double *before, struct probe_list *list)
 {
@@ -168,7 +172,8 @@ static int compare_values(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Whoever writes whit's own scene files means their numbers. */
+/* Whether light or emission comes from a foreign model. Numbers in whit's own scene files (.json)
+   are meant as they stand. */
 static bool is_from_model(const struct scene_origin *origin)
 {
     char extension[8];
@@ -240,8 +245,9 @@ static double share_from(const double *sorted, uint32_t count, double value)
     return (double)(count - below) / count;
 }
 
-/* Half stops down until the brightest tenth begins at 1 at most, but no further than leaves half of
-   it at LOW; half stops up where a white surface would be black all but everywhere. Else 0. */
+/* Gives the exposure in EV, in half stops. Negative, where too much is burnt out: until at most a
+   tenth of what is seen is above 1, but with half of it still above LOW. Positive, where nearly all
+   would be black even if white. Else 0. */
 static double exposure_of(struct freeze_seen *seen, double *burnt)
 {
     qsort(seen->shown, seen->count, sizeof *seen->shown, compare_values);
@@ -258,7 +264,7 @@ static double exposure_of(struct freeze_seen *seen, double *burnt)
     return fmin(fmax(ev, -EV_MAX), EV_MAX);
 }
 
-/* The file's, or made of its emissive surfaces. */
+/* Whether the scene has lights of its file, or lights made from its emissive surfaces. */
 static bool has_own_light(const struct scene *scene)
 {
     bool own = false;
@@ -268,8 +274,8 @@ static bool has_own_light(const struct scene *scene)
     return own;
 }
 
-/* Light by whit is made to suit. Rays to lights are spent only where it would be too bright without
-   shadows. */
+/* whit's own lights already suit the picture. Shadow rays are traced only where the picture would
+   be too bright without shadows. */
 whit_result freeze_choose_exposure(struct scene *scene)
 {
     struct freeze_seen seen;

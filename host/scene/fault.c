@@ -8,14 +8,14 @@
 #include "base/vec.h"
 #include "scene/freeze.h"
 
-/* A number below `count`, which is above 0. */
+/* A random number below `count`, which is above 0. */
 static uint32_t draw(uint64_t *random, uint32_t count)
 {
     return (uint32_t)(splitmix64(random) % count);
 }
 
-/* A vertex, or a sphere, that some primitive uses goes some way off, by a share of the mesh's
-   longest side. */
+/* Moves a vertex of some triangle, or a sphere, in a random direction by `amount` times the longest
+   side of the mesh's box. */
 static bool move_vertex(struct scene *scene, uint64_t *random, double amount)
 {
     if (!scene->mesh_count)
@@ -61,7 +61,7 @@ static bool brighten(float rgb[3], double amount)
     return rgb[0] + rgb[1] + rgb[2] > 0.0f;
 }
 
-/* Brighter by a share; what glows where there is no light. */
+/* Brightens a light by the share `amount`, or an emissive material where there is no light. */
 static bool change_light(struct scene *scene, uint64_t *random, double amount)
 {
     if (scene->light_count)
@@ -74,7 +74,8 @@ static bool change_light(struct scene *scene, uint64_t *random, double amount)
     return false;
 }
 
-/* Each channel but alpha of one row goes by a share of 255 towards the other end of its range. */
+/* Changes R, G and B of one row of texels by `amount` times 255: values below 128 up, others
+   down. */
 static bool change_texels(struct scene *scene, uint64_t *random, double amount)
 {
     if (!scene->texture_count)
@@ -89,7 +90,8 @@ static bool change_texels(struct scene *scene, uint64_t *random, double amount)
     return true;
 }
 
-/* Two materials have each other's values, and their own names; they may glow as well. */
+/* Swaps the values of two materials, which keep their names, and adds `glow` to the emission of
+   both. */
 static bool swap_materials(struct scene *scene, uint64_t *random, double glow)
 {
     if (scene->material_count < 2)
@@ -110,7 +112,7 @@ static bool swap_materials(struct scene *scene, uint64_t *random, double glow)
     return true;
 }
 
-/* Two objects have each other's place in the order of the file, by which hits are named. */
+/* Swaps two instances in the list, whose indices are the ids of hits. */
 static bool swap_objects(struct scene *scene, uint64_t *random)
 {
     if (scene->instance_count < 2)

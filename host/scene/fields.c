@@ -1,5 +1,5 @@
-/* The tables of plain values: change.c names differences by them, and scene_parts_test holds hash.c
-   to all of them. */
+/* Tables of plain values in records: change.c describes differences by them, and scene_parts_test
+   checks that hash.c hashes every field in them. */
 #include "scene/fields.h"
 
 #define FIELD(type, form, field, count, name)                                                      \

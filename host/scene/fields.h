@@ -1,5 +1,5 @@
-/* The fields of records that are plain values, without names of records and indices of others. Each
-   table ends with a field without a name. */
+/* Those fields of scene records that are plain values: no names, and no indices of other records.
+   Each table ends with a field whose name is NULL. */
 #ifndef SCENE_FIELDS_H
 #define SCENE_FIELDS_H
 
@@ -8,9 +8,9 @@
 enum scene_field_form {
     SCENE_FLOATS,
     SCENE_DOUBLES,
-    SCENE_WORDS, /* int32_t */
+    SCENE_WORDS, /* integers: int32_t */
     SCENE_FLAG,  /* bool */
-    SCENE_NAMED, /* an enumeration, whose words are `names` */
+    SCENE_NAMED, /* an enumeration, whose values are called `names` */
 };
 struct scene_field {
     const char *name; /* in messages */

@@ -11,7 +11,7 @@
 #include "scene/hash.h"
 #include "scene/pose.h"
 
-/* The same limit as in shaders/bind/light.glsl, which cuts off arriving light beyond it. */
+/* Lights are clamped to this; shaders/bind/light.glsl clamps arriving light to the same limit. */
 #define LIGHT_MAX 1e24f
 
 static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)
@@ -200,7 +200,8 @@ static whit_result check_mesh(struct scene *scene, uint32_t index)
     return freeze_clean_mesh(scene, index);
 }
 
-/* Where each node is when nothing has moved yet; animated ones are checked by scene_pose_init. */
+/* World matrices of nodes without animation, to find instances that cannot be placed. `animated`
+   nodes are checked by scene_pose_init at their time. */
 struct still_node {
     struct affine world;
     bool animated;
@@ -275,7 +276,7 @@ static whit_result check_instances(struct scene *scene)
     return WHIT_OK;
 }
 
-/* Meshes that nothing places would be built and uploaded for nothing. */
+/* Drops meshes without an instance: their trees would be built and uploaded for nothing. */
 static whit_result drop_unused_meshes(struct scene *scene)
 {
     uint32_t *moved_to = array_alloc(scene->mesh_count, sizeof *moved_to);
@@ -304,7 +305,7 @@ static whit_result drop_unused_meshes(struct scene *scene)
     return WHIT_OK;
 }
 
-/* A flat emitter shines along the normal of its edges. */
+/* Sets a flat emitter's direction to edge_u x edge_v, which is not normalized yet. */
 static void set_emitter_direction(struct scene_light *light)
 {
     const double *u = light->edge_u, *v = light->edge_v;
@@ -326,7 +327,8 @@ static bool usable_light(const struct scene_light *light)
     return finite && (!scene_light_is_flat(light) || (area > 0.0 && isfinite(area)));
 }
 
-/* Returns how many values of its colour had to change. */
+/* Brings the light's values into their ranges; gives how many values of its colour had to
+   change. */
 static uint32_t mend_light(struct scene_light *light)
 {
     uint32_t count = 0;
@@ -388,7 +390,8 @@ static bool usable_camera(const struct scene_camera *camera)
     return isfinite(distance2) && distance2 > 0.0;
 }
 
-/* An `up` along the view has no picture plane: take the axis farthest from the view. */
+/* Brings a camera's values into their ranges. An `up` parallel to the view is replaced by the y
+   axis, or by z where the view is close to y. */
 static void mend_camera(struct scene_camera *camera)
 {
     double view[3], length2 = 0.0, up2 = 0.0, cross2 = 0.0;
@@ -483,7 +486,7 @@ static whit_result check_all(struct scene *scene)
     return result;
 }
 
-/* Said here, whatever the memory was for. */
+/* Logs the lack of memory once, whichever step ran out of it; passes `result` on. */
 static whit_result no_memory(const struct scene *scene, whit_result result)
 {
     if (result == WHIT_ERROR_MEMORY)

@@ -1,11 +1,11 @@
-/* The parts of scene_freeze; no one else's business. */
+/* The parts of scene_freeze, for use inside of host/scene/ alone. */
 #ifndef SCENE_FREEZE_H
 #define SCENE_FREEZE_H
 
 #include "scene/scene.h"
 
-/* freeze.c: what scene_freeze does once all that is stated was checked: adds what is derived from
-   it, and ends the writing. */
+/* freeze.c: the second half of scene_freeze, after all stated values were checked: adds what is
+   derived from them, and sets `frozen`. */
 WHIT_CHECK whit_result freeze_complete(struct scene *scene);
 
 /* clean.c: drops triangles that cannot be traced, mends attributes, sets bounds. */

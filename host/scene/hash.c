@@ -1,5 +1,5 @@
-/* The scene's hash: everything that a picture depends on, names and notes left out; and that of one
-   of its records. */
+/* Hashes of a scene and of single records: over everything that a picture depends on, without names
+   and notes. */
 #include "base/hash.h"
 #include "scene/hash.h"
 
@@ -29,10 +29,11 @@ static void hash_mesh(struct hash *hash, const struct scene_mesh *m)
     HASH_ARRAY(hash, m->materials, scene_mesh_primitives(m));
 }
 
-/* Field by field: padding and names must not count. */
+/* Hashes field by field, since padding and names must not count. */
 static void hash_material(struct hash *hash, const struct scene_material *m)
 {
-    /* One word, so that scenes without one-sided materials keep the hash that recipes have. */
+    /* Both flags in one word: scenes without one-sided materials keep the hash that recipes in
+       older pictures name. */
     const uint32_t sides = (uint32_t)m->two_sided | (uint32_t)m->one_sided << 1;
     const uint32_t flags[] = {
         (uint32_t)m->model, (uint32_t)m->illum, m->fresnel, m->thin_walled, sides,

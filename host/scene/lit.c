@@ -1,7 +1,7 @@
-/* Whether what is seen gets light, and how much. Files have lights that light nothing of it:
-   headlights that are emissive surfaces, a sun over a closed box; and lights that burn it out. Rays
-   of a coarse picture, and rays from what they hit to the lights, are held against every triangle:
-   there are no trees yet, and few rays are enough. */
+/* How much light reaches what the camera sees. Some files have lights that light nothing of it
+   (headlights that are emissive surfaces, a sun over a closed box), or lights that burn it out. A
+   few camera rays, and shadow rays from their hits, are tested against every triangle, since there
+   are no trees yet. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,14 +13,14 @@
 #include "scene/lit.h"
 #include "scene/pose.h"
 
-/* Rays of the picture; fewer where these tests of triangles are used up, but some. */
+/* Number of camera rays: as many as TESTS_MAX tests of triangles allow, within these bounds. */
 enum { RAYS_MAX = FREEZE_SEEN_MAX, RAYS_MIN = 32 };
 static const double TESTS_MAX = 2e7;
-/* What a white surface has to show, where a picture's white is 1. */
+/* A point counts as lit if a white surface there is at least this bright (1: white). */
 static const double LIT = 0.02;
-/* Points are this share of their distance away from the surface, towards the eye. */
+/* Shadow rays start off the surface by this share of the distance to the eye, towards the eye. */
 static const double OFFSET = 1e-3;
-/* Lights that a point is asked about; what they say holds for the others. */
+/* At most this many lights are traced from a point; their visible share stands for all lights. */
 enum { LIGHTS_ASKED = 4 };
 
 struct ray {
@@ -28,7 +28,7 @@ struct ray {
     double t_max;
 };
 struct hit {
-    double t, u, v, normal[3]; /* world; u and v: how much of the triangle's second, third corner */
+    double t, u, v, normal[3]; /* u, v: barycentric weights of corners 1 and 2; normal: in world */
     const struct scene_mesh *mesh;
     uint32_t triangle;
     const struct scene_material *material;
@@ -39,13 +39,13 @@ static bool is_black(const float rgb[3])
     return !(rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f);
 }
 
-/* Glass and leaves let light through: they are left out, as if they were not there. */
+/* Surfaces that let light through, as glass and cut-out leaves, are skipped by all rays. */
 static bool is_solid(const struct scene_material *m)
 {
     return m->alpha == SCENE_ALPHA_OPAQUE && is_black(m->transmission);
 }
 
-/* Moeller and Trumbore (1997), in the space of the mesh, both sides. */
+/* Intersects a triangle in object space, on both sides: Moeller and Trumbore (1997). */
 static bool meet(const struct scene_mesh *mesh, uint32_t triangle, const struct ray *ray,
                  struct hit *hit)
 {
@@ -83,7 +83,7 @@ static bool meets_box(const struct scene_mesh *mesh, const struct ray *ray)
     return from <= to;
 }
 
-/* The nearest solid surface, or with `any` some; false: there is none. */
+/* Finds the nearest solid hit; with `any` only says whether there is one, and leaves *hit. */
 static bool trace(const struct scene *scene, const struct scene_pose *pose,
                   const struct affine *inverses, const struct ray *world, bool any, struct hit *hit)
 {
@@ -106,7 +106,7 @@ static bool trace(const struct scene *scene, const struct scene_pose *pose,
             ray.t_max = own.t;
             *hit = own;
             hit->material = m;
-            /* The transpose of the inverse turns normals. */
+            /* Normals go to world space by the inverse transpose. */
             for (int c = 0; c < 3; ++c)
                 hit->normal[c] = inverses[i].m[c] * own.normal[0] +
                                  inverses[i].m[4 + c] * own.normal[1] +
@@ -117,7 +117,7 @@ static bool trace(const struct scene *scene, const struct scene_pose *pose,
     return found;
 }
 
-/* Somewhere on the light; the more points there are, the more of it is looked at. */
+/* Point `index` of a low-discrepancy sequence on a flat light; any other light's position. */
 static void place_on(const struct scene_light *light, uint32_t index, double out[3])
 {
     double u = fmod(0.5 + index * 0.7548776662466927, 1.0);
@@ -161,7 +161,7 @@ static bool is_lit(const struct scene *scene, const struct scene_pose *pose,
     return sum >= LIT;
 }
 
-/* Through a pixel of a picture as wide as 4:3. */
+/* Camera ray `index` of `count`, spread evenly over a picture with aspect 4:3. */
 static struct ray look(const struct scene_camera *camera, uint32_t index, uint32_t count)
 {
     double x = 2.0 * fmod((index + 0.5) * 0.6180339887498949, 1.0) - 1.0;
@@ -192,7 +192,8 @@ static uint32_t ray_count(const struct scene *scene)
     return (uint32_t)fmin(fmax(TESTS_MAX / triangles, RAYS_MIN), RAYS_MAX);
 }
 
-/* Where the ray of the coarse picture meets a surface, a little towards the eye. */
+/* Traces camera ray `index`: its hit, and the `point` a little before it. False: it hits
+   nothing. */
 static bool see(const struct scene *scene, const struct scene_pose *pose,
                 const struct affine *inverses, uint32_t index, uint32_t count, struct hit *hit,
                 double point[3])
@@ -222,7 +223,8 @@ static double measure_share(const struct scene *scene, const struct scene_pose *
 
 /* ---- How bright what is seen is ---- */
 
-/* The nearest texel; white where there is no picture. Pictures repeat, whatever the use says. */
+/* The nearest texel of the texture in `slot` at the hit, white without one. Textures repeat here,
+   whatever their wrap mode. */
 static void pick_texel(const struct scene *scene, const struct hit *hit, enum scene_slot slot,
                        uint8_t rgba[4])
 {
@@ -251,7 +253,7 @@ static void pick_texel(const struct scene *scene, const struct hit *hit, enum sc
     memcpy(rgba, texture->rgba + 4 * ((size_t)at[1] * texture->width + at[0]), 4);
 }
 
-/* The brightest channel of `rgb` times the picture in `slot`. */
+/* The brightest channel of `rgb` times the texture in `slot`. */
 static double shine(const struct scene *scene, const struct hit *hit, const float rgb[3],
                     enum scene_slot slot)
 {
@@ -263,7 +265,7 @@ static double shine(const struct scene *scene, const struct hit *hit, const floa
     return most;
 }
 
-/* Metal and mirrors show something else than their own colour. */
+/* Whether a surface shows mostly its surroundings instead of its own colour. */
 static bool is_mirror(const struct scene *scene, const struct hit *hit)
 {
     const struct scene_material *m = hit->material;
@@ -273,8 +275,9 @@ static bool is_mirror(const struct scene *scene, const struct hit *hit)
            m->reflection[0] > 0.5f || m->reflection[1] > 0.5f || m->reflection[2] > 0.5f;
 }
 
-/* Light at a point, for a white surface. With `shadows` some of the lights, others from point to
-   point, are asked whether they reach it. */
+/* Brightness of a white surface at `point`. With `shadows` every step-th light, starting with
+   another one at each point, is tested for visibility, and the sum is scaled by the visible
+   share. */
 static double light_at(const struct scene *scene, const struct scene_pose *pose,
                        const struct affine *inverses, const double point[3], const struct hit *hit,
                        uint32_t index, bool shadows)
@@ -316,7 +319,8 @@ static void measure_seen(const struct scene *scene, const struct scene_pose *pos
 
 /* ---- The first camera ---- */
 
-/* `inverses`: to free(); NULL where nothing can be told. */
+/* Poses the scene at time 0. *inverses: world to object for each instance, to free(); NULL where
+   light cannot be measured: no camera, a panorama, or a matrix without an inverse. */
 static whit_result begin(const struct scene *scene, struct scene_pose *pose,
                          struct affine **inverses)
 {

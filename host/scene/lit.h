@@ -1,16 +1,17 @@
-/* What the first camera sees of the light. */
+/* Measures the light on what the first camera sees. */
 #ifndef SCENE_LIT_H
 #define SCENE_LIT_H
 
 #include "scene/freeze.h"
 
-/* Which share of what the first camera sees is reached by light, 0..1, by a few hundred rays
-   through all triangles. 1 where that cannot be told: by a camera that sees all around, or where
-   nothing is seen. */
+/* The share, 0..1, of what the first camera sees that lights reach, measured with a few hundred
+   rays against all triangles. 1 where it cannot be measured: with a panorama, or where nothing is
+   seen. */
 WHIT_CHECK whit_result freeze_lit_share(const struct scene *scene, double *share);
 
-/* What the same rays see but for metal and mirrors: the brightest channel of it, and of a white
-   surface in its place. `shadows`: whether lights reach it; else there is more than there is. */
+/* Brightness at the hits of the same rays, without metal and mirrors: `shown` is the brightest
+   channel of the surface, `white` that of a white surface in its place. `shadows`: tests whether
+   lights reach the hit; without, the values are upper bounds. */
 enum { FREEZE_SEEN_MAX = 256 };
 struct freeze_seen {
     double shown[FREEZE_SEEN_MAX], white[FREEZE_SEEN_MAX];

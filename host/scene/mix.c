@@ -9,14 +9,14 @@
 
 struct mix {
     struct scene_side before, after;
-    const struct scene_side *frame; /* whose objects, and lists of parts, the scene has */
-    const bool *back;
+    const struct scene_side *frame; /* the side that gives `out` its objects and lists of parts */
+    const bool *back;               /* by the parts of `before`: take it from `before` */
     struct scene *out;
-    struct key_table added[SCENE_NAMES]; /* index in `out`, by name, of what `frame` has not */
+    struct key_table added[SCENE_NAMES]; /* name to index in `out`, for records not in `frame` */
     bool failed;                         /* memory ran out */
 };
 
-/* Where a part of that name is taken from. */
+/* The side from which the part of this kind and name is taken. */
 static const struct scene_side *side_of(const struct mix *mix, whit_part_kind kind,
                                         const char *name)
 {
@@ -34,7 +34,7 @@ static void *copy_of(struct mix *mix, const void *data, size_t count, size_t byt
     return copy ? memcpy(copy, data, count * bytes) : NULL;
 }
 
-/* ---- What is named by others: each gives its index in the new scene ---- */
+/* ---- Records that others refer to: each function gives the new index ---- */
 
 static uint32_t place_of(struct mix *mix, const struct scene_side *side, unsigned kind,
                          uint32_t index);
@@ -68,7 +68,8 @@ static uint32_t add_material(struct mix *mix, const struct scene_side *side, uin
     return scene_add_material(mix->out, material);
 }
 
-/* Where in the new scene what `side` has at `index` is; it is added where its name is not there. */
+/* Translates an index of `side` to one of the new scene; a record whose name the new scene lacks is
+   added. */
 static uint32_t place_of(struct mix *mix, const struct scene_side *side, unsigned kind,
                          uint32_t index)
 {
@@ -154,7 +155,8 @@ static bool add_part(struct mix *mix, whit_part_kind kind, const char *name)
 
 static bool add_parts(struct mix *mix)
 {
-    /* What others name comes before them, so that what they add comes behind. */
+    /* Kinds that others refer to come first: records that those add then follow behind all of
+       `frame`, whose indices stay. */
     static const whit_part_kind order[] = {WHIT_PART_TEXTURE, WHIT_PART_MATERIAL,
                                            WHIT_PART_MESH,    WHIT_PART_LIGHT,
                                            WHIT_PART_CAMERA,  WHIT_PART_ANIMATION};

@@ -1,4 +1,4 @@
-/* The words of the scene's enumerations, in receipts, messages and scene files. */
+/* Names of the scene's enumerators, as receipts, messages and scene files use them. */
 #include "scene/scene.h"
 
 const char *const scene_model_names[] = {

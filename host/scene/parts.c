@@ -70,7 +70,7 @@ static char *channel_name(const struct scene *scene, const struct scene_names *n
     return string_format("%s %s", nodes->names[channel->node], paths[channel->path]);
 }
 
-/* Adds `own`, with a number where it is taken or empty. */
+/* Adds the name `own`, made unique by a number where it is empty or taken. */
 static bool add_name(struct scene_names *names, const char *own)
 {
     uint32_t index = names->count, taken, number = 2;
@@ -84,8 +84,8 @@ static bool add_name(struct scene_names *names, const char *own)
     return name && key_table_add(&names->table, name, strlen(name), index);
 }
 
-/* Meshes of scene files are called after their shape: better by the first object that has them.
-   NULL: no memory. */
+/* For each mesh the name of the first instance that has one: a mesh of a scene file is itself named
+   after its shape, which many share. NULL: no memory. */
 static const char **object_names(const struct scene *scene)
 {
     const char **names = array_alloc_zeroed(scene->mesh_count, sizeof *names);
@@ -195,7 +195,7 @@ static uint64_t hash_channel(const struct scene_parts *parts, const struct scene
     return hash_below(parts, own->node, freeze_hash_record(WHIT_PART_ANIMATION, &channel));
 }
 
-/* What files state of it; what whit makes up follows from the rest. */
+/* Hashes what a file states of the environment. What whit adds follows from the other parts. */
 static uint64_t hash_environment(const struct scene *scene)
 {
     static const struct scene_environment none;
@@ -214,8 +214,8 @@ static bool made_by_whit(const struct scene *scene, unsigned kind, uint32_t inde
            (kind == WHIT_PART_CAMERA && scene->cameras[index].made_by_whit);
 }
 
-/* Which parts there are counts with the objects, and in which order; but for materials and
-   textures, which are there for those that name them. */
+/* Hashes nodes and instances, and the names of all parts in their order. Materials and textures are
+   left out: parts that refer to them hash their names. */
 static uint64_t hash_objects(const struct scene *scene, const struct scene_parts *parts)
 {
     const uint32_t flags[] = {scene->is_model, (uint32_t)scene->lights_wanted};

@@ -7,8 +7,8 @@
 #include "base/text.h"
 #include "scene/pose.h"
 
-/* An animated scale of zero (things that pop up or vanish) counts as this, so that the matrix keeps
-   an inverse; nothing of that size is seen. */
+/* An animated scale of zero (things that pop up or vanish) is raised to this, so that the matrix
+   has an inverse; nothing that small is seen. */
 #define SMALLEST_ANIMATED_SCALE 1e-6
 
 static uint32_t width_of(const struct scene_channel *channel)
@@ -41,7 +41,8 @@ static void normalize(double q[4])
         q[i] /= length;
 }
 
-/* The shorter way round; linear where the angle is too small for the sine to divide by. */
+/* Spherical interpolation along the shorter arc; linear where the angle's sine is too small to
+   divide by. */
 static void slerp(const double from[4], const double to[4], double s, double out[4])
 {
     double a[4], b[4];
@@ -182,8 +183,8 @@ static void unit(double v[3], const double otherwise[3])
         v[i] /= length;
 }
 
-/* Normals go by the inverse transpose, everything else that points by the matrix itself. A mirrored
-   node keeps its front outside, as glTF has it, so the determinant's sign is left out. */
+/* Transforms a normal by the inverse transpose, to any length. The determinant's sign is left out:
+   in a mirrored node the front of a surface stays its front, as in glTF. */
 static void move_normal(const struct affine *world, const double in[3], double out[3])
 {
     struct affine inverse;
@@ -203,7 +204,8 @@ static double volume_of(const double a[3], const double b[3], const double c[3])
            (a[0] * b[1] - a[1] * b[0]) * c[2];
 }
 
-/* The edges of a flat emitter go round its direction against the clock, in a mirrored node too. */
+/* Transforms a flat emitter's edges. They are swapped in a mirrored node, so that edge_u x edge_v
+   still points along its direction. */
 static void move_edges(const struct affine *world, struct scene_light *light)
 {
     double u[3], v[3];
@@ -273,7 +275,8 @@ static void grow_bounds(double lo[3], double hi[3], const struct affine *matrix,
     }
 }
 
-/* A floor is flat, and wider than what stands on it. */
+/* An instance is a floor where its box is thinner than FLAT times its longest side, and longer than
+   WIDER times the longest side of all that is not flat. */
 static const double FLAT = 0.02, WIDER = 1.5;
 
 /* The longest side of a box; *thin: the shortest one. */
@@ -288,7 +291,8 @@ static double box_sides(const double lo[3], const double hi[3], double *thin)
     return longest;
 }
 
-/* Grows the box by the instances that are flat, up to so wide, or by those that are not. */
+/* Grows the box by those instances that are flat, or are not, and whose longest side is at most
+   `max`. */
 static void grow_objects(const struct scene *scene, const struct scene_pose *pose, bool flat,
                          double max, double lo[3], double hi[3])
 {
@@ -320,7 +324,7 @@ void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose
     memcpy(hi, pose->hi, 3 * sizeof *hi);
 }
 
-/* Transforms end in floats on the device, so must their inverses. */
+/* Matrices and their inverses become floats on the device. */
 #define LARGEST_ENTRY 1e30
 
 bool scene_can_place(const struct affine *matrix)
@@ -369,7 +373,7 @@ whit_result scene_pose_init(const struct scene *scene, double time_s, struct sce
     pose->lights = array_alloc(scene->light_count, sizeof *pose->lights);
     pose->cameras = array_alloc(scene->camera_count, sizeof *pose->cameras);
     if (!nodes || !pose->instances || !pose->lights || !pose->cameras) {
-        if (scene->frozen) /* before, scene_freeze says it */
+        if (scene->frozen) /* else scene_freeze logs it */
             log_error(&scene->log, "%s: out of memory for the scene's pose", scene->name);
         goto fail;
     }

@@ -1,17 +1,17 @@
-/* Scenes at a time. */
+/* A scene's instances, lights and cameras in world space at one time. */
 #ifndef SCENE_POSE_H
 #define SCENE_POSE_H
 
 #include "scene/scene.h"
 
-/* Whether floats have room for a transform of instances and its inverse. */
+/* Whether an instance can have this matrix: it and its inverse exist and fit in floats. */
 bool scene_can_place(const struct affine *matrix);
 /* `scene` is frozen and outlives the pose. WHIT_ERROR_INPUT when an instance cannot be placed at
    that time (named in the log), WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
                                        struct scene_pose *pose);
-/* World bounds of what stands on floors, without these: all there is where there is nothing else.
- */
+/* World bounds of all instances but floors (flat ones wider than the rest); where the scene has
+   floors alone, its bounds. */
 void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose, double lo[3],
                         double hi[3]);
 void scene_pose_finish(struct scene_pose *pose);

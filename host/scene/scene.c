@@ -42,7 +42,8 @@ void scene_mesh_finish(struct scene_mesh *mesh)
     *mesh = (struct scene_mesh){0};
 }
 
-/* A copy of `count` elements of `bytes` each; NULL stays NULL. No memory: *good is false. */
+/* A copy of `count` elements of `bytes` each; NULL stays NULL. Without memory sets *good to
+   false. */
 static void *copy_of(const void *data, size_t count, size_t bytes, bool *good)
 {
     void *copy = data ? array_alloc(count, bytes) : NULL;

@@ -27,7 +27,7 @@ struct scene_texture {
     char *name;
     uint32_t width, height;
     uint8_t *rgba;       /* width * height * 4 */
-    size_t mapped_bytes; /* `rgba` is the reply of a child, so long; 0: from malloc() */
+    size_t mapped_bytes; /* length of `rgba` if it is a mapped reply of a child; 0: from malloc() */
 };
 
 enum scene_wrap { SCENE_WRAP_REPEAT, SCENE_WRAP_CLAMP, SCENE_WRAP_MIRROR };
@@ -74,13 +74,13 @@ struct scene_material {
     float transmission[3]; /* weight and filter of the refracted ray; 0: opaque */
     float absorption[3];   /* Beer, per world unit, inside */
     float ior;             /* of the inside, default 1.5 */
-    bool fresnel;          /* reflection and refraction share by Fresnel */
+    bool fresnel;          /* Fresnel's equations split light into reflected and refracted */
     bool thin_walled;      /* transmits without bending (glTF without a volume) */
     bool two_sided;        /* glTF doubleSided: an emitter lights both its sides */
     bool one_sided;        /* not seen from behind: glTF materials that are not doubleSided */
     bool shadow_catcher;   /* MTL illum 10 */
-    uint32_t priority;     /* of the medium inside, 0..255: where media overlap the highest one is
-                              there, of equal ones the one entered last; default 0 */
+    uint32_t priority;     /* of the medium inside, 0..255: where media overlap, the one with the
+                              highest priority counts, of equal ones the last entered; default 0 */
     float metallic, roughness; /* METAL_ROUGH */
     float specular_level;      /* METAL_ROUGH: KHR_materials_specular factor, default 1 */
     enum scene_alpha alpha;
@@ -103,7 +103,7 @@ struct scene_mesh {
     uint32_t sphere_count;
     float *spheres;      /* 4 per sphere: centre, radius > 0 */
     float *positions;    /* 3 per vertex */
-    float *normals;      /* 3 per vertex, or NULL: flat; scene_freeze drops those of flat faces */
+    float *normals;      /* 3 per vertex; NULL: flat faces (scene_freeze drops needless normals) */
     float *uvs[2];       /* 2 per vertex (v downwards), or NULL */
     float *colors;       /* 4 per vertex linear RGBA, or NULL */
     float *tangents;     /* 4 per vertex, w = sign of the bitangent, or NULL */
@@ -128,7 +128,7 @@ struct scene_node {
 };
 
 enum scene_path { SCENE_PATH_TRANSLATION, SCENE_PATH_ROTATION, SCENE_PATH_SCALE };
-/* Rotations: LINEAR is slerp. CUBIC is glTF's Hermite spline, tangents per second. */
+/* LINEAR is slerp for rotations. CUBIC is glTF's Hermite spline, with tangents per second. */
 enum scene_interpolation { SCENE_STEP, SCENE_LINEAR, SCENE_CUBIC };
 
 /* Keys of one property of one node. Before the first key and after the last one the value is held.
@@ -157,8 +157,8 @@ struct scene_instance {
     struct affine local;
 };
 
-/* `position` and `direction` are in the space of `node`. Of flat emitters scene_freeze sets
-   `direction`: the normal edge_u x edge_v. */
+/* `position` and `direction` are in the space of `node`. For flat emitters scene_freeze sets
+   `direction` to the normal edge_u x edge_v. */
 struct scene_light {
     char *name;
     struct scene_origin origin;
@@ -167,14 +167,14 @@ struct scene_light {
     double position[3];
     double direction[3]; /* the way the light travels; unit */
     float color[3];      /* radiant intensity; irradiance when directional or without falloff */
-    float stated[3];     /* the same before scene_freeze made it suit the picture; set there */
+    float stated[3];     /* `color` before scene_freeze scaled it; set by scene_freeze */
     bool falloff;        /* 1 / distance^2 */
     float range;         /* 0: without limit */
-    float cos_inner, cos_outer; /* SPOT: full inside inner, none outside outer */
-    /* RECTANGLE, TRIANGLE: from the corner `position`, in the space of `node`. Light goes out to
-       the side of edge_u x edge_v. */
+    float cos_inner, cos_outer; /* SPOT: full light inside the inner cone, none outside the outer */
+    /* RECTANGLE, TRIANGLE: edges from the corner `position`, in the space of `node`. Light goes out
+       on the side of edge_u x edge_v. */
     double edge_u[3], edge_v[3];
-    bool two_sided; /* flat emitters: to the other side too */
+    bool two_sided; /* flat emitters: light goes out on the other side too */
     bool made_by_whit;
 };
 
@@ -192,27 +192,27 @@ struct scene_camera {
     double eye[3], target[3], up[3];
     float fov_y;          /* PERSPECTIVE: full vertical angle */
     float height;         /* ORTHOGRAPHIC: full height of the picture, world units */
-    float lens_radius;    /* PERSPECTIVE: of a thin lens, world units; 0: pinhole */
-    float focus_distance; /* along the view, world units; 0: the target's */
+    float lens_radius;    /* PERSPECTIVE: radius of a thin lens, world units; 0: pinhole */
+    float focus_distance; /* along the view, world units; 0: the distance of `target` */
     float aspect;         /* width / height the file asks for; 0: any */
     bool made_by_whit;
 };
 
-/* What rays that miss see. GRADIENT runs from horizon to zenith above and to ground below (+y is
-   up); all three equal is a constant colour. MAP is equirectangular, row 0 up, its middle towards
-   -z. */
+/* What rays that hit nothing see. GRADIENT runs from horizon to zenith above and to ground below
+   (+y is up); all three equal are a constant colour. MAP is equirectangular, row 0 up, its middle
+   towards -z. */
 struct scene_environment {
     whit_environment_kind kind;
     float zenith[3], horizon[3], ground[3];
-    float scale[3]; /* times map or gradient */
+    float scale[3]; /* factor on map or gradient */
     uint32_t width, height;
     float *rgb; /* width * height * 3, or NULL */
     char *name; /* file of the map */
     bool made_by_whit;
 };
 
-/* names.c: by the enumerations here and in whit_scene.h; NULL behind those of alpha, wrap and
-   interpolation. */
+/* names.c: names of the enumerators here and in whit_scene.h, by value. The lists of alpha, wrap
+   and interpolation end with NULL. */
 extern const char *const scene_model_names[],
     *const scene_alpha_names[], *const scene_wrap_names[],
                                     *const scene_interpolation_names[],
@@ -248,39 +248,39 @@ struct scene {
     bool has_environment; /* a file states it; false: scene_freeze makes one */
     float ambient[3];     /* ambient light, times each material's `ambient` */
     bool has_ambient;     /* likewise */
-    float contact; /* surfaces of two media within this distance, world units, are one; 0: only
-                      where they touch but for rounding */
+    float contact; /* surfaces of two media that are at most this far apart, in world units, count
+                      as one; 0: only surfaces that touch within rounding do */
     uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */
     float time_end_s;                      /* last key of any channel; 0: nothing moves */
     uint64_t file_bytes;                   /* of all files read */
     uint64_t memory_limit, memory_taken;   /* see afford.h; 0: no limit */
-    struct key_table texture_keys;         /* their names, and what loaders know them by */
-    struct roots roots;                    /* what the files that it is loaded from may name */
+    struct key_table texture_keys;         /* texture index by name, or by a loader's own key */
+    struct roots roots;                    /* folders in which the scene's files may name others */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
-    bool is_model;                         /* of another program: its lights may need help */
+    bool is_model;                         /* by another program: may need more lights */
     whit_lights lights_wanted;
-    double exposure_ev; /* that suits what the first camera sees of a model; set by scene_freeze */
-    bool lacks_memory;  /* for a name or a note: scene_freeze fails */
+    double exposure_ev; /* suits what a model's first camera sees; set by scene_freeze */
+    bool lacks_memory;  /* a name or a note could not be allocated: scene_freeze will fail */
     bool frozen;
     bool pictures_dropped; /* by scene_drop_pictures */
 };
 
-/* Never NULL fields afterwards but for arrays that are empty. NULL when memory runs out. */
+/* An empty scene, in which only empty arrays are NULL. NULL when memory runs out. */
 struct scene *scene_create(const whit_log *log, const char *name);
 void scene_destroy(struct scene *scene);
-/* Takes all lights out, before scene_freeze. */
+/* Removes all lights; only before scene_freeze. */
 void scene_drop_lights(struct scene *scene);
-/* Frees the texels of textures and environment, the one thing that may leave a frozen scene: for
-   when every renderer that will be made from it has uploaded them. */
+/* Frees the texels of textures and environment, the only change that a frozen scene allows. Call it
+   when every renderer that will be made from the scene has uploaded them. */
 void scene_drop_pictures(struct scene *scene);
 
-/* Fill *out with what the names above call default: grey diffuse PHONG, opaque, no textures;
-   identity node under SCENE_NONE; an unused texture. `name` is copied. */
+/* Fill *out with defaults: a grey diffuse PHONG material, opaque, without textures; a texture use
+   without a texture; a node with the identity. `name` is copied. */
 void scene_material_init(struct scene_material *out, const char *name);
 void scene_texture_use_init(struct scene_texture_use *out);
 void scene_node_init(struct scene_node *out, const char *name, uint32_t parent);
 
-/* Each takes over what its argument owns (on failure too) and returns the new index, or
+/* Each takes ownership of what its argument points to (on failure too) and gives the new index, or
    SCENE_NONE when memory runs out. */
 uint32_t scene_add_mesh(struct scene *scene, struct scene_mesh mesh);
 uint32_t scene_add_node(struct scene *scene, struct scene_node node);
@@ -292,15 +292,15 @@ bool scene_find_texture(const struct scene *scene, const char *name, uint32_t *i
 uint32_t scene_add_light(struct scene *scene, struct scene_light light);
 uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera);
 uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel);
-/* A copy of `text` for one of the scene's records; NULL where there is none, or no memory, which
-   scene_freeze then tells. */
+/* A copy of `text` for one of the scene's records. NULL where `text` is NULL or memory ran out; in
+   the latter case scene_freeze will fail. */
 char *scene_text(struct scene *scene, const char *text);
-/* Kept for the receipt, and logged at once as a warning or as information. */
+/* Adds a note, which is kept for the receipt and logged at once. */
 void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
 void scene_mesh_finish(struct scene_mesh *mesh);
-/* Another one with the same content; false, and nothing in it, where memory ran out. */
+/* Makes *out a deep copy; false, with *out empty, where memory ran out. */
 bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out);
 void scene_material_finish(struct scene_material *material);
 
@@ -316,12 +316,12 @@ struct scene_pose {
     uint32_t instance_count, light_count, camera_count;
     struct affine *instances;     /* object to world */
     struct scene_light *lights;   /* node resolved; name and origin borrowed from the scene */
-    struct scene_camera *cameras; /* likewise */
+    struct scene_camera *cameras; /* as lights */
     double lo[3], hi[3];          /* bounds of all instances; lo > hi when empty */
 };
 
-/* Effects, and why the scene calls for them: the receipt of `whit scene` and the source of the
-   kernel's specialization. */
+/* Effects that a scene may call for. `whit scene` lists them with reasons, and kernels are
+   specialized to them. */
 enum scene_effect {
     SCENE_EFFECT_SHADOWS,
     SCENE_EFFECT_REFLECTION,
@@ -357,7 +357,7 @@ enum scene_effect {
 /* Ways in which textures are sampled. */
 enum {
     SCENE_SAMPLING_FILTERED = 1,
-    SCENE_SAMPLING_REPEAT = 2, /* SCENE_WRAP_*, in their order */
+    SCENE_SAMPLING_REPEAT = 2, /* from here on: wrap modes, in the order of SCENE_WRAP_* */
     SCENE_SAMPLING_CLAMP = 4,
     SCENE_SAMPLING_MIRROR = 8,
     SCENE_SAMPLING_SRGB = 16,
@@ -366,16 +366,16 @@ enum {
 struct scene_effects {
     bool called[SCENE_EFFECT_COUNT];
     char reasons[SCENE_EFFECT_COUNT][160]; /* "material `glass`, illum 7, box.mtl:41" */
-    uint32_t texture_slots;                /* bits 1 << SCENE_SLOT_* of what has textures */
-    uint32_t sampling;                     /* SCENE_SAMPLING_* of these, together */
-    bool lit;                              /* materials ask what light comes */
-    bool on_triangles, on_spheres;         /* primitives that wear them */
+    uint32_t texture_slots;                /* bits 1 << SCENE_SLOT_* of slots with a texture */
+    uint32_t sampling;                     /* SCENE_SAMPLING_* bits of all these textures */
+    bool lit;                              /* some material depends on lights */
+    bool on_triangles, on_spheres;         /* primitives of this kind use the materials */
 };
 
 enum scene_materials {
     SCENE_MATERIALS_ALL,
-    SCENE_MATERIALS_OPAQUE, /* nothing passes through them */
-    SCENE_MATERIALS_GLASS,  /* the others */
+    SCENE_MATERIALS_OPAQUE, /* without transmission */
+    SCENE_MATERIALS_GLASS,  /* with transmission */
 };
 
 #endif

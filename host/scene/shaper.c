@@ -49,7 +49,7 @@ uint32_t shaper_vertex(struct shaper *shaper, const double position[3], const do
         return vertex;
     double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     for (size_t i = 0; i < 3; ++i) {
-        mesh->positions[3 * (size_t)vertex + i] = (float)position[i] + 0.0f; /* no -0 */
+        mesh->positions[3 * (size_t)vertex + i] = (float)position[i] + 0.0f; /* turns -0 into 0 */
         mesh->normals[3 * (size_t)vertex + i] = (float)(normal[i] / length);
     }
     mesh->uvs[0][2 * (size_t)vertex] = (float)u;

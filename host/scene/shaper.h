@@ -4,8 +4,8 @@
 
 #include "scene/scene.h"
 
-/* Arrays at their final size, filled front to back. A zeroed shaper that is `measuring` only counts
-   vertices and corners. */
+/* The mesh's arrays have their final size and are filled front to back. A zeroed shaper with
+   `measuring` set only counts vertices and corners, to find that size. */
 struct shaper {
     struct scene_mesh mesh;
     uint32_t vertex, corner;
@@ -13,7 +13,7 @@ struct shaper {
     float color[3]; /* of the vertices to come, where the mesh has colours */
 };
 
-/* WHIT_ERROR_USAGE for too many, WHIT_ERROR_MEMORY. */
+/* WHIT_ERROR_USAGE for too many vertices or triangles, WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result shaper_init(struct shaper *shaper, uint64_t vertices, uint64_t triangles);
 /* Gives the mesh vertex colours. */
 WHIT_CHECK whit_result shaper_add_colors(struct shaper *shaper);
@@ -24,9 +24,9 @@ void shaper_triangle(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c);
 /* Corners in counter-clockwise order. */
 void shaper_quad(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 
-/* Exactly periodic: the last step of a circle lands on the bits of the first. */
+/* Cosine and sine of angle 2 pi * step / steps. Step `steps` gives the same bits as step 0. */
 void shape_circle_point(uint32_t step, uint32_t steps, double *cosine, double *sine);
-/* A length that makes sense. */
+/* Whether a length is above 0 and at most 1e17. */
 bool shape_positive(double value);
 
 #endif

@@ -31,7 +31,7 @@ whit_result shape_box(const double size[3], struct scene_mesh *out)
             position[axis] = sign * 0.5 * size[axis];
             position[s] = a * sign * 0.5 * size[s];
             position[t] = b * 0.5 * size[t];
-            /* Right and up of the face for an upright picture on it. */
+            /* Texture coordinates such that a picture on the face stands upright. */
             double along = axis == 0 ? -sign * b : axis == 1 ? b : a;
             double up = axis == 0 ? sign * a : axis == 1 ? -a : b;
             corner[i] = shaper_vertex(&shaper, position, normal, 0.5 + 0.5 * along, 0.5 - 0.5 * up);
@@ -70,7 +70,8 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
     return WHIT_OK;
 }
 
-/* Rings of `segments` + 1 vertices (the seam twice, for its two u), a pole vertex a segment. */
+/* Rings of `segments` + 1 vertices: the seam has two, for its two values of u. Each pole has a
+   vertex per segment. */
 whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struct scene_mesh *out)
 {
     struct shaper shaper;
@@ -111,7 +112,7 @@ struct icosphere {
     double (*points)[3];
     uint32_t (*faces)[3], (*next)[3];
     uint32_t point_count, face_count;
-    uint64_t *keys; /* hash table of edges: smaller index << 32 | larger, + 1 */
+    uint64_t *keys; /* hash table of edges: (smaller index << 32 | larger index) + 1; 0: empty */
     uint32_t *middles;
     uint32_t table_size;
 };
@@ -227,7 +228,7 @@ fail:
     return result;
 }
 
-/* Around +y; `tube` is the radius of the ring's own section. */
+/* A torus around the y axis; `tube` is the radius of its cross-section. */
 whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t sides,
                         struct scene_mesh *out)
 {
@@ -335,7 +336,7 @@ static double value_noise(double x, double y, uint32_t seed)
     return low * (1.0 - t) + high * t;
 }
 
-/* Six octaves over the unit square (and a little around it), in [0, 1]. */
+/* Six octaves of value noise, in [0, 1], over the unit square and a little around it. */
 static double terrain_height(double u, double v, uint32_t seed)
 {
     double sum = 0.0, weight = 0.5, total = 0.0, frequency = 4.0;
@@ -383,7 +384,7 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
 
 struct flake {
     double centre[3], radius;
-    double u[3], w[3]; /* w points away from the parent; u at right angles */
+    double u[3], w[3]; /* unit: w points away from the parent, u is orthogonal to w */
 };
 
 /* Nine of the twelve directions of a cuboctahedron: six around the parent's equator, three above;

@@ -1,7 +1,7 @@
-/* Meshes made by formula. Each fills *out (positions, normals, uvs, indices, all triangles of
-   material 0 until the caller sets out->materials) with closed, welded surfaces where the shape is
-   closed; WHIT_ERROR_USAGE for parameters out of range, WHIT_ERROR_MEMORY. Outward faces are
-   counter-clockwise. Release with scene_mesh_finish. */
+/* Meshes made by formula. Each fills *out: positions, normals, uvs, indices, and material 0 for all
+   triangles until the caller sets out->materials. Where the shape is closed, so is the mesh,
+   without gaps. Outward faces are counter-clockwise. WHIT_ERROR_USAGE for parameters out of range,
+   WHIT_ERROR_MEMORY. Release with scene_mesh_finish. */
 #ifndef SCENE_SHAPES_H
 #define SCENE_SHAPES_H
 
@@ -24,20 +24,20 @@ WHIT_CHECK whit_result shape_cylinder(double radius, double radius_top, double h
 /* Height field over [-size/2, size/2]^2 from seeded value noise: 2 * steps^2 triangles. */
 WHIT_CHECK whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t seed,
                                      struct scene_mesh *out);
-/* Needles in every direction, their middles in a cube of side `size`: 4 * count triangles, three of
-   four long and thin. `width` is that of a needle's base. */
+/* Needles in random directions, with their middles in a cube of side `size`: 4 * count triangles,
+   of which three in four are long and thin. `width`: of a needle's base. */
 WHIT_CHECK whit_result shape_strands(double size, double length, double width, uint32_t count,
                                      uint32_t seed, struct scene_mesh *out);
-/* A hall of two storeys, open above, around the z axis with its floor at y = 0: 18 wide, 4 * bays
-   long, 15.5 high. A few large walls beside fine ornaments, which `level` (1 to 8) refines. With
-   vertex colours; not closed. */
+/* A hall of two storeys, open above, around the z axis with its floor at y = 0; 18 wide, 4 * bays
+   long, 15.5 high. It has a few large walls and fine ornaments, which `level` (1 to 8) refines.
+   With vertex colours; not closed. */
 WHIT_CHECK whit_result shape_atrium(uint32_t bays, uint32_t level, struct scene_mesh *out);
 /* Centre and radius of every sphere of a sphereflake (Haines' SPD): level 0 is one sphere, each has
    nine children at a third of its size. *spheres holds count * 4 doubles; free() it. */
 WHIT_CHECK whit_result shape_sphereflake(double radius, uint32_t level, double **spheres,
                                          uint32_t *count);
-/* Spheres as such, not as triangles: `spheres` holds centre and radius of each. Any below 1e18 are
-   taken; what has no radius scene_freeze drops. */
+/* A mesh of sphere primitives: `spheres` holds centre and radius of each, all below 1e18.
+   scene_freeze drops those whose radius is not above 0. */
 WHIT_CHECK whit_result shape_balls(const double *spheres, uint32_t count, struct scene_mesh *out);
 
 #endif

@@ -1,5 +1,5 @@
-/* An architectural interior: what trees over it meet is a mixture of very large and very small
-   triangles, many of them long, thin or diagonal. */
+/* An architectural interior. It is hard for tree builders: very large beside very small triangles,
+   many of them long, thin or diagonal. */
 #include <math.h>
 
 #include "base/same.h"
@@ -40,7 +40,7 @@ static struct frame frame_at(double x, double y, double z)
     return (struct frame){.origin = {x, y, z}, .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 }
 
-/* Its z along the world's x (`sign` 1) or against it (-1). */
+/* A frame whose z is the world's x (`sign` 1) or -x (`sign` -1). */
 static struct frame frame_across(double x, double y, double z, double sign)
 {
     return (struct frame){.origin = {x, y, z}, .axes = {{0, 0, -sign}, {0, 1, 0}, {sign, 0, 0}}};
@@ -90,8 +90,9 @@ static void add_block(struct atrium *atrium, const struct frame *frame, const do
     }
 }
 
-/* Turned on a lathe about y: rings of `profile`, which goes up as radius, height; each band with a
-   crisp edge to the next. Radii are over 0. */
+/* A surface of revolution about y. `profile`: radius (above 0) and height of each ring, bottom
+   to top, scaled by `size` and `tall`. Bands between rings share no vertices, so that edges are
+   crisp. */
 static void add_lathe(struct atrium *atrium, const struct frame *frame, const double profile[][2],
                       uint32_t ring_count, uint32_t segments, double size, double tall)
 {
@@ -183,7 +184,7 @@ static void add_beam(struct atrium *atrium, const double p[3], const double q[3]
     struct frame frame = frame_at(p[0], p[1], p[2]);
     for (int i = 0; i < 3; ++i)
         frame.axes[0][i] = along[i] / length;
-    if (along[2] != 0.0) { /* x along z, z against x */
+    if (along[2] != 0.0) { /* the frame's x is the world's z, its z the world's -x */
         frame.axes[2][0] = -1.0, frame.axes[2][2] = 0.0;
     } else {
         frame.axes[1][0] = -frame.axes[0][1];
@@ -236,7 +237,7 @@ static void add_colonnades(struct atrium *atrium)
     }
 }
 
-/* The space between the columns above is 4 wide; so is its share of the rail. */
+/* A balustrade along each gallery: 8 balusters per bay, 0.5 apart, under one rail. */
 static void add_balustrades(struct atrium *atrium)
 {
     paint(atrium, pale);
@@ -252,7 +253,7 @@ static void add_balustrades(struct atrium *atrium)
     }
 }
 
-/* Barrels over the aisles, seen from below, with a rib at each column. */
+/* Barrel vaults over the aisles, with faces towards the floor alone, and a rib at each column. */
 static void add_vaults(struct atrium *atrium)
 {
     const double radius = 0.5 * (WALL - NAVE) - 0.1;
@@ -330,7 +331,7 @@ static void add_walls(struct atrium *atrium)
     }
 }
 
-/* Steps before the far wall, and rings around a round window that is walled up. */
+/* Steps in front of the far wall, and rings on it around a walled-up round window. */
 static void add_far_end(struct atrium *atrium)
 {
     struct frame frame = frame_at(0, 0, -atrium->end);
@@ -381,7 +382,7 @@ static void add_hangings(struct atrium *atrium)
     }
 }
 
-/* Trusses over the nave, joined by purlins; between them it is open. */
+/* Trusses over the nave, joined by purlins, with the open sky between them. */
 static void add_roof(struct atrium *atrium)
 {
     const double eaves = EAVES + 0.5, ridge = 15.5, end = atrium->end;

@@ -8,7 +8,7 @@
 
 #define FILL 0.93 /* of the picture's height or width, by what is seen */
 
-/* fmin and fmax without their care for NaN, which costs a call each. */
+/* As fmin and fmax, but without their treatment of NaN, which makes each a function call. */
 static double min(double a, double b)
 {
     return a < b ? a : b;
@@ -40,9 +40,9 @@ static void corner_in_view(const float corner[3], const struct view *view, doubl
     out[2] = double3_dot(p, view->forward);
 }
 
-/* Puts the eye as near to the origin on the ray along `way` as it can be with everything in the
-   picture. With x, y, z a corner and c the eye along right, up, forward, each side of the picture
-   is one bound, such as x - c.x <= tan_x * (z - c.z). */
+/* Puts the eye on the ray from the origin along `way`, as near as it can be with everything in the
+   picture. Each side of the picture bounds every corner (x, y, z) relative to the eye c, both in
+   the axes right, up, forward: for example x - c.x <= tan_x * (z - c.z). */
 static void fit_distance(const float *corners, uint32_t count, const double way[3],
                          struct view *view)
 {
@@ -102,7 +102,8 @@ void view_fit(const struct soup *soup, const double way[3], bool closely, struct
         fit_distance(soup->corners, 3 * soup->fit_count, toward_eye, view);
 }
 
-/* The first and the last pixel whose centre is inside an interval's ends. */
+/* pixel_from: the first pixel whose centre is at or above `low`. pixel_to: the last one at or below
+   `high`. */
 static int pixel_from(double low)
 {
     double at = max(low - 0.5, 0.0);
@@ -116,7 +117,8 @@ static int pixel_to(double high, int count)
     return at >= 0.0 ? (int)at : -1;
 }
 
-/* a, b, c: pixel x, pixel y, 1 / depth. Of surfaces in one place the front counts. */
+/* Rasterizes a triangle with corners (pixel x, pixel y, 1 / depth). Of a front and a back in the
+   same place the front is kept. */
 static void draw_projected(struct sketch *sketch, const double a[3], const double b[3],
                            const double c[3], bool front, bool pictured)
 {
@@ -144,7 +146,7 @@ static void draw_projected(struct sketch *sketch, const double a[3], const doubl
     }
 }
 
-/* The part of a triangle in front of the eye; *out holds up to four corners. */
+/* Clips a triangle to depths from `nearest` on; gives how many corners, up to 4, are in `out`. */
 static uint32_t clip(double corners[3][3], double nearest, double out[4][3])
 {
     uint32_t count = 0;
@@ -174,7 +176,8 @@ static void draw_triangle(const struct view *view, const float *corners, bool pi
         seen[i][1] = double3_dot(p, view->up) / view->tan_y;
         seen[i][2] = double3_dot(p, view->forward);
     }
-    /* Counter-clockwise as seen from the eye: right, up, forward are left-handed. */
+    /* Above 0 for a triangle that is counter-clockwise as seen from the eye, since the axes right,
+       up, forward are left-handed. */
     double normal[3];
     double3_cross(seen[0], seen[1], normal);
     bool front = double3_dot(normal, seen[2]) > 0.0;
@@ -216,7 +219,7 @@ struct verdict view_judge(const struct soup *soup, const struct view *view, doub
             top = y < top ? y : top, bottom = y;
         }
     }
-    /* Next to nothing is seen of a sheet from its edge. */
+    /* Too few pixels to judge, as of a sheet that is seen from its edge. */
     if (seen < SKETCH_ACROSS * SKETCH_DOWN / 50)
         return (struct verdict){0};
     double rectangle = (double)(right - left + 1) * (bottom - top + 1);

@@ -20,20 +20,20 @@ struct sketch {
 };
 
 struct verdict {
-    double share; /* of fronts in what is seen; of a board: in what shows pictures, if anything */
-    double fill;  /* of the rectangle around what is seen */
-    double close; /* share of what is seen that is nearer than 1 / the nearness asked for */
-    double level; /* share of the middle row that shows anything */
+    double share; /* share of covered pixels (of a board: of textured ones, if any) with a front */
+    double fill;  /* share of pixels that are covered, within the rectangle around these */
+    double close; /* share of covered pixels that are nearer than 1 / `nearness` */
+    double level; /* share of pixels that are covered, within the middle row */
 };
 
-/* With the eye at the origin, looking away from `toward_eye`. */
+/* Makes a view with the eye at the origin that looks along -toward_eye. */
 void view_make(const double toward_eye[3], double fov_y, struct view *out);
-/* All of the scene in the picture, of VIEW_FOV_Y; the eye stays in the direction `way` from the
-   scene's middle. `closely`: as near as it can be. */
+/* Makes a view of VIEW_FOV_Y with all of the scene in it and the eye in the direction `way` from
+   the scene's middle. `closely`: as near as it can be. */
 void view_fit(const struct soup *soup, const double way[3], bool closely, struct view *view);
 
 void sketch_draw(const struct soup *soup, const struct view *view, struct sketch *out);
-/* `board`: its front is where its pictures are the right way round. */
+/* `board`: a flat object, whose front is the side with its textures; see verdict.share. */
 struct verdict view_judge(const struct soup *soup, const struct view *view, double nearness,
                           bool board);
 

@@ -5,7 +5,7 @@
 #include "base/array.h"
 #include "scene/shapes.h"
 
-/* Adds a mesh of one material, `place` away from where its formula has it. */
+/* Adds a mesh of one material, moved by `place`. `made`: result of the shape's function. */
 static bool put(struct scene *scene, whit_result made, struct scene_mesh *mesh,
                 const double place[3], struct scene_material material)
 {

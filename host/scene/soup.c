@@ -8,11 +8,11 @@
 #include "scene/pose.h"
 
 #define TRIANGLES_MAX 400000u
-#define MOMENTS       9 /* of an animation that the picture is fitted to */
+#define MOMENTS       9 /* times of an animation at which the view is to show everything */
 #define BINS          1024
-#define TAIL          0.025 /* of the triangles, at either end of an axis */
-#define PART          0.25  /* of the scene's diagonal */
-#define MOVING_MAX    10000 /* instances */
+#define TAIL          0.025 /* share of triangles that a core leaves out at either end of an axis */
+#define PART          0.25  /* largest size of a part, in diagonals of the scene */
+#define MOVING_MAX    10000 /* animations of more instances are fitted at time 0 alone */
 
 static void put_corner(const struct soup *soup, const struct affine *matrix, const double p[3],
                        float out[3])
@@ -75,7 +75,8 @@ static void measure(const double lo[3], const double hi[3], struct soup *soup)
         soup->half[i] /= soup->radius;
 }
 
-/* The scene at even steps of its animation; the first is `now`, borrowed. */
+/* Poses of the scene at even steps of its animation, the first borrowed from the caller; lo, hi:
+   bounds over all of them. */
 struct moments {
     struct scene_pose poses[MOMENTS];
     uint32_t count;
@@ -112,13 +113,13 @@ static whit_result moments_init(const struct scene *scene, const struct scene_po
     return WHIT_OK;
 }
 
-/* The cell of a coordinate from -SOUP_CELLS/2 to SOUP_CELLS/2; that of NaN is the first one. */
+/* The cell, from 0, of a coordinate in -SOUP_CELLS/2 .. SOUP_CELLS/2; NaN is in cell 0. */
 static uint32_t cell_of(float place)
 {
     return (uint32_t)fminf(fmaxf(place + 0.5f * SOUP_CELLS, 0.0f), SOUP_CELLS - 1);
 }
 
-/* The cell of a cube map. */
+/* The cell of a cube map that direction `p` points to. */
 static uint32_t direction_cell(const float p[3])
 {
     float size[3] = {fabsf(p[0]), fabsf(p[1]), fabsf(p[2])};
@@ -126,7 +127,7 @@ static uint32_t direction_cell(const float p[3])
     uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3;
     if (!(size[axis] > 0.0f))
         return 0;
-    float scale = 0.5f * SOUP_CELLS / size[axis]; /* infinite where that is a denormal */
+    float scale = 0.5f * SOUP_CELLS / size[axis]; /* infinite where size[axis] is denormal */
     uint32_t x = cell_of(p[u] * scale), y = cell_of(p[v] * scale);
     return ((2 * axis + (p[axis] < 0.0f)) * SOUP_CELLS + y) * SOUP_CELLS + x;
 }
@@ -172,7 +173,8 @@ static double size_of(const struct part *part)
     return sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
 }
 
-/* Where the middles of triangles are, along an axis, but for TAIL of them at either end. */
+/* Sets the core's interval along an axis: it holds the centroids of all triangles but the share
+   TAIL of them at either end. */
 static void find_core(const struct soup *soup, int axis, struct part *core)
 {
     uint32_t bins[BINS] = {0}, below = 0, tail = (uint32_t)(TAIL * soup->count), bin = 0;
@@ -197,7 +199,7 @@ static bool is_in(const float *corners, const struct part *part)
     return in;
 }
 
-/* The box of all triangles that are in the core, or no farther from it than half its size. */
+/* The box of all triangles that are in the core, or outside by no more than half its size. */
 static struct part find_part(const struct soup *soup)
 {
     struct part core, part = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -220,7 +222,7 @@ static struct part find_part(const struct soup *soup)
     return part;
 }
 
-/* One of the two runs of triangles: those that are in the part, or the others. */
+/* Appends to `narrow` the triangles that are in the part, or (`in` false) the others. */
 static void take_run(const struct soup *soup, const struct part *part, bool in, struct soup *narrow)
 {
     for (size_t t = 0; t < soup->count; ++t) {

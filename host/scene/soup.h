@@ -1,4 +1,4 @@
-/* All triangles of a scene at once, for whoever chooses a viewpoint. Part of viewpoint.c. */
+/* All triangles of a scene in one array, to choose a viewpoint by. Part of viewpoint.c. */
 #ifndef SCENE_SOUP_H
 #define SCENE_SOUP_H
 
@@ -11,22 +11,23 @@ struct soup {
     float *corners;    /* 9 per triangle */
     uint8_t *pictured; /* 1 per triangle: whether its material has a diffuse texture */
     uint32_t count;
-    uint32_t fit_count; /* with those that only the fit looks at: where things are later on */
-    bool whole;         /* else boxes around the instances stand for them */
+    uint32_t fit_count; /* triangles that the view has to show: may be more than `count`, by boxes
+                           of moving instances at later times, or fewer, by soup_narrow */
+    bool whole;         /* has all triangles; false: only boxes around instances, for the fit */
     double centre[3], radius, half[3];
-    /* The farthest corner in each of some directions: enough for a first fit. */
+    /* The farthest corner in each cell of a cube map of directions, enough for a first fit. */
     float outline[6 * SOUP_CELLS * SOUP_CELLS][3];
     uint32_t outline_count;
 };
 
-/* `scene` as `pose` places it, and boxes around its instances as they are later on. With very many
-   triangles, or spheres, only boxes. WHIT_ERROR_MEMORY. */
+/* Collects the triangles of `scene` at `pose`, and boxes around its instances at later times of its
+   animation. With very many triangles, or with spheres, only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_init(const struct scene *scene, const struct scene_pose *pose,
                                  struct soup *soup);
-/* The same triangles around the small part of the scene that nearly all of them are in, such as
-   what stands on a wide floor: those come first, and the fit looks at them alone. `narrow` is
-   zeroed where there is no such part, or where it cannot be told: only boxes, or things that move.
-   WHIT_ERROR_MEMORY. */
+/* The same triangles in the space of the small part of the scene that nearly all of them are in,
+   such as what stands on a wide floor. The part's triangles come first, and the view is fitted to
+   them alone. `narrow` is zeroed where there is no such part, where instances move, and where
+   `soup` has only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_narrow(const struct soup *soup, struct soup *narrow);
 void soup_finish(struct soup *soup);
 

@@ -10,23 +10,25 @@
 #include "scene/sketch.h"
 
 #define FOV_Y_INSIDE 1.2217304763960306 /* 70 degrees */
-/* Share of fronts from which a view is kept as it is, and what another must be better by. */
+/* The default view is kept if this share of it shows fronts; another must have SHARE_BETTER
+   more. */
 #define SHARE_ENOUGH 0.8
 #define SHARE_BETTER 0.15
-/* A room: its walls fill this much of the rectangle around them from every side, most of them not
-   deeper than a share of the way to the middle, and whoever stands
-   in it sees this share of fronts on all four sides, and no more sky than this at eye level. */
+/* A scene is a room where, from each of four sides, its walls cover WALLS_FILL of the rectangle
+   around them, with WALLS_CLOSE of the pixels no deeper than WALLS_DEPTH of the way to the middle;
+   and where from inside all four sides show SHARE_INSIDE of fronts, and at most SKY_INSIDE of sky
+   in the middle row. */
 #define WALLS_FILL   0.9
 #define WALLS_CLOSE  0.7
 #define WALLS_DEPTH  0.6
 #define SHARE_INSIDE 0.7
 #define SKY_INSIDE   0.1
-#define LAMP_AHEAD   0.45 /* of the way that is free */
-#define BOARD_DEPTH  0.15 /* of width and height */
+#define LAMP_AHEAD   0.45 /* share of the free distance ahead at which the lamp hangs */
+#define BOARD_DEPTH  0.15 /* a scene is a board if this share of its width and height is deeper */
 
 /* --- outside -------------------------------------------------------------------------------- */
 
-/* Ways to the eye, the first being what is taken without reason against it. */
+/* Directions from the scene's middle to the eye; the first is the default. */
 static const double ways[8][3] = {{0.5, 0.35, 1.0},  {1.0, 0.35, -0.5}, {-0.5, 0.35, -1.0},
                                   {-1.0, 0.35, 0.5}, {0.0, 0.0, 1.0},   {1.0, 0.0, 0.0},
                                   {0.0, 0.0, -1.0},  {-1.0, 0.0, 0.0}};
@@ -82,7 +84,8 @@ static bool has_walls(const struct soup *soup)
     return walls;
 }
 
-/* Whether fronts are seen from `eye` on all four sides: not so within a wall or a solid. */
+/* Whether all four views from `eye` show mostly fronts and no sky: not so inside a wall or a
+   solid. */
 static bool is_enclosed(const struct soup *soup, const double eye[3])
 {
     for (uint32_t i = STRAIGHT_FIRST; i < 8; ++i) {
@@ -96,8 +99,8 @@ static bool is_enclosed(const struct soup *soup, const double eye[3])
     return true;
 }
 
-/* How much of the picture is the front of something far enough away; sky counts a little. *ahead is
-   the depth in the middle. */
+/* Scores a view, 0..1, by its share of fronts that are far enough away; sky counts a quarter.
+ *ahead: depth in the middle of the view, at most `length`. */
 static double judge_inside(const struct soup *soup, const struct view *view, double length,
                            double *ahead)
 {
@@ -149,7 +152,7 @@ static void place_view(const struct soup *soup, const struct view *view, double 
     }
 }
 
-/* How far it is from there to what is met that way, or to the side of the box around everything. */
+/* Distance from `from` along `dir` to the nearest surface, or to the side of the scene's box. */
 static double free_way(const struct soup *soup, const double from[3], const double dir[3],
                        const double up[3])
 {
@@ -183,7 +186,8 @@ static void place_lamp(const struct soup *soup, const struct view *view, double 
         lamp[k] += step * view->up[k];
 }
 
-/* From outside; around a small part of the scene if that is where nearly all of it is. */
+/* Chooses a view from outside, fitted to a small part of the scene if nearly all triangles are
+   there. */
 static whit_result look_from_outside(const struct soup *soup, struct viewpoint *out)
 {
     struct soup narrow;

@@ -15,12 +15,12 @@ struct viewpoint {
     enum viewpoint_kind kind;
     double eye[3], target[3]; /* world; up is +y */
     double fov_y;
-    bool part;      /* of the scene, which nearly all triangles are in; else all of it */
-    double lamp[3]; /* INSIDE: a place ahead of the eye, in the middle of what is free there to the
-                       left and above; world */
+    bool part;      /* shows a small part that has nearly all triangles; false: all of the scene */
+    double lamp[3]; /* INSIDE: world position of a lamp ahead of the eye, and from there half of the
+                       free distance to the left and up */
 };
 
-/* From the triangles as `pose` places them. The picture is taken to be 4:3; a wider one shows all
+/* Chooses by the scene's triangles at `pose`. The view fits a picture of 4:3; a wider one shows all
    of it too. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose *pose,
                                         struct viewpoint *out);
