@@ -14,7 +14,7 @@
 #define FILE_BYTES_MAX ((uint64_t)1 << 30)
 #define SIDE_MAX       4096u /* 4096 x 2048 floats RGB are 96 MiB, under the storage-buffer limit */
 
-/* .hdr, .exr and .pfm: grey spreads to RGB, alpha is dropped. */
+/* Reads a .hdr, .exr or .pfm: grey spreads to RGB, alpha is dropped. */
 static whit_result read_image(const struct scene *scene, const char *path,
                               const struct foreign_params *foreign, struct picture *out)
 {
@@ -74,7 +74,8 @@ static bool afford(struct scene *scene, const char *path, const struct picture *
                         picture->width, picture->height);
 }
 
-/* Where the header tells of more than the scene can afford nothing is decoded. */
+/* Reads an 8-bit picture. It is not decoded if its header states more pixels than the scene's
+   memory limit allows. */
 static whit_result read_picture(struct scene *scene, const char *path,
                                 const struct foreign_params *foreign, struct picture *out)
 {

@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* The first line of an XML file, and comments, may come before its root. */
+/* HEAD_BYTES: how far the root of an XML file is looked for, behind its first line and comments. */
 enum { HEAD_BYTES = 4096, STL_HEADER_BYTES = 84, STL_TRIANGLE_BYTES = 50 };
 
 static bool begins(const char *text, const char *word)
@@ -16,7 +16,7 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-/* In the first HEAD_BYTES, of text that may hold zero bytes. */
+/* Whether `word` is in the first HEAD_BYTES of data, which may hold zero bytes. */
 static bool head_has(const uint8_t *data, size_t size_bytes, const char *word)
 {
     size_t length = strlen(word), end = size_bytes < HEAD_BYTES ? size_bytes : HEAD_BYTES;
@@ -26,7 +26,8 @@ static bool head_has(const uint8_t *data, size_t size_bytes, const char *word)
     return false;
 }
 
-/* Such a file has no magic: its size is what its header counts. */
+/* A binary STL has no magic number; it is told by its size, which fits the count of triangles in
+   its header. */
 static bool is_binary_stl(const uint8_t *data, size_t size_bytes)
 {
     if (size_bytes < STL_HEADER_BYTES)
@@ -36,7 +37,8 @@ static bool is_binary_stl(const uint8_t *data, size_t size_bytes)
     return count && size_bytes == STL_HEADER_BYTES + STL_TRIANGLE_BYTES * count;
 }
 
-/* Whether the outermost object has that key, which glTF asks for and scene files do not know. */
+/* Whether the outermost JSON object has this key. It tells glTF, which requires "asset", from
+   whit's scene files, which have no such key. */
 static bool has_key(const char *text, const char *quoted_key)
 {
     int depth = 0;
@@ -62,7 +64,7 @@ static bool has_key(const char *text, const char *quoted_key)
     return false;
 }
 
-/* The first line that is no comment begins with a word of OBJ. */
+/* Whether the first line that is no comment begins with a keyword of OBJ. */
 static bool is_obj(const char *text)
 {
     static const char *const words[] = {"v", "vn", "vt",     "vp",     "f", "g",
@@ -76,8 +78,8 @@ static bool is_obj(const char *text)
     return i < count && is_blank(text[length]);
 }
 
-/* `OFF`, or with letters of what each point has in front, and alone on its line or before numbers.
- */
+/* Whether the text begins with the keyword `OFF`, with or without prefix letters such as C and N,
+   which say what each point has. */
 static bool is_off(const char *text)
 {
     text += strspn(text, "STCN4n");

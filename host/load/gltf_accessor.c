@@ -78,7 +78,7 @@ struct elements {
     size_t stride;
 };
 
-/* Finds `accessor`'s elements, which all lie within its view. */
+/* Finds `accessor`'s elements; fails where they do not all lie within its view. */
 static bool find_elements(const struct gltf *gltf, const struct gltf_place *at,
                           const struct gltf_accessor *accessor, struct elements *out)
 {
@@ -125,14 +125,14 @@ static float component_value(const uint8_t *at, uint32_t component, bool normali
 static uint32_t whole_value(const uint8_t *at, uint32_t component)
 {
     uint32_t value = 0;
-    memcpy(&value, at, component_bytes(component)); /* of the lowest byte first, as the format */
+    memcpy(&value, at, component_bytes(component)); /* little-endian, as the host is */
     return value;
 }
 
-/* Rows of `width` words, longer than an element where the file may give less: a row is filled up
-   with ones. */
+/* Output rows of `width` words. Where an element has fewer components, as a colour without alpha,
+   the rest of its row is 1. */
 struct rows {
-    float *floats; /* or NULL: */
+    float *floats; /* NULL: store integers in `whole` instead */
     uint32_t *whole;
     uint32_t width;
 };
@@ -149,7 +149,7 @@ static void store(const struct gltf_accessor *accessor, const uint8_t *from, siz
             component_value(from + (size_t)k * bytes, component, accessor->normalized);
 }
 
-/* Some of the elements, by their numbers, in place of those of the view. */
+/* Overwrites elements by those of the sparse accessor, which has indices and values. */
 static bool store_sparse(const struct gltf *gltf, const struct gltf_accessor *accessor,
                          const struct rows *to)
 {
@@ -238,7 +238,7 @@ bool gltf_read_floats(const struct gltf *gltf, uint32_t index, uint32_t componen
     if (!gltf_check_elements(gltf, &accessor) ||
         !scene_afford(gltf->scene, bytes, "accessors[%u] as floats", index))
         return false;
-    scene_give_back(gltf->scene, bytes); /* what is made of them counts */
+    scene_give_back(gltf->scene, bytes); /* temporary: what is made from them is counted instead */
     *out = array_alloc(accessor.count, components * sizeof **out);
     if (!*out)
         return gltf_fail(gltf, &at, "out of memory");

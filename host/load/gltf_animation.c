@@ -8,9 +8,9 @@
 #include "load/gltf_json.h"
 
 struct target {
-    uint32_t node; /* of the file, or SCENE_NONE */
+    uint32_t node; /* file's index, or SCENE_NONE */
     enum scene_path path;
-    uint32_t components; /* 0: a path that is not played */
+    uint32_t components; /* per value; 0: whit does not play this path, as morph weights */
 };
 
 static bool read_target(const struct gltf *gltf, const json_t *channel, const struct gltf_place *at,
@@ -58,7 +58,7 @@ static bool check_times(const struct gltf *gltf, const struct gltf_place *at, co
     return true;
 }
 
-/* Times and values of the sampler into *out, which owns them from then on, also on failure. */
+/* Reads the sampler's times and values into *out, which owns them, also on failure. */
 static bool read_sampler(const struct gltf *gltf, const json_t *sampler,
                          const struct gltf_place *at, uint32_t components,
                          struct scene_channel *out)

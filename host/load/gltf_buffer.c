@@ -98,7 +98,7 @@ static whit_result read_external(struct gltf *gltf, const struct gltf_place *at,
     whit_result result = file_read(&gltf->scene->log, &gltf->scene->roots, path, BUFFER_LIMIT,
                                    &out->owned, &out->size_bytes);
     out->data = out->owned;
-    /* However often a file is named: it is read as often. */
+    /* Counted each time that a file is named, since each time it is read anew. */
     if (result == WHIT_OK && !scene_afford(gltf->scene, out->size_bytes, "%s: buffer `%s`",
                                            gltf->request->path, text_token(uri).text))
         result = WHIT_ERROR_INPUT;

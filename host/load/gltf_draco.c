@@ -1,5 +1,5 @@
-/* What Draco has packed of a primitive, by assimp in its child: it gets a glTF of this one
-   primitive and of the packed bytes, and nothing else of the file. */
+/* Decodes the Draco data of a primitive with assimp, in its child process. assimp gets a small glTF
+   of this one primitive and its compressed bytes, and nothing else of the file. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "load/gltf_draco.h"
 #include "load/gltf_json.h"
 
-/* assimp 5.2 loses unpacked indices of 32 bits, so that it is asked for 16. */
+/* assimp 5.2 loses decoded indices of 32 bits, so it is asked for 16 bits. */
 enum { ASSIMP_VERTICES_MAX = 65536 };
 
 bool gltf_is_packed(const struct gltf_primitive *primitive, enum import_array array)
@@ -18,7 +18,7 @@ bool gltf_is_packed(const struct gltf_primitive *primitive, enum import_array ar
                                    : json_object_get(packed, gltf_attributes[array].name) != NULL;
 }
 
-/* The file that assimp is given, as it is made. */
+/* JSON of the glTF that assimp is given, while it is built. */
 struct small {
     json_t *accessors, *attributes, *packed, *primitive;
 };
@@ -32,7 +32,7 @@ static bool add_accessor(struct small *small, const struct gltf_accessor *access
     return json_array_append_new(small->accessors, made) == 0;
 }
 
-/* assimp 5.2 knows colours that are not floats, and nothing else of that kind. */
+/* Whether assimp 5.2 can decode the array: colours may be integers, all others must be floats. */
 static bool check_component(const struct gltf *gltf, const struct gltf_primitive *primitive,
                             enum import_array array)
 {
@@ -78,7 +78,8 @@ static bool add_attributes(const struct gltf *gltf, const struct gltf_primitive 
     return made || gltf_fail(gltf, &at, "out of memory");
 }
 
-/* The text of the file around `size_bytes` of packed data; NULL after an error. */
+/* The JSON of a glTF for assimp, with one buffer of `size_bytes` compressed bytes; NULL after an
+   error. */
 static char *write_small(const struct gltf *gltf, const struct gltf_primitive *primitive,
                          size_t size_bytes)
 {
@@ -139,7 +140,7 @@ static whit_result take(const struct gltf *gltf, const struct gltf_primitive *pr
     float *colors = part->arrays[IMPORT_COLORS];
     bool opaque = primitive->accessors[IMPORT_COLORS].components == 3;
     for (size_t i = 0; copied && colors && opaque && i < part->vertex_count; i++)
-        colors[4 * i + 3] = 1.0f; /* assimp has 0 where the file has no alpha */
+        colors[4 * i + 3] = 1.0f; /* assimp sets alpha to 0 where the file has none */
     return copied ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 

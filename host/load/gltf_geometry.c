@@ -1,4 +1,4 @@
-/* Triangles of a glTF: out of its accessors, but for what Draco has packed (gltf_draco.c). */
+/* Triangles of a glTF, read from its accessors; Draco data are decoded by gltf_draco.c. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -75,7 +75,8 @@ static uint32_t triangles_of(const struct gltf_primitive *primitive)
 
 /* --- arrays --------------------------------------------------------------------------------- */
 
-/* As parts have them: v upwards, and bitangents on one side or the other. */
+/* Converts values from glTF's conventions to those of struct part: v upwards, and the sign of the
+   bitangent as 1 or -1. */
 static void turn(enum import_array array, float *values, size_t count)
 {
     bool uv = array == IMPORT_UV0 || array == IMPORT_UV1;
@@ -104,7 +105,8 @@ static bool read_vertices(const struct gltf *gltf, const struct gltf_primitive *
     return true;
 }
 
-/* Every second triangle of a strip is turned, so that all have the same side. */
+/* Corners of a triangle. Every second one of a strip is reversed, so that all have the same
+   winding. */
 static void corners_of(uint32_t mode, uint32_t triangle, uint32_t out[3])
 {
     uint32_t turned = mode == MODE_STRIP && triangle % 2;
@@ -114,7 +116,7 @@ static void corners_of(uint32_t mode, uint32_t triangle, uint32_t out[3])
     out[2] = first + 2;
 }
 
-/* `corners`: vertices by corner; NULL: every vertex is a corner. */
+/* Adds the part's triangles. `corners`: vertex index of each corner; NULL: corner i is vertex i. */
 static bool read_triangles(const struct gltf_primitive *primitive, const uint32_t *corners,
                            struct part *part)
 {
@@ -157,10 +159,10 @@ struct geometry {
     bool drawn;
 };
 
-/* What is drawn of a mesh. */
+/* The primitives of a mesh that are drawn, each as a part. */
 struct mesh {
     struct part *parts;
-    struct import_part *views; /* of these */
+    struct import_part *views; /* part_view of each part */
     struct model_part *used;
     uint32_t count;
     uint64_t counted_bytes; /* of the arrays of all parts */
@@ -177,7 +179,8 @@ static void note_lost(const struct gltf *gltf, const struct gltf_primitive *prim
                    promised - part->triangle_count, promised);
 }
 
-/* Before any of it is asked for: many primitives may share one accessor. */
+/* Checks the memory limit before arrays are allocated: many primitives may share one accessor, so
+   the file's size does not bound them. */
 static bool afford(const struct gltf *gltf, const struct gltf_primitive *primitive,
                    struct mesh *mesh)
 {
@@ -208,7 +211,7 @@ static whit_result material_of(struct gltf *gltf, uint32_t index, uint32_t *mate
         plain.model = WHIT_MODEL_METAL_ROUGH;
         for (int i = 0; i < 3; i++)
             plain.diffuse[i] = plain.specular[i] = 1.0f;
-        plain.metallic = 0.0f; /* the format's own default, a rough metal, reflects nothing here */
+        plain.metallic = 0.0f; /* glTF's default, a fully rough metal, mirrors nothing here */
         gltf->default_material = scene_add_material(gltf->scene, plain);
     }
     *material = gltf->default_material;

@@ -1,4 +1,4 @@
-/* Triangles. */
+/* Meshes of a glTF. */
 #ifndef LOAD_GLTF_GEOMETRY_H
 #define LOAD_GLTF_GEOMETRY_H
 
@@ -15,7 +15,7 @@ struct gltf_primitive {
 
 struct gltf_attribute {
     const char *name, *type;
-    uint32_t least; /* components that the file must give */
+    uint32_t least; /* fewest components that an accessor may have */
 };
 extern const struct gltf_attribute gltf_attributes[IMPORT_INDICES];
 

@@ -1,4 +1,4 @@
-/* Typed access to the JSON. All functions log `path: place: what is wrong` and return false. */
+/* Typed access to the JSON. On an error, functions log `path: place: what is wrong`, give false. */
 #ifndef LOAD_GLTF_JSON_H
 #define LOAD_GLTF_JSON_H
 
@@ -15,7 +15,8 @@ struct gltf_place gltf_place(const char *format, ...) WHIT_PRINTF(1, 2);
 bool gltf_fail(const struct gltf *gltf, const struct gltf_place *at, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
-/* Members that are absent leave *out as it is (pointers become NULL, indices SCENE_NONE). */
+/* If the member is absent, numbers in *out stay as they are, pointers become NULL, and indices
+   SCENE_NONE. */
 bool gltf_object(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                  const char *key, json_t **out);
 bool gltf_array(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
@@ -34,18 +35,18 @@ bool gltf_floats(const struct gltf *gltf, const json_t *in, const struct gltf_pl
 /* Reads a whole number of at least 0 and at most `max`. */
 bool gltf_whole(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                 const char *key, uint64_t max, uint64_t *out);
-/* An index below `count`. */
+/* Reads an index, which must be below `count`. */
 bool gltf_index(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                 const char *key, uint32_t count, uint32_t *out);
 bool gltf_index_value(const struct gltf *gltf, const json_t *value, const struct gltf_place *at,
                       uint32_t count, uint32_t *out);
-/* extensions[name], or NULL. */
+/* Gives the object extensions[name], or NULL. */
 bool gltf_extension(const struct gltf *gltf, const json_t *in, const struct gltf_place *at,
                     const char *name, json_t **out);
 /* Entry `index` of the root's array `key`, which must be an object. */
 bool gltf_item(const struct gltf *gltf, const char *key, uint32_t index, struct gltf_place *at,
                json_t **out);
-/* 0 when there is no such array. */
+/* Length of the root's array `key`; 0: there is none. */
 uint32_t gltf_count(const struct gltf *gltf, const char *key);
 
 #endif

@@ -114,7 +114,8 @@ static whit_result read_specular(struct reading *r)
                              : result;
 }
 
-/* Attenuation is what is left after a distance; the absorption is Beer's coefficient for it. */
+/* glTF states the colour that is left of white light after a distance; absorption is the
+   coefficient of Beer's law for it. */
 static bool read_volume(struct reading *r, const json_t *volume)
 {
     float thickness = 0, distance = 0, color[3] = {1, 1, 1};
@@ -131,8 +132,8 @@ static bool read_volume(struct reading *r, const json_t *volume)
     return true;
 }
 
-/* The factor alone: the base colour, which tints what passes, is the renderer's part for this
- * model. */
+/* Sets transmission to the factor alone: for METAL_ROUGH the renderer itself tints transmitted
+   light by the base colour. */
 static whit_result read_transmission(struct reading *r)
 {
     json_t *object, *volume, *ior;
@@ -144,7 +145,7 @@ static whit_result read_transmission(struct reading *r)
         !number(r, ior, "ior", 0, 1e6, &out->ior) ||
         !number(r, object, "transmissionFactor", 0, 1, &factor))
         return WHIT_ERROR_INPUT;
-    if (out->ior < 1) /* 0 is the extension's word for a mirror at every angle */
+    if (out->ior < 1) /* KHR_materials_ior: 0 means a mirror at every angle */
         out->ior = out->ior > 0 ? 1.0f : 1e3f;
     if (!object || factor <= 0 || out->model == WHIT_MODEL_UNLIT)
         return WHIT_OK;
@@ -157,8 +158,8 @@ static whit_result read_transmission(struct reading *r)
     return read_texture(r, object, "transmissionTexture", SCENE_SLOT_TRANSMISSION);
 }
 
-/* Specular-glossiness, as diffuse and highlight: the exponent is that of a Blinn-Phong lobe as wide
-   as GGX of the same roughness (2 / alpha^2 - 2); smooth surfaces mirror. */
+/* Reads KHR_materials_pbrSpecularGlossiness into a PHONG material. Its exponent, 2 / alpha^2 - 2,
+   makes the Blinn-Phong lobe as wide as that of GGX; smooth surfaces are mirrors. */
 static whit_result read_specular_glossiness(struct reading *r, const json_t *object)
 {
     struct scene_material *out = r->out;
@@ -193,7 +194,7 @@ static whit_result read_other_models(struct reading *r)
         extension(r, "KHR_materials_unlit", &unlit) != WHIT_OK)
         return WHIT_ERROR_INPUT;
     whit_result result = glossy ? read_specular_glossiness(r, glossy) : WHIT_OK;
-    if (unlit) { /* the base colour is all there is */
+    if (unlit) { /* only the base colour counts */
         r->out->model = WHIT_MODEL_UNLIT;
         memset(r->out->emission, 0, sizeof r->out->emission);
         scene_texture_use_init(&r->out->textures[SCENE_SLOT_EMISSION]);
@@ -273,7 +274,7 @@ static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene
         if (result != WHIT_OK)
             return result;
     }
-    /* What refracts is entered and left through the same faces. */
+    /* A refracting surface needs both sides: rays leave it through the faces that they enter by. */
     out->one_sided = !out->two_sided && !(out->transmission[0] > 0);
     return count_ignored(&reading, index) ? WHIT_OK : WHIT_ERROR_MEMORY;
 }

@@ -1,4 +1,4 @@
-/* The node tree, and what hangs on it: meshes, cameras, lights. */
+/* The node tree of a glTF, with its meshes, cameras and lights. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +42,8 @@ static void add_drawn(struct gltf *gltf, uint32_t node)
     gltf->order[gltf->order_count++] = node;
 }
 
-/* Nodes below those in order[]. Each node has one parent at most, so each is met once. */
+/* Appends to order[] all nodes below those in it. Each node has at most one parent, so none comes
+   twice. */
 static void add_descendants(struct gltf *gltf)
 {
     for (uint32_t i = 0; i < gltf->order_count; i++) {
@@ -58,7 +59,7 @@ static void add_descendants(struct gltf *gltf)
 
 static bool check_loops(const struct gltf *gltf)
 {
-    /* With one parent each, whatever no root leads to goes round in a circle. */
+    /* Each node has at most one parent, so following parents ends at a root or runs into a loop. */
     uint8_t *done = array_alloc_zeroed(gltf->node_count, 1);
     uint32_t looping = SCENE_NONE;
     for (uint32_t i = 0; done && i < gltf->node_count && looping == SCENE_NONE; i++) {
@@ -102,7 +103,7 @@ static bool find_roots(struct gltf *gltf)
             return false;
         if (gltf->parents[node] != SCENE_NONE)
             return gltf_fail(gltf, &place, "node %u is not a root, or is named twice", node);
-        /* Being its own parent marks, for the length of this loop, that it was named. */
+        /* In this loop a node that is its own parent has been listed as a root already. */
         gltf->parents[node] = node;
         add_drawn(gltf, node);
     }
@@ -293,8 +294,8 @@ static bool read_spot(const struct gltf *gltf, const json_t *object, const struc
     return true;
 }
 
-/* Photometric numbers (candela, lux) are taken as radiant ones. glTF's diffuse surfaces send out
-   albedo / pi of what arrives, the scene's send out albedo of it. */
+/* Photometric values (candela, lux) are taken as radiometric ones, divided by pi: glTF's diffuse
+   surfaces reflect albedo / pi of the irradiance, whit's reflect albedo of it. */
 static bool read_light(const struct gltf *gltf, const json_t *object, const struct gltf_place *at,
                        struct scene_light *out)
 {

@@ -23,7 +23,8 @@ static whit_result load_file_image(struct gltf *gltf, const char *uri, bool visi
     if (!path)
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
-    /* A missing picture shows where it carries the colour; elsewhere the surface does without. */
+    /* A missing image becomes magenta where it is the visible colour; for other slots the material
+       goes without a texture. */
     const char *why_not = visible ? NULL : roots_why_not(&gltf->scene->roots, path);
     if (why_not)
         scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: texture `%s`: %s",
@@ -108,8 +109,8 @@ static bool read_sampler(const struct gltf *gltf, uint32_t index, struct scene_t
     return true;
 }
 
-/* Scale, then turn counter-clockwise as seen (v grows downwards), then move: what the extension's
-   text and its sample viewer do, though not the GLSL in that text, whose sines are swapped. */
+/* Scales, then rotates counter-clockwise in the picture (v grows downwards), then translates. The
+   extension's text and its sample viewer do so; the GLSL in that text has its sines swapped. */
 static bool read_transform(const struct gltf *gltf, const json_t *info, const struct gltf_place *at,
                            uint64_t *uv_set, struct scene_texture_use *out)
 {

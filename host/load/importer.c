@@ -19,8 +19,8 @@ uint32_t importer_array_words(enum import_array array)
     return words[array];
 }
 
-/* *spent is what strings and arrays of all records take together: it may not pass the block's size,
-   so that a small block cannot claim one of them many times. */
+/* *spent: total size of all records' strings and arrays so far. It may not exceed the block's size,
+   so that records of a small block cannot share one array many times. */
 static bool check_string(const uint8_t *data, size_t size_bytes, uint64_t offset, uint32_t bytes,
                          uint64_t *spent, const char **out)
 {
@@ -121,7 +121,7 @@ bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block 
     return true;
 }
 
-/* assimp knows the file by the name that it was handed under. */
+/* Logs assimp's reason with the real path in place of the name under which assimp got the file. */
 static void log_reason(const whit_log *log, const char *path, const char *handed_name,
                        const char *reason)
 {

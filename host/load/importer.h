@@ -1,6 +1,5 @@
-/* Foreign importers in a child process. The child hands back one flat block of triangles; the
-   parent believes nothing in it before importer_parse has checked every offset, count, string and
-   index. */
+/* Foreign importers in a child process. The child replies with one flat block of triangles, which
+   the parent uses only after importer_parse has checked every offset, count, string and index. */
 #ifndef LOAD_IMPORTER_H
 #define LOAD_IMPORTER_H
 
@@ -8,7 +7,7 @@
 #include "base/log.h"
 #include "load/load.h"
 
-/* From IMPORT_FBX on files come back as a whole, as a GLB. */
+/* For formats from IMPORT_FBX on, the reply is the whole scene as a GLB; else triangles alone. */
 enum import_kind {
     IMPORT_OBJ,
     IMPORT_GLTF,
@@ -20,7 +19,7 @@ enum import_kind {
     IMPORT_OFF
 };
 
-/* A file the importer may open: it sees these and nothing of the file system. */
+/* A file that the importer may open; it has no access to the file system. */
 struct import_file {
     const char *name;
     const uint8_t *data;
@@ -45,12 +44,12 @@ struct import_part {
     const uint32_t *indices;
 };
 
-/* To cut one face into triangles takes assimp time by the cube of its corners where they are laid
-   out for that: 1.2 s for so many, 9 s for twice as many (AMD EPYC). */
+/* The most corners of a face. In the worst case assimp triangulates a face in cubic time: 1.2 s for
+   this many corners, 9 s for twice as many (AMD EPYC). */
 #define IMPORT_CORNERS_MAX 1024u
 
-/* What the importer left out. `corners`: those of the first face that has more than it may, else 0;
-   such a model comes back without parts. `face` is its index in its mesh. */
+/* What the importer left out. `corners`: number of corners of the first face with too many, or 0; a
+   model with such a face has no parts. `face`: index of that face in its mesh. */
 struct import_counts {
     uint64_t points, lines, bad_faces, face, corners;
     uint32_t skins, animations, lights, cameras; /* of a GLB */
@@ -60,7 +59,7 @@ struct import_block {
     struct child_reply reply;
     struct import_part *parts;
     uint32_t part_count;
-    const uint8_t *glb; /* in the reply; NULL: there are parts instead */
+    const uint8_t *glb; /* in `reply`; NULL: there are parts instead */
     size_t glb_bytes;
     struct import_counts counts;
 };
@@ -82,7 +81,7 @@ WHIT_CHECK bool importer_parse(const uint8_t *data, size_t size_bytes, struct im
 #define IMPORT_MAGIC       0x4b4c4257u /* "WBLK" */
 #define IMPORT_ERROR_MAGIC 0x52524557u /* "WERR": text up to the end follows the magic */
 
-/* A header, then a GLB up to the end, where there are no parts and no corners. */
+/* With no parts and `corners` 0, a GLB follows the header up to the end. */
 struct import_header {
     uint32_t magic, part_count;
     uint64_t size_bytes;
@@ -110,7 +109,7 @@ struct import_record {
 /* 4-byte words per vertex (per triangle: indices). */
 uint32_t importer_array_words(enum import_array array);
 
-/* Runs in the child: imports and writes the block; the exit code. `user` is the request. */
+/* Runs in the child: imports and writes the block; gives the exit code. `user`: import_request. */
 int importer_assimp_run(void *user, void *to, child_write write);
 
 #endif

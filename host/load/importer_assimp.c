@@ -64,18 +64,18 @@ static enum aiReturn seek_file(struct aiFile *io, size_t offset, enum aiOrigin o
     size_t from = origin == aiOrigin_SET   ? 0
                   : origin == aiOrigin_CUR ? open->at
                                            : open->file->size_bytes;
-    size_t to = from + offset; /* assimp passes negative offsets as large ones */
+    size_t to = from + offset; /* negative offsets are passed as size_t and wrap around */
     if (to > open->file->size_bytes)
         return aiReturn_FAILURE;
     open->at = to;
     return aiReturn_SUCCESS;
 }
 
-/* All files that there are. */
+/* The files that assimp can open. */
 struct library {
     const struct import_request *request;
     struct key_table names; /* of the files */
-    bool lacks_memory;      /* to open one: assimp only says that it could not */
+    bool lacks_memory;      /* in open_file; assimp only reports that a file did not open */
 };
 
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
@@ -183,7 +183,7 @@ static bool copy_indices(struct part *part, const struct aiMesh *mesh)
 static bool copy_arrays(struct part *part, const struct aiMesh *mesh, enum import_kind kind)
 {
     bool ok = copy_indices(part, mesh) && copy_vec3(part, IMPORT_POSITIONS, mesh->mVertices);
-    /* The normals of an STL are those of its facets, where they are not wrong. */
+    /* Normals of an STL are left out: they are the facets' normals, or wrong. */
     if (ok && mesh->mNormals && kind != IMPORT_STL)
         ok = copy_vec3(part, IMPORT_NORMALS, mesh->mNormals);
     for (int i = 0; i < 2; i++)
@@ -204,7 +204,7 @@ static bool copy_arrays(struct part *part, const struct aiMesh *mesh, enum impor
 
 struct flat {
     struct part *parts;
-    struct import_record *records; /* the same in the block */
+    struct import_record *records; /* what the block holds of each part */
     uint32_t count;
     struct import_counts counts;
 };
@@ -265,7 +265,7 @@ static uint64_t place(uint64_t *at, uint64_t bytes)
     return offset;
 }
 
-/* Makes all records; the size of the block. */
+/* Fills all records with offsets into the block; gives the block's size in bytes. */
 static uint64_t layout(struct flat *flat)
 {
     uint64_t at = sizeof(struct import_header) + flat->count * sizeof(struct import_record);
@@ -331,7 +331,7 @@ static int write_error(const char *text, void *to, child_write write)
 _Static_assert(sizeof(struct import_header) % 8 == 0, "records follow the header");
 _Static_assert(sizeof(struct import_record) % 8 == 0, "strings follow the records");
 
-/* Looked for before assimp cuts faces into triangles. */
+/* Finds a face with more than IMPORT_CORNERS_MAX corners, before assimp triangulates. */
 static bool has_long_face(const struct aiScene *scene, struct import_counts *counts)
 {
     for (uint32_t i = 0; i < scene->mNumMeshes; i++) {
@@ -364,7 +364,8 @@ static const struct aiScene *import(struct library *library)
     return scene;
 }
 
-/* Triangles, and no more of the file; *scene is NULL where it has been released. */
+/* Triangulates and writes the block of parts; gives the exit code. *scene is NULL where assimp has
+   released it. */
 static int write_triangles(const struct aiScene **scene, const struct import_request *request,
                            struct import_counts *counts, void *to, child_write write)
 {
@@ -379,7 +380,7 @@ static int write_triangles(const struct aiScene **scene, const struct import_req
     return code;
 }
 
-/* The header alone, where the model is refused, or before a GLB. */
+/* Writes a header without parts: alone, to refuse the model, or in front of a GLB. */
 static bool write_header(const struct import_counts *counts, size_t glb_bytes, void *to,
                          child_write write)
 {

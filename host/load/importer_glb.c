@@ -1,5 +1,5 @@
-/* The child's side of the importer, for files that are more than triangles: assimp's scene becomes
-   a GLB, in metres and with y upwards, that whit reads as any other. */
+/* The child's side of the importer, for formats with node trees and materials: turns assimp's scene
+   into a GLB in metres with y upwards, which whit then reads as any other GLB. */
 #include <assimp/cexport.h>
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -37,7 +37,7 @@ static double meta_double(const struct aiScene *scene, const char *key, double w
     return is_float ? (double)*(const float *)entry->mData : without;
 }
 
-/* The rows of *out are the axes that become x, y and z. */
+/* Sets a row of *out: coordinate `row` becomes `length` times the file's coordinate `axis`. */
 static void set_row(struct aiMatrix4x4 *out, int row, int axis, double length)
 {
     ai_real *rows[3] = {&out->a1, &out->b1, &out->c1};
@@ -45,7 +45,7 @@ static void set_row(struct aiMatrix4x4 *out, int row, int axis, double length)
         rows[row][i] = i == axis ? (ai_real)length : 0;
 }
 
-/* Lengths are UnitScaleFactor centimetres; three axes point to the side, up and to the front. */
+/* FBX states its unit (UnitScaleFactor, in centimetres) and which axes are side, up and front. */
 static void place_fbx(const struct aiScene *scene, struct aiMatrix4x4 *out)
 {
     static const char *const axes[3][2] = {
@@ -61,7 +61,7 @@ static void place_fbx(const struct aiScene *scene, struct aiMatrix4x4 *out)
         set_row(out, i, seen == 7 ? axis[i] : i, metres * (seen == 7 ? sign[i] : 1));
 }
 
-/* z is up. */
+/* 3MF has z upwards. */
 static void place_3mf(const struct import_file *file, struct aiMatrix4x4 *out)
 {
     double metres = threemf_unit_m(file->data, file->size_bytes);
@@ -70,7 +70,8 @@ static void place_3mf(const struct import_file *file, struct aiMatrix4x4 *out)
     set_row(out, 2, 1, -metres);
 }
 
-/* assimp does it for COLLADA; OFF has neither units nor axes. */
+/* Applies the file's units and axes to the root node. For COLLADA assimp has done so already; OFF
+   has neither. */
 static void place(struct aiScene *scene, const struct import_request *request)
 {
     struct aiMatrix4x4 placed;
@@ -85,7 +86,8 @@ static void place(struct aiScene *scene, const struct import_request *request)
 
 /* --- textures ------------------------------------------------------------------------------- */
 
-/* With slashes; the bare name where the path is one of the exporter's machine. */
+/* Turns backslashes into slashes, and cuts an absolute path, which is of the exporter's machine,
+   down to the file's name. */
 static void shorten_path(struct aiString *path)
 {
     for (char *c = path->data; *c; c++)
@@ -107,7 +109,8 @@ static void shorten_paths(struct aiMaterial *material)
                                 property->mIndex, &path) != aiReturn_SUCCESS)
             continue;
         shorten_path(&path);
-        /* No longer than it was: a length, the text and a zero byte. */
+        /* The property has room: the new path is no longer than the old one. Its layout is a
+           length, the text and a zero byte. */
         memcpy(property->mData, &path.length, sizeof path.length);
         memcpy(property->mData + sizeof path.length, path.data, path.length + 1);
         property->mDataLength = (unsigned)(sizeof path.length + path.length + 1);
@@ -116,7 +119,7 @@ static void shorten_paths(struct aiMaterial *material)
 
 /* --- the whole ------------------------------------------------------------------------------ */
 
-/* What the scene will not have; it is told of it. */
+/* Removes from assimp's scene what whit does not import, and counts it for notes. */
 static void drop(struct aiScene *scene, struct import_counts *counts)
 {
     for (unsigned i = 0; i < scene->mNumMeshes; i++) {

@@ -7,8 +7,9 @@
 struct aiScene;
 struct aiExportDataBlob;
 
-/* In metres, with y upwards, without skins, animations, lights and cameras, which are counted. The
-   scene is changed; the caller releases the blob. NULL: aiGetErrorString() says why. */
+/* Exports a GLB in metres with y upwards, without skins, animations, lights and cameras, which it
+   counts in *counts. Changes `scene`; the caller releases the blob. NULL: aiGetErrorString() says
+   why. */
 const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
                                             const struct import_request *request,
                                             struct import_counts *counts);

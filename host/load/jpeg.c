@@ -11,7 +11,7 @@
 #include "base/array.h"
 #include "base/platform.h"
 
-/* The most scans of a progressive file: each is work for the whole picture, however small. */
+/* The most scans of a progressive file: each one, however few its bytes, is work for all pixels. */
 enum { SCANS_MAX = 64 };
 
 /* libjpeg leaves its functions by longjmp. Whatever must survive that lives in here, outside the
@@ -50,7 +50,7 @@ static void on_error(j_common_ptr info)
     leave(job_of(info), WHIT_ERROR_INPUT, message);
 }
 
-/* Warnings are below 0. These lose no pixel. */
+/* Whether a warning's code is one that loses no pixels. */
 static bool is_harmless(int code)
 {
     return code == JWRN_EXTRANEOUS_DATA || code == JWRN_ADOBE_XFORM || code == JWRN_JFIF_MAJOR ||
@@ -90,7 +90,7 @@ static void read_header(struct job *job)
     jpeg_create_decompress(info);
     info->progress = &job->progress;
     jpeg_mem_src(info, job->data, (unsigned long)job->size_bytes);
-    (void)jpeg_read_header(info, TRUE); /* leaves unless it is there */
+    (void)jpeg_read_header(info, TRUE); /* fails through `leave` if there is none */
     const char *refused =
         picture_why_refused(info->image_width, info->image_height, job->size_bytes);
     if (refused)

@@ -14,7 +14,7 @@
 #include "load/up.h"
 #include "scene/afford.h"
 
-/* Errors name what is loaded, also where they are about a file that it names. */
+/* A log that puts the loaded file's path before errors about other files that it refers to. */
 struct named_log {
     const whit_log *to;
     const char *path;
@@ -61,7 +61,7 @@ static whit_result replace_sky(struct scene *scene, const whit_load_params *para
 {
     struct scene_environment *sky = &scene->environment;
     if (params->environment) {
-        /* The user named it, wherever it lies; the scene has been read. */
+        /* The user named this file, so its folder is allowed; the scene itself was read before. */
         char *folder = path_folder(params->environment);
         whit_result result = folder
                                  ? roots_allow(&scene->log, &scene->roots, folder[0] ? folder : ".")
@@ -121,7 +121,7 @@ static whit_result check_path(const whit_log *log, const char *path)
 
 enum { INPUT_NAME_BYTES = 16 };
 
-/* Standard input goes by this name from here on, so that all that is told by an extension is. */
+/* Names standard input with its format's extension, since extensions decide how files are read. */
 static whit_result name_input(const whit_log *log, char name[INPUT_NAME_BYTES])
 {
     const uint8_t *data;

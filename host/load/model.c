@@ -16,7 +16,7 @@
 /* A model larger than this is refused before it is read. */
 #define MODEL_LIMIT (UINT64_C(4) << 30)
 
-/* A line is known where the text is read by whit, too. */
+/* `line`: of the face in an OBJ, whose text whit reads too; 0: not known. */
 static void log_long_face(const whit_log *log, const char *path, uint32_t line,
                           const struct import_counts *counts)
 {
@@ -68,10 +68,10 @@ static whit_result add_instance(struct scene *scene, const char *name, uint32_t 
 
 /* --- materials ------------------------------------------------------------------------------ */
 
-/* The materials of one model: each is added to the scene when the first triangle asks for it. */
+/* The materials of one model. Each is added to the scene when the first part uses it. */
 struct palette {
     const struct mtl_library *library;
-    struct key_table indices; /* in the scene, by name */
+    struct key_table indices; /* scene's material index by name */
 };
 
 static void make_default(const char *name, bool colored, struct scene_material *out)
@@ -117,7 +117,7 @@ static whit_result find_material(struct scene *scene, const struct model_request
 
 /* --- OBJ, PLY, STL -------------------------------------------------------------------------- */
 
-/* The whole block as one mesh, so that the file is one tree, drawn once. */
+/* Adds the whole block as one mesh with one instance, so that the file has a single tree. */
 static whit_result add_block(struct scene *scene, const struct model_request *request,
                              const struct import_block *block, const struct mtl_library *library,
                              bool colors_are_srgb)
@@ -171,7 +171,7 @@ done:
     return result;
 }
 
-/* Colours of scans are bytes of a picture: sRGB. */
+/* Loads a PLY or STL. Vertex colours are taken as sRGB, since scanners take them from photos. */
 static whit_result load_plain(struct scene *scene, const struct model_request *request,
                               enum import_kind kind)
 {

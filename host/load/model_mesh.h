@@ -1,4 +1,4 @@
-/* Meshes of the parts of models. */
+/* Makes meshes from the parts of models. */
 #ifndef LOAD_MODEL_MESH_H
 #define LOAD_MODEL_MESH_H
 
@@ -11,9 +11,9 @@ struct model_part {
     uint32_t material; /* of the scene */
 };
 
-/* One mesh out of all parts, each a group of it, v turned downwards. An array that only some parts
-   have is filled with what its absence means; tangents are kept only where all parts have them.
-   `colors_are_srgb`: they are made linear. *index is the new mesh. */
+/* Adds one mesh of all parts, with a group for each; v is turned downwards. An array that only some
+   parts have gets default values for the others; tangents are dropped unless all parts have them.
+   `colors_are_srgb`: colours are converted to linear. *index: the new mesh. */
 WHIT_CHECK whit_result model_add_mesh(struct scene *scene, const char *name,
                                       const struct model_part *parts, uint32_t part_count,
                                       bool colors_are_srgb, uint32_t *index);

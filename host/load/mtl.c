@@ -39,7 +39,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* The whole word as a finite decimal number. */
+/* Parses a word that is as a whole a finite decimal number, in any locale. */
 static bool parse_number(const char *word, float *out)
 {
     double value = 0;
@@ -92,7 +92,7 @@ struct reader {
     const char *path;
     uint32_t line;
     struct mtl_library *library;
-    struct key_table noted; /* keywords already spoken of */
+    struct key_table noted; /* keywords that a note was made about */
     bool failed;            /* no memory for a note */
 };
 
@@ -136,7 +136,7 @@ static bool read_number(struct reader *reader, struct mtl_entry *entry, enum mtl
     if (parse_numbers(&at, &value, 1) != 1)
         return note_keyword(reader, keyword, "without a number is ignored");
     bool transparency = strcmp(keyword, "Tr") == 0;
-    /* Where both are written, d stands: Tr has been used both ways round. */
+    /* d wins over Tr, which some programs write as transparency and others as opacity. */
     if (transparency && entry->has_number[MTL_D])
         return true;
     entry->numbers[number] = transparency ? 1.0f - value : value;
@@ -144,7 +144,7 @@ static bool read_number(struct reader *reader, struct mtl_entry *entry, enum mtl
     return true;
 }
 
-/* Numbers, or words, that follow an option; -1: not an option of maps. */
+/* How many numbers or words follow an option of a map; -1: it is no such option. */
 static int option_arguments(const char *option)
 {
     static const struct {
@@ -161,7 +161,7 @@ static int option_arguments(const char *option)
     return -1;
 }
 
-/* The numbers of an option that takes some. */
+/* Reads the numbers behind an option. */
 static void read_option_numbers(struct reader *reader, const char *option, char **at,
                                 struct mtl_texture *map)
 {
@@ -192,9 +192,9 @@ static void read_option_word(struct reader *reader, const char *option, const ch
     }
 }
 
-/* Reads the option at *at and its arguments; false when there is none. `reader`: where to note what
-   is ignored, or NULL. What is left over, -blendu, -boost, -texres and -type, chooses between
-   filters and sizes of textures, which whit does in one way. */
+/* Reads the option at *at and its arguments; false when there is none. `reader`: notes what is
+   ignored; may be NULL. The options -blendu, -boost, -texres and -type choose filters and sizes of
+   textures; they are skipped, since whit has one way for these. */
 static bool read_option(struct reader *reader, char **at, struct mtl_texture *map)
 {
     char *start = skip_blanks(*at), *end = start;
@@ -224,7 +224,7 @@ static bool read_option(struct reader *reader, char **at, struct mtl_texture *ma
     return true;
 }
 
-/* Some writers put options behind the file's name. */
+/* Reads options that some writers put behind the file's name, and cuts them off `name`. */
 static void cut_trailing_options(struct reader *reader, char *name, struct mtl_texture *map)
 {
     for (char *at = strstr(name, " -"); at; at = strstr(at + 1, " -")) {
@@ -276,7 +276,7 @@ static bool read_property(struct reader *reader, struct mtl_entry *entry, const 
 {
     static const struct {
         const char *keyword;
-        char type; /* c colour, n number, m map, i known and of no effect here */
+        char type; /* c: colour, n: number, m: map, i: known and ignored */
         int which;
     } table[] = {
         {"Ka", 'c', MTL_KA},

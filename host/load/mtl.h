@@ -1,4 +1,4 @@
-/* Wavefront material libraries. Read here and not by assimp, which drops options and loses the
+/* Wavefront material libraries. whit reads them itself, since assimp drops options and refuses the
    whole OBJ over one odd line. */
 #ifndef LOAD_MTL_H
 #define LOAD_MTL_H
@@ -8,7 +8,7 @@
 enum mtl_color { MTL_KA, MTL_KD, MTL_KS, MTL_KE, MTL_TF, MTL_COLOR_COUNT };
 enum mtl_number { MTL_NS, MTL_NI, MTL_D, MTL_PR, MTL_PM, MTL_ILLUM, MTL_NUMBER_COUNT };
 enum mtl_map {
-    MTL_MAP_KA, /* only to say what becomes of it */
+    MTL_MAP_KA, /* ignored, with a note */
     MTL_MAP_KD,
     MTL_MAP_KS,
     MTL_MAP_KE,
@@ -29,7 +29,7 @@ struct mtl_texture {
     bool clamp;
 };
 
-/* One newmtl as written. */
+/* One material (newmtl) as written in the file. */
 struct mtl_entry {
     char *name, *file;
     uint32_t line;
@@ -41,19 +41,20 @@ struct mtl_entry {
 
 struct mtl_library {
     struct mtl_entry *entries;
-    struct key_table names; /* of entries; the first of each */
+    struct key_table names; /* index by name, of the first entry with that name */
     uint32_t count, capacity;
 };
 
-/* Adds the entries of `text` (zero-terminated) to the library. What is not understood is noted in
-   the scene, once for each keyword. False when memory runs out. */
+/* Adds the entries of `text` (zero-terminated) to the library. Each keyword that is not understood
+   is noted once in the scene. False when memory runs out. */
 WHIT_CHECK bool mtl_parse(struct scene *scene, const char *path, const char *text,
                           struct mtl_library *library);
 void mtl_finish(struct mtl_library *library);
 /* The first entry of that name, or NULL. */
 const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name);
 
-/* What the entry means to whit, textures loaded; *out is released with scene_material_finish. */
+/* Converts the entry to a material, and loads its textures; release *out with
+   scene_material_finish. */
 WHIT_CHECK whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
                                     const whit_load_params *params, struct scene_material *out);
 

@@ -1,4 +1,4 @@
-/* What an MTL entry means to whit. The classes of `illum`:
+/* Converts MTL entries to materials. The classes of `illum`:
 
      0  colour only: unlit            5  mirror, its weight rising to 1 by Fresnel from Ks
      1  diffuse                       6  refraction
@@ -6,15 +6,16 @@
      3  mirror reflection by Ks       8  as 3 without ray tracing: taken as 2
      4  glass: light passes straight  9  as 4 without ray tracing: blends by d
         through, and Ks reflects     10  catches shadows, is invisible itself
-   6 refracts (1 - Ks) Tf of the light, as the format has it; 7 shares it out by Fresnel from Ni,
-   for which the format gives no formula.
+   Class 6 refracts (1 - Ks) Tf of the light, as the format says. Class 7 splits light by Fresnel
+   with Ni; the format gives no formula for it.
 
-   How much a refracting class (4, 6, 7) lets through:
+   How much a refracting class (4, 6, 7) transmits:
      d < 1      1 - d; in classes 6 and 7 tinted by Tf where Tf has a hue
-     else Tf    the filter, as the format says: 1 lets everything pass; but as 1 - Tf where Tf can
-                only be the share held back, see filter_is_inverted()
+     else Tf    Tf as the format says, where 1 transmits everything; but 1 - Tf where Tf can only
+                be the share held back, see filter_is_inverted()
      neither    everything
-   Elsewhere d is opacity and Tf, which exporters write as 1 for opaque surfaces too, is ignored. */
+   In other classes d is the opacity; Tf, which exporters write as 1 even for opaque surfaces, is
+   ignored. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,8 +30,8 @@ enum { ALPHA_HALF = 128 };
 
 /* --- textures ------------------------------------------------------------------------------- */
 
-/* The path of a texture named in an MTL: as written, with slashes for backslashes, or the bare name
-   beside the MTL (paths of the exporter's machine). The first that exists; else the second. */
+/* The path of a texture named in an MTL: as written if that file exists; else its bare name beside
+   the MTL, since many paths are of the exporter's machine. */
 static char *find_texture(const struct roots *roots, const char *mtl_path, const char *name)
 {
     char *written = roots_join(mtl_path, name);
@@ -54,7 +55,7 @@ static char *find_texture(const struct roots *roots, const char *mtl_path, const
     return path;
 }
 
-/* MTL samples at s * uv + o with v upwards; here v grows downwards: v = 1 - v_up. */
+/* MTL samples at scale * uv + offset with v upwards; whit's v grows downwards: v = 1 - v_up. */
 static void set_transform(const struct mtl_texture *map, struct scene_texture_use *use)
 {
     const float transform[6] = {
@@ -63,12 +64,12 @@ static void set_transform(const struct mtl_texture *map, struct scene_texture_us
     use->wrap_u = use->wrap_v = map->clamp ? SCENE_WRAP_CLAMP : SCENE_WRAP_REPEAT;
 }
 
-/* Texels by -imfchan and -mm, in the picture's own codes. */
+/* Applies -imfchan and -mm to texels, on the stored 8-bit codes. */
 static void derive_texels(const struct mtl_texture *map, size_t count, const uint8_t *from,
                           uint8_t *to)
 {
     for (size_t i = 0; i < count; i++, from += 4, to += 4) {
-        /* Rec. 709, of codes: scalars are not colours. */
+        /* Rec. 709 weights on the codes, without sRGB decoding: the texels are scalars. */
         float luminance = 0.2126f * from[0] + 0.7152f * from[1] + 0.0722f * from[2];
         memcpy(to, from, 4);
         for (int k = 0; k < 3; k++) {
@@ -85,7 +86,7 @@ static void derive_texels(const struct mtl_texture *map, size_t count, const uin
     }
 }
 
-/* Puts a texture made from *index in its place where the options of the map ask for one. */
+/* Where the map has -imfchan or -mm, sets *index to a new texture made from texture *index. */
 static whit_result derive_texture(struct scene *scene, const struct mtl_texture *map,
                                   uint32_t *index)
 {
@@ -129,7 +130,8 @@ static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, e
     if (!path)
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
-    /* A missing picture shows where it carries the colour; elsewhere the surface does without. */
+    /* A missing picture becomes magenta for the diffuse colour; other slots go without a
+       texture. */
     const char *why_not = slot == SCENE_SLOT_DIFFUSE ? NULL : roots_why_not(&scene->roots, path);
     if (why_not) {
         scene_note(scene, SCENE_NOTE_WARNING, "%s:%u: texture `%s`: %s", path_name(entry->file),
@@ -154,14 +156,14 @@ texture_of(const struct scene *scene, const struct scene_material *material, enu
     return index < scene->texture_count ? &scene->textures[index] : NULL;
 }
 
-/* Every how many texels to look: a large picture is judged by 2^16 of them or so, spread unevenly
-   over rows and columns by the odd step. */
+/* Step between texels that are tested: large pictures are judged by about 2^16 texels. The step is
+   odd, so that these fall into different columns. */
 static size_t texel_step(size_t count)
 {
     return count >> 16 | 1;
 }
 
-/* An alpha channel that cuts out shapes: part of the picture is clear, and part is not. */
+/* Whether the alpha channel cuts out shapes: some texels are transparent, and some are not. */
 static bool has_cutouts(const struct scene_texture *texture)
 {
     size_t count = (size_t)texture->width * texture->height, step = texel_step(count);
@@ -171,7 +173,8 @@ static bool has_cutouts(const struct scene_texture *texture)
     return clear * 200 > seen && (seen - clear) * 200 > seen;
 }
 
-/* The alpha of one picture is what the other one shows, so that both together would count twice. */
+/* Whether the alpha of `color` equals the red of `opacity`: both together would apply the same
+   opacity twice. */
 static bool same_opacity(const struct scene_texture *color, const struct scene_texture *opacity)
 {
     if (color->width != opacity->width || color->height != opacity->height)
@@ -217,9 +220,9 @@ static float smallest(const float *rgb)
     return fminf(rgb[0], fminf(rgb[1], rgb[2]));
 }
 
-/* Well-known files (McGuire's archive, and what Mineways writes) hold in Tf the share that is held
-   back: 0.1 for clear glass, or 1 minus the surface's colour. So a filter that would pass nearly
-   nothing, and a filter whose complement has the hue of Kd, are turned round. */
+/* Whether Tf is the share that is held back, as in well-known files: McGuire's archive has 0.1 for
+   clear glass, Mineways writes 1 minus the surface's colour. It is taken so where Tf would pass
+   nearly nothing, or where 1 - Tf has the hue of Kd. */
 static bool filter_is_inverted(const struct mtl_entry *entry)
 {
     const float *tf = entry->colors[MTL_TF], *kd = entry->colors[MTL_KD];
@@ -250,9 +253,9 @@ static void set_transmission(struct scene *scene, const struct mtl_entry *entry,
         bool tinted = filtered && largest(tf) > 0 && out->illum != 4;
         if (d < 1)
             pass = tinted ? (1 - d) * tf[i] / largest(tf) : 1 - d;
-        /* Class 6 refracts what Ks does not reflect; with Fresnel the angle shares them out. */
+        /* Class 6 refracts what Ks does not reflect; in class 7 Fresnel splits light by angle. */
         out->transmission[i] = out->illum == 6 ? pass * fmaxf(1 - out->specular[i], 0) : pass;
-        /* What is dissolved has no colour of its own either. */
+        /* d < 1 dissolves the surface, and with it the diffuse and ambient colour. */
         out->diffuse[i] *= fminf(fmaxf(d, 0.0f), 1.0f);
         out->ambient[i] *= fminf(fmaxf(d, 0.0f), 1.0f);
     }
@@ -285,7 +288,8 @@ static void set_colors(struct scene *scene, const struct mtl_entry *entry,
                    path_name(entry->file), entry->line, text_token(entry->name).text);
         out->diffuse[0] = out->diffuse[1] = out->diffuse[2] = 1;
     }
-    /* The format has no ambient light, so a Ka of 0 says that its writer knows none either. */
+    /* The format has no ambient light, so Ka 0 only says that the writing program has none
+       either. */
     if (largest(entry->colors[MTL_KA]) > 0)
         memcpy(out->ambient, entry->colors[MTL_KA], sizeof out->ambient);
     else
@@ -316,7 +320,7 @@ static void set_opacity(const struct mtl_entry *entry, struct scene_material *ou
         out->alpha = SCENE_ALPHA_BLEND;
 }
 
-/* By an exponent of 0 what is meant for a highlight would be everywhere. */
+/* Drops Ks where Ns is 0: with that exponent the highlight would cover the whole surface. */
 static void drop_flat_highlight(struct scene *scene, const struct mtl_entry *entry,
                                 struct scene_material *out)
 {
@@ -351,7 +355,8 @@ static void set_class(struct scene *scene, const struct mtl_entry *entry,
                    path_name(entry->file), entry->line, text_token(entry->name).text);
 }
 
-/* Pr and Pm are the metallic-roughness extension; they say nothing new beside mirrors and glass. */
+/* Pr and Pm are the metallic-roughness extension. They are used for plain classes alone: mirrors
+   and glass state their reflection by `illum`. */
 static void set_metal_rough(const struct mtl_entry *entry, struct scene_material *out)
 {
     bool plain = out->illum == 1 || out->illum == 2 || out->illum == 8;
@@ -364,7 +369,7 @@ static void set_metal_rough(const struct mtl_entry *entry, struct scene_material
         out->specular[i] = 1;
 }
 
-/* map_Kd tints ambient light too. */
+/* Notes a map_Ka that differs from map_Kd: whit tints ambient light by map_Kd. */
 static void note_ambient_map(struct scene *scene, const struct mtl_entry *entry)
 {
     const struct mtl_texture *ambient = &entry->maps[MTL_MAP_KA];
@@ -399,7 +404,7 @@ whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
     drop_flat_highlight(scene, entry, out);
     for (size_t i = 0; i < sizeof slots / sizeof *slots; i++) {
         if (slots[i].map == MTL_MAP_NS && out->model != WHIT_MODEL_PHONG)
-            continue; /* no exponent */
+            continue; /* only PHONG has an exponent that map_Ns could scale */
         whit_result result = add_map(scene, entry, slots[i].map, slots[i].slot, params, out);
         if (result != WHIT_OK)
             return result;

@@ -61,8 +61,8 @@ static bool from_utf16(uint8_t **data, size_t *size_bytes)
     return true;
 }
 
-/* Where the point of a number without a leading digit is, from `at` on; NULL: no more. Only lines
-   of vertices are looked at. */
+/* Finds the next decimal point without a digit before it, from `at` on, in lines of vertices; NULL:
+   there is none. */
 static const uint8_t *next_bare_point(const uint8_t *at, const uint8_t *end)
 {
     while (at < end) {
@@ -177,7 +177,7 @@ uint32_t obj_longest_face(const char *text)
 
 /* --- material libraries --------------------------------------------------------------------- */
 
-/* *why_not: NULL, or why the file is not read; one that was read before is not read again. */
+/* Reads a library, unless it is in `read` already. *why_not: NULL, or why it cannot be read. */
 static whit_result read_library(struct scene *scene, const char *obj_path, const char *name,
                                 struct mtl_library *library, struct key_table *read,
                                 const char **why_not)
@@ -227,7 +227,7 @@ static char *copy_word(const char *at, const char *end)
     return out;
 }
 
-/* The line may be one name with blanks in it, or several names. */
+/* Reads the libraries that a line names: it may be one name with blanks in it, or several names. */
 static whit_result read_named(struct scene *scene, const char *obj_path, const char *line,
                               struct mtl_library *library, struct key_table *read)
 {
@@ -251,7 +251,8 @@ static whit_result read_named(struct scene *scene, const char *obj_path, const c
     return result;
 }
 
-/* The names behind `mtllib` on the line [at, end), trimmed; NULL when it is another line. */
+/* A copy of what follows `mtllib` on the line [at, end), trimmed; NULL for other lines, and when
+   memory runs out. */
 static char *names_on_line(const char *at, const char *end, bool *is_library)
 {
     while (at < end && (*at == ' ' || *at == '\t'))

@@ -65,7 +65,7 @@ static bool usable_normal(const float *n)
     return length > 1e-20 && isfinite(length);
 }
 
-/* Vertices whose file gives no direction (assimp leaves zeros) get that of their faces. */
+/* Replaces zero normals, which assimp leaves where the file has none, by those of the faces. */
 static bool repair_normals(struct part *part)
 {
     float *normals = part->arrays[IMPORT_NORMALS];
@@ -97,7 +97,7 @@ static bool repair_normals(struct part *part)
     return true;
 }
 
-/* One vertex for each corner. */
+/* Gives each corner of each triangle a vertex of its own. */
 static bool expand(struct part *part)
 {
     const uint32_t *old = part->arrays[IMPORT_INDICES];
@@ -122,7 +122,7 @@ static bool expand(struct part *part)
     return true;
 }
 
-/* Flat normals for a part whose siblings have smooth ones. */
+/* Adds flat normals to a part without normals, where other parts of the mesh have some. */
 static bool add_flat_normals(struct part *part)
 {
     if (!expand(part))
@@ -172,7 +172,8 @@ static bool weld_init(struct weld *weld, const struct part *part)
     return weld->records && weld->table;
 }
 
-/* Copies between the part's arrays and the records, in which a vertex is one run of words. */
+/* Copies vertices from the part's arrays into the records, or with `back` from there into the
+   arrays. A record holds all attributes of one vertex. */
 static void interleave(struct weld *weld, struct part *part, bool back)
 {
     uint32_t at = 0;
@@ -205,7 +206,7 @@ static uint32_t weld_find(struct weld *weld, uint32_t vertex, uint32_t unique_co
     return unique_count;
 }
 
-/* Makes bit-identical vertices one; the first use decides the order. */
+/* Merges vertices that are identical in all bits; vertices are ordered by their first use. */
 static bool weld_part(struct part *part)
 {
     struct weld weld;

@@ -1,5 +1,5 @@
-/* Triangles of one material while their arrays are made: in the importer's child, and of a glTF in
-   whit itself. */
+/* A part: triangles of one material, under construction. Used in the importer's child, and for glTF
+   in whit's own process. */
 #ifndef LOAD_PART_H
 #define LOAD_PART_H
 
@@ -8,19 +8,19 @@
 struct part {
     uint32_t vertex_count, triangle_count;
     void *arrays[IMPORT_ARRAY_COUNT]; /* malloc'ed, or NULL */
-    char *name, *material;            /* the same */
+    char *name, *material;            /* malloc'ed, or NULL */
 };
 
 void part_finish(struct part *part);
-/* Elements of an array: vertices, or triangles. */
+/* Number of elements of an array: triangles for indices, else vertices. */
 size_t part_count(const struct part *part, enum import_array array);
-/* Room for an array, which the part owns; NULL when memory runs out. */
+/* Allocates an array, which the part owns; NULL when memory runs out. */
 void *part_add(struct part *part, enum import_array array);
-/* The part as its readers see it, without its names. */
+/* A read-only view of the part, without its names. */
 struct import_part part_view(const struct part *part);
-/* The parts of one mesh: vertices whose file gives no direction get that of their faces, and parts
-   without normals get flat ones where another has some. `corners`: each has a vertex for every
-   corner, and gets one for all that are alike. False when memory runs out. */
+/* Completes the normals of all parts of one mesh: zero normals are replaced by those of the faces,
+   and parts without normals get flat ones where another part has normals. `corners`: parts have a
+   vertex for every corner, and equal vertices are merged. False when memory runs out. */
 bool parts_complete(struct part *parts, uint32_t count, bool corners);
 
 #endif

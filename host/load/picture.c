@@ -12,8 +12,9 @@
 #include "base/file.h"
 #include "load/jpeg.h"
 
-/* stb_image does not always say so. Blocks over the limit are refused: of a PNG it believes every
-   length, and unpacks all that is there, whatever the header tells of. */
+/* Set where stb_image could not allocate, which it does not always report. Blocks over
+   block_bytes_max are refused: in a PNG stb_image trusts every length, and inflates all data,
+   whatever size its header states. */
 static _Thread_local bool lacks_memory, over_limit;
 static _Thread_local uint64_t block_bytes_max;
 
@@ -32,17 +33,17 @@ static void *take_block(void *block, size_t bytes)
 #define STBI_REALLOC(block, bytes) take_block(block, bytes)
 #define STBI_FREE(block)           free(block)
 #define STBI_NO_STDIO
-#define STBI_NO_JPEG /* of a damaged one it writes anywhere */
+#define STBI_NO_JPEG /* a damaged file makes stb_image write out of bounds */
 #define STBI_NO_PIC
 #define STBI_NO_PSD
 #define STBI_NO_PNM
-#define STBI_NO_HDR /* it never ends on a row that is cut short; image/ reads them */
+#define STBI_NO_HDR /* stb_image never ends on a truncated row; image/ reads .hdr instead */
 #define STBI_NO_LINEAR
 #define SIDE_MAX            16384
 #define STBI_MAX_DIMENSIONS SIDE_MAX
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
-/* Functions declared and never defined are reported at the end of the file: no pop helps there. */
+/* Never popped: unused declarations are reported at the end of the file. */
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -56,8 +57,9 @@ static void *take_block(void *block, size_t bytes)
 #pragma GCC diagnostic pop
 
 #define PIXELS_MAX       ((uint64_t)1 << 26)
-/* Decoders believe what a header says and allocate it. No format makes more of its bytes than PNG
-   can: deflate 1032 bytes of one, of 8 pixels each. */
+/* Decoders allocate the size that a header states, so headers that cannot be true are refused. A
+   byte of a PNG makes the most pixels: deflate expands it to at most 1032 bytes of 8 pixels
+   each. */
 #define PIXELS_FREE      ((uint64_t)1 << 16)
 #define PIXELS_PER_BYTE  ((uint64_t)8 * 1032)
 #define BLOCK_BYTES_FREE ((uint64_t)1 << 18) /* tables of decoders */
@@ -79,7 +81,7 @@ const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_byt
     return pixels > pixels_max(size_bytes) ? "its header tells of more than there is in it" : NULL;
 }
 
-/* The reason that stb_image gives; "damaged" if it repeats unprintable bytes of the file. */
+/* stb_image's reason for a failure; "damaged" if it quotes unprintable bytes of the file. */
 static const char *failure_reason(void)
 {
     const char *reason = stbi_failure_reason();
@@ -90,7 +92,8 @@ static const char *failure_reason(void)
     return reason && *reason ? reason : "damaged";
 }
 
-/* In the first frame header: markers of 0xffc0 to 0xffcf but for those of tables. */
+/* Reads a JPEG's size from its first frame header, which has a marker from 0xffc0 to 0xffcf,
+   without 0xffc4, 0xffc8 and 0xffcc. */
 static void jpeg_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, uint32_t *height)
 {
     for (size_t at = 2; at + 9 <= size_bytes && data[at] == 0xff;
@@ -104,7 +107,7 @@ static void jpeg_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, 
     }
 }
 
-/* What the header tells of, with a side of 0 where that is not seen at once. */
+/* Width and height in the header; 0 where it does not state them where expected. */
 static void picture_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, uint32_t *height)
 {
     int sides[2] = {0, 0}, channels;
@@ -142,8 +145,8 @@ whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct pictur
         *reason = refused;
         return WHIT_ERROR_INPUT;
     }
-    /* 16 bits of 4 channels, in a buffer that grows by doubling; or the file's own bytes, likewise.
-     */
+    /* Room for 4 channels of 16 bits in a buffer that grows by doubling, and for the file's bytes
+       in another such buffer. */
     block_bytes_max =
         BLOCK_BYTES_FREE + 2 * size_bytes + 16 * ((uint64_t)(uint32_t)width + 1) * (uint32_t)height;
     out->rgba = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
@@ -286,8 +289,8 @@ void picture_finish(struct picture *picture)
     *picture = (struct picture){0};
 }
 
-/* Replaces the part of `path` in [start, end) by the folder's entry that equals it but for case.
-   Folders outside of the roots are not listed. */
+/* Replaces the part of `path` in [start, end) by an entry of its folder that differs by case alone.
+   Folders outside of the roots are not searched. */
 static bool match_part(const struct roots *roots, char *path, size_t start, size_t end)
 {
     char kept_end = path[end], kept_start = path[start];
@@ -352,6 +355,6 @@ char *picture_find(const struct roots *roots, const char *path)
 void picture_inflate(const uint8_t *data, size_t size_bytes, char *out, int out_bytes)
 {
     int bytes = size_bytes < INT_MAX ? (int)size_bytes : INT_MAX;
-    /* What does not fit is an error to stb_image, and yet there. */
+    /* Output that does not fit is an error of stb_image, but `out` is filled all the same. */
     (void)stbi_zlib_decode_noheader_buffer(out, out_bytes, (const char *)data, bytes);
 }

@@ -12,7 +12,7 @@ static bool starts_with(const uint8_t *line, size_t bytes, const char *word)
     return bytes >= length && memcmp(line, word, length) == 0;
 }
 
-/* Offset of the data behind a header of plain lines; 0: an ASCII file, or none that needs care. */
+/* Offset of the data behind the header of a binary PLY whose lines end in \n; 0: any other file. */
 static size_t find_data(const uint8_t *data, size_t size_bytes)
 {
     enum { HEADER_LIMIT = 1 << 20 };
@@ -31,7 +31,7 @@ static size_t find_data(const uint8_t *data, size_t size_bytes)
     return 0;
 }
 
-/* The number of "element NAME COUNT"; false for other lines. More than 2^64 are as many as that. */
+/* Reads COUNT of a line "element NAME COUNT", clamped to 2^64 - 1; false for other lines. */
 static bool read_count(const uint8_t *line, size_t bytes, unsigned long long *count)
 {
     char text[256];

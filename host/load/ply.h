@@ -1,4 +1,4 @@
-/* The bytes of a PLY before assimp sees them. */
+/* Checks and repairs the bytes of a PLY, before assimp gets them. */
 #ifndef LOAD_PLY_H
 #define LOAD_PLY_H
 
@@ -8,17 +8,17 @@
 
 #include "base/log.h"
 
-/* assimp reads on for ever behind a header that does not end, and believes counts. Logs, with the
-   line, what is wrong with them: an element takes a byte at least. */
+/* Checks that the header ends, and that its counts of elements are no larger than the data's size
+   in bytes: assimp would read on for ever, and trusts counts. Logs an error with its line. */
 WHIT_CHECK whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data,
                                  size_t size_bytes);
-/* Makes faces of triangle strips. After ply_check; replaces *data (malloc'ed, with a zero byte
-   behind it, as what comes in its place). Strips that are damaged are logged. */
+/* Converts triangle strips to faces, in a file that ply_check accepted. Replaces *data, which is
+   malloc'ed with a zero byte behind it, before and after. Damaged strips are logged. */
 WHIT_CHECK whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
                                           size_t *size_bytes);
-/* assimp 5.2 takes a first data byte of 10 (one binary file in 256, as chance has it) for the end
-   of the header's last line. Such a file gets a second one. Replaces *data (malloc'ed); false when
-   memory runs out, *data intact. */
+/* assimp 5.2 mistakes a first data byte of 10, as in one binary file of 256, for the end of the
+   header's last line. Adds one more such byte there. Replaces *data (malloc'ed). False when memory
+   runs out; *data is then intact. */
 WHIT_CHECK bool ply_repair(uint8_t **data, size_t *size_bytes);
 
 #endif

@@ -1,5 +1,5 @@
-/* Triangle strips of a PLY, of which assimp 5.2 reads the last triangle: they become faces before
-   it sees the file. */
+/* Triangle strips of a PLY. assimp 5.2 reads only the last triangle of a strip, so strips are
+   converted to faces before it gets the file. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum { WORDS_MAX = 5, WORD_BYTES = 32 };
 
-/* In binary files. 0 bytes: a type that PLY does not have. */
+/* A scalar type in binary files; 0 bytes: not a type of PLY. */
 struct type {
     uint32_t bytes;
     bool is_signed;
@@ -25,7 +25,7 @@ struct property {
 struct element {
     char name[WORD_BYTES];
     unsigned long long count;
-    size_t begin, end; /* of its lines */
+    size_t begin, end; /* offsets of its lines in the header */
     uint32_t first_property, property_count;
 };
 
@@ -63,7 +63,7 @@ static struct type type_of(const char *name)
     return (struct type){0, false};
 }
 
-/* One line in words; where the next begins. */
+/* Splits the line at `at` into words; gives the offset of the next line. */
 static size_t read_line(const uint8_t *data, size_t size_bytes, size_t at,
                         char words[WORDS_MAX][WORD_BYTES])
 {
@@ -130,7 +130,7 @@ struct cursor {
     enum format format;
 };
 
-/* The next whole number; false where there is none. */
+/* Reads the next integer; false where there is none. */
 static bool read_whole(struct cursor *from, struct type type, int64_t *out)
 {
     if (from->format == FORMAT_ASCII) {
@@ -179,7 +179,7 @@ static bool skip_property(struct cursor *from, const struct property *property)
 /* --- strips --------------------------------------------------------------------------------- */
 
 struct strips {
-    uint32_t *corners; /* of triangles */
+    uint32_t *corners; /* 3 vertex indices per triangle */
     uint32_t count, capacity;
     uint64_t vertex_count;
 };
@@ -190,7 +190,8 @@ struct strip {
     uint32_t length;
 };
 
-/* Every second triangle is turned. Those that only lead on to the next have no area. */
+/* Adds a vertex to the strip, and so a triangle, every second one reversed. Degenerate triangles,
+   which only connect parts of a strip, are left out. */
 static bool add_vertex(struct strips *strips, struct strip *strip, uint32_t vertex)
 {
     const uint32_t *last = strip->last;
@@ -207,7 +208,7 @@ static bool add_vertex(struct strips *strips, struct strip *strip, uint32_t vert
 
 enum outcome { READ, DAMAGED, NO_MEMORY };
 
-/* -1 begins a new strip. */
+/* Reads one list of vertices; -1 in it begins a new strip. */
 static enum outcome read_strip(struct cursor *from, const struct property *list,
                                struct strips *strips)
 {
@@ -229,8 +230,8 @@ static enum outcome read_strip(struct cursor *from, const struct property *list,
     return READ;
 }
 
-/* The instances of an element, up to what follows them. The first list of each is a strip, where
-   `strips` are asked for. */
+/* Reads or skips all instances of an element. If `strips` is non-NULL, the first list property of
+   each instance is read as a strip. */
 static enum outcome read_element(struct cursor *from, const struct header *header,
                                  const struct element *element, struct strips *strips)
 {
@@ -267,7 +268,7 @@ static void write_triangle(FILE *file, enum format format, const uint32_t *corne
             fputc((int)(corners[i] >> 8 * (format == FORMAT_BIG ? 3 - k : k) & 255), file);
 }
 
-/* The file with faces in place of `element`, whose data are [begin, end). */
+/* Rewrites the file with faces in place of `element`, whose data are the bytes [begin, end). */
 static bool write_faces(uint8_t **data, size_t *size_bytes, const struct header *header,
                         const struct element *element, const struct strips *strips, size_t begin,
                         size_t end)
@@ -290,7 +291,7 @@ static bool write_faces(uint8_t **data, size_t *size_bytes, const struct header 
         return false;
     }
     free(*data);
-    *data = (uint8_t *)text; /* with a zero byte behind it, as file_read has it */
+    *data = (uint8_t *)text; /* a zero byte follows, as after file_read */
     *size_bytes = bytes;
     return true;
 }

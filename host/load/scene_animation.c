@@ -45,8 +45,8 @@ static bool read_times(struct reader *reader, const struct place *place, const j
     return true;
 }
 
-/* Rotations are quaternions, or three angles in degrees that become one (but for cubic tangents).
- */
+/* Reads a key's value. A rotation is a quaternion or three angles in degrees, which are converted
+   to a quaternion; cubic channels, with their tangents, need quaternions. */
 static bool read_value(struct reader *reader, const struct place *place, const json_t *value,
                        const struct scene_channel *channel, float *out)
 {

@@ -1,4 +1,4 @@
-/* Cameras of scene files, and files of nothing else. */
+/* Cameras of scene files, and files with nothing but cameras. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,8 @@
 #define FILE_BYTES_MAX ((uint64_t)256 << 20)
 #define RADIANS        (PI / 180.0)
 
-/* Which keys go together: fov, height and panorama are three kinds of camera. */
+/* The kind of camera by its keys: `height` is orthographic, `panorama` a panorama, else
+   perspective. Refuses keys that do not go together. */
 static bool read_camera_kind(struct reader *reader, const struct place *place, const json_t *object,
                              struct scene_camera *out)
 {
@@ -101,8 +102,8 @@ static bool read_array(struct reader *reader)
     return read;
 }
 
-/* One camera a line; empty lines are none. Each is a text of its own, so that a million of them
-   take no more memory than they have to. */
+/* Reads one camera per line, skipping empty lines. Lines are parsed one by one, so that a million
+   of them do not need memory for one large JSON tree. */
 static bool read_lines(struct reader *reader, char *text, size_t size_bytes)
 {
     const struct place place = {0};

@@ -1,14 +1,14 @@
-/* Cameras of files. */
+/* Cameras of scene files, and files with nothing but cameras. */
 #ifndef LOAD_SCENE_CAMERAS_H
 #define LOAD_SCENE_CAMERAS_H
 
 #include "load/scene_reader.h"
 
-/* The cameras of a file of nothing else into a scene: an array of what scene files have, or one of
-   them a line. WHIT_ERROR_INPUT, logged, for none, and for one that moves. */
+/* Adds the cameras of a file that has nothing else: a JSON array of cameras as in scene files, or
+   one per line. WHIT_ERROR_INPUT, logged, if there is none or if one is animated. */
 WHIT_CHECK whit_result load_cameras(struct scene *scene, const char *path);
 
-/* Into the scene. */
+/* Each adds what it reads to the scene. */
 bool reader_camera(struct reader *reader, const struct place *place, const json_t *object);
 bool reader_cameras(struct reader *reader, const struct place *place, const json_t *value);
 

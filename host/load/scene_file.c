@@ -16,7 +16,7 @@
 #define FILE_BYTES_MAX ((uint64_t)64 << 20)
 #define RADIANS        (PI / 180.0)
 
-/* `position` is the centre, `u` and `v` are the sides. */
+/* In the file `position` is the centre of the rectangle, and `u` and `v` are its sides. */
 static bool read_rectangle(struct reader *reader, const struct place *place, const json_t *object,
                            struct scene_light *out)
 {
@@ -123,8 +123,8 @@ static bool read_light_values(struct reader *reader, const struct place *place,
     return true;
 }
 
-/* The keys that a light of this kind may have in a file, beside those that all lights have; NULL:
-   files have no lights of this kind. */
+/* Keys that lights of this kind may have, in addition to those of all lights; NULL: scene files
+   have no lights of this kind. */
 static const char *const *light_keys(whit_light_kind kind)
 {
     static const char *const point[] = {"position", "falloff", "range", NULL};
@@ -154,7 +154,7 @@ static const char *const *light_keys(whit_light_kind kind)
 static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
 {
     static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
-    whit_light_kind kinds[WHIT_LIGHT_KINDS]; /* that files may name; the first is the default */
+    whit_light_kind kinds[WHIT_LIGHT_KINDS]; /* allowed in files; the first is the default */
     const char *names[WHIT_LIGHT_KINDS + 1];
     const char *const *own[WHIT_LIGHT_KINDS];
     uint32_t count = 0, kind = 0;

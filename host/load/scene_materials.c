@@ -47,7 +47,7 @@ static bool has(const json_t *object, const char *key)
     return json_object_get(object, key) != NULL;
 }
 
-/* Texture made by whit, under a name that equal ones share. */
+/* Adds a generated texture. Equal textures have equal names, and are added once. */
 static bool add_picture(struct reader *reader, char *name, uint32_t width, uint32_t height,
                         uint8_t *rgba, uint32_t *index)
 {
@@ -103,7 +103,7 @@ static bool add_gradient(struct reader *reader, float colors[2][3], uint32_t *in
     return add_picture(reader, picture_name("gradient", colors), 1, ROWS, rgba, index);
 }
 
-/* Two courses of running bond, one brick wide and the next moved by half. */
+/* One tile of a running bond: two courses, one brick wide, the second shifted by half a brick. */
 static bool add_brick(struct reader *reader, float colors[2][3], uint32_t *index)
 {
     enum { SIDE = 128, COURSE = SIDE / 2, JOINT = 6 };
@@ -136,7 +136,7 @@ static bool made_texture(struct reader *reader, const struct place *place, const
         if (!reader_color_value(reader, &here, json_array_get(list, i), colors[i]))
             return false;
     }
-    /* `size` counts squares (checker), bricks, or heights of the gradient across one unit of uv. */
+    /* `size`: how many squares, bricks, or heights of the gradient there are per unit of uv. */
     bool checker = strcmp(kind, "checker") == 0, gradient = strcmp(kind, "gradient") == 0;
     use->transform[0] = use->transform[4] = (float)(checker ? 0.5 * size : size);
     use->nearest = checker;
@@ -164,7 +164,7 @@ static bool file_texture(struct reader *reader, const struct place *place, const
     return result == WHIT_OK;
 }
 
-/* A * (u, v) + b with A = rotation * scale, on top of what the pattern's size asks for. */
+/* Combines the texture's transform with the pattern's: A * (u, v) + b with A = rotation * scale. */
 static bool texture_transform(struct reader *reader, const struct place *place, const json_t *value,
                               struct scene_texture_use *use)
 {
@@ -236,7 +236,7 @@ static bool read_textures(struct reader *reader, const struct place *place, cons
         [SCENE_SLOT_EMISSION] = "emission_map", [SCENE_SLOT_NORMAL] = "normal_map",
         [SCENE_SLOT_BUMP] = "bump_map",         [SCENE_SLOT_METAL_ROUGH] = "metal_rough_map",
         [SCENE_SLOT_OPACITY] = "opacity_map",   [SCENE_SLOT_TRANSMISSION] = "transmission_map",
-        [SCENE_SLOT_SPECULAR_LEVEL] = NULL, /* glTF alone has it */
+        [SCENE_SLOT_SPECULAR_LEVEL] = NULL, /* only in glTF */
     };
     for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
         if (keys[slot] && !read_texture(reader, place, value, keys[slot], &out->textures[slot]))
@@ -255,7 +255,8 @@ static void set_grey(float out[3], float level)
     out[0] = out[1] = out[2] = level;
 }
 
-/* What is not said follows from what is: a mirror or glass has no colour of its own. */
+/* Defaults depend on the keys given: the diffuse default is what `reflection` leaves, and 0 for
+   glass. */
 static bool read_phong(struct reader *reader, const struct place *place, const json_t *value,
                        struct scene_material *out)
 {
@@ -339,7 +340,7 @@ static bool read_common(struct reader *reader, const struct place *place, const 
            read_alpha(reader, place, value, out) && read_textures(reader, place, value, out);
 }
 
-/* Keys of another kind of material, and what to write instead of its colour. */
+/* Refuses keys of other kinds of materials; for their colour keys, the error names this kind's. */
 static bool check_keys(struct reader *reader, const struct place *place, const json_t *value,
                        const char *kind_key, const char *const *own)
 {
@@ -433,7 +434,7 @@ static bool named_material(struct reader *reader, const struct place *place, con
     return false;
 }
 
-/* A material's name or a material written in place. */
+/* Reads a reference to a material: its name, or a material object written in place. */
 static bool material_use(struct reader *reader, const struct place *place, const json_t *value,
                          uint32_t *index)
 {

@@ -1,4 +1,4 @@
-/* Objects of a scene file that are models of other files. */
+/* Objects of a scene file that are models in other files. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,7 +39,7 @@ static bool load_new_model(struct reader *reader, const struct placement *what, 
     return true;
 }
 
-/* The same mesh under another material. */
+/* Adds a copy of a mesh with another material. */
 static bool add_copy(struct reader *reader, const struct place *place, uint32_t mesh,
                      uint32_t material, uint32_t *out)
 {
@@ -59,7 +59,7 @@ static bool add_copy(struct reader *reader, const struct place *place, uint32_t 
     return *out != SCENE_NONE || reader_no_memory(reader);
 }
 
-/* Gives instances from `first` on meshes of their own, under `material`. */
+/* Gives all instances from index `first` on copies of their meshes, with `material`. */
 static bool dress_instances(struct reader *reader, const struct place *place, uint32_t first,
                             uint32_t material)
 {
@@ -80,7 +80,7 @@ static bool dress_instances(struct reader *reader, const struct place *place, ui
     return good;
 }
 
-/* In the place of a material: whatever the model was placed under first. */
+/* Stands for the material of the model's first placement, whatever it was. */
 #define ANY_MATERIAL (SCENE_NONE - 1)
 
 static char *key_of(const struct placement *what, uint32_t material)
@@ -101,7 +101,7 @@ static bool find_model(const struct reader *reader, const struct placement *what
     return found;
 }
 
-/* The model that is added next. */
+/* Registers a key for the model that is added next, which has index model_count. */
 static bool know_model(struct reader *reader, const struct placement *what, uint32_t material)
 {
     char *key = key_of(what, material);
@@ -118,8 +118,8 @@ static bool add_model(struct reader *reader, const struct placement *what,
             reader_no_memory(reader));
 }
 
-/* A model that was placed before is not read again: its meshes get more instances, or are copied
-   where they are to have another material. */
+/* Places a model that was read before. `dressed`: its meshes have the right material and just get
+   more instances; else they are copied with the new material. */
 static bool place_again(struct reader *reader, const struct place *place,
                         const struct placement *what, uint32_t node, uint32_t index, bool dressed)
 {

@@ -1,4 +1,4 @@
-/* Objects of a scene file: shapes, models and groups, with their keys checked, and repeated. */
+/* Objects of a scene file: shapes, models and groups, and their repetition by `repeat`. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,7 +96,7 @@ static bool read_content(struct reader *reader, const struct place *place, const
     return !children || reader_objects(reader, &at_children, children, node, depth + 1);
 }
 
-/* Keys of other kinds of objects: a sphere has no tube. */
+/* Refuses a key of another kind of object: for example, a sphere has no `tube`. */
 static bool refuse_foreign_key(struct reader *reader, const struct place *place, const char *key,
                                const char *kind)
 {

@@ -1,5 +1,5 @@
-/* What objects of a scene file consist of. As in scene_reader.h, functions give false after they
-   logged one error. */
+/* Readers for objects of a scene file. As in scene_reader.h, functions give false after they logged
+   one error. */
 #ifndef LOAD_SCENE_OBJECTS_H
 #define LOAD_SCENE_OBJECTS_H
 
@@ -24,18 +24,19 @@ enum shape {
     SHAPE_COUNT
 };
 
-/* scene_shapes.c: by enum shape; shape_names and each list of keys end with NULL. */
+/* scene_shapes.c: names and allowed keys by enum shape; shape_names and each list of keys end with
+   NULL. */
 extern const char *const shape_names[SHAPE_COUNT + 1];
 extern const char *const *const shape_keys[SHAPE_COUNT];
-/* A shape's mesh and instances, below `node`. */
+/* Adds a shape's mesh and instances, below `node`. */
 bool reader_shape(struct reader *reader, const struct place *place, const json_t *object,
                   enum shape shape, const char *name, uint32_t node);
 
-/* scene_models.c: all of the model that the object names, below `node`. */
+/* scene_models.c: adds the model that the object names, below `node`. */
 bool reader_model(struct reader *reader, const struct place *place, const json_t *object,
                   uint32_t node);
 
-/* scene_transform.c: where the object is, into `node`. */
+/* scene_transform.c: reads the object's transform into `node`. */
 bool reader_transform(struct reader *reader, const struct place *place, const json_t *object,
                       struct scene_node *node);
 

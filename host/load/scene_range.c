@@ -1,4 +1,4 @@
-/* What one object added to the scene, to be added once more. */
+/* Copies of all that one object added to the scene. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,7 +34,7 @@ static bool copy_channel(struct reader *reader, struct scene_channel channel, ui
     return scene_add_channel(reader->scene, channel) != SCENE_NONE || reader_no_memory(reader);
 }
 
-/* A name is NULL where memory ran out for it. */
+/* Length of a name, which is NULL where memory ran out for it. */
 static uint64_t length_of(const char *name)
 {
     return name ? strlen(name) : 0;

@@ -45,7 +45,8 @@ static const char *skip_value(const char *at)
     return at;
 }
 
-/* The member's key in *key and its value; NULL when it is written with escapes. */
+/* Finds a member in the text of an object: its value, and *key, its key. NULL if it is not found,
+   as when the key is written with escapes. */
 static const char *find_member(const char *object, const char *name, const char **key)
 {
     size_t length = strlen(name);
@@ -75,7 +76,7 @@ static const char *find_element(const char *array, size_t index)
     return at;
 }
 
-/* Where the value starts, and what to point at: its key where it has one. */
+/* Where the value starts in the text. *marked: what an error points at, its key if it has one. */
 static const char *locate(const struct reader *reader, const struct place *place,
                           const char **marked)
 {
@@ -106,7 +107,7 @@ static void line_and_column(const struct reader *reader, const char *at, uint32_
         if (*text == '\n') {
             ++*line;
             *column = 1;
-        } else if (((unsigned char)*text & 0xc0) != 0x80) { /* UTF-8: count characters */
+        } else if (((unsigned char)*text & 0xc0) != 0x80) { /* not a UTF-8 continuation byte */
             ++*column;
         }
     }
@@ -137,8 +138,8 @@ static size_t place_text(const struct place *place, char *out, size_t out_bytes)
     return more < 0 ? used : used + (size_t)more;
 }
 
-/* The parser names the bracket that it looked for and what it met in its place. This is what most
- * often is wrong. */
+/* Guesses the cause of a syntax error from jansson's message, which names what was expected and
+   what was found. */
 static const char *syntax_hint(const char *error)
 {
     if (strstr(error, "near '/"))
@@ -204,7 +205,7 @@ bool reader_no_memory(struct reader *reader)
     return false;
 }
 
-/* The key of `known` that means what other programs call `word`; NULL: there is none. */
+/* The key in `known` for what other programs call `word`; NULL: there is none. */
 static const char *same_meaning(const char *word, const char *const *known)
 {
     static const char *const meanings[][4] = {
@@ -279,7 +280,7 @@ bool reader_object_lists(struct reader *reader, const struct place *place, const
     json_t *member;
     if (!json_is_object(value))
         return reader_fail(reader, place, "an object { } is expected here");
-    /* jansson iterates through non-const pointers only; nothing is changed. */
+    /* The cast drops const: jansson iterates over non-const objects only. Nothing is changed. */
     json_object_foreach((json_t *)(uintptr_t)value, key, member)
     {
         bool known = strcmp(key, "comment") == 0 || listed_in(key, lists, list_count);

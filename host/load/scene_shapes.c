@@ -1,4 +1,4 @@
-/* Objects of a scene file that are shapes: made by formula, from a few sizes. */
+/* Objects of a scene file that are shapes, which are made by formula from a few sizes. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +35,7 @@ const char *const *const shape_keys[SHAPE_COUNT] = {
     box_keys,     plane_keys,   sphere_keys, icosphere_keys, torus_keys, cylinder_keys, cone_keys,
     terrain_keys, strands_keys, atrium_keys, flake_keys,     ball_keys,  balls_keys};
 
-/* "size" as one number for all sides, or as one a side. */
+/* Reads "size": one number for all sides, or one for each. */
 static bool read_size(struct reader *reader, const struct place *place, const json_t *object,
                       size_t count, double *out)
 {
@@ -159,7 +159,7 @@ static whit_result make_mesh(enum shape shape, const struct shape_sizes *s, stru
         return shape_strands(s->size[0], s->length, s->width, s->count, s->seed, out);
     case SHAPE_ATRIUM:
         return shape_atrium(s->bays, s->level, out);
-    case SHAPE_BALLS: /* read_balls */
+    case SHAPE_BALLS: /* made by read_balls */
     case SHAPE_COUNT:
         break;
     }
@@ -174,7 +174,7 @@ static uint64_t balls_of(const struct shape_sizes *s)
     return count;
 }
 
-/* The most triangles that a shape has; for an atrium, about as many. */
+/* An upper bound of a shape's triangles; for an atrium an estimate. */
 static uint64_t triangles_of(enum shape shape, const struct shape_sizes *s)
 {
     uint64_t level = s->level, segments = s->segments;
@@ -206,7 +206,7 @@ static uint64_t mesh_cost(enum shape shape, const struct shape_sizes *s)
                                         : scene_triangle_cost(count, count, 8 * sizeof(float));
 }
 
-/* Everything that makes two meshes the same one. */
+/* A key that is equal for shapes that give equal meshes. */
 static char *shape_key(enum shape shape, const struct shape_sizes *s, uint32_t material)
 {
     return string_format("%d %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g "
@@ -217,7 +217,7 @@ static char *shape_key(enum shape shape, const struct shape_sizes *s, uint32_t m
                          s->bays, s->balls, s->center[0], s->center[1], s->center[2]);
 }
 
-/* Takes over what `mesh` owns. */
+/* Adds a mesh with one material. Takes ownership of the mesh's arrays. */
 static bool add_dressed(struct reader *reader, enum shape shape, struct scene_mesh mesh,
                         uint32_t material, uint32_t *index)
 {
@@ -242,7 +242,7 @@ static bool add_mesh(struct reader *reader, const struct place *place, enum shap
     return add_dressed(reader, shape, mesh, material, index);
 }
 
-/* "spheres": [[x, y, z, radius], ...] as one mesh of their own. */
+/* Reads "spheres": [[x, y, z, radius], ...] into one mesh. */
 static bool read_balls(struct reader *reader, const struct place *place, const json_t *object,
                        uint32_t material, uint32_t *index)
 {
@@ -268,7 +268,7 @@ static bool read_balls(struct reader *reader, const struct place *place, const j
     return good && add_dressed(reader, SHAPE_BALLS, mesh, material, index);
 }
 
-/* Equal shapes share a mesh, and so one tree. */
+/* Gives the shape's mesh, which equal shapes share, and with it a tree. */
 static bool shared_mesh(struct reader *reader, const struct place *place, enum shape shape,
                         const struct shape_sizes *sizes, uint32_t material, uint32_t *index)
 {

@@ -1,4 +1,4 @@
-/* Where an object of a scene file is: a matrix, or translation, rotation and scale. */
+/* The transform of an object in a scene file: a matrix, or translation, rotation and scale. */
 #include "load/scene_animation.h"
 #include "load/scene_objects.h"
 

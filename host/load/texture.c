@@ -16,8 +16,8 @@
 
 enum { BY_FILE = 1, BY_BYTES };
 
-/* What two names of one picture share, be it a file or bytes within one. Names hold no zero bytes,
-   so these keys are none. */
+/* Identifies a picture that may have several names, by its file's inode or by a hash of its bytes.
+   Keys are in one table with names, which never equal a key, since they have no zero bytes. */
 struct key {
     uint64_t kind, damaged, limit, words[4];
 };
@@ -50,8 +50,8 @@ static struct key key_of_bytes(const uint8_t *data, size_t size_bytes,
         {size_bytes, hash_bytes(HASH_START, data, size_bytes), hash_bytes(1, data, size_bytes)}};
 }
 
-/* Gives `name` the texture that the key has. What is damaged is found only where magenta may take
-   its place. */
+/* If a texture with this key exists, makes it also the texture of `name`. `damaged_too`: finds also
+   pictures that could not be decoded, whose texture is magenta. */
 static bool share(struct scene *scene, const char *name, struct key key, bool damaged_too,
                   uint32_t *index)
 {
@@ -69,17 +69,17 @@ static bool share(struct scene *scene, const char *name, struct key key, bool da
     return found;
 }
 
-/* The bytes of a texture, once. */
+/* The encoded bytes of a texture, and the keys under which it will be found. */
 struct source {
     const uint8_t *data;
     uint8_t *owned;
     size_t size_bytes;
     struct key keys[2];
     uint32_t key_count;
-    bool too_large; /* for the scene; it was said */
+    bool too_large; /* exceeds the scene's memory limit, which was logged */
 };
 
-/* The reason of an error that names `path`. */
+/* Keeps the reason of an error that is logged about `path`. */
 struct unread {
     const char *path;
     char *reason;
@@ -88,7 +88,7 @@ struct unread {
 static void keep_reason(void *user, whit_log_level level, const char *message)
 {
     const struct unread *unread = user;
-    char path[4 * 2048]; /* as it is shown */
+    char path[4 * 2048]; /* escaped, as in messages */
     whit_text_show(unread->path, path, sizeof path);
     size_t length = strlen(path);
     bool named = strncmp(message, path, length) == 0 && message[length] == ':';
@@ -97,7 +97,7 @@ static void keep_reason(void *user, whit_log_level level, const char *message)
              named ? message + length + 2 : "it cannot be read");
 }
 
-/* Silent: a missing texture is a warning of the scene, not an error. */
+/* Reads the file without logging: a missing texture is a warning of the scene, not an error. */
 static whit_result read_source(struct scene *scene, const char *path, struct source *source,
                                char reason[FOREIGN_REASON_BYTES])
 {
@@ -110,7 +110,7 @@ static whit_result read_source(struct scene *scene, const char *path, struct sou
     return result;
 }
 
-/* Where the header tells of more than the scene can afford nothing is decoded. */
+/* Decodes the picture, unless its header states more pixels than the memory limit allows. */
 static whit_result decode_source(struct scene *scene, const char *name,
                                  const struct foreign_params *foreign, struct source *source,
                                  struct picture *picture, char reason[FOREIGN_REASON_BYTES])
@@ -127,7 +127,7 @@ static whit_result decode_source(struct scene *scene, const char *name,
     return source->too_large ? WHIT_ERROR_INPUT : result;
 }
 
-/* Decodes what no texture was made of yet; else *index is the one that was. */
+/* Decodes a picture; if it is a texture of the scene already, sets *index to that instead. */
 static whit_result decode(struct scene *scene, const char *name, const whit_load_params *params,
                           bool damaged_too, struct source *source, struct picture *picture,
                           uint32_t *index, char reason[FOREIGN_REASON_BYTES])
@@ -155,7 +155,7 @@ static whit_result decode(struct scene *scene, const char *name, const whit_load
     return decode_source(scene, name, &foreign, source, picture, reason);
 }
 
-/* What a texture that cannot be had looks like; never mistaken for one that can. */
+/* Makes the picture that replaces an unreadable texture: plain magenta, which nobody overlooks. */
 static bool make_magenta(struct picture *picture)
 {
     *picture = (struct picture){.width = 1, .height = 1, .rgba = array_alloc(1, 4)};
@@ -196,7 +196,7 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
                          size_t size_bytes, const whit_load_params *params, uint32_t *index,
                          const char **reason)
 {
-    static _Thread_local char why[FOREIGN_REASON_BYTES]; /* outlives the call */
+    static _Thread_local char why[FOREIGN_REASON_BYTES]; /* *reason points here after the call */
     struct picture picture = {0};
     struct source source = {.data = data, .size_bytes = size_bytes};
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
@@ -206,7 +206,7 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
     *index = SCENE_NONE;
     if (!name)
         goto done;
-    /* A model's stand-in for a missing file does not make it less missing. */
+    /* A missing file is reported to the caller even if it has a magenta texture by now. */
     bool missing = reason && !data && roots_reach(&scene->roots, name) != REACH_FILE;
     result = WHIT_OK;
     if (!missing && scene_find_texture(scene, name, index))
@@ -218,7 +218,7 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
     bool damaged = result != WHIT_OK;
     if (damaged && reason) {
         *reason = why;
-        said = true; /* by whoever asked */
+        said = true; /* the caller will report it */
         goto done;
     }
     if (damaged)

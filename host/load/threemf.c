@@ -15,7 +15,7 @@ enum {
     LOCAL_BYTES = 30,
     STORED = 0,
     DEFLATED = 8,
-    HEAD_BYTES = 16384, /* of a model: its first tag is within */
+    HEAD_BYTES = 16384, /* bytes of the model file that are read, to find its first tag */
 };
 
 static uint32_t read_le(const uint8_t *at, int bytes)
@@ -26,7 +26,7 @@ static uint32_t read_le(const uint8_t *at, int bytes)
     return value;
 }
 
-/* The first bytes of the file that a directory's entry is about, as text. */
+/* Reads the first bytes of the file that a central directory's entry describes, as text. */
 static bool read_head(const uint8_t *data, size_t size_bytes, const uint8_t *entry,
                       char head[HEAD_BYTES])
 {

@@ -6,17 +6,18 @@
 #include "base/file.h"
 #include "base/vec.h"
 
-/* A model stands on an end where flat surface within SLAB of its extent covers this share of the
-   ground below it. */
+/* A model stands on an axis' lower end if surface within SLAB of its extent from that end covers at
+   least the share STANDS of its ground area, and does not if it covers less than HARDLY. */
 static const double SLAB = 0.02, STANDS = 0.15, HARDLY = 0.02;
-/* And this share is a floor, whose sides nothing else reaches. */
+/* Surface that covers this share of the ground is a floor. */
 static const double FLOOR = 0.5;
-/* So is one that is this low, with what reaches below it such as a foundation. */
+/* A floor may also lie up to this share of the extent above the end, as on a foundation. */
 static const double LOW = 0.1;
-/* What is thinner than this share of its other sides is a board, which may stand on an edge. */
+/* A model thinner than this share of its other sides is a board, which may stand on an edge. */
 static const double BOARD = 0.15;
 
-/* Exact: numbers change places and signs, and are not rounded. */
+/* Rotation matrices that turn each axis to +y; exact, since they only swap and negate
+   coordinates. */
 static const double turns[][9] = {
     [WHIT_UP_X] = {0, -1, 0, 1, 0, 0, 0, 0, 1},
     [WHIT_UP_Y] = {1, 0, 0, 0, 1, 0, 0, 0, 1},
@@ -62,11 +63,11 @@ static struct shape measure(const struct scene *scene)
     return shape;
 }
 
-/* What is at the lower end of an axis. */
+/* What is at the lower end of an axis, as shares of the ground area: the box's face at that end. */
 struct ending {
-    double flat; /* the share of the ground below it that flat surface covers */
-    double low;  /* the same, of all that is low; what has two sides counts twice */
-    double rest; /* the share that the box around everything else takes; 0: nothing else */
+    double flat; /* covered by triangles within SLAB of the end */
+    double low;  /* covered by flat triangles within LOW of the end, each side of a solid counted */
+    double rest; /* covered by the box around all triangles not in `flat`; 0: there are none */
 };
 
 static struct ending look_below(const struct scene *scene, const struct shape *shape, int axis)
@@ -110,11 +111,11 @@ whit_up up_guess(const struct scene *scene, bool z_usual)
     struct ending y = look_below(scene, &shape, 1), z = look_below(scene, &shape, 2);
     if (z_usual)
         return y.flat >= STANDS && z.flat < HARDLY ? WHIT_UP_Y : WHIT_UP_Z;
-    /* A floor with something in its middle, which is no picture in a frame. */
+    /* A floor with something in its middle; a picture in a frame would fill most of the floor. */
     if (z.flat >= FLOOR && z.rest > 0.0 && z.rest < FLOOR && y.flat < HARDLY)
         return WHIT_UP_Z;
     bool board = extent[2] < BOARD * fmin(extent[0], extent[1]);
-    /* Programs that mean z put the ground at z = 0. */
+    /* Programs with z upwards put the ground at z = 0. */
     bool grounded = fabs(shape.lo[2]) <= SLAB * extent[2] && fabs(shape.lo[1]) > SLAB * extent[1];
     bool stands = (z.flat >= STANDS && y.flat < HARDLY) || (z.low >= FLOOR && y.low < HARDLY);
     return !board && grounded && stands ? WHIT_UP_Z : WHIT_UP_Y;
