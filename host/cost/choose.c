@@ -1,5 +1,5 @@
-/* What a report's figures say: which rows are in the Pareto set, what each setting is good for, and
-   which settings together best meet a limit of error or of time. */
+/* Conclusions from a report's figures: which rows are in the Pareto set, what each setting is good
+   for, and which combination of settings best meets a limit of error or of time. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -33,8 +33,8 @@ static double rank_ms(const struct cost_report *report, const struct cost_row *r
     return row == usual || row->price.verdict ? row->ms[report->clock] : usual->ms[report->clock];
 }
 
-/* Whether row a dominates row b: not slower and not less right (within 1 %), and better in one of
-   the two. Of two equal rows the one above in the table dominates. */
+/* Whether row a dominates row b: it is at least as fast and as right (within 1 %), and better in
+   one of these. Of two equal rows the one above in the table dominates. */
 static bool beats(const struct cost_report *report, enum cost_metric metric,
                   const struct cost_row *a, const struct cost_row *b)
 {
@@ -55,14 +55,14 @@ void cost_mark_best(struct cost_report *report, enum cost_metric metric)
     }
 }
 
-/* The setting's bias, which is its error without that of samples, where that is known; else the
- * whole error. */
+/* The setting's bias: its error without the sampling error, which is measured against the reference
+   of one sample; the whole error where `alone` was not measured. */
 static double bias_of(const struct cost_row *row, enum cost_metric metric)
 {
     return cost_error_of(row->alone.pixel_count ? &row->alone : &row->error, metric);
 }
 
-/* Rays of both sets whose hit is not the exact one. */
+/* Number of rays in both sets whose hit is not the exact one. */
 static uint64_t inexact_hits(const struct cost_row *row)
 {
     uint64_t sum = 0;
@@ -105,14 +105,14 @@ double choose_from_sum(double sum, enum cost_metric metric)
 
 static double samples_of(const struct search *search, const struct cost_row *row)
 {
-    double value = strtod(row->setting, NULL); /* of adaptive ones 0 */
+    double value = strtod(row->setting, NULL); /* 0: adaptive sampling */
     return value < 1.0 ? search->report->reference_samples
-                       : value; /* adaptive ones: up to as many */
+                       : value; /* adaptive sampling takes up to reference_samples */
 }
 
-/* The error by sampling. With as many samples as the reference they are the same ones, so the
-   measured error does not hold it: then it is at least half the error of a quarter of the samples,
-   since four times as many random samples halve the error. */
+/* The sampling error of a row of knob `aa`. A row with as many samples as the reference has the
+   very samples of the reference, so its measured error lacks the sampling error. That is then taken
+   to be at least half the error of a quarter of the samples, as for random samples. */
 static double sampled_error(const struct search *search, const struct cost_row *row)
 {
     const struct cost_report *report = search->report;
@@ -157,8 +157,8 @@ static void collect(struct search *search)
     }
 }
 
-/* Takes the fastest setting of each knob that does not change the picture. A tree must save its
-   building time within one picture. */
+/* Takes the fastest setting of each knob that does not change the picture. Another tree must save
+   in one picture the time of its build. */
 static void take_free(struct search *search)
 {
     const struct cost_report *report = search->report;
@@ -187,7 +187,8 @@ bool choose_is_searched(const struct search *search, uint32_t knob)
     return knob_change(&search->table[knob]) == SETTING_LIGHT;
 }
 
-/* All combinations of shading settings, for the cheapest below the error. */
+/* Tries all combinations of shading settings, knob by knob, and keeps the cheapest one below the
+   limit of error. */
 static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 {
     if (knob == search->count) {

@@ -1,15 +1,15 @@
-/* The choice within a time (within.c) and that below an error (choose.c) share this: how much each
-   setting changes time and error. */
+/* Shared by the choice within a time (within.c) and the choice below an error (choose.c): how much
+   each setting changes time and error. */
 #ifndef COST_CHOOSE_H
 #define COST_CHOOSE_H
 
 #include "cost/cost.h"
 
-/* Errors whose difference is below this share count as equal. */
+/* Errors that differ by less than this share count as equal. */
 #define CHOOSE_AS_RIGHT 0.01
 
-/* A setting beside the usual picture: `ratio` of their times, and the error that it adds (a square
-   of RMSE, or a mean of FLIP, so that errors of several settings add up). */
+/* A setting compared with the usual picture: `ratio` of their times, and the `error` that it adds,
+   as a squared RMSE or a mean FLIP, so that errors of several settings can be summed. */
 struct effect {
     double ratio, error;
     bool known;
@@ -20,17 +20,18 @@ struct search {
     const struct knob *table;
     uint32_t count, aa;
     struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
-    double usual_bias; /* the usual settings' error without that of samples, as a sum */
+    double usual_bias; /* the usual settings' error without the sampling error: choose_to_sum */
     uint8_t settings[COST_CHOICE_KNOBS];
     struct cost_choice best;
 };
 
+/* Convert an error to a value that sums over settings (squared RMSE, or FLIP), and back. */
 double choose_to_sum(double error, enum cost_metric metric);
 double choose_from_sum(double sum, enum cost_metric metric);
-/* Whether settings of the knob are chosen: those that change light alone. */
+/* Whether the search tries settings of this knob: only of knobs that change shading alone. */
 bool choose_is_searched(const struct search *search, uint32_t knob);
 
-/* Marks the Pareto set by the report's clock and metric. */
+/* Sets `best` of the rows in the Pareto set of time, by the report's clock, and error. */
 void cost_mark_best(struct cost_report *report, enum cost_metric metric);
 
 #endif

@@ -1,4 +1,5 @@
-/* What effects cost: the picture as it is, and with one effect more or less, in turns. */
+/* Prices effects: times the usual picture and one with a single effect added or removed, in
+   turns. */
 #include "cost/cost.h"
 
 static whit_result price_effect(const struct cost_effects *request, uint32_t index,

@@ -1,4 +1,4 @@
-/* The sentences that open a report of `whit cost`, made of its figures. */
+/* The sentences at the top of a report of `whit cost`, made from its figures. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -9,13 +9,14 @@
 #include "cost/cost.h"
 
 enum {
-    SENTENCE_FINDINGS = 3, /* more are not read in ten seconds */
-    JUDGED_WIDTH = 320,    /* what is judged by smaller pictures says so */
+    SENTENCE_FINDINGS = 3, /* what a reader takes in within ten seconds */
+    JUDGED_WIDTH = 320,    /* findings from narrower pictures state their width */
 };
 
-/* Below this FLIP nobody sees a difference; a time or error that differs by less than these shares
-   is not worth a sentence; more time than this is not what people wait for at a whim; an interval
-   this much above 1 does not say that a setting costs nothing. */
+/* FLIP_UNSEEN: nobody sees a smaller difference. ERROR_SHARE, TIME_SHARE: smaller changes of error
+   or time are not worth a sentence. RATIO_MAX: settings that take longer, in usual times, are not
+   recommended. TIME_UNSURE: an interval of the ratio that reaches further above 1 does not show
+   that a setting is free. HALF_LOW..HALF_HIGH: percentages that are called half. */
 static const double FLIP_UNSEEN = 0.002, ERROR_SHARE = 0.05, TIME_SHARE = 0.03, RATIO_MAX = 20.0,
                     TIME_UNSURE = 0.1, HALF_LOW = 45.0, HALF_HIGH = 55.0;
 
@@ -62,7 +63,7 @@ static const struct cost_row *row_of(const struct cost_report *report, const cha
 
 /* ---- More time ---- */
 
-/* The setting whose error falls most for each doubling of the time. */
+/* The setting with the largest fall of error per doubling of the time. */
 static const struct cost_row *best_buy(const struct cost_report *report)
 {
     const struct cost_row *best = NULL;
@@ -113,7 +114,8 @@ static bool find_more_time(const struct cost_report *report, struct cost_finding
 
 /* ---- Bounces ---- */
 
-/* How much less right it is than the deepest picture, both with the reference's one sample. */
+/* How much larger the FLIP of a depth is than that of the deepest picture, both to the reference of
+   one sample. */
 static double flip_beyond(const struct cost_row *row, const struct cost_row *deepest)
 {
     return row->alone.flip_mean - deepest->alone.flip_mean;
@@ -177,13 +179,13 @@ static bool find_exact(const struct cost_report *report, struct cost_finding *fi
 
 /* ---- Less time ---- */
 
-/* The setting that saves most of those that are as right; NULL: there is none. */
+/* Among settings that are as right as the usual ones, the one that saves most time; or NULL. */
 static const struct cost_row *free_saving(const struct cost_report *report)
 {
     const struct cost_row *best = NULL;
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
-        /* Trees take time to build, which a picture has to earn: cost_say_answers tells when. */
+        /* Settings of trees are left out, since a picture must also save their time to build. */
         if (is_told(row) && row->build_ms < 0.0 && ratio_of(report, row) < 1.0 - TIME_SHARE &&
             cost_use_of(report, row) == COST_USE_FREE &&
             (!best || ratio_of(report, row) < ratio_of(report, best)))

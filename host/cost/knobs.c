@@ -161,7 +161,7 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
     whit_scene_info info;
     whit_scene_get_info(scene, &info);
     if (wanted->effect && !calls_for(scene, wanted->effect)) {
-        /* Light that goes through and not back bounces too. */
+        /* Refracted rays are bounces too, in scenes without reflection. */
         if (strcmp(wanted->effect, "reflection") != 0 || !calls_for(scene, "refraction"))
             return "the scene does not call for it";
     }
@@ -186,7 +186,7 @@ void knob_apply(const struct knob *knob, uint32_t setting, struct settings *sett
     if (!knob->setting)
         return;
     setting_read(settings_row(knob->setting), text_of(knob, setting), settings, why);
-    if (strcmp(knob->setting, "effects") == 0) { /* one less than those that there are */
+    if (strcmp(knob->setting, "effects") == 0) { /* adds to effects that were removed before */
         settings->picture.all_effects |= before.all_effects;
         settings->picture.effects_added |=
             before.effects_added & ~settings->picture.effects_removed;

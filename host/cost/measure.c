@@ -11,9 +11,11 @@
 #include <string.h>
 
 enum { SMALL_SHRINK = 4, SMALL_SIDE = 16, PROBES = 6 };
-/* Shares of the requested time: for references and their judging; for the usual settings. */
+/* Shares of the requested time: for references and the pictures judged by them; for the row of the
+   usual settings. */
 static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
-/* Four times the samples take a little more than four times as long. */
+/* Added to limits given as multiples of the usual time: four times as many samples take a little
+   more than four times as long. */
 static const double OF_USUAL_ROOM = 1.2;
 
 whit_result measure_still_wanted(const struct measure *measure)
@@ -29,7 +31,8 @@ double measure_left_s(const struct measure *measure)
     return limit_s > 0.0 ? fmax(limit_s - spent_s, 1e-6) : 0.0;
 }
 
-/* What is left to be done by the time that it was given, or by what the last rows took. */
+/* Estimate of the time left: what is left of the requested time, or more, by the time that the last
+   rows took. */
 static double seconds_left(const struct measure *measure, double spent_s)
 {
     const struct cost_report *report = measure->report;
@@ -47,7 +50,7 @@ void measure_say(const struct measure *measure, const char *what)
                           fmin(spent_s / fmax(spent_s + left_s, 1e-3), 0.99), left_s, what);
 }
 
-/* ---- What is measured with ---- */
+/* ---- Renderers, references and rays ---- */
 
 static void describe(const struct cost_request *request, struct cost_report *report)
 {
@@ -71,7 +74,7 @@ void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t
     *height = *height > SMALL_SIDE ? *height : SMALL_SIDE;
 }
 
-/* The usual renderer, and what a pixel of it takes. */
+/* Makes the renderer of the usual settings, and measures its time per pixel. */
 static whit_result open_renderer(struct measure *measure)
 {
     struct cost_report *report = measure->report;
@@ -83,7 +86,7 @@ static whit_result open_renderer(struct measure *measure)
     whit_result result = whit_renderer_create(measure->request->device, measure->request->accel,
                                               &params, &measure->renderer);
     if (result == WHIT_OK)
-        result = whit_renderer_render(measure->renderer); /* tells which clocks there are */
+        result = whit_renderer_render(measure->renderer); /* to learn which clocks there are */
     if (result != WHIT_OK)
         return result;
     whit_renderer_get_stats(measure->renderer, &stats);
@@ -162,7 +165,7 @@ static bool is_wanted(const struct cost_request *request, const struct cost_repo
     const struct knob *table = knob_table(&count);
     if (request->knobs != COST_KNOBS_ALL && !(request->knobs >> knob & 1))
         return false;
-    /* The reference says nothing of more samples than it has; adaptive ones are up to 64. */
+    /* The reference cannot judge more samples than it has; adaptive sampling takes up to 64. */
     double samples = strtod(knob_setting_name(&table[knob], setting), NULL); /* adaptive: 0 */
     return strcmp(table[knob].name, "aa") != 0 ||
            (samples < 1.0 ? 64.0 : samples) <= report->reference_samples;
@@ -207,7 +210,7 @@ static whit_result measure_setting(struct measure *measure, uint32_t index)
     double left_s = measure->request->seconds - (begun_ms - measure->start_ms) * 1e-3;
     double share_s = fmax(left_s, 0.0) / (report->row_count - index);
     whit_result result = measure_row(measure, &target, knob_level(knob), share_s, row);
-    /* Rows of many samples say nothing of those after them. */
+    /* Rows of knob `aa` do not predict how long the rows after them take. */
     double row_s = (whit_clock_ms() - begun_ms) * 1e-3;
     measure->row_s = strcmp(row->knob, "aa") == 0 ? 0.0
                      : measure->row_s == 0.0      ? row_s
@@ -280,9 +283,9 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
     return result;
 }
 
-/* Takes a measured row that keeps the limit, where no predicted combination does: for a limit of
-   time the one that gives up what is missed least, and of those that give up the same the one with
-   the least error; the cheapest for a limit of error. */
+/* Takes a measured row that keeps the limit, where no predicted combination does. For a limit of
+   error that is the cheapest row; for a limit of time the one that comes first in the order of
+   within.c, and among equal ones the one with the least error. */
 static void take_measured(const struct cost_report *report, struct cost_answer *answer)
 {
     const struct cost_goal *goal = &answer->goal;
@@ -292,9 +295,9 @@ static void take_measured(const struct cost_report *report, struct cost_answer *
         const struct cost_row *row = &report->rows[i];
         double error = cost_error_of(&row->error, goal->metric);
         double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
-        /* Counted from 1, so that what gives up nothing comes first. */
+        /* WHIT_NONE + 1 is 0: rows that give up nothing come first. */
         uint32_t step = goal->kind == COST_WITHIN ? cost_step_of(row->knob, row->setting) + 1 : 0;
-        /* The error of one picture does not tell which rays miss: settings of hits stay usual. */
+        /* Settings that change hits are never taken: one picture does not show which rays miss. */
         if (!row->measured || row->broken || row->change == SETTING_HITS || !is_kept(goal, row) ||
             step > best_step || (step == best_step && !(rank < best)))
             continue;
@@ -309,7 +312,8 @@ static void take_measured(const struct cost_report *report, struct cost_answer *
     }
 }
 
-/* What is measured teaches how far off the prediction is: then once more with a narrower limit. */
+/* Predicts settings for a goal and measures them. Where they exceed the limit, tries again with a
+   narrower limit for the prediction. */
 static whit_result answer_goal(struct measure *measure, const struct cost_goal *goal)
 {
     enum { TRIES = 3 };
@@ -323,7 +327,7 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
     for (int i = 0; result == WHIT_OK && i < TRIES; ++i) {
         const struct cost_choice choice = cost_choose(report, &aim);
         if (answer->row && choice.found)
-            --report->row_count; /* of the try before */
+            --report->row_count; /* drops the row of the try before */
         if (!choice.found && i > 0)
             break;
         *answer = (struct cost_answer){.goal = wanted,

@@ -1,11 +1,11 @@
-/* What the parts of cost_measure share; see cost.h. */
+/* State and functions that the parts of cost_measure share; see cost.h. */
 #ifndef COST_MEASURE_H
 #define COST_MEASURE_H
 
 #include "cost/cost.h"
 
-/* The reference's. Glass doubles the rays at every bounce: with no bail-out at all such a depth
-   would take for ever. */
+/* Settings of the reference. Glass doubles the rays at every bounce, so without any bail-out this
+   depth would take for ever. */
 enum { MEASURE_DEPTH = 32, MEASURE_LIGHT_SAMPLES = 64 };
 #define MEASURE_BAILOUT 0x1p-16
 
@@ -14,25 +14,26 @@ struct measure {
     struct cost_report *report;
     double start_ms;
     struct settings usual;
-    whit_renderer *renderer;             /* of the usual settings */
-    whit_renderer *beside;               /* the same again for other views, or NULL */
-    whit_image *references[2];           /* of one sample, of the most */
+    whit_renderer *renderer;             /* has the usual settings */
+    whit_renderer *beside;               /* another one, for rows of KNOB_VIEW; or NULL */
+    whit_image *references[2];           /* with one sample, with report->reference_samples */
     whit_image *usual_color, *usual_ids; /* at the judged size */
     whit_judge *judges[COST_SETS];       /* or NULL */
-    whit_hit *hits;                      /* room for those of a set */
-    double usual_pixel_ms;               /* of the usual picture, by the wall clock */
-    uint32_t row;                        /* that is being measured */
-    double row_s;                        /* that one took of late; 0: not known */
+    whit_hit *hits;                      /* room for the hits of one set of rays */
+    double usual_pixel_ms;               /* usual picture's wall clock per pixel */
+    uint32_t row;                        /* index of the row that is being measured */
+    double row_s;                        /* running mean of the time per row; 0: not known */
 };
 
+/* WHIT_ERROR_CANCELLED once the request's `cancel` is set. */
 whit_result measure_still_wanted(const struct measure *measure);
-/* Seconds left of the time limit, to be the limit of renderers and references, which count from
-   their own start; 0: there is none. */
+/* Seconds left of time_limit_s, as the limit for renderers and references, which count from their
+   own start; 0: there is no limit. */
 double measure_left_s(const struct measure *measure);
-/* Tells `what` is being done. */
+/* Reports progress; `what`: the current task. */
 void measure_say(const struct measure *measure, const char *what);
 
-/* Opens what rows are measured with. */
+/* Makes the renderer, references and rays with which rows are measured. */
 WHIT_CHECK whit_result measure_open(struct measure *measure, const struct cost_request *request,
                                     struct cost_report *report);
 void measure_close(struct measure *measure);

@@ -16,7 +16,7 @@ enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *re
     whit_device_get_info(device, &info);
     whit_renderer_get_stats(renderer, &stats);
     if (info.kind == WHIT_DEVICE_CPU)
-        return COST_CPU; /* what other programs do moves the wall clock, and this one less */
+        return COST_CPU; /* other programs disturb it less than the wall clock */
     return stats.render_device_ms >= 0.0 ? COST_DEVICE : COST_WALL;
 }
 
@@ -80,7 +80,7 @@ static void conclude(const struct pricing *pricing, enum cost_clock clock, uint3
     }
 }
 
-/* After each has warmed up. */
+/* Lets both warm up once, then times them in turns. */
 static whit_result price(struct pricing *pricing, enum cost_clock clock, uint32_t rounds,
                          struct cost_price *out)
 {

@@ -10,37 +10,39 @@
 enum cost_clock { COST_WALL, COST_CPU, COST_DEVICE, COST_CLOCKS };
 const char *cost_clock_name(enum cost_clock clock); /* "wall" */
 
-/* Two renderers in turns. */
+/* Times of two renderers that were measured in turns. */
 enum { COST_ROUNDS_MAX = 41, COST_ROUNDS_MIN = 7 };
 struct cost_price {
     uint32_t rounds, width, height;
     struct sample_median usual_ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
     struct sample_median setting_ms[COST_CLOCKS];
-    struct sample_median ratio[COST_CLOCKS];      /* setting / usual, of each pair */
-    struct sample_median difference[COST_CLOCKS]; /* setting - usual */
+    struct sample_median ratio[COST_CLOCKS];      /* setting / usual, over pairs */
+    struct sample_median difference[COST_CLOCKS]; /* setting - usual, over pairs */
     int verdict; /* by the report's clock: 1 dearer, -1 cheaper, 0 not distinguishable */
 };
-/* Renders both `rounds` times in turns (once before the clocks count). `first`, `second`: what they
-   are set to draw; NULL where they stay as they are. The same renderer twice: with both. For the
-   viewer's price list too: stops at the renderers' cancel flag. */
+/* Renders both `rounds` times in turns, after one picture each that is not timed. `first`,
+   `second`: views that the renderers are set to; NULL: they stay as they are. If both are the same
+   renderer, both views must be given. Stops at the renderers' cancel flag, as for the viewer's
+   price list. */
 WHIT_CHECK whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
                                   whit_renderer *setting, const whit_renderer_params *second,
                                   enum cost_clock clock, uint32_t rounds, struct cost_price *out);
-/* The same for a reference in double: the device's clock is the wall's for it. */
+/* The same for a reference in double, whose device time is its wall clock. */
 WHIT_CHECK whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *first,
                                          whit_reference *reference, enum cost_clock clock,
                                          uint32_t rounds, struct cost_price *out);
-/* One renderer, `rounds` times after one that warms up, set to draw `view`. */
+/* Times one renderer, set to `view`, `rounds` times after one picture that is not timed. */
 struct cost_times {
     struct sample_median ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */
-    double wall_max_ms;                   /* 90 % took at most this, by the wall clock */
+    double wall_max_ms;                   /* 90 % quantile of the wall clock */
 };
 WHIT_CHECK whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view,
                                  uint32_t rounds, struct cost_times *out);
-/* The colours of two renderers' pictures, without FLIP. */
+/* Compares the colours of two renderers' pictures, without FLIP. */
 WHIT_CHECK whit_result cost_colors(whit_renderer *a, whit_renderer *b, const whit_log *log,
                                    whit_difference *out);
-/* The clock that counts: the device's where it has one, the CPU's where that is the device. */
+/* The clock that verdicts go by: processor time for a CPU device; else the device's clock if it has
+   one, else the wall clock. */
 enum cost_clock cost_clock_of(const whit_device *device, const whit_renderer *renderer);
 
 #endif

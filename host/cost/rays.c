@@ -1,4 +1,4 @@
-/* Hits of a renderer on the two sets of rays. */
+/* Traces the two sets of rays with a renderer, and judges its hits. */
 #include <stdlib.h>
 
 #include "cost/rays.h"
@@ -12,7 +12,8 @@ const char *cost_set_name(enum cost_set set)
     return names[set];
 }
 
-/* With and without instances it is other triangles that rays are aimed at and held against. */
+/* Makes the judges of both sets. With and without instances triangles are rounded differently, so
+   each needs its own rays and exact hits. */
 static whit_result make_judges(struct measure *measure, whit_instances instances,
                                whit_judge **judges, uint64_t *max)
 {
@@ -50,7 +51,7 @@ whit_result measure_judges(struct measure *measure)
     return result == WHIT_OK && max && !measure->hits ? WHIT_ERROR_MEMORY : result;
 }
 
-/* The least of some times, after one that warms up. */
+/* Traces a judge's rays: once to warm up, then TRACES times. *min_ms: the least of these times. */
 static whit_result trace(struct measure *measure, whit_renderer *renderer, const whit_judge *judge,
                          double *min_ms)
 {

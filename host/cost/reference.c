@@ -1,4 +1,4 @@
-/* Pictures of the reference in double, made once and kept. */
+/* Pictures of the reference in double, which are kept in a cache. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,8 @@
 #include "cost/reference.h"
 #include "whit/whit_program.h"
 
-/* Raised when pictures of the reference change: then those that are kept are of no use. */
+/* KEPT_VERSION is raised when pictures of the reference change, so that cached ones are not
+   used. */
 enum { KEPT_VERSION = 4, KEPT_CHANNELS = 4, SHRINK_MAX = 16, SHRINK_GOOD = 4, SIDE_MIN = 16 };
 enum { SAMPLES_MANY = 64, SAMPLES_FEW = 16 };
 
@@ -54,7 +55,7 @@ static void kept_name(const struct measure *measure, const whit_renderer_params 
     snprintf(name, KEPT_NAME, "reference-%016" PRIx64, cost_hash(key));
 }
 
-/* NULL: it is to be made. */
+/* Reads a picture from the cache; NULL: it is not there. */
 static whit_image *read_kept(const struct measure *measure, const whit_renderer_params *params)
 {
     char name[KEPT_NAME];
@@ -130,8 +131,9 @@ static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index
     return result;
 }
 
-/* How many usual pictures rows of more than one sample take to judge, roughly: up to the most, and
-   adaptive ones. */
+/* Estimated time to draw the judged pictures of all `aa` rows, in usual pictures:
+   reference_samples and fewer (4, 16, ...) sum to 4/3, and adaptive sampling takes up to 1 times
+   reference_samples. */
 static double pictures_to_judge(const struct cost_report *report)
 {
     return (4.0 / 3.0 + 1.0) * report->reference_samples;
@@ -148,8 +150,9 @@ static bool fits(const struct measure *measure, double pixel_ms, uint32_t shrink
            height / 2.0 < fmax(SIDE_MIN, measure->request->judged_height_min);
 }
 
-/* By how much the picture is smaller than the request's, so that references and what is judged by
-   them take `seconds`; where that would be much, fewer samples instead. */
+/* Chooses by which factor the judged picture is smaller than the requested one, so that references
+   and judged pictures take at most `seconds`. Where SHRINK_GOOD would not do, the reference also
+   gets fewer samples. A size whose references are cached is taken at once. */
 static whit_result choose_shrink(struct measure *measure, double seconds, uint32_t *shrink)
 {
     struct cost_report *report = measure->report;

@@ -1,4 +1,4 @@
-/* One row of the table. */
+/* Measures one row of a report: errors, times and hits. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,8 +9,8 @@
 #include "whit/whit_program.h"
 
 enum { SHRINK_MAX = 16, BUILDS = 3, WARM_SIDE = 16, FULL_MIN = 6 };
-/* Pictures are not timed so small that they take less than this: the fixed cost of a dispatch would
-   distort the ratio. */
+/* Timed pictures are not shrunk until they take less than this, since the fixed cost of a dispatch
+   would distort the ratio. */
 static const double FRAME_MS_MIN = 10.0;
 
 whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,
@@ -19,7 +19,7 @@ whit_renderer_params measure_sized(const struct measure *measure, const struct s
     whit_renderer_params params = settings_picture(target);
     params.width = measure->report->width;
     params.height = measure->report->height;
-    params.classes = whit_classes_of(&params); /* as of the whole picture */
+    params.classes = whit_classes_of(&params); /* as for the full size */
     params.width = width;
     params.height = height;
     params.cancel = measure->request->cancel;
@@ -37,7 +37,7 @@ static whit_result compare(const struct measure *measure, const whit_image *refe
     return whit_image_compare(reference, image, &params, measure->request->log, out, map);
 }
 
-/* How many pixels are other bytes than the usual picture's. */
+/* Counts the pixels whose colour or ids differ from the usual picture's in any bit. */
 static whit_result compare_with_usual(const struct measure *measure, const whit_image *color,
                                       const whit_image *ids, struct cost_row *row)
 {
@@ -58,7 +58,8 @@ static bool changes_samples(const struct cost_row *row)
     return strcmp(row->knob, "aa") == 0;
 }
 
-/* The images become the usual picture, where there is none yet; else they stay the caller's. */
+/* Compares images with the references. The first images, those of the usual settings, become
+   measure->usual_color and usual_ids; later ones stay the caller's. */
 static whit_result judge_images(struct measure *measure, whit_image *color, whit_image *ids,
                                 struct cost_row *row)
 {
@@ -88,7 +89,7 @@ static void drop(const struct measure *measure, whit_image *color, whit_image *i
         whit_image_destroy(ids);
 }
 
-/* The renderer has drawn the judged picture. */
+/* Judges the picture that the renderer has drawn last, at the judged size. */
 static whit_result judge(struct measure *measure, whit_renderer *renderer, struct cost_row *row)
 {
     whit_image *color = NULL, *ids = NULL;
@@ -105,7 +106,8 @@ static whit_result judge(struct measure *measure, whit_renderer *renderer, struc
 
 /* ---- Times ---- */
 
-/* The largest picture of which enough pairs fit into `ms`; *rounds: how many. */
+/* Plans timing: the largest picture of which at least COST_ROUNDS_MIN pairs fit into `ms`, and how
+   many *rounds fit. `ratio`: expected time of the setting / usual time. */
 static void plan(const struct measure *measure, double ratio, double ms, uint32_t *width,
                  uint32_t *height, uint32_t *rounds)
 {
@@ -119,7 +121,7 @@ static void plan(const struct measure *measure, double ratio, double ms, uint32_
         *width = w;
         *height = h;
         pair_ms = usual_ms * (1.0 + ratio);
-        /* And once to warm up. */
+        /* One pair more, to warm up. */
         if (pair_ms * (COST_ROUNDS_MIN + 1) <= ms)
             break;
     }
@@ -129,7 +131,7 @@ static void plan(const struct measure *measure, double ratio, double ms, uint32_
                                       : (uint32_t)fit;
 }
 
-/* From the ratios, and from what the usual picture takes at full size. */
+/* Sets the row's times: its ratios times the usual picture's time at full size. */
 static void scale_times(const struct cost_report *report, struct cost_row *row)
 {
     const struct cost_row *usual = &report->rows[0];
@@ -180,8 +182,8 @@ static whit_result build(struct measure *measure, const struct settings *target,
     return result;
 }
 
-/* Renders the judged picture, at first a small one: some drivers finish a kernel when it first
-   runs. */
+/* Renders the judged picture and times it. Unless `ran`, a small picture comes first, since some
+   drivers finish compiling a kernel when it first runs. */
 static whit_result draw_judged(struct measure *measure, whit_renderer *renderer,
                                const whit_renderer_params *judged, bool ran, double *ms)
 {
@@ -210,8 +212,8 @@ static bool is_refusal(whit_result result)
            result == WHIT_ERROR_DEVICE || result == WHIT_ERROR_INPUT;
 }
 
-/* Views share one renderer: making another would compile its kernel once more. The caller's to give
-   back. *ran: its kernel has run before. */
+/* Takes a renderer for `params`, to be given back by give_renderer. Rows of KNOB_VIEW share one,
+   since making another would compile its kernel again. *ran: its kernel has run before. */
 static whit_result take_renderer(struct measure *measure, const whit_renderer_params *params,
                                  enum knob_level level, whit_accel *accel, whit_renderer **out,
                                  bool *ran)
@@ -259,7 +261,7 @@ static whit_result find_out(struct measure *measure, const struct settings *targ
 
 /* ---- In double ---- */
 
-/* The price of the reference in double, at the size that fits the time. */
+/* Prices the reference in double, at a size that fits the time. */
 static whit_result price_double(struct measure *measure, const struct settings *target,
                                 double seconds, double ratio, struct cost_row *row)
 {
@@ -277,7 +279,8 @@ static whit_result price_double(struct measure *measure, const struct settings *
     return result;
 }
 
-/* The usual settings, drawn by the reference: what differs from the usual row is what floats do. */
+/* The row "arithmetic double": the usual settings drawn by the reference. It differs from the usual
+   row only by the effects of float arithmetic. */
 static whit_result find_out_double(struct measure *measure, const struct settings *target,
                                    double end_ms, struct cost_row *row)
 {
@@ -336,7 +339,8 @@ whit_result measure_row(struct measure *measure, const struct settings *target,
 
 /* ---- The usual settings ---- */
 
-/* Times of the full picture, within `seconds` or FULL_MIN times. */
+/* Times the usual picture at full size, as often as `seconds` allow, but at least FULL_MIN
+   times. */
 static whit_result time_full(struct measure *measure, double seconds)
 {
     struct cost_report *report = measure->report;
@@ -358,14 +362,15 @@ static whit_result time_full(struct measure *measure, double seconds)
     return result;
 }
 
-/* The row's price is the picture beside itself: its ratio says how well this machine measures. */
+/* The usual row's price compares the usual picture with itself: its ratio shows how well this
+   machine measures. */
 whit_result measure_usual(struct measure *measure, double seconds, struct cost_row *row)
 {
     const struct cost_report *report = measure->report;
     double end_ms = whit_clock_ms() + seconds * 1e3;
     const whit_renderer_params judged =
         measure_sized(measure, &measure->usual, report->judged_width, report->judged_height);
-    whit_accel *again = NULL; /* its trees, as those of other rows are timed */
+    whit_accel *again = NULL; /* trees that are built only to be timed, as in other rows */
     double ms;
     whit_result result = build(measure, &measure->usual, &again, &row->build_ms);
     whit_accel_destroy(again);

@@ -1,4 +1,5 @@
-/* The strip of a report: one crop at several times, which page and panel show beside each other. */
+/* The strip of a report: crops of pictures that took different times, which the HTML page and the
+   viewer's panel show side by side. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +7,7 @@
 
 enum { CROP_SHARE = 5, CROP_MIN = 32, CROP_STEP = 8 };
 
-/* The best picture within each of these multiples of the usual time stands beside the usual one. */
+/* The strip shows the best picture within each of these multiples of the usual picture's time. */
 static const double STEPS[] = {0.25, 1.0, 4.0, 16.0};
 _Static_assert(sizeof STEPS / sizeof *STEPS == COST_STRIP, "a step each");
 

@@ -1,5 +1,5 @@
-/* The best picture within a time: what is given up for it is an order, not what one figure of error
-   says, to which a picture without shadows may be as right as one with them. */
+/* The best picture within a time. What is given up for time follows a fixed order and not the
+   measured error, by which a picture without shadows may be as right as one with shadows. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,14 +8,14 @@
 
 struct step {
     const char *knob, *setting;
-    uint32_t samples; /* it is taken only where fewer samples a pixel are left without it */
+    uint32_t samples; /* taken only if fewer samples per pixel than this fit without the step */
 };
 
-/* Settings are given up in this order: first those that the eye misses least. A step is skipped if
-   the scene has nothing of it or if it saves no time. Samples take what time a step leaves; fewer
-   of them are rough edges, which are seen less than the later steps. The order follows the FLIP of
-   docs/accuracy.md, but shadows are given up later than FLIP says: without them nobody sees where
-   things stand. */
+/* Settings are given up in this order, first those that the eye misses least. A step is skipped if
+   the scene does not call for it or if it saves no time. Samples per pixel fill the time that the
+   steps leave; few samples make rough edges, which are seen less than the later steps. The order
+   follows the FLIP of docs/accuracy.md, but shadows are given up later than FLIP suggests: without
+   them nobody sees where things stand. The remarks say what is lost. */
 static const struct step order[] = {
     {"bailout", "0.0009765625", 64}, /* from 0: rays too weak to be displayed */
     {"depth", "8", 64},              /* from 16: the ninth bounce is seen in nested glass alone */
@@ -37,7 +37,8 @@ static const struct step order[] = {
 };
 enum { STEPS = sizeof order / sizeof *order, SAMPLES_MOST = 64 };
 
-/* Settings that are better than the usual ones; time beyond that of 64 samples goes to them. */
+/* Settings better than the usual ones, from which the search starts: they are kept where even with
+   them SAMPLES_MOST samples fit. */
 static const struct step careful[] = {
     {"bailout", "0", 0}, {"depth", "16", 0}, {"light-samples", "64", 0}};
 
@@ -60,7 +61,7 @@ uint32_t cost_step_of(const char *knob, const char *setting)
     return WHIT_NONE;
 }
 
-/* The knob of the step, and which of its settings it is. */
+/* The index of the step's knob, and in *setting that of its setting. */
 static uint32_t find(const struct search *search, const struct step *step, uint32_t *setting)
 {
     uint32_t knob = knob_find(step->knob);
@@ -72,7 +73,7 @@ static uint32_t find(const struct search *search, const struct step *step, uint3
 
 /* ---- Samples ---- */
 
-/* The row of `aa` with that many samples: row 0 for one. NULL: it was not measured. */
+/* The effect of that many samples per pixel, by its row of knob `aa`. NULL: it was not measured. */
 static const struct effect *sampled(const struct search *search, uint32_t samples)
 {
     const struct knob *aa = &search->table[search->aa];
@@ -84,8 +85,8 @@ static const struct effect *sampled(const struct search *search, uint32_t sample
     return NULL;
 }
 
-/* What so many samples do, between the rows on both sides: time goes straight, error by its power
-   law. Behind the last row they go on as random samples would. */
+/* The effect of a number of samples, interpolated between measured rows: time linearly, error by a
+   power law. Beyond the last row it is extrapolated as for random samples. */
 static struct effect samples_effect(const struct search *search, uint32_t samples)
 {
     uint32_t below = 1, above = 0;
@@ -126,8 +127,8 @@ static struct effect others_effect(const struct search *search)
     return all;
 }
 
-/* Keeps the settings as they are with the most samples that fit, where those are more than before.
- */
+/* Makes the current settings, with the most samples that fit, the best choice, if these are more
+   samples than the best choice has. */
 static void take(struct search *search)
 {
     const struct effect others = others_effect(search);
@@ -148,8 +149,8 @@ static void take(struct search *search)
     }
 }
 
-/* Gives what is left of the limit to the bail-out: the least power of two that keeps it. Time and
-   error between two measured bail-outs are interpolated over the bail-out's logarithm. */
+/* Spends what is left of the time on the bail-out: halves it as long as the limit holds. Time and
+   error are interpolated over the bail-out's logarithm, between two measured rows. */
 static void tighten_bailout(struct search *search)
 {
     struct cost_choice *best = &search->best;

@@ -4,12 +4,12 @@
 
 #include "cost/choose.h"
 
-/* Fills search->best. `search` has what is known, and the
-   usual settings but for knobs that change nothing, of which it has the fastest. */
+/* Fills search->best. On entry `search` has all measured effects, and in `settings` the usual ones,
+   or the fastest ones for knobs that change nothing. */
 void choose_within(struct search *search);
 
-/* How many things are given up for time, one after the other, and which one in that
-   order is that setting of that knob; WHIT_NONE: none, it is the usual one or better. */
+/* cost_steps: number of steps in the order in which settings are given up for time. cost_step_of:
+   index of the step that is this setting of this knob; WHIT_NONE: none, nothing is given up. */
 uint32_t cost_steps(void);
 uint32_t cost_step_of(const char *knob, const char *setting);
 
