@@ -27,7 +27,8 @@ void image_displayed_pixel(const struct image *image, size_t index, float rgba[4
         rgba[c] = color_shoulder(rgba[c]);
 }
 
-/* Integers also need as many channels. */
+/* Whether two images can be compared: same size, and both floats, or both integers with the same
+   number of channels. */
 static bool same_kind(const struct image *a, const struct image *b)
 {
     return a->width == b->width && a->height == b->height && !a->pixels == !b->pixels &&
@@ -53,7 +54,7 @@ static bool is_over_1_255(const struct image *image_a, const struct image *image
     float a[4], b[4];
     image_displayed_pixel(image_a, i, a);
     image_displayed_pixel(image_b, i, b);
-    /* Pictures with 8 bits that lie one step apart are not over it. */
+    /* 1e-6 more, so that 8-bit codes that are one step apart are not over it by rounding. */
     const float limit = 1.0f / 255.0f + 1e-6f;
     for (uint32_t c = 0; c < 4; ++c) {
         float difference =

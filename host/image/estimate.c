@@ -1,16 +1,16 @@
 /* Samples are points of a sequence that fills the pixel more and more evenly (picture/sequence.h),
-   so that what the next doubling changes is smaller than what the last one did. The sum of all
-   changes to come is the error. docs/accuracy.md, "The estimate of a refined picture", has how
+   so each doubling of samples changes a pixel less than the doubling before. The estimated error is
+   the sum of all changes to come. docs/accuracy.md, "The estimate of a refined picture", says how
    often that holds, and what else was tried. */
 #include "image/estimate.h"
 
 #include <math.h>
 
-/* A doubling of samples changes a pixel by this share of what the doubling before it changed: the
-   median over the scenes of scenes/. */
+/* Ratio of the changes by a doubling of samples and by the doubling before: the median over the
+   scenes in scenes/. */
 #define CHANGE_FALLS    0.6f
-/* The changes of all later doublings together are taken to be this many times the last one. They
-   would be 2.5 times as large (1 + 0.6 + 0.36 ...) if all of them had the same sign. */
+/* The sum of all later changes, in units of the last one. It would be 2.5 (1 + 0.6 + 0.36 ...) if
+   all changes had the same sign. */
 #define CHANGES_TO_COME 1.5
 
 static float largest_difference(const float *a, const float *b)
@@ -41,8 +41,8 @@ static double mean_around(const struct image *image, uint32_t x, uint32_t y)
     return sum / count;
 }
 
-/* A pixel's few samples may agree by chance, which pixels around tell of; and next to an edge those
-   tell of what the pixel has not. So both count, by their geometric mean. */
+/* The change of a pixel alone may be small by chance, and the mean over its neighbours includes an
+   edge beside it. So the estimate uses the geometric mean of both. */
 double estimate_error(const struct image *changes, const struct image *cuts, double cut_radiance,
                       struct image *out, double *of_cuts)
 {
@@ -73,7 +73,7 @@ double estimate_cut_radiance(const struct image *whole, const struct image *own,
         brought += (double)fmaxf(fmaxf(all[0] - first[0], all[1] - first[1]),
                                  fmaxf(all[2] - first[2], 0.0f));
         seen += (double)fmaxf(fmaxf(all[0], all[1]), fmaxf(all[2], 0.0f));
-        weights += (double)sent->pixels[2 * i + 1]; /* those for --bailout */
+        weights += (double)sent->pixels[2 * i + 1]; /* channel 1: weights cut by the bail-out */
     }
     return weights > 0.0 ? brought / weights : seen / (double)count;
 }

@@ -1,5 +1,5 @@
-/* OpenEXR through OpenEXRCore, from and to memory: the library writes its chunk table last, which
-   a pipe would not allow. */
+/* OpenEXR files, with OpenEXRCore. They are read from memory, and written to memory unless the
+   output can seek: the library writes its chunk table last, which a pipe does not allow. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,18 +11,19 @@
 
 enum { REASON_BYTES = 256, CHANNELS_MAX = 4 };
 
-/* What the library's callbacks see. */
+/* State for the library's callbacks. */
 struct memory_file {
     const uint8_t *read_data;
-    FILE *stream;  /* what is written goes there, or where this is NULL into `data` */
-    uint8_t *data; /* written */
+    FILE *stream;  /* output; NULL: written to `data` */
+    uint8_t *data; /* written bytes */
     size_t size_bytes, capacity_bytes;
-    char reason[REASON_BYTES]; /* the first one: what follows is its consequence */
-    bool no_memory; /* the library also says so of data that unpack to more than they should */
+    char reason[REASON_BYTES]; /* the first error; later ones are its consequences */
+    bool no_memory; /* an allocation failed; the library's own code for it also means bad data */
 };
 
-/* The file in work on this thread. The error callback cannot ask the context for its user data:
-   exr_get_user_data takes a lock that the library holds when it reports an error while writing. */
+/* The file that this thread is working on, for the error callback. That cannot get it from the
+   context: exr_get_user_data takes a lock that the library holds while it reports an error in
+   writing. */
 static _Thread_local struct memory_file *current;
 
 static void *on_alloc(size_t size_bytes)
@@ -71,7 +72,7 @@ static bool grow(struct memory_file *file, size_t needed_bytes)
     uint8_t *moved = realloc(file->data, capacity_bytes);
     if (!moved)
         return false;
-    /* Parts that the library skips and fills later must not hold old memory. */
+    /* Zeroed, since the library skips parts and fills them later. */
     memset(moved + file->capacity_bytes, 0, capacity_bytes - file->capacity_bytes);
     file->data = moved;
     file->capacity_bytes = capacity_bytes;
@@ -101,7 +102,7 @@ static int64_t on_write(exr_const_context_t context, void *user, const void *fro
     return (int64_t)size_bytes;
 }
 
-/* `file` is in work until finish(). */
+/* The library's callbacks for `file`, which is `current` until finish(). */
 static exr_context_initializer_t callbacks(struct memory_file *file)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -134,7 +135,7 @@ static whit_result report(const whit_log *log, const char *path, const struct me
     return file->no_memory ? WHIT_ERROR_MEMORY : result;
 }
 
-/* Names in the order of the image's channels. */
+/* Names of the file's channels, in the order of the image's. */
 static const char *const *channel_names(const struct image *image)
 {
     static const char *const grey[] = {"Y"}, *const id[] = {"id"};
@@ -145,7 +146,7 @@ static const char *const *channel_names(const struct image *image)
     return image->channels == 1 ? grey : colour;
 }
 
-/* Where a channel of that name comes from. */
+/* The image and channel index from which a channel of the file is written. */
 struct channel_source {
     const struct image *image;
     uint32_t at;
@@ -226,14 +227,14 @@ static void set_sources(exr_encode_pipeline_t *encode, const struct image_target
     }
 }
 
-/* A file in the making. */
+/* A file that is being written. */
 struct exr_writer {
     const struct image_target *target;
     struct memory_file file;
     exr_context_t context;
     exr_encode_pipeline_t encode;
     exr_result_t code;
-    uint32_t y; /* rows so far */
+    uint32_t y; /* rows written so far */
 };
 
 static exr_result_t write_chunk(struct exr_writer *writer, const struct image *rows, uint32_t row)
@@ -311,7 +312,7 @@ whit_result exr_write(const struct image_target *target, const struct image *ima
     return exr_rows_end(writer);
 }
 
-/* Which of the file's channels go where. */
+/* The channels that are read from a file, in the order of the image's. */
 struct selection {
     const char *names[CHANNELS_MAX];
     uint32_t count;
@@ -348,7 +349,7 @@ static bool all_integers(const exr_attr_chlist_t *list)
     return true;
 }
 
-/* RGBA, RGB or Y, else all channels of a file of integers, else the only channel. */
+/* Chooses RGBA, RGB or Y; else all channels if they are integers; else the file's only channel. */
 static bool select_channels(const exr_attr_chlist_t *list, struct selection *selection)
 {
     static const char *const colour[] = {"R", "G", "B", "A"}, *const grey[] = {"Y"};
@@ -388,7 +389,7 @@ static const char *why_not_readable(exr_context_t context, const exr_attr_chlist
     return NULL;
 }
 
-/* `x` and `y` are those of the chunk's first pixel in the image. */
+/* Checks that a chunk lies within the image. `x`, `y`: of its first pixel. */
 static exr_result_t check_chunk(const exr_chunk_info_t *chunk, const struct image *image,
                                 uint32_t x, uint32_t y)
 {

@@ -10,8 +10,8 @@
 
 /* ---- Colours ---- */
 
-/* Linear sRGB to XYZ, each of these relative to white's (0.950428545, 1, 1.088900371 in the
-   authors' program), and back. */
+/* Linear sRGB to XYZ and back, where X, Y and Z are divided by those of white (0.950428545, 1,
+   1.088900371 in the authors' program). */
 static const float xyz_from_rgb[3][3] = {
     {0.433895389f, 0.376242373f, 0.189862239f},
     {0.212636822f, 0.715182982f, 0.072180196f},
@@ -29,8 +29,8 @@ static void multiply(const float matrix[3][3], const float from[3], float to[3])
         to[i] = matrix[i][0] * from[0] + matrix[i][1] * from[1] + matrix[i][2] * from[2];
 }
 
-/* The paper's YCxCz without its factors and offset, which filters whose weights add up to 1 leave
-   alone. */
+/* The paper's YCxCz without its factors and offset. Filters with a sum of weights of 1 commute with
+   these, so they can be left out. */
 static void opponent_from_rgb(const float rgb[3], float opponent[3])
 {
     float xyz[3];
@@ -53,7 +53,7 @@ static void rgb_from_opponent(const float opponent[3], float rgb[3])
         rgb[c] = clamped(rgb[c]);
 }
 
-/* CIE 15: the cube root, a straight line near black. */
+/* The function f of CIE 15 for L*a*b*: a cube root, linear near black. */
 static float lightness_root(float value)
 {
     const float delta = 6.0f / 29.0f;
@@ -61,7 +61,7 @@ static float lightness_root(float value)
                                          : value / (3.0f * delta * delta) + 4.0f / 29.0f;
 }
 
-/* L*a*b* with a* and b* dampened where it is dark: Hunt's effect. */
+/* L*a*b* with a* and b* reduced in dark colours: the Hunt effect. */
 static void hunt_from_rgb(const float rgb[3], float hunt[3])
 {
     float xyz[3];
@@ -73,7 +73,7 @@ static void hunt_from_rgb(const float rgb[3], float hunt[3])
     hunt[2] = 0.01f * hunt[0] * 200.0f * (xyz[1] - xyz[2]);
 }
 
-/* The distance HyAB (Abasi, Tehran and Fairchild 2019) to the power of 0.7. */
+/* The HyAB distance (Abasi, Tehran and Fairchild 2019) to the power of 0.7. */
 static float color_distance(const float a[3], const float b[3])
 {
     float da = a[1] - b[1], db = a[2] - b[2];
@@ -89,7 +89,7 @@ static float largest_distance(void)
     return color_distance(a, b);
 }
 
-/* Distances up to 0.4 of the largest take the range up to 0.95. */
+/* Maps distances to 0..1, piecewise linear: those up to 0.4 of the largest get 0..0.95. */
 static float remap(float distance, float largest)
 {
     const float bend = 0.4f * largest, bent = 0.95f;
@@ -115,13 +115,13 @@ static const struct gaussian lightness = {1.0, 0.0047}, red_green = {1.0, 0.0053
                              blue_yellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
 static const double WIDEST_B = 0.04, FEATURE_DEGREES = 0.082;
 
-/* All of contrast sensitivity is cut off at three deviations of the widest one. */
+/* Radius in pixels of all sensitivity filters: three standard deviations of the widest Gaussian. */
 static int sensitivity_radius(double pixels_per_degree)
 {
     return (int)ceil(3.0 * sqrt(WIDEST_B / (2.0 * PI * PI)) * pixels_per_degree);
 }
 
-/* One dimension of a Gaussian, scaled to sum 1; gives its sum before. */
+/* Makes one dimension of a Gaussian, scaled to sum 1; gives the sum before scaling. */
 static double gaussian_init(struct kernel *kernel, double b, double pixels_per_degree)
 {
     double sum = 0.0;
@@ -137,8 +137,8 @@ static double gaussian_init(struct kernel *kernel, double b, double pixels_per_d
     return sum;
 }
 
-/* One dimension of a feature detector: a Gaussian's derivative of `order` (0: itself). What is
-   above 0 is scaled to sum 1, what is below to -1. */
+/* Makes one dimension of a feature detector: a Gaussian's derivative of `order` (0: the Gaussian).
+   Positive weights are scaled to sum 1, negative ones to sum -1. */
 static void feature_init(struct kernel *kernel, int order, double pixels_per_degree)
 {
     double deviation = 0.5 * FEATURE_DEGREES * pixels_per_degree, above = 0.0, below = 0.0;
@@ -183,7 +183,7 @@ static void filters_init(struct filters *filters, double pixels_per_degree)
 
 /* ---- Planes ---- */
 
-/* Three channels of colour, then where there are edges and points. */
+/* Indices of planes: three colour channels first, then the strengths of edges and of points. */
 enum { EDGES = 3, POINTS, PLANES };
 struct work {
     uint32_t width, height;
@@ -223,7 +223,7 @@ static void add_weighted(float *restrict to, const float *restrict from, float w
         to[x] += weight * from[x];
 }
 
-/* Beyond its borders a picture goes on as it ends. */
+/* Filters all rows into work->rows. Beyond its borders a picture repeats its last pixel. */
 static void filter_rows(const struct work *work, const struct kernel *kernel, const float *from)
 {
     size_t radius = (size_t)kernel->radius, width = work->width;
@@ -240,7 +240,7 @@ static void filter_rows(const struct work *work, const struct kernel *kernel, co
     }
 }
 
-/* Adds `share` of what filter_rows left to `to`. */
+/* Filters the columns of work->rows, and adds the result times `share` to `to`. */
 static void add_columns(const struct work *work, const struct kernel *kernel, float share,
                         float *to)
 {
@@ -262,7 +262,7 @@ static void filter(const struct work *work, const struct kernel *across, const s
     add_columns(work, down, 1.0f, to);
 }
 
-/* Blue and yellow: two Gaussians, of which only the sum is scaled to 1. */
+/* Filters the blue-yellow plane with a sum of two Gaussians, of which only the sum has weight 1. */
 static void filter_blue_yellow(const struct work *work, float *plane)
 {
     const struct filters *filters = &work->filters;
@@ -274,7 +274,7 @@ static void filter_blue_yellow(const struct work *work, float *plane)
     memcpy(plane, work->sum, work->count * sizeof *plane);
 }
 
-/* How strong edges (order 1) or points (order 2) are, in any direction. */
+/* The strength of edges (order 1) or points (order 2), whatever their direction. */
 static void find_features(const struct work *work, int order, const float *from, float *to)
 {
     const struct kernel *smooth = &work->filters.features[0],
@@ -285,7 +285,7 @@ static void find_features(const struct work *work, int order, const float *from,
         to[i] = sqrtf(to[i] * to[i] + work->sum[i] * work->sum[i]);
 }
 
-/* As image_save shows it in a PNG. */
+/* A pixel's linear colour as image_save shows it in a PNG, without rounding to 8 bits. */
 static void shown_rgb(const struct image *image, size_t index, float rgb[3])
 {
     float pixel[4];
@@ -319,7 +319,7 @@ static void analyse(const struct work *work, const struct image *image, float *p
     }
 }
 
-/* A difference of features makes one of colours larger. */
+/* FLIP of a pixel: the difference of colours, amplified by that of features. */
 static float combine(const struct work *work, size_t i, float largest)
 {
     float *const *a = work->planes[0], *const *b = work->planes[1];

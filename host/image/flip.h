@@ -9,19 +9,19 @@
 enum { FLIP_PIXELS_PER_DEGREE_MAX = 1000 };
 
 struct flip_summary {
-    double mean, largest; /* of the map */
+    double mean, largest; /* over the map's pixels */
 };
 
 /* LDR-FLIP: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, "FLIP: A
    Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2),
-   2020, with its erratum (Y is normalised by 116). HDR-FLIP is not here: pictures are taken as a
-   PNG shows them, clamped to [0, 1], what is not finite as magenta, but not rounded to 8 bits.
-   Alpha has no part in it.
+   2020, with its erratum (Y is normalised by 116). There is no HDR-FLIP: pictures are compared as a
+   PNG shows them, clamped to [0, 1] and with magenta for non-finite pixels, but not rounded to 8
+   bits. Alpha is ignored.
 
-   *map has one channel, 0 (looks the same) to 1; 1 is reached by green beside blue, black beside
-   white is 0.9674. Swapping the pictures changes nothing. WHIT_ERROR_USAGE when sizes differ, for
-   integers, and for `pixels_per_degree` (0: FLIP_PIXELS_PER_DEGREE) outside 1 to
-   FLIP_PIXELS_PER_DEGREE_MAX. Takes about 52 bytes a pixel meanwhile. */
+   *map has one channel, 0 (looks the same) to 1: green against blue gives 1, black against white
+   0.9674. Swapping the pictures changes nothing. WHIT_ERROR_USAGE when sizes differ, for integers,
+   and for `pixels_per_degree` (0: FLIP_PIXELS_PER_DEGREE) outside 1 to FLIP_PIXELS_PER_DEGREE_MAX.
+   Needs about 52 bytes per pixel while it works. */
 WHIT_CHECK whit_result image_flip(const struct image *a, const struct image *b,
                                   double pixels_per_degree, struct image *map,
                                   struct flip_summary *summary);

@@ -6,8 +6,8 @@
 
 #include "image/image.h"
 
-/* A file larger or wider than this is refused: none of these formats says how much its contents
-   will grow. */
+/* Limits of pictures that are read, per side in pixels and in bytes decoded: no format's header can
+   be trusted on how large its contents are. */
 enum { IMAGE_SIDE_MAX = 65535 };
 #define IMAGE_BYTES_MAX ((uint64_t)1 << 30)
 
@@ -19,30 +19,31 @@ struct image_source {
     size_t size_bytes;
 };
 
-/* Where a picture goes. What `stream` has not taken is the caller's to notice: file_write_commit
-   looks at its error flag. */
+/* Where a picture is written. Errors of `stream` are not checked here: file_write_commit looks at
+   its error flag. */
 struct image_target {
     const whit_log *log;
     const char *path;
     FILE *stream;
     const whit_text *texts;
     uint32_t text_count;
-    const struct image_layer *layers; /* of an EXR */
+    const struct image_layer *layers; /* for EXR alone */
     uint32_t layer_count;
 };
 
-/* Key and value pairs that grow; the strings are its own. A zeroed one is empty. */
+/* A list of key and value pairs; it owns the strings. A zeroed list is empty. */
 struct text_list {
     whit_text *texts;
     uint32_t count, capacity;
 };
 
-/* Decode a file in memory by its format's decoder, in this process. Errors are logged. */
+/* Decode a file in memory, or its texts, in this process. Errors are logged. */
 WHIT_CHECK whit_result image_decode(const struct image_source *source, struct image *image);
 WHIT_CHECK whit_result image_decode_texts(const struct image_source *source,
                                           struct text_list *list);
 
-/* Whether sizes, channels and the file's name allow it; logs. */
+/* Checks that the image can be saved under this path, by size, channels and extension; logs
+   errors. */
 WHIT_CHECK whit_result image_check_savable(const whit_log *log, const struct image *image,
                                            const char *path);
 
@@ -50,8 +51,7 @@ WHIT_CHECK whit_result image_check_savable(const whit_log *log, const struct ima
 bool text_list_add(struct text_list *list, const char *key, const char *value);
 void text_list_finish(struct text_list *list);
 
-/* Prepares the image of a file that is read: image_init, unless its size is beyond the limits
-   above; logs. */
+/* image_init for a file that is being read; a size beyond the limits above is a logged error. */
 WHIT_CHECK whit_result image_init_loaded(const struct image_source *source, struct image *image,
                                          uint64_t width, uint64_t height, uint32_t channels,
                                          bool integers);
@@ -67,10 +67,11 @@ WHIT_CHECK whit_result exr_load_texts(const struct image_source *source, struct 
 WHIT_CHECK whit_result pfm_write(const struct image_target *target, const struct image *image);
 WHIT_CHECK whit_result pfm_load(const struct image_source *source, struct image *image);
 
-/* The same in strips of rows, from the top down, each of a multiple of 16 rows but for the last.
-   `shape`: the picture's sizes, channels and kind; its pixels are not read. `target` has to stay.
-   NULL: memory ran out, which was logged. What fails is logged at the end, which frees the writer.
-   `direct`: the stream is a file in which one can go back; else all is kept until the end. */
+/* Writers that take a picture in strips of rows, from the top down; all but the last strip have a
+   multiple of 16 rows. `shape`: size, channels and kind of the picture; its pixels are not read.
+   `target` must stay valid. NULL: memory ran out, which was logged. *_rows_end frees the writer and
+   logs errors of any step. `direct`: the stream can seek; else the file is kept in memory until the
+   end. */
 struct exr_writer;
 struct exr_writer *exr_rows_begin(const struct image_target *target, const struct image *shape,
                                   bool direct);
@@ -80,7 +81,7 @@ struct png_writer;
 struct png_writer *png_rows_begin(const struct image_target *target, const struct image *shape);
 void png_rows_add(struct png_writer *writer, const struct image *rows);
 WHIT_CHECK whit_result png_rows_end(struct png_writer *writer, bool whole);
-/* The header of a PFM, and its size in bytes; and rows, the lowest first. */
+/* Write the header of a PFM, which gives its size in bytes; and rows, the lowest first. */
 size_t pfm_put_header(const struct image_target *target, const struct image *shape);
 WHIT_CHECK whit_result pfm_put_rows(const struct image_target *target, const struct image *rows);
 

@@ -1,5 +1,5 @@
-/* Radiance RGBE pictures, read only: G. Ward, "Real Pixels", Graphics Gems II, 1991; the file
-   layout is that of Radiance's filefmts.pdf. Rows are flat, or run-length coded by component. */
+/* Reads Radiance RGBE pictures: G. Ward, "Real Pixels", Graphics Gems II, 1991; file layout by
+   Radiance's filefmts.pdf. Rows are plain pixels, or run-length coded by component. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,8 @@ struct reader {
     const uint8_t *at, *end;
 };
 
-/* One line without its newline; false at the end of the file or for absurd lengths. */
+/* Reads one line without its newline; false at the end of the file and for lines that are too
+   long. */
 static bool next_line(struct reader *reader, char *line, size_t line_bytes)
 {
     size_t length = 0;
@@ -64,7 +65,7 @@ static bool read_layout(struct reader *reader, struct layout *layout)
     return true;
 }
 
-/* One component of a row: counts over 128 are runs. */
+/* Reads one component of a run-length coded row: counts over 128 are runs, others literal bytes. */
 static bool read_runs(struct reader *reader, uint8_t *to, uint32_t width)
 {
     for (uint32_t x = 0; x < width;) {
@@ -85,8 +86,8 @@ static bool read_runs(struct reader *reader, uint8_t *to, uint32_t width)
     return true;
 }
 
-/* Pixels as they are, where 1, 1, 1, n repeats the one before; such marks in a row count up by
-   powers of 256. */
+/* Reads a row of plain pixels, in which a pixel 1, 1, 1, n repeats the one before n times. Of
+   several such marks in sequence the i-th repeats n * 256^i times. */
 static bool read_old_row(struct reader *reader, uint8_t *row, uint32_t width)
 {
     uint32_t shift = 0;
@@ -152,7 +153,7 @@ whit_result hdr_load(const struct image_source *source, struct image *image)
                   source->path);
         return WHIT_ERROR_INPUT;
     }
-    /* A row takes at least 4 bytes, so that a short file cannot ask for much memory. */
+    /* A row has at least 4 bytes; checked, so that a short file does not allocate much memory. */
     if (layout.height > (uint64_t)(reader.end - reader.at) / 4) {
         log_error(source->log, "%s: cut short", source->path);
         return WHIT_ERROR_INPUT;

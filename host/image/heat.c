@@ -8,8 +8,8 @@
 #include "image/legend.h"
 
 /* Every 15th of the 256 colours of viridis (S. van der Walt and N. Smith, 2015; released into the
-   public domain with matplotlib 1.5 as CC0). What lies between by straight lines is at most 5 codes
-   off. */
+   public domain with matplotlib 1.5 as CC0). Linear interpolation between them is off by at most 5
+   codes. */
 static const uint32_t viridis[18] = {
     0x440154, 0x481769, 0x472a7a, 0x433d84, 0x3d4e8a, 0x355e8d, 0x2e6d8e, 0x297b8e, 0x23898e,
     0x1f978b, 0x21a585, 0x2eb37c, 0x46c06f, 0x65cb5e, 0x89d548, 0xb0dd2f, 0xd8e219, 0xfde725,
@@ -29,7 +29,8 @@ void heat_color(double share, uint8_t codes[3])
     }
 }
 
-/* From one end over the middle to the other; its own, none of the published ones. */
+/* Colours for values above 0 and below, each from 0 to the end of the scale. whit's own, not one of
+   the published scales. */
 static const uint8_t sides[2][3][3] = {
     {{0xf4, 0xf4, 0xf4}, {0x5c, 0x9f, 0xd6}, {0x0a, 0x2c, 0x6e}},
     {{0xf4, 0xf4, 0xf4}, {0xe0, 0x8a, 0x3c}, {0x66, 0x24, 0x06}},
@@ -47,7 +48,7 @@ void heat_signed_color(double share, uint8_t codes[3])
     }
 }
 
-/* Up to the next of a few leading digits. */
+/* Rounds up to the next of a few round numbers. */
 static double round_up(double value)
 {
     static const double nice[] = {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0};
@@ -59,7 +60,7 @@ static double round_up(double value)
     return 10.0 * power;
 }
 
-/* The order of floats from 0 up is that of their bits; what is negative counts as 0. */
+/* A key that sorts floats: the bits of positive floats have their order. Others give 0. */
 static uint32_t order_of(float value)
 {
     uint32_t bits = 0;
@@ -70,7 +71,8 @@ static uint32_t order_of(float value)
 
 enum { HALF_COUNT = 1 << 16 };
 
-/* Finds the half word that holds rank *rank, and makes *rank the one within it. */
+/* Finds the 16-bit half that holds the value of rank *rank; makes *rank the rank within that
+   half. */
 static uint32_t find_half(const uint64_t counts[HALF_COUNT], uint64_t *rank)
 {
     uint32_t half = 0;
@@ -79,8 +81,8 @@ static uint32_t find_half(const uint64_t counts[HALF_COUNT], uint64_t *rank)
     return half;
 }
 
-/* The value of rank `rank` (from 1) among the finite ones: first the upper, then the lower half of
-   its bits. */
+/* The finite value of rank `rank` (from 1), by radix selection: first the upper 16 bits, then the
+   lower ones. */
 static float value_of_rank(const struct image *values, uint64_t rank, uint64_t counts[HALF_COUNT])
 {
     size_t count = (size_t)values->width * values->height;
@@ -126,12 +128,12 @@ double image_heat_scale(const struct image *values)
         double value = (double)value_of_rank(values, rank, counts);
         scale = value > 0.0 ? value : scale;
     }
-    free(counts); /* without memory the largest is the scale */
+    free(counts); /* without memory for counts the largest value is the scale */
     return scale > 0.0 ? round_up(scale) : 1.0;
 }
 
 struct ramp {
-    float linear[256]; /* of sRGB codes */
+    float linear[256]; /* linear value of each sRGB code */
 };
 
 static void ramp_init(struct ramp *ramp)
@@ -162,8 +164,7 @@ static void put_heat(const struct painter *painter, float value, float *to)
         to[c] = painter->ramp.linear[codes[c]];
 }
 
-/* The value of the channel that is farthest from 0, out of three, with its sign; NaN where any is.
- */
+/* The value farthest from 0 among three channels, with its sign; NaN where any is NaN. */
 static float farthest(const float *pixel)
 {
     float value = pixel[0];

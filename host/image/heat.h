@@ -1,25 +1,26 @@
-/* Numbers as colours. */
+/* Heat maps: numbers as colours. */
 #ifndef IMAGE_HEAT_H
 #define IMAGE_HEAT_H
 
 #include "image/image.h"
 #include "whit/whit_image.h"
 
-/* Viridis: sRGB codes of `share`, 0 (dark) to 1 (bright), which is clamped. */
+/* Gives the sRGB codes of viridis for `share`, clamped to 0 (dark) .. 1 (bright). */
 void heat_color(double share, uint8_t codes[3]);
 
-/* `share` from -1 (dark blue) over 0 (nearly white) to 1 (dark brown), clamped: the darker, the
-   farther from 0, on both sides. Who sees no red or green can tell the sides apart. */
+/* The same for a signed `share`, clamped to -1 (dark blue) .. 1 (dark brown): 0 is nearly white,
+   and both sides get darker away from it. Safe for red-green colour blindness. */
 void heat_signed_color(double share, uint8_t codes[3]);
 
-/* The 99.5th percentile of the finite values, rounded up to a number that reads well; when it is 0,
-   the same of the largest one; 1 when that is 0 too. */
+/* The scale of a heat map: the 99.5th percentile of the finite values, rounded up to a round
+   number; if that is 0, the largest value, rounded up too; if all are 0, 1. */
 double image_heat_scale(const struct image *values);
 
-/* `values` of one channel as linear RGB whose sRGB codes are exactly those of heat_color, with a
-   legend below; at least as wide as a short legend. Not finite stays so. With is_signed also of
-   three or four channels: of the first three the one farthest from 0, and the scale by itself is
-   that of the distances. WHIT_ERROR_USAGE for other pictures and scales below 0. */
+/* Makes a heat map of `values`, one channel, with a legend below, in linear RGB whose sRGB codes
+   are exactly those of heat_color. It is at least as wide as a short legend. Non-finite values
+   stay. With is_signed, `values` may have three or four channels: the one of the first three that
+   is farthest from 0 counts, and the default scale is that of absolute values. WHIT_ERROR_USAGE for
+   other pictures, and for scales below 0. */
 WHIT_CHECK whit_result image_heat(const struct image *values, const whit_heat_params *params,
                                   struct image *out);
 

@@ -231,7 +231,7 @@ whit_result image_encode_png(const whit_log *log, const struct image *image, con
     return result;
 }
 
-/* The format by the content: file names may be wrong. */
+/* Tells the format by the content, since a file's extension may be wrong. */
 static enum format format_of_data(const uint8_t *data, size_t size_bytes)
 {
     static const uint8_t png[4] = {0x89, 'P', 'N', 'G'}, exr[4] = {0x76, 0x2f, 0x31, 0x01};
@@ -253,7 +253,7 @@ static whit_result unknown_format(const struct image_source *source)
     return WHIT_ERROR_INPUT;
 }
 
-/* Runs in a child of image_reply.c. */
+/* Runs in the child process of image_reply.c. */
 whit_result image_decode(const struct image_source *source, struct image *image)
 {
     *image = (struct image){0};

@@ -1,4 +1,4 @@
-/* Picture files are decoded in a child process: here is what it answers, and what is believed. */
+/* Decodes picture files in a child process: its replies, and the checks of these in the parent. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,10 +11,10 @@
 
 /* --- the child's side ----------------------------------------------------------------------- */
 
-/* Numbers of its answers. */
+/* Indices in foreign_answer.numbers: for pictures, and for texts. */
 enum { WIDTH, HEIGHT, CHANNELS, IS_INTEGERS, TEXT_COUNT = 0 };
 
-/* Errors of a child are reasons: who hears of them names the file. */
+/* The child's name for the file in errors. The parent's errors have the real path instead. */
 static const char name[] = "picture";
 
 static void keep_reason(void *user, whit_log_level level, const char *message)
@@ -65,9 +65,9 @@ static whit_result answer_texts(void *user, void *to, child_write write,
     return result;
 }
 
-/* --- what is believed ----------------------------------------------------------------------- */
+/* --- the parent's side ---------------------------------------------------------------------- */
 
-/* A file, and what a child made of it. */
+/* A file, and the child's reply to it. */
 struct reading {
     const whit_log *log;
     const struct roots *roots;
@@ -132,7 +132,8 @@ whit_result image_load_by(const whit_log *log, const struct roots *roots, const 
     return WHIT_OK;
 }
 
-/* The strings of a reply, in one block with the list of them. NULL: no memory, or *damaged. */
+/* Copies the strings of a reply into one block, behind a list of them. NULL: no memory, or
+ *damaged: the reply is not as it should be. */
 static whit_text *pack_texts(const struct reading *reading, bool *damaged)
 {
     size_t count = reading->answer.numbers[TEXT_COUNT];

@@ -6,7 +6,7 @@
 
 #include "image/heat.h"
 
-/* Functions that are not used are reported at the end of the file: no pop helps there. */
+/* Never popped: unused functions are reported at the end of the file. */
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -15,10 +15,10 @@
 #include <stb/stb_easy_font.h>
 #pragma GCC diagnostic pop
 
-/* In pixels of the font, from the top of the strip. */
+/* Layout in pixels of the font; *_TOP count from the top of the strip. */
 enum {
     MARGIN = 4,
-    UNIT_GAP = 8, /* at least, behind the title */
+    UNIT_GAP = 8, /* least gap between title and unit */
     TITLE_TOP = 5,
     BAR_TOP = 17,
     BAR_ROWS = 8,
@@ -44,7 +44,7 @@ static uint32_t text_width(const char *text)
     return width;
 }
 
-/* The font knows ASCII only. */
+/* Copies a text; characters other than ASCII, which the font lacks, become `?`. */
 static void copy_text(char to[LEGEND_TEXT_MAX], const char *text)
 {
     snprintf(to, LEGEND_TEXT_MAX, "%s", text ? text : "");
@@ -108,9 +108,9 @@ struct corner {
     float x, y, z;
     uint8_t color[4];
 };
-enum { QUADS_MAX = 16 }; /* of a letter */
+enum { QUADS_MAX = 16 }; /* rectangles per letter */
 
-/* From pixel `x` of the picture and row `y` of the font. */
+/* Draws a text. `x`: in pixels of the picture; `y`: in font pixels from the top of the strip. */
 static void draw_text(const struct canvas *canvas, uint32_t x, uint32_t y, const char *text)
 {
     static const uint8_t ink[3] = {INK, INK, INK};
@@ -148,7 +148,7 @@ static void draw_bar(const struct legend *legend, const struct canvas *canvas,
     }
 }
 
-/* A number under its tick, kept within the bar. */
+/* Draws a number centred under its tick, but within the bar. */
 static void draw_number(const struct legend *legend, const struct canvas *canvas,
                         const struct bar *bar, double value, const char *text)
 {
@@ -174,7 +174,7 @@ static double tick_step(double min)
     return power * (digit <= 1.0 ? 1.0 : digit <= 2.0 ? 2.0 : digit <= 5.0 ? 5.0 : 10.0);
 }
 
-/* Ticks at multiples of a step, and one at the end. */
+/* Draws ticks at multiples of a step, and one at the end of the scale. */
 static void draw_ticks(const struct legend *legend, const struct canvas *canvas,
                        const struct bar *bar)
 {

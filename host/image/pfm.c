@@ -65,7 +65,7 @@ whit_result pfm_write(const struct image_target *target, const struct image *ima
     return pfm_put_rows(target, image);
 }
 
-/* The next word of the header, and the one white space behind it. */
+/* Reads the next word of the header, and skips the one white space behind it. */
 static bool next_word(const struct image_source *source, size_t *at, char *word, size_t word_bytes)
 {
     while (*at < source->size_bytes && isspace(source->data[*at]))
@@ -119,7 +119,7 @@ whit_result pfm_load(const struct image_source *source, struct image *image)
         log_error(source->log, "%s: the PFM header is damaged", source->path);
         return WHIT_ERROR_INPUT;
     }
-    /* Before memory is asked for; what overflows here is refused there. */
+    /* Checked before memory is allocated. Sizes that overflow here are refused there. */
     uint64_t needed_bytes = size[0] * size[1] * channels * 4;
     bool countable = size[0] <= IMAGE_SIDE_MAX && size[1] <= IMAGE_SIDE_MAX;
     if (countable && source->size_bytes - at < needed_bytes) {

@@ -1,4 +1,4 @@
-/* Pictures that are written in strips of rows, so that no more than one strip is in memory. */
+/* Writes pictures in strips of rows, so that no more than one strip is in memory. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +14,8 @@ struct image_rows {
     struct image shape; /* without pixels */
     struct png_writer *png;
     struct exr_writer *exr;
-    size_t header_bytes; /* of a PFM, which has its last row first */
-    uint32_t y;          /* rows so far */
+    size_t header_bytes; /* size of a PFM's header, to find rows: its last row comes first */
+    uint32_t y;          /* rows written so far */
     whit_result result;
 };
 
@@ -98,7 +98,7 @@ whit_result image_rows_add(struct image_rows *rows, const struct image *strip)
     return rows->result;
 }
 
-/* Frees what the formats keep. */
+/* Ends the format's writer and frees it. `whole`: all rows were added. */
 static whit_result end(struct image_rows *rows, bool whole)
 {
     whit_result result = WHIT_OK;

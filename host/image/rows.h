@@ -1,4 +1,4 @@
-/* Pictures that are written in strips of rows, so that no more than one strip is in memory. */
+/* Writes pictures in strips of rows, so that no more than one strip is in memory. */
 #ifndef IMAGE_ROWS_H
 #define IMAGE_ROWS_H
 
@@ -6,20 +6,20 @@
 
 struct image_rows;
 
-/* Strips but for the last one have a multiple of so many rows. */
+/* All strips but the last have a multiple of this many rows. */
 enum { IMAGE_STRIP_ROWS = 16 };
 
-/* Begins a file as image_save names and writes it. `shape` has the sizes, channels and kind of the
-   picture; which of its pixels or words is set tells the kind, and neither is read. `path`, `texts`
-   and `log` have to stay until the end. Pipes are refused, WHIT_ERROR_OUTPUT. */
+/* Begins a file like those of image_save. `shape` has the picture's size and channels, and `pixels`
+   or `words` set as its kind; neither is read. `path`, `texts` and `log` must stay valid until the
+   end. Pipes are refused: WHIT_ERROR_OUTPUT. */
 WHIT_CHECK whit_result image_rows_begin(const whit_log *log, const char *path,
                                         const struct image *shape, const whit_text *texts,
                                         uint32_t text_count, struct image_rows **out);
-/* The next rows, from the top down. WHIT_ERROR_USAGE, logged, for a strip of another width or kind,
-   or too many rows. Some errors are told by image_rows_commit alone. */
+/* Adds the next rows, from the top down. WHIT_ERROR_USAGE, logged, for a strip of another width or
+   kind, or too many rows. Some errors are only reported by image_rows_commit. */
 WHIT_CHECK whit_result image_rows_add(struct image_rows *rows, const struct image *strip);
-/* Puts the file in its place, or after an error removes it; frees `rows`. The bytes are those of
-   image_save of the whole picture. */
+/* Puts the file in its place, or removes it after an error; frees `rows`. The file has the same
+   bytes as by image_save of the whole picture. */
 WHIT_CHECK whit_result image_rows_commit(struct image_rows *rows);
 void image_rows_abandon(struct image_rows *rows); /* NULL is fine */
 

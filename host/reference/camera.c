@@ -1,4 +1,4 @@
-/* Where the ray tree of a pixel starts: the kernels' cameras and patterns of samples, in double. */
+/* Camera rays in double, with the kernels' cameras and sample patterns. */
 #include "reference/camera.h"
 #include "base/same.h"
 #include "base/vec.h"
@@ -12,7 +12,7 @@ static struct dvec3 in_panorama(const struct gpu_frame *frame, double x, double 
     return dvec3_along(d3_scale(level, same_cos(latitude)), d3_load(frame->up), same_sin(latitude));
 }
 
-/* x and y: -1..1 from left to right and from top to bottom. */
+/* Sets a camera ray's origin and direction. x, y: -1..1, left to right and top to bottom. */
 static void take_line(const struct reference *reference, double x, double y, const float lens_xy[2],
                       struct ray *ray)
 {
@@ -27,7 +27,7 @@ static void take_line(const struct reference *reference, double x, double y, con
         ray->origin = d3_add(ray->origin, aside);
         ray->dir = d3_load(frame->forward);
     }
-    if (reference->camera == CAMERA_LENS) { /* all meet in the focus plane */
+    if (reference->camera == CAMERA_LENS) { /* rays of one (x, y) meet in the focus plane */
         struct dvec3 on_lens =
             dvec3_along(d3_scale(right, (double)lens_xy[0]), up, (double)lens_xy[1]);
         ray->origin = dvec3_along(ray->origin, on_lens, (double)frame->focus_distance);

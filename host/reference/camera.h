@@ -6,8 +6,8 @@
 
 struct ray camera_first_ray(const struct reference *reference, uint32_t x, uint32_t y,
                             uint32_t sample);
-/* The area of a texel that a sample of the pixel asks for, across its camera ray `way` from the
-   eye. */
+/* The area that a sample stands for, perpendicular to its ray, at distance `way` from the eye along
+   the path of rays. It chooses the mipmap level. */
 double camera_texel_area(const struct reference *reference, uint32_t x, uint32_t y, uint32_t sample,
                          double way);
 

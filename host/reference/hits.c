@@ -1,6 +1,6 @@
-/* What rays meet: the walk in double of accel/, with what surfaces do to rays of each kind:
-   cut-outs, surfaces without a back, filters of shadow rays. Equal t goes to the smaller instance,
-   then primitive. */
+/* Finds hits by the conservative traversal in double, with the rules of surfaces for each kind of
+   ray: cut-outs, one-sided surfaces, filters of shadow rays. Among hits with equal t the one with
+   the smaller instance, then the smaller primitive, comes first. */
 #include <string.h>
 
 #include "accel/hit_order.h"
@@ -11,7 +11,8 @@
 #include "reference/surface.h"
 #include "reference/texture.h"
 
-/* Boxes are of floats, and grow by more than their roundings and those of the walk. */
+/* Relative growth of the boxes, whose bounds are floats: more than their rounding errors and those
+   of the traversal. */
 #define BOX_GROWTH          0x1p-40
 #define BOX_GROWTH_INSTANCE 0x1p-20
 #define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */
@@ -23,10 +24,10 @@ struct search {
     const struct reference *reference;
     enum mode mode;
     double world_origin[3], world_dir[3];
-    struct line line; /* in the space of the tree in hand */
+    struct line line; /* the ray in the space of the tree that is being traversed */
     uint32_t skip_instance, skip_primitive;
     const struct hit *known; /* MODE_NEXT */
-    double light_end;        /* MODE_SHADOW: where absorption is told from; 0: a sun */
+    double light_end;        /* MODE_SHADOW: t of the light, to measure absorption from; 0: a sun */
     double stops[3];
     struct hit best;
 };
@@ -55,7 +56,8 @@ static struct hit_place place_of(const struct hit *hit)
     return (struct hit_place){hit->t, hit->instance, hit->primitive};
 }
 
-/* In reach, nearer than what is known, and there for rays of this kind at all. */
+/* Whether a candidate is within the ray's reach, comes before the best hit so far, and is on a
+   surface that rays of this kind can hit. */
 static bool is_reached(const struct search *s, const struct candidate *m,
                        const struct gpu_triangle *record, uint32_t instance)
 {
@@ -89,7 +91,8 @@ static double stops_of(const struct reference *reference, double kept)
     return reference->params.whole_stops ? floor(stops + 0.5) : stops;
 }
 
-/* What a filter keeps: 1 - cover passes beside it, the rest through it. */
+/* The share of light that a filter transmits: 1 - cover passes beside the surface, the rest through
+   it. */
 static struct dvec3 kept_by(const struct reference *reference, const struct surface *place)
 {
     const struct scene_material *m = place->material;
@@ -108,13 +111,14 @@ static struct dvec3 kept_by(const struct reference *reference, const struct surf
     return dvec3_along(d3_all(1.0 - cover), passes, cover);
 }
 
-/* Kernels take the stops of plain filters from the record, ten bits a channel. */
+/* Adds the stops of a filter. For filters without textures and absorption, kernels read whole stops
+   from the record, ten bits per channel. */
 static void add_filter(struct search *s, const struct candidate *m,
                        const struct gpu_triangle *record, uint32_t instance)
 {
     const struct reference *reference = s->reference;
     bool detail = (record->flags & TRIANGLE_FILTER_DETAIL) != 0;
-    if (!m->owned) /* an edge within glass counts once */
+    if (!m->owned) /* at an edge that two triangles share only one of them counts */
         return;
     if (!detail && reference->params.whole_stops) {
         for (int c = 0; c < 3; ++c)
@@ -135,7 +139,7 @@ static void add_filter(struct search *s, const struct candidate *m,
     }
 }
 
-/* True: the ray ends here. */
+/* Accepts a candidate as the best hit, or adds its filter. True: it is the best hit now. */
 static bool take_candidate(struct search *s, const struct candidate *m, uint32_t record_index,
                            uint32_t instance)
 {

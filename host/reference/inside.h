@@ -1,5 +1,5 @@
-/* The parts of the reference: shared by the files of reference/ alone. All are pure but for the
-   `struct tracer` that they are handed, one a thread. */
+/* Types that the files of reference/ share. Functions change nothing but the `struct tracer` that
+   they get; each thread has one. */
 #ifndef REFERENCE_INSIDE_H
 #define REFERENCE_INSIDE_H
 
@@ -8,7 +8,7 @@
 #include "reference/reference.h"
 #include "reference/vector.h"
 
-/* An instance in the world. */
+/* An instance's matrices: object to world, and back. */
 struct placing {
     struct affine forward, inverse;
 };
@@ -22,10 +22,9 @@ struct reference {
     struct gpu_frame frame; /* camera, media around it, contact, nested */
     uint32_t camera;        /* CAMERA_* */
     struct placing *placings;
-    bool *alphas;       /* of each texture: whether its alpha is anything but 255 */
-    double linear[256]; /* of 8-bit sRGB */
-    /* Smaller levels of each texture, kind by kind, as mipmap_make makes them; NULL: there are
-     * none. */
+    bool *alphas;       /* by texture: whether any alpha is below 255 */
+    double linear[256]; /* linear value of each 8-bit sRGB code */
+    /* Mipmap levels of each texture, by enum mipmap_kind, as mipmap_make makes them; NULL: none. */
     uint8_t *(*levels)[MIPMAP_COVER + 1];
     float level_pieces[2 * MIPMAP_PIECES];
     float *sky; /* octahedral map, RGBA; NULL: gradient */
@@ -34,7 +33,8 @@ struct reference {
     double bailout;
 };
 
-/* Media that a ray is in: material + 1, by rising priority, of equal ones the later one higher. */
+/* The media that a ray is in, as material index + 1, sorted by rising priority; among equal ones
+   the one entered later comes later. The last one counts. */
 struct media {
     uint32_t entries[MEDIA_MAX];
     uint32_t count;
@@ -43,14 +43,15 @@ struct media {
 struct ray {
     struct dvec3 origin, dir, weight;
     struct media media;
-    uint32_t steps; /* ray_bounces(), and below them surfaces that were passed unseen */
+    uint32_t steps; /* high bits: ray_bounces(); low bits: surfaces passed within one medium */
     uint32_t kind;  /* enum reference_kind */
-    uint32_t skip_instance, skip_primitive; /* it starts on this; HIT_NONE: nothing */
-    uint32_t node; /* of the ray tree: its parent's while it waits, then its own */
-    double way;    /* from the eye to its origin along the rays before it */
+    uint32_t skip_instance, skip_primitive; /* primitive that it starts on; HIT_NONE: none */
+    uint32_t node; /* index in the ray tree: the parent's while on the stack, then its own */
+    double way;    /* length of the path from the eye to its origin */
 };
 
-/* Every ray tree ends: as many surfaces passed unseen as the steps of one bounce count as one. */
+/* Steps per bounce. Surfaces passed within one medium are counted in the low bits and add up to
+   bounces, so that every ray tree ends. */
 #define STEPS_OF_BOUNCE (1u << STATE_BOUNCES_SHIFT)
 
 static inline uint32_t ray_bounces(uint32_t steps)
@@ -60,21 +61,21 @@ static inline uint32_t ray_bounces(uint32_t steps)
 
 struct hit {
     double t;
-    double u, v;                          /* weights of the second and third vertex */
-    struct dvec3 normal;                  /* of spheres: unit, in the space of the record */
-    uint32_t record, primitive, instance; /* primitive HIT_NONE: nothing is met */
+    double u, v;                          /* barycentric weights of the second and third vertex */
+    struct dvec3 normal;                  /* for spheres: unit, in the space of the record */
+    uint32_t record, primitive, instance; /* primitive HIT_NONE: no hit */
 };
 
 /* One thread's work. */
 struct tracer {
     const struct reference *reference;
-    uint32_t sample; /* moves the points of area lights */
+    uint32_t sample; /* index of the pixel's sample; shifts the points of area lights */
     uint32_t x, y;   /* the pixel */
     struct reference_stats stats;
     bool too_many_media, lacks_memory;
-    struct ray *stack; /* rays that wait */
+    struct ray *stack; /* rays that are still to be traced */
     uint32_t stack_count, stack_capacity;
-    struct reference_ray *nodes; /* the ray tree, if `records` */
+    struct reference_ray *nodes; /* the ray tree, recorded if `records` */
     uint32_t node_count, node_capacity;
     bool records;
 };

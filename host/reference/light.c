@@ -1,4 +1,4 @@
-/* Where light comes from: lights, flat emitters by exact integrals, the sky. */
+/* Light from lights, from flat emitters by exact integrals, and from the sky. */
 #include <float.h>
 
 #include "base/same.h"
@@ -18,7 +18,7 @@ static struct dvec3 emitter_point(const struct tracer *tracer, const struct scen
     uint32_t before = sequence_light(tracer->sample) * tracer->reference->light_samples, at[2];
     sequence_point(before + index, at);
     double u = (at[0] >> 8) * 0x1p-24, v = (at[1] >> 8) * 0x1p-24;
-    if (light->kind == WHIT_LIGHT_TRIANGLE) { /* keeps areas (Turk 1990) */
+    if (light->kind == WHIT_LIGHT_TRIANGLE) { /* area-preserving map of the square (Turk 1990) */
         double root = sqrt(u);
         u = root * (1.0 - v);
         v = root * v;
@@ -80,15 +80,15 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     sample->arriving = at_most(d3_scale(sample->arriving, share));
     if (light->range > 0.0f && sample->distance > (double)light->range)
         return false;
-    if (flat) /* what lies in one plane with it casts no shadow of its light */
+    if (flat) /* the ray ends before the emitter, so that surfaces in its plane cast no shadow */
         sample->distance *= 1.0 - 1.0 / 4096.0;
     return d3_largest(sample->arriving) > 0.0;
 }
 
 /* ---- Form factors ---- */
 
-/* The angle of an edge times the cosine of n to the normal of the plane through it (Lambert 1760).
- */
+/* An edge's term of the form factor (Lambert 1760): the angle that the edge a-b subtends, times the
+   cosine between n and the normal of the plane through the point and the edge. */
 static double edge_term(struct dvec3 n, struct dvec3 a, struct dvec3 b)
 {
     struct dvec3 normal = dvec3_cross(a, dvec3_sub(b, a));
@@ -96,7 +96,8 @@ static double edge_term(struct dvec3 n, struct dvec3 a, struct dvec3 b)
     return size > 0.0 ? same_atan2(size, dvec3_dot(a, b)) * dvec3_dot(n, normal) / size : 0.0;
 }
 
-/* What is above the horizon of n, by Sutherland and Hodgman; the number of its corners. */
+/* Clips a polygon to the half-space above the horizon of n (Sutherland and Hodgman); gives the
+   number of corners in `out`. */
 static int clip_to_horizon(struct dvec3 n, const struct dvec3 *corners, int count,
                            struct dvec3 *out)
 {
@@ -120,7 +121,7 @@ double light_form_factor(const struct scene_light *light, struct dvec3 p, struct
     const struct dvec3 corners[4] = {
         c0, d3_add(c0, u), triangle ? d3_add(c0, v) : d3_add(d3_add(c0, u), v), d3_add(c0, v)};
     double height = -dvec3_dot(c0, direction), sum = 0.0;
-    /* In its plane, but for what rounds the corners of triangles to floats. */
+    /* The point is in the emitter's plane, within the rounding of corners to floats. */
     if (fabs(height) <= (double)FLT_EPSILON * (d3_length(p) + d3_length(three(light->position))))
         return 0.0;
     int count = clip_to_horizon(n, corners, triangle ? 3 : 4, clipped);
@@ -139,7 +140,7 @@ static struct dvec3 sky_texel(const struct reference *reference, double x, doubl
     return d3_load(&reference->sky[4 * (row * reference->sky_size + column)]);
 }
 
-/* Unit direction on the octahedral square, +y in its middle (Meyer et al. 2010). */
+/* The sky in a unit direction, by an octahedral map with +y in its middle (Meyer et al. 2010). */
 static struct dvec3 sky_map(const struct reference *reference, struct dvec3 dir)
 {
     double size = fabs(dir.x) + fabs(dir.y) + fabs(dir.z), x = dir.x / size, z = dir.z / size;

@@ -1,4 +1,4 @@
-/* Light that reaches a surface straight from the lights, with shadows. */
+/* Direct light on a surface, with shadows. */
 #include <string.h>
 
 #include "base/same.h"
@@ -13,17 +13,18 @@
 #define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: beyond it a mesh is no smooth surface */
 #define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */
 
-/* What all shadow rays of a hit have in common. */
+/* What all shadow rays of a hit share. */
 struct receiver {
     const struct surface *s;
-    const struct ray *ray; /* that met it */
-    struct dvec3 lift;     /* from the hit point to where shadow rays start */
+    const struct ray *ray; /* the ray that hit the surface */
+    struct dvec3 lift;     /* from the hit point to the start of shadow rays */
     struct dvec3 absorption;
-    uint32_t instance, primitive; /* that was met */
-    bool lifted;
+    uint32_t instance, primitive; /* of the hit */
+    bool lifted;                  /* `lift` is not 0 */
 };
 
-/* From a point, `from` away from a vertex, onto the tangent plane there, outwards only. */
+/* The offset of a point to its projection on the tangent plane at a vertex; 0 where that would be
+   inwards. `from`: the point relative to the vertex. */
 static struct dvec3 lift_to_plane(struct dvec3 from, struct dvec3 n, struct dvec3 ng, double slack,
                                   bool *smooth)
 {
@@ -34,8 +35,9 @@ static struct dvec3 lift_to_plane(struct dvec3 from, struct dvec3 n, struct dvec
     return d3_scale(n, fmax(-dvec3_dot(from, n) - slack, 0.0));
 }
 
-/* To the mean of the projections on the tangent planes at the vertices (Hanika 2021, "Hacking the
-   Shadow Terminator"). The kernels' slack is part of it: a surface flatter than that is flat. */
+/* The offset of the hit point to the mean of its projections on the vertices' tangent planes
+   (Hanika 2021, "Hacking the Shadow Terminator"). As in the kernels, surfaces flatter than `slack`
+   count as flat. */
 static struct dvec3 smooth_lift(const struct reference *reference, const struct surface *s)
 {
     struct dvec3 from = dvec3_along(d3_scale(s->e1, s->u), s->e2, s->v);
@@ -51,7 +53,7 @@ static struct dvec3 smooth_lift(const struct reference *reference, const struct 
     return smooth ? lift : d3_all(0.0);
 }
 
-/* What the filters on the way and the media around the receiver leave. */
+/* The share of light that filters on the way and the media around the receiver transmit. */
 static struct dvec3 share_of(const struct reference *reference, const struct receiver *at,
                              const struct shadow_ray *ray, const struct shadow *shadow)
 {
@@ -102,8 +104,8 @@ static void record_shadow(struct tracer *tracer, const struct receiver *at,
     tree_record(tracer, &node);
 }
 
-/* How much of a light passes. What is lifted off its triangle may be met by light from below the
-   triangle's plane, which must then pass beside the triangle. */
+/* The share of a light point's light that reaches the hit, by a shadow ray. A lifted start may be
+   lit from below the plane of its triangle; then the triangle itself can block the ray. */
 static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at,
                                 const struct light_sample_info *from, uint32_t light,
                                 uint32_t point)
@@ -131,12 +133,12 @@ static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at
     return share;
 }
 
-/* What one light adds. Of flat emitters the points tell what share is seen, each weighted by what
-   it would send; the light itself is the integral over the emitter. Their highlight is not scaled
-   up where points miss most of what is above the horizon. */
+/* Sums over the points of one light. For flat emitters the points give only the visible share, each
+   point weighted by its light; the light itself is the exact integral over the emitter. Highlights
+   are not scaled up where points miss most of what is above the horizon. */
 struct lit {
     struct dvec3 sum, open; /* open: without shadows */
-    double weight;          /* flat emitters: cos cos / distance^2 */
+    double weight;          /* flat emitters: sum of cos cos / distance^2 */
     struct dvec3 visible, highlight;
 };
 

@@ -1,12 +1,12 @@
 /* Nested media (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images"), and
-   surfaces of several of them that a ray crosses at one place. */
+   touching surfaces of several media, which a ray crosses at one place. */
 #include "reference/media.h"
 #include "base/same.h"
 #include "reference/hits.h"
 
 #include "picture/bodies.h"
 
-/* Surfaces touch within roundings of floats: their vertices are floats. */
+/* Surfaces count as touching within a few rounding errors of floats, since vertices are floats. */
 #define FLOAT_ROUNDINGS 8.0
 #define ROUNDING        0x1p-24
 
@@ -42,7 +42,7 @@ static void put_in(struct tracer *tracer, struct media *media, uint32_t entry)
     ++media->count;
 }
 
-/* The last occurrence; false: there is none. */
+/* Takes the last occurrence of `entry` out; false: there is none. */
 static bool take_out(struct media *media, uint32_t entry)
 {
     uint32_t at = media->count;
@@ -107,7 +107,8 @@ struct crossed {
     uint32_t count;
 };
 
-/* The last one of the same body; CROSSED_MAX: none. */
+/* The index of the last crossed surface of the same body (material and instance); CROSSED_MAX:
+   none. */
 static uint32_t find_crossed(const struct crossed *crossed, uint32_t entry, uint32_t instance)
 {
     for (uint32_t i = crossed->count; i > 0; --i) {
@@ -124,7 +125,7 @@ static void add_crossed(struct crossed *crossed, uint32_t entry, uint32_t instan
     crossed->leaving[crossed->count++] = leaving;
 }
 
-/* How far apart along the ray hits at one place may be. */
+/* Distance along the ray within which hits count as at one place, by rounding errors. */
 static double slack(const struct surface *s, const struct ray *ray, double t)
 {
     double size = d3_size(ray->origin) + d3_size(s->p) + d3_size(s->e1) + d3_size(s->e2) + t;
@@ -142,8 +143,9 @@ static uint32_t rank_of(const struct surface *s, bool inside)
     return 2 * s->material->priority + !inside;
 }
 
-/* Adds what touches the surface, and makes *s the one that is seen there: of the highest priority,
-   of equal ones one that is entered. What is reflected stays before the first of them. */
+/* Adds the surfaces that touch *s to `crossed`, and makes *s the visible one: that with the highest
+   priority, among equal ones one that is entered. The point of *s stays that of the first surface,
+   from which reflected rays start. */
 static void gather_touching(const struct reference *reference, const struct ray *ray,
                             struct hit hit, struct crossed *crossed, struct crossing *c,
                             struct surface *s, bool inside)
@@ -161,9 +163,9 @@ static void gather_touching(const struct reference *reference, const struct ray 
         uint32_t entry = other.material_index + 1;
         uint32_t same = find_crossed(crossed, entry, hit.instance);
         if (same != CROSSED_MAX && crossed->leaving[same] == leaves)
-            continue; /* at an edge both neighbours are met */
+            continue; /* the neighbour triangle at a shared edge */
         if (same != CROSSED_MAX && hit.t > near)
-            return; /* a body thinner than the contact distance, which does not mean it */
+            return; /* the far side of a body thinner than `contact`, which is not a contact */
         add_crossed(crossed, entry, hit.instance, leaves);
         c->p = other.p;
         c->ng = other.ng;
@@ -179,8 +181,8 @@ static void gather_touching(const struct reference *reference, const struct ray 
     }
 }
 
-/* Enters all that is entered, then leaves. What is left without having been entered, as open meshes
-   have it, was around the ray so far. */
+/* Enters all media that are entered, then leaves others. A medium that is left without having been
+   entered, as with open meshes, is added to `before`: the ray was in it. */
 static void cross_all(struct tracer *tracer, const struct crossed *crossed, struct crossing *c)
 {
     for (uint32_t i = 0; i < crossed->count; ++i) {
@@ -193,7 +195,8 @@ static void cross_all(struct tracer *tracer, const struct crossed *crossed, stru
     }
 }
 
-/* The neighbour of the primitive at whose edge the ray has just crossed the surface. */
+/* Whether the hit is on the neighbour of the primitive on which the ray starts, at their shared
+   edge: the ray has then crossed this surface already. */
 static bool is_crossed_already(const struct ray *ray, const struct hit *hit,
                                const struct surface *s, bool inside)
 {

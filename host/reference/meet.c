@@ -1,5 +1,5 @@
-/* Triangles and spheres against a line, in double. Triangles go by edge functions of points sheared
-   along the line (Woop, Benthin and Wald 2013), which have no cracks in any precision. */
+/* Intersects lines with triangles and spheres, in double. Triangles by edge functions of vertices
+   sheared along the line (Woop, Benthin and Wald 2013), which are watertight in any precision. */
 #include "reference/meet.h"
 
 struct line line_make(const double origin[3], const double dir[3])
@@ -22,7 +22,7 @@ struct line line_make(const double origin[3], const double dir[3])
     return line;
 }
 
-/* A vertex as seen along the line; z in units of the direction. */
+/* A vertex in the sheared space, in which the line is the z axis; z is t. */
 static struct dvec3 sheared(const struct line *line, const float vertex[3])
 {
     double z = (double)vertex[line->z] - line->origin[line->z];
@@ -31,13 +31,15 @@ static struct dvec3 sheared(const struct line *line, const float vertex[3])
     return d3(x - line->shear_x * z, y - line->shear_y * z, z / line->dir[line->z]);
 }
 
-/* Twice the area between an edge and the line: of the same edge the other way just the negative. */
+/* Twice the signed area of the triangle of an edge and the line; exactly negated for the reversed
+   edge. */
 static double edge_area(struct dvec3 from, struct dvec3 to)
 {
     return from.x * to.y - from.y * to.x;
 }
 
-/* The fill rule of rasterizers (Pineda 1988), for lines that go through an edge. */
+/* Whether the triangle owns the edge that the line goes through, by the fill rule of rasterizers
+   (Pineda 1988); true where the line misses the edge. */
 static bool owns_edge(double area, struct dvec3 from, struct dvec3 to, bool left)
 {
     double dx = to.x - from.x, dy = to.y - from.y;
@@ -53,23 +55,23 @@ struct candidate meet_triangle(const struct line *line, const struct gpu_triangl
                  c = sheared(line, triangle->v2);
     double bc = edge_area(b, c), ca = edge_area(c, a), ab = edge_area(a, b);
     bool below = bc < 0.0 || ca < 0.0 || ab<0.0, above = bc> 0.0 || ca > 0.0 || ab > 0.0;
-    if (below == above) /* beside, or edge-on */
+    if (below == above) /* the line misses the triangle, or sees it edge-on */
         return m;
     double area = bc + ca + ab;
     m.met = true;
     m.u = ca / area;
     m.v = ab / area;
     m.t = (bc * a.z + ca * b.z + ab * c.z) / area;
-    /* Against the clock as seen from where the line comes from; shearing along a negative axis
-       turns the picture around. */
+    /* The front is counter-clockwise as seen from the line's origin. Shearing along a negative axis
+       mirrors the picture. */
     m.front = above == (line->dir[line->z] < 0.0);
     m.owned =
         owns_edge(bc, b, c, above) && owns_edge(ca, c, a, above) && owns_edge(ab, a, b, above);
     return m;
 }
 
-/* The half chord from the line's distance to the centre; of the ends the one nearer to the origin
-   from the product of both, so that nothing cancels (Haines et al. 2019). */
+/* Computes the half chord from the line's distance to the centre, and the end nearer to the origin
+   from the product of both ends, so that nothing cancels (Haines et al. 2019). */
 struct candidate meet_sphere(const struct line *line, const struct gpu_triangle *sphere,
                              bool at_exit, bool self)
 {

@@ -6,7 +6,7 @@
 
 #define SCHLICK_POWER 5.0
 
-/* Square of the cosine behind the surface by Snell; negative under total reflection. */
+/* Squared cosine of the refracted ray by Snell's law; negative: total reflection. */
 static double refracted_cos2(double cos_in, double eta)
 {
     double sine2 = (1.0 - cos_in) * (1.0 + cos_in);
@@ -18,7 +18,8 @@ static double schlick_weight(double cos_in)
     return same_pow(clamp_unit(1.0 - cos_in), SCHLICK_POWER);
 }
 
-/* By the angles (Fresnel's sine and tangent laws), where they are not too small to divide by. */
+/* By Fresnel's sine and tangent laws for angles; near normal incidence, where these divide by 0, by
+   the limit. */
 double optics_fresnel(double cos_in, double eta)
 {
     double cos2 = refracted_cos2(cos_in, eta);
@@ -27,7 +28,7 @@ double optics_fresnel(double cos_in, double eta)
     if (!(cos2 > 0.0))
         return 1.0;
     double in = same_acos(cos_in), out = same_acos(sqrt(cos2));
-    if (in < 1e-3) { /* head-on, and flat there */
+    if (in < 1e-3) { /* near normal incidence the reflectance is constant */
         double r = (eta - 1.0) / (eta + 1.0);
         return r * r;
     }
@@ -52,7 +53,7 @@ bool optics_refract(struct dvec3 dir, struct dvec3 n, double eta, struct dvec3 *
     *out = dir;
     if (!(cos2 > 0.0))
         return false;
-    /* What lies in the surface grows by eta; the rest is what makes the length 1. */
+    /* The tangential part is scaled by eta; the normal part makes the length 1. */
     struct dvec3 across = dvec3_along(dir, n, -dvec3_dot(dir, n));
     *out = d3_unit_or(dvec3_along(d3_scale(across, eta), n, -sqrt(cos2)), dir);
     return true;
@@ -64,7 +65,7 @@ struct dvec3 optics_reflect(struct dvec3 dir, struct dvec3 n)
 }
 
 /* GGX (Walter et al. 2007) times the height-correlated visibility in its usual approximation (Heitz
-   2014; Hammon 2017), times pi: lights carry irradiance over pi. */
+   2014; Hammon 2017), times pi, since lights carry irradiance / pi. */
 static double ggx(double cos_half, double cos_light, double cos_view, double alpha)
 {
     double a2 = alpha * alpha, d = cos_half * cos_half * (a2 - 1.0) + 1.0;
@@ -84,7 +85,7 @@ struct dvec3 optics_highlight(const struct optics *o, struct dvec3 n, struct dve
     return d3_scale(o->highlight, cos_half > 0.0 ? same_pow(cos_half, o->shininess) : 0.0);
 }
 
-/* What textures and colours of vertices make of a material. */
+/* Material values after textures. */
 struct finish {
     double metallic, roughness, level;
     struct dvec3 transmission, mirror;
@@ -114,7 +115,8 @@ static struct finish take_textures(const struct reference *reference, const stru
     };
 }
 
-/* glTF's model as that of Whitted; the share of the mirror ray that roughness leaves. */
+/* Converts glTF's metallic-roughness model to Whitted's. Gives the share of the mirror ray that
+   roughness leaves. */
 static double take_metal_rough(const struct scene_material *m, struct finish *f, double cos_view,
                                struct optics *o)
 {
@@ -147,7 +149,7 @@ static void take_glass(const struct reference *reference, const struct scene_mat
     double eta = o->thin ? 1.0 / (double)m->ior : o->eta;
     double share = reference->params.picture.schlick ? schlick_reflectance(cos_view, eta)
                                                      : optics_fresnel(cos_view, eta);
-    if (o->thin) /* both faces of a sheet, all that goes to and fro in it */
+    if (o->thin) /* both faces of a sheet, with all reflections between them */
         share = 2.0 * share / (1.0 + share);
     o->refracted = d3_scale(f->transmission, total ? 0.0 : m->fresnel ? 1.0 - share : 1.0);
     if (total)

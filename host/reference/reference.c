@@ -1,4 +1,4 @@
-/* A reference from its making to its end, pictures by rows, ray trees by pixels. */
+/* Creates and destroys references; renders pictures row by row, and ray trees of pixels. */
 #include <float.h>
 #include <stdlib.h>
 
@@ -40,7 +40,7 @@ static bool has_alpha(const struct scene_texture *t)
     return false;
 }
 
-/* The levels of all textures that materials use. False: memory ran out. */
+/* Makes the mipmap levels of all textures that materials use. False: memory ran out. */
 static bool make_levels(struct reference *r)
 {
     const struct scene *scene = r->scene;
@@ -73,7 +73,7 @@ static bool fill_tables(struct reference *r)
     for (uint32_t i = 0; i < r->pose.instance_count; ++i) {
         r->placings[i].forward = r->pose.instances[i];
         if (!affine_invert(&r->pose.instances[i], &r->placings[i].inverse))
-            r->placings[i].inverse = affine_identity(); /* poses have none of these */
+            r->placings[i].inverse = affine_identity(); /* never: poses have no such matrix */
     }
     for (uint32_t i = 0; i < scene->texture_count; ++i)
         r->alphas[i] = has_alpha(&scene->textures[i]);
@@ -143,7 +143,7 @@ void reference_destroy(struct reference *r)
 struct job {
     const struct reference *reference;
     struct image *color, *ids;
-    struct tracer *rows; /* of the band: what each row counted */
+    struct tracer *rows; /* a tracer for each row of the band, with its statistics */
     uint32_t first_row;
 };
 
@@ -157,7 +157,7 @@ static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x,
     const whit_renderer_params *params = &job->reference->params.picture;
     size_t pixel = (size_t)y * params->width + x;
     struct dvec3 sum = d3_all(0.0),
-                 partial[SEQUENCE_BITS + 1]; /* of 2^i samples; see resolve.comp */
+                 partial[SEQUENCE_BITS + 1]; /* sums of 2^i samples, as in resolve.comp */
     for (uint32_t i = 0; i < params->sampling.count; ++i) {
         struct hit first = {.primitive = HIT_NONE, .instance = HIT_NONE};
         tracer->sample = params->sampling.first + i;
@@ -217,7 +217,7 @@ static whit_result tracer_result(const struct reference *r, const struct tracer 
     return WHIT_OK;
 }
 
-/* All rows, band by band: between them the caller's thread tells of progress. */
+/* Draws all rows, band by band; between bands the caller's thread reports progress. */
 static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_ms,
                               struct reference_stats *stats)
 {

@@ -1,10 +1,10 @@
-/* From a hit to what shading needs: point, normals, texture coordinates, material. */
+/* Makes of a hit what shading needs: point, normals, texture coordinates, material. */
 #include "reference/surface.h"
 #include "base/same.h"
 #include "base/vec.h"
 
-/* By how much rays start off a surface, relative to the coordinates that the point is computed
-   from: more than its rounding error. */
+/* Distance by which rays start off a surface, relative to the coordinates that the point is
+   computed from: more than the point's rounding error. */
 #define ROOM 0x1p-45
 
 static struct dvec3 to_world(const struct reference *reference, uint32_t instance, struct dvec3 p,
@@ -54,7 +54,7 @@ static struct dvec3 blend(struct dvec3 a, struct dvec3 b, struct dvec3 c, double
     return dvec3_along(dvec3_along(d3_scale(a, 1.0 - u - v), b, u), c, v);
 }
 
-/* Colours of vertices, kept within 0..1 as records keep them. */
+/* Interpolates vertex colours, which are clamped to 0..1, as in the kernels' records. */
 static void take_colors(struct surface *s)
 {
     s->color = d3_all(1.0);
@@ -73,7 +73,7 @@ static void take_colors(struct surface *s)
     s->alpha = rgba[3];
 }
 
-/* u once around y from +x towards -z, v from the top down. */
+/* Texture coordinates of a sphere: u goes once around y from +x towards -z, v from the top down. */
 static void take_sphere_uv(struct surface *s, struct dvec3 n)
 {
     double around = same_atan2(-n.z, n.x) / (2.0 * PI);
@@ -106,7 +106,8 @@ struct surface surface_texture_place(const struct reference *reference, uint32_t
     return s;
 }
 
-/* In the space of the record; normals not of unit length. */
+/* Fills in point, edges and normals of a triangle, in the space of the record; normals are not
+   unit. */
 static void take_triangle(const struct gpu_triangle *record, const struct hit *hit,
                           struct surface *s)
 {
@@ -142,7 +143,7 @@ struct surface surface_at(const struct reference *reference, const struct hit *h
     else
         take_triangle(record, hit, &s);
     struct dvec3 ng = s.ng, ns = s.ns;
-    if (reference->accel->flat) /* only normals of vertices are in object space */
+    if (reference->accel->flat) /* of records, only vertex normals are in object space */
         ng = record->flags & TRIANGLE_MIRRORED ? d3_scale(ng, -1.0) : ng;
     else
         ng = place_normal(reference, hit->instance, ng);

@@ -1,4 +1,5 @@
-/* Pictures on surfaces: bilinear or nearest, wrapped, linear light; opacity; bent normals. */
+/* Textures: bilinear or nearest, with wrap modes, in linear light; opacity; normal and bump
+   maps. */
 #include "reference/texture.h"
 
 static bool is_used(const struct scene_material *m, enum scene_slot slot)
@@ -15,14 +16,14 @@ static int64_t wrap(int64_t at, int64_t size, enum scene_wrap how)
     return within < size ? within : 2 * size - 1 - within;
 }
 
-/* Without whole periods, so that no coordinate is too large for an integer. */
+/* Removes whole periods from a texture coordinate, so that it fits an integer. */
 static double reduce(double x, enum scene_wrap how)
 {
     double reduced = how == SCENE_WRAP_CLAMP ? fmin(fmax(x, -1.0), 2.0) : fmod(x, 2.0);
     return isfinite(reduced) ? reduced : 0.0;
 }
 
-/* A level of a texture. */
+/* A mipmap level of a texture. */
 struct level {
     const uint8_t *rgba;
     uint32_t width, height;
@@ -64,7 +65,8 @@ static struct texel sample_level(const struct reference *reference, const struct
     return mix_texels(above, below, py);
 }
 
-/* Coordinates of the three corners in a use's set; those of spheres are u and v themselves. */
+/* Texture coordinates of the three corners, in the UV set of a texture use; for spheres such that u
+   and v are the coordinates themselves. */
 static void corner_uvs(const struct surface *s, const struct scene_texture_use *use,
                        double uvs[3][2])
 {
@@ -98,7 +100,8 @@ static bool is_srgb(const struct scene_material *m, enum scene_slot slot)
            (slot == SCENE_SLOT_SPECULAR && m->model == WHIT_MODEL_METAL_ROUGH);
 }
 
-/* What the ray stands for, in texels of level 0: the mean of the squares of its two sides. */
+/* The size of the ray's footprint in texels of level 0: mean of the squared lengths of its two
+   sides. */
 static double footprint_texels(const struct surface *s, const struct scene_texture_use *use,
                                const struct scene_texture *t)
 {
@@ -120,7 +123,7 @@ static double footprint_texels(const struct surface *s, const struct scene_textu
     return sum;
 }
 
-/* The texture of a slot at uv of its set. */
+/* Samples the texture in a slot at coordinates uv of its UV set. */
 static struct texel sample_at(const struct reference *reference, const struct surface *s,
                               enum scene_slot slot, const double uv[2])
 {
@@ -154,7 +157,8 @@ struct texel texture_sample(const struct reference *reference, const struct surf
     return sample_at(reference, s, slot, uv);
 }
 
-/* A picture of its own, its alpha where it has one; or else the alpha of the diffuse picture. */
+/* By the opacity texture, its alpha if it has one, else its red; without one, by the alpha of the
+   diffuse texture. */
 double texture_opacity(const struct reference *reference, const struct surface *s)
 {
     const struct scene_material *m = s->material;
@@ -170,7 +174,8 @@ double texture_opacity(const struct reference *reference, const struct surface *
     return opacity;
 }
 
-/* In which the picture's u and v grow, in the plane of the normal, unit. */
+/* Unit directions in the surface, orthogonal to the normal, in which u and v of the texture
+   grow. */
 static void tangents(const struct surface *s, const struct scene_texture_use *use,
                      struct dvec3 *right, struct dvec3 *down)
 {
@@ -191,8 +196,8 @@ static void tangents(const struct surface *s, const struct scene_texture_use *us
     *down = d3_unit_or(b, d3_all(0.0));
 }
 
-/* Slope of a height map, from one texel on to the right and below; heights are in 1/32 of the
-   picture's side. */
+/* Slope of a height map, by differences to the texels on the right and below. Heights are in 1/32
+   of the texture's side. */
 static void bump_slope(const struct reference *reference, const struct surface *s,
                        const double uv[2], double slope[2])
 {

@@ -9,12 +9,12 @@ struct texel {
     double alpha;
 };
 
-/* White where the slot is empty. */
+/* Samples a slot's texture; white where there is none. */
 struct texel texture_sample(const struct reference *reference, const struct surface *s,
                             enum scene_slot slot);
-/* Opacity of masked and blended materials, colours of vertices left out. */
+/* Opacity of masked and blended materials, without vertex alpha. */
 double texture_opacity(const struct reference *reference, const struct surface *s);
-/* Normal or bump map: s->ns. */
+/* Applies the normal or bump map to s->ns. */
 void texture_bend_normal(const struct reference *reference, struct surface *s);
 
 #endif

@@ -1,5 +1,5 @@
-/* The ray tree of a sample (Whitted 1980): each ray's light goes to the sample, the rays that its
-   surface calls for wait on a stack. */
+/* Traces the ray tree of a sample (Whitted 1980): each ray adds its light to the sample, and puts
+   the rays that its surface calls for on a stack. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ uint32_t tree_record(struct tracer *tracer, const struct reference_ray *ray)
     return tracer->node_count - 1;
 }
 
-/* As far as is known when a ray sets out. */
+/* Records a ray, with the values that are known before it is traced. */
 static uint32_t record_ray(struct tracer *tracer, const struct ray *ray, whit_probe_end end)
 {
     struct reference_ray node = {.kind = ray->kind,
@@ -79,7 +79,8 @@ static void record_end(struct tracer *tracer, const struct ray *ray, whit_probe_
 
 /* ---- Rays that a surface calls for ---- */
 
-/* Puts a ray on the stack, or tells why it is not traced. True: it has some weight. */
+/* Puts a ray on the stack, or records that it is cut by depth or bail-out. False: its weight is
+   0. */
 static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
 {
     double largest = d3_largest(ray->weight);
@@ -99,7 +100,7 @@ static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
     return true;
 }
 
-/* What goes on behind the surface. */
+/* A ray that starts behind the surface. */
 static struct ray beyond(const struct ray *ray, const struct crossing *c, struct dvec3 dir,
                          struct dvec3 weight, uint32_t kind)
 {
@@ -122,7 +123,8 @@ static bool push_refracted(struct tracer *tracer, const struct ray *ray, const s
     struct dvec3 dir = ray->dir;
     if (!o->thin && !optics_refract(ray->dir, s->ns, o->eta, &dir))
         return false;
-    /* A shading normal may bend the ray back to its own side: then straight on. */
+    /* By the shading normal the refracted ray may stay on its side of the surface; then it goes
+       straight on. */
     if (dvec3_dot(dir, s->ng) >= 0.0 || dvec3_dot(dir, c->ng) >= 0.0)
         dir = ray->dir;
     struct ray child = beyond(ray, c, dir, weight, REFERENCE_REFRACTED);
@@ -152,7 +154,7 @@ static bool push_reflected(struct tracer *tracer, const struct ray *ray, const s
     return push_ray(tracer, &child, deep);
 }
 
-/* False: the surface calls for none. */
+/* Pushes refracted, straight and reflected rays; false: the surface calls for none. */
 static bool push_children(struct tracer *tracer, const struct ray *ray, const struct surface *s,
                           const struct optics *o, const struct crossing *c, const struct hit *hit)
 {
@@ -165,7 +167,7 @@ static bool push_children(struct tracer *tracer, const struct ray *ray, const st
     return any;
 }
 
-/* Straight on, where both sides of a surface are the same medium. */
+/* Sends the ray straight on, where both sides of a surface are the same medium. */
 static void push_through(struct tracer *tracer, const struct ray *ray, const struct crossing *c)
 {
     uint32_t depth = tracer->reference->params.picture.depth;
@@ -177,7 +179,8 @@ static void push_through(struct tracer *tracer, const struct ray *ray, const str
 
 /* ---- A ray's own light ---- */
 
-/* Where two rays beside this one meet the surface's plane. */
+/* Sets s->footprint: projects the two sides of the ray's footprint along the ray onto the
+   surface. */
 static void take_footprint(const struct tracer *tracer, const struct ray *ray, struct surface *s)
 {
     double side =

@@ -32,7 +32,7 @@ static inline struct dvec3 d3_scale(struct dvec3 a, double s)
     return d3(a.x * s, a.y * s, a.z * s);
 }
 
-/* By components, as colours are. */
+/* Product by components, for colours. */
 static inline struct dvec3 d3_times(struct dvec3 a, struct dvec3 b)
 {
     return d3(a.x * b.x, a.y * b.y, a.z * b.z);
@@ -68,7 +68,7 @@ static inline bool d3_is_finite(struct dvec3 a)
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
 }
 
-/* `otherwise` where there is no direction. */
+/* The unit vector of a; `otherwise` where its length is 0 or not finite. */
 static inline struct dvec3 d3_unit_or(struct dvec3 a, struct dvec3 otherwise)
 {
     double size = d3_size(a);
