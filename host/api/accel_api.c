@@ -93,7 +93,8 @@ void whit_accel_destroy(whit_accel *accel)
     free(accel);
 }
 
-/* In the trees: of each mesh once, of one tree over all instances as often as it has instances. */
+/* Number of spheres in the trees: each mesh counts once, or in a single-level tree once per
+   instance. */
 static uint32_t count_spheres(const struct accel *accel)
 {
     const struct scene *scene = accel->scene;

@@ -51,11 +51,11 @@ struct held_message {
     char text[];
 };
 
-/* Keeps messages until the caller's thread asks for them; from then on they pass. Calls of `fn` are
-   one at a time (log_message). */
+/* Keeps log messages of another thread until the caller's thread asks for them; later ones go to
+   `to` at once. log_message makes one call at a time. */
 struct log_relay {
     whit_log to;
-    bool passes, lost; /* lost: no memory to keep one */
+    bool passes, lost; /* passes: goes to `to` at once; lost: memory ran out for a message */
     struct held_message *first, **end;
 };
 
@@ -111,10 +111,10 @@ static void relay_destroy(struct log_relay *relay)
 
 struct whit_device_opening {
     whit_device_params params;
-    whit_log log; /* into the relay */
+    whit_log log; /* writes to `relay` */
     struct log_relay *relay;
     struct thread *thread;
-    whit_device *device; /* of the thread until it is joined, as is `result` */
+    whit_device *device; /* like `result` used by the thread alone until it is joined */
     whit_result result;
 };
 

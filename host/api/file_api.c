@@ -84,7 +84,7 @@ double whit_clock_cpu_ms(void)
     return clock_cpu_ms();
 }
 
-/* ---- What can be made again ---- */
+/* ---- The cache ---- */
 
 bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes)
 {

@@ -1,4 +1,4 @@
-/* What is behind the public handles; only api/ sees it. */
+/* The structs behind the public handles, for api/ alone. */
 #ifndef API_HANDLES_H
 #define API_HANDLES_H
 
@@ -13,9 +13,9 @@
 
 struct whit_scene {
     struct scene *scene;
-    struct scene_pose pose; /* at time 0, for descriptions */
+    struct scene_pose pose; /* at time 0, for whit_scene_get_* */
     struct scene_effects effects;
-    bool one_tree; /* by WHIT_INSTANCES_AUTO */
+    bool one_tree; /* WHIT_INSTANCES_AUTO makes a single-level tree */
     whit_log log;
 };
 
@@ -24,12 +24,12 @@ static inline bool api_one_tree(const struct whit_scene *scene, whit_instances i
     return instances == WHIT_INSTANCES_OFF || (instances == WHIT_INSTANCES_AUTO && scene->one_tree);
 }
 
-/* Derives the pose and the choice of trees of a scene that was made. After a failure
-   the scene is destroyed. */
+/* Completes a new handle: pose, effects, and whether it gets one tree. `result`: of making its
+   scene. On failure destroys the handle. */
 WHIT_CHECK whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out);
 
 struct whit_accel {
-    whit_accel_params params; /* that it was made with */
+    whit_accel_params params; /* as given to whit_accel_create */
     struct accel *accel;
     whit_log log;
 };
@@ -39,17 +39,17 @@ struct log_relay; /* device_api.c */
 struct whit_device {
     struct device *device;
     whit_log log;
-    struct log_relay *relay; /* behind `log` of a device that a thread opened; else NULL */
+    struct log_relay *relay; /* receiver of `log`, if a thread opened the device; else NULL */
 };
 
 struct whit_renderer {
-    struct renderer *renderer;   /* NULL: CPU only */
+    struct renderer *renderer;   /* NULL: made without a device, traces on the CPU */
     struct accel *accel;         /* borrowed */
-    whit_renderer_params params; /* of the picture; its strings are not read again */
+    whit_renderer_params params; /* strings in it may be gone, and are not read */
     whit_log log;
 };
 
-/* WHIT_ERROR_USAGE, logged, for a renderer that was made without one. */
+/* WHIT_ERROR_USAGE, logged, for a renderer that was made without a device. */
 WHIT_CHECK whit_result api_need_device(const whit_renderer *renderer);
 
 struct whit_image {

@@ -1,4 +1,4 @@
-/* Hard cases, with a device of the caller's. */
+/* Runs the hard cases on the caller's device. */
 #include <stdlib.h>
 
 #include "api/handles.h"
@@ -6,7 +6,7 @@
 
 enum { WIDTH_DEFAULT = 640, HEIGHT_DEFAULT = 480, SIDE_MAX = 32768, RENDERER_SIDE = 16 };
 
-/* hard_device.user. */
+/* The `user` of struct hard_device. */
 struct traced_on {
     struct device *device;
     const volatile bool *cancel;
@@ -27,7 +27,7 @@ static whit_result trace(const struct hard_device *device, const whit_log *log, 
                                          .trace_rays = (uint32_t)count};
     struct renderer *renderer = NULL;
     whit_result result = renderer_create(log, on->device, accel, &params, &renderer);
-    if (result == WHIT_OK) /* some drivers finish a kernel when it first runs */
+    if (result == WHIT_OK) /* warms up: some drivers finish compiling when a kernel first runs */
         result = renderer_trace(renderer, rays, 1, false, hits, NULL);
     if (result == WHIT_OK)
         result = renderer_trace(renderer, rays, count, false, hits, NULL);
@@ -37,7 +37,8 @@ static whit_result trace(const struct hard_device *device, const whit_log *log, 
     return result;
 }
 
-/* Whether hits of this device are to have the bits of the twin's: see docs/numerics.md. */
+/* Whether hits on this device must equal those of the float mirror (twin) in all bits: see
+   docs/numerics.md. */
 static whit_result find_equal_bits(whit_device *device, bool portable, bool *equal)
 {
     whit_device_floats floats = {.own_division = true, .own_comparison = true};

@@ -1,4 +1,4 @@
-/* Rays with what exact arithmetic says of them, and hits held against that. */
+/* Rays with their exact hits, and judging other hits of them. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,7 +25,7 @@ struct whit_judge {
 
 /* ---- Rays ---- */
 
-/* As many as come near `wanted` without more, in the picture's shape. */
+/* A grid of camera rays with the picture's aspect, and at most about `wanted` points. */
 static void grid_of(const whit_judge_params *params, uint32_t wanted, uint32_t *width,
                     uint32_t *height)
 {

@@ -1,4 +1,4 @@
-/* Parts of scenes, scenes made of the parts of two, and faults. */
+/* Parts of scenes, scenes mixed from the parts of two others, and faults. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,7 +30,7 @@ static whit_result no_memory(const whit_scene *handle, whit_result result)
     return result;
 }
 
-/* Release with scene_parts_finish(side->parts), after a failure too. */
+/* Lists the parts of a scene. Release with scene_parts_finish(side->parts), after a failure too. */
 static whit_result begin_side(const whit_scene *handle, struct scene_parts *parts,
                               struct scene_side *side)
 {
@@ -84,7 +84,7 @@ whit_result whit_scene_part_change(const whit_scene *before, const whit_scene *a
     return result;
 }
 
-/* A handle for a scene that was made of those of `from`. */
+/* Makes a handle for scene `made`, with the log of `from`. Owns `made`, also on failure. */
 static whit_result hand_out(const whit_scene *from, struct scene *made, whit_scene **out)
 {
     whit_scene *handle = calloc(1, sizeof *handle);

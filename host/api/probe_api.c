@@ -141,7 +141,8 @@ static char *put_text(char **at, const char *text)
     return to;
 }
 
-/* One block with its texts, since the shader may end before the report. NULL: no memory. */
+/* Copies the calls of dbg() with their texts into one block, since the shader may be destroyed
+   before the report. NULL: no memory. */
 static whit_probe_call *calls_from(const whit_shader *shader, const struct probe_report *from)
 {
     const struct shader_dbg *dbg = &shader->dbg;
@@ -165,7 +166,7 @@ static whit_probe_call *calls_from(const whit_shader *shader, const struct probe
     return calls;
 }
 
-/* `text` has room for `bytes`, of which *used are used. */
+/* Appends to `text`, a buffer of `bytes` of which *used are used; cuts what does not fit. */
 static void add_text(char *text, size_t bytes, size_t *used, const char *format, ...)
 {
     va_list arguments;

@@ -1,5 +1,5 @@
-/* The ray tree of a pixel in rows: what brought most comes first, and shadow rays that ended alike
-   are one row. */
+/* The ray tree of a pixel as rows of a table: branches with the most radiance come first, and
+   shadow rays that ended alike are one row. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,9 +8,9 @@
 
 struct family {
     const whit_probe_report *report;
-    double *brought;                /* of each ray: radiance, with that of all its branches */
-    uint32_t *first_child, *next;   /* branches, what brought most first; WHIT_NONE: no more */
-    uint32_t *first_shadow, *after; /* shadow rays, in their order */
+    double *brought;                /* by ray: radiance of it and of all its branches */
+    uint32_t *first_child, *next;   /* list of branches, most radiance first; WHIT_NONE: end */
+    uint32_t *first_shadow, *after; /* list of shadow rays, in the order of the report */
     whit_probe_row *rows;
     uint32_t row_count;
 };
@@ -20,7 +20,8 @@ static bool is_same_hit(const whit_probe_hit *a, const whit_probe_hit *b)
     return a->instance == b->instance;
 }
 
-/* Whether two shadow rays of one surface say the same, but for the points of the light. */
+/* Whether two shadow rays of one hit ended in the same way; they may go to other points of the
+   light. */
 static bool ended_alike(const whit_probe_ray *a, const whit_probe_ray *b)
 {
     return a->light == b->light && a->end == b->end && a->material == b->material &&
@@ -43,7 +44,7 @@ static void fold(whit_probe_row *row, const whit_probe_ray *ray)
         row->added[i] += (ray->added[i] - row->added[i]) / (float)row->count;
 }
 
-/* Shadow rays of a ray, those that reach their light first. */
+/* Adds rows for the shadow rays at a ray's hit; those that reach their light come first. */
 static void add_shadows(struct family *f, uint32_t ray)
 {
     const whit_probe_ray *rays = f->report->rays;
@@ -63,7 +64,7 @@ static void add_shadows(struct family *f, uint32_t ray)
     }
 }
 
-/* Behind the siblings that brought as much. */
+/* Inserts a branch into its parent's list, behind those with at least as much radiance. */
 static void insert_child(struct family *f, uint32_t parent, uint32_t child)
 {
     uint32_t *link = &f->first_child[parent];
@@ -73,7 +74,7 @@ static void insert_child(struct family *f, uint32_t parent, uint32_t child)
     *link = child;
 }
 
-/* Parents stand before their rays. */
+/* Fills all lists and sums. Parents come before their branches in the report. */
 static void link_rays(struct family *f)
 {
     const whit_probe_ray *rays = f->report->rays;
@@ -98,8 +99,8 @@ static void link_rays(struct family *f)
     }
 }
 
-/* Down to the first branch as long as there is one, then to the next of the nearest ray that has
-   one. */
+/* Adds all rows depth first, without recursion: goes to a ray's first branch, or else to the next
+   sibling of the nearest ancestor that has one. */
 static void add_rows(struct family *f)
 {
     const whit_probe_ray *rays = f->report->rays;

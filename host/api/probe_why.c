@@ -1,4 +1,4 @@
-/* Why a pixel is as bright as it is, in one sentence, by the rays of its first sample. */
+/* Explains a pixel's brightness in one sentence, by the rays of its first sample. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "whit/whit_scene.h"
 
 enum { LIGHTS_NAMED = 4 };
-static const double PART_MIN = 0.005; /* of light: less is not told */
+static const double PART_MIN = 0.005; /* smaller shares of the light are not mentioned */
 
 struct sentence {
     char *text;
@@ -22,7 +22,7 @@ static WHIT_PRINTF(2, 3) void put(struct sentence *to, const char *format, ...)
     va_end(args);
     to->used += length > 0 ? (size_t)length : 0;
     if (to->used >= to->bytes)
-        to->used = to->bytes - 1; /* what has no room is cut */
+        to->used = to->bytes - 1; /* the text was cut */
 }
 
 static double sum_of(const float v[3])
@@ -34,7 +34,8 @@ static double sum_of(const float v[3])
 
 enum { PART_OWN, PART_REFLECTED, PART_THROUGH, PARTS };
 
-/* The branch of the camera ray that a ray belongs to, by the kind of its first ray. */
+/* Which PART_* a ray belongs to: the camera ray itself, or its branch by a reflected or another
+   ray. */
 static int part_of(const whit_probe_report *report, uint32_t ray)
 {
     const whit_probe_ray *rays = report->rays;
@@ -73,7 +74,7 @@ static void say_parts(const whit_probe_report *report, struct sentence *to)
 /* How much of a light reaches the hit of the camera ray, by the shadow rays that start there. */
 struct reach {
     uint32_t rays, blocker;
-    double share; /* of the light that passes, the mean of all rays */
+    double share; /* share of the light that passes, mean over the rays */
 };
 
 static struct reach reach_of(const whit_probe_report *report, uint32_t light)
@@ -97,7 +98,7 @@ static void say_light(const whit_scene *scene, const char *name, const struct re
                       struct sentence *to)
 {
     whit_instance_info blocker = {0};
-    const char *quote = strchr(name, '`') ? "" : "`"; /* "emission of `panel`" has its own */
+    const char *quote = strchr(name, '`') ? "" : "`"; /* "emission of `panel`" has quotes */
     if (reach->blocker != WHIT_NONE)
         whit_scene_get_instance(scene, reach->blocker, &blocker);
     if (reach->rays == 0)
@@ -112,8 +113,8 @@ static void say_light(const whit_scene *scene, const char *name, const struct re
         put(to, ", behind `%s`", blocker.name);
 }
 
-/* Tells of each light whether it reaches the hit. Lights that shadow rays were sent to come first.
- */
+/* Says for each light whether it reaches the hit; lights that shadow rays were sent to come
+   first. */
 static void say_lights(const whit_probe_report *report, const whit_scene *scene,
                        struct sentence *to)
 {

@@ -7,7 +7,7 @@
 
 struct whit_reference {
     struct reference *reference;
-    whit_renderer_params params; /* its strings are not read again */
+    whit_renderer_params params; /* strings in it may be gone, and are not read */
     const struct accel *accel;   /* borrowed */
     whit_log log;
     struct reference_stats stats; /* of the picture rendered last */

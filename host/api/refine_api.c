@@ -1,4 +1,5 @@
-/* Pictures that get better: parts that are as large as what there is, and sums of them. */
+/* Refined pictures: each step draws as many samples as there are already, and takes the mean of
+   both halves. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,20 +13,20 @@ struct whit_refine {
     whit_renderer_params params;
     whit_log log;
     uint32_t samples, doublings;
-    bool cut;            /* rays were, in the first sample or later */
-    bool radiance_known; /* cut_radiance was measured, where it is needed */
-    double cut_radiance;
-    struct image color;                 /* the mean of all samples */
-    struct image cuts;                  /* as WHIT_AOV_CUTS, of all samples */
-    struct image aovs[SHADER_AOVS_MAX]; /* likewise, of functions of the shader */
-    uint32_t aov_count;                 /* 0 too where others began */
+    bool cut;                           /* some rays were cut, by depth or bail-out */
+    bool radiance_known;                /* cut_radiance was measured; needed if `cut` */
+    double cut_radiance;                /* assumed mean radiance of cut rays */
+    struct image color;                 /* mean of all samples */
+    struct image cuts;                  /* WHIT_AOV_CUTS, mean of all samples */
+    struct image aovs[SHADER_AOVS_MAX]; /* the shader's AOVs, mean of all samples */
+    uint32_t aov_count;                 /* 0 after whit_refine_begin, whose samples have no AOVs */
     struct image changes;               /* see estimate_note_change; one channel */
-    struct image errors;                /* estimate_error, of 2 samples and more */
+    struct image errors;                /* by estimate_error, from 2 samples on */
     double error, error_of_cuts;
     whit_stats stats;
 };
 
-/* No ray brings as much, so that none is sent on. */
+/* A bail-out larger than the weight of any ray, so that camera rays send none on. */
 static const double BAILOUT_ALL = 1e30;
 
 whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_params *params,
@@ -117,7 +118,8 @@ static whit_result draw_part(const whit_refine *refine, uint32_t first, uint32_t
     return result;
 }
 
-/* The mean of two images of as many samples, into the first one, as resolve.comp adds up. */
+/* Makes `image` the mean of two images with equal numbers of samples, by the operations of
+   resolve.comp. */
 static void add_half(struct image *image, const struct image *half)
 {
     size_t count = (size_t)image->width * image->height * image->channels;
@@ -137,7 +139,7 @@ static bool is_any_cut(const struct image *cuts)
 
 /* ---- Steps ---- */
 
-/* Takes over the images of the part. */
+/* Starts with the first part, whose images it takes over. */
 static whit_result begin(whit_refine *refine, uint32_t samples, struct part *part)
 {
     struct image *color = &part->color;
@@ -209,7 +211,7 @@ static bool is_last(const whit_refine *refine)
     return refine->samples > WHIT_SAMPLES_MAX / 2;
 }
 
-/* From two parts on something has changed. */
+/* Whether an error can be estimated: only after samples were doubled. */
 static bool is_told(const whit_refine *refine)
 {
     return refine->doublings > 0;
@@ -243,7 +245,7 @@ whit_result whit_refine_step(whit_refine *refine)
     return WHIT_OK;
 }
 
-/* ---- What there is ---- */
+/* ---- Results ---- */
 
 void whit_refine_get_info(const whit_refine *refine, whit_refine_info *info)
 {
@@ -304,8 +306,8 @@ static double largest(const struct image *cuts, size_t channel)
     return (double)max;
 }
 
-/* The largest cut weight of a pixel is that of the mean of all samples. What was added up over the
-   steps is larger, as each step may have had it in another pixel. */
+/* Sets the largest cut weights anew, from the mean of all samples: the sums over steps are too
+   large, since each step may have its largest weight in another pixel. */
 void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats)
 {
     *stats = refine->stats;

@@ -20,7 +20,7 @@ _Static_assert((uint32_t)WHIT_RAY_KINDS == RAY_KIND_COUNT &&
                    (uint32_t)WHIT_RAY_REFRACTED == RAY_REFRACTED,
                "kinds of rays");
 
-/* The lines of a grid: a grey that is seen before bright and before dark, and their opacity. */
+/* Grey level and opacity of grid lines, visible on bright and on dark pictures. */
 #define GRID_LIGHT  0.15f
 #define GRID_WEIGHT 0.7f
 
@@ -130,9 +130,9 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
                               : pose_on_cpu(renderer->accel, time_s);
 }
 
-/* Remembers the parameters of a picture. Rays on the CPU keep the cancel flag, traversal and
-   numerics that the renderer was made with; its shader is the one that whit_renderer_set_shader
-   gave it last. */
+/* Stores the parameters of a picture, except those that stay as the renderer was made with (cancel
+   flag, traversal, numerics, for rays on the CPU) and its shader, which only
+   whit_renderer_set_shader changes. */
 static void take_params(whit_renderer *renderer, const whit_renderer_params *params)
 {
     const whit_renderer_params made = renderer->params;
@@ -258,7 +258,8 @@ static double cost_value(whit_view view, const struct gpu_cost *cost)
     return 0.0;
 }
 
-/* Puts the values of one kind of rays to those that are there; the first one makes *values. */
+/* Combines the cost values of one kind of rays with *values: the larger ones for depth and stack,
+   else sums. The first kind makes *values. */
 static whit_result add_costs(const whit_renderer *renderer, whit_view view, uint32_t kind,
                              struct image *values)
 {
@@ -322,8 +323,8 @@ struct cpu_trace {
     struct gpu_hit *hits;
     uint64_t count;
     bool any, brute;
-    whit_cost *costs;   /* one a batch, or NULL */
-    uint32_t *statuses; /* one a batch: threads share nothing */
+    whit_cost *costs;   /* one per batch, or NULL */
+    uint32_t *statuses; /* one per batch, so that threads share nothing */
 };
 
 static bool cancelled(const whit_renderer *renderer)

@@ -175,7 +175,7 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
         .made_by_whit = light->made_by_whit,
     };
     copy3_double(info->position, light->position);
-    /* Sampling begins at a corner; scene files name the centre. */
+    /* light->position is a corner of a rectangle; scene files and this info have its centre. */
     for (int i = 0; i < 3 && light->kind == WHIT_LIGHT_RECTANGLE; ++i)
         info->position[i] += 0.5 * (light->edge_u[i] + light->edge_v[i]);
     copy3_double(info->direction, light->direction);
@@ -251,8 +251,8 @@ whit_result whit_scene_choose_camera(const whit_scene *handle, whit_camera *came
     return WHIT_OK;
 }
 
-/* The degrees of an angle that the scene keeps as a float of radians: those with at most seven
-   digits where they round to the same float, as a file most likely had them, else all digits. */
+/* Converts an angle to degrees. If a number of at most seven digits gives the same float of
+   radians, it is taken, since a file most likely had it. */
 static double degrees_of(float radians)
 {
     char text[32];

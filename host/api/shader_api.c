@@ -10,7 +10,7 @@
 
 struct whit_shader_compiler {
     struct shader_compiler *compiler;
-    struct shader_errors errors; /* of the last file */
+    struct shader_errors errors; /* of the file compiled last */
     whit_shader_error shown[SHADER_ERROR_MAX];
     struct shader_limits limits;
     whit_log log;
@@ -57,7 +57,7 @@ uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
     return compiler->errors.count;
 }
 
-/* As errors, up to the next call. */
+/* Converts the errors for the caller; valid until the next call. */
 static void show_errors(whit_shader_compiler *compiler)
 {
     const struct shader_errors *errors = &compiler->errors;
@@ -80,7 +80,7 @@ static bool is_picture(const char *path)
     return strcmp(extension, "png") == 0 || strcmp(extension, "exr") == 0;
 }
 
-/* The text of the functions that a picture carries. */
+/* Reads the text of the functions that a picture file carries. */
 static whit_result read_picture(whit_shader_compiler *compiler, const char *path,
                                 struct shader_text *text)
 {
@@ -115,7 +115,7 @@ char *whit_shader_pack(const whit_shader *shader, const char **why)
     return shader_pack_write(&shader->text, why);
 }
 
-/* One block: the list, then all bytes. */
+/* Copies the files into one block: the list, then all texts. */
 static whit_shader_file *list_files(const struct shader_pack *pack)
 {
     size_t bytes = 0;
@@ -154,7 +154,7 @@ whit_result whit_shader_unpack(const char *packed, const char *where, const whit
 
 /* ---- Loading ---- */
 
-/* `path` NULL: no text. */
+/* Reads the text of functions from a GLSL file or a picture; none if `path` is NULL. */
 static whit_result read_functions(whit_shader_compiler *compiler, const char *path,
                                   struct shader_text *text)
 {
@@ -257,7 +257,7 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
     }
 }
 
-/* SHADER_KERNEL_COUNT: there is none. */
+/* The kernel of the index-th code that the shader has; SHADER_KERNEL_COUNT: there is none. */
 static enum shader_kernel find_kernel(const whit_shader *shader, uint32_t index)
 {
     uint32_t kernel = 0;

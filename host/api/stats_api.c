@@ -1,4 +1,4 @@
-/* The statistics of several pictures as those of one. */
+/* Sums the statistics of several pictures. */
 #include <math.h>
 #include <string.h>
 

@@ -10,8 +10,8 @@
 #include "reference/media.h"
 #include "reference/tree.h"
 
-#define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: beyond it a mesh is no smooth surface */
-#define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */
+#define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: above it a mesh is not smooth */
+#define STOPS_OF_ABSORPTION 92.33248261893118  /* 64 / ln 2 */
 
 /* What all shadow rays of a hit share. */
 struct receiver {

@@ -143,7 +143,7 @@ struct surface surface_at(const struct reference *reference, const struct hit *h
     else
         take_triangle(record, hit, &s);
     struct dvec3 ng = s.ng, ns = s.ns;
-    if (reference->accel->flat) /* of records, only vertex normals are in object space */
+    if (reference->accel->flat) /* vertex normals alone are in object space */
         ng = record->flags & TRIANGLE_MIRRORED ? d3_scale(ng, -1.0) : ng;
     else
         ng = place_normal(reference, hit->instance, ng);
