@@ -131,9 +131,9 @@ static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index
     return result;
 }
 
-/* Estimated time to draw the judged pictures of all `aa` rows, in usual pictures:
-   reference_samples and fewer (4, 16, ...) sum to 4/3, and adaptive sampling takes up to 1 times
-   reference_samples. */
+/* Estimated time to draw the judged pictures of all `aa` rows, in usual pictures. Rows with fixed
+   numbers of samples (1, 4, 16 ...) add up to 4/3 of reference_samples, adaptive sampling takes up
+   to reference_samples. */
 static double pictures_to_judge(const struct cost_report *report)
 {
     return (4.0 / 3.0 + 1.0) * report->reference_samples;

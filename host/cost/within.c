@@ -15,7 +15,8 @@ struct step {
    the scene does not call for it or if it saves no time. Samples per pixel fill the time that the
    steps leave; few samples make rough edges, which are seen less than the later steps. The order
    follows the FLIP of docs/accuracy.md, but shadows are given up later than FLIP suggests: without
-   them nobody sees where things stand. The remarks say what is lost. */
+   them nobody sees where things stand. The remarks say what is lost, and with "from" which setting
+   was there before. */
 static const struct step order[] = {
     {"bailout", "0.0009765625", 64}, /* from 0: rays too weak to be displayed */
     {"depth", "8", 64},              /* from 16: the ninth bounce is seen in nested glass alone */

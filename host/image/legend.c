@@ -25,8 +25,8 @@ enum {
     TICK_ROWS = 3,
     NUMBER_TOP = BAR_TOP + BAR_ROWS + TICK_ROWS + 2,
     STRIP_ROWS = NUMBER_TOP + 11,
-    WIDTH_MIN = 120,   /* narrower pictures get a wider strip, */
-    WIDTH_WANTED = 320 /* as wide as this where the title needs it */
+    WIDTH_MIN = 120,   /* least width of the strip, also below narrower pictures; */
+    WIDTH_WANTED = 320 /* up to this width if the title needs it */
 };
 enum { BACKGROUND = 20, INK = 225 };
 

@@ -41,6 +41,8 @@ struct scene_texture_use {
     bool nearest; /* else bilinear */
 };
 
+/* Texture slots of a material: which channels are read, and the material's value that they
+   scale. */
 enum scene_slot {
     SCENE_SLOT_DIFFUSE,        /* RGB sRGB, times diffuse; alpha times opacity */
     SCENE_SLOT_SPECULAR,       /* RGB linear (METAL_ROUGH: sRGB), times specular and reflection */
