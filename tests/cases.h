@@ -1,6 +1,6 @@
-/* How many of a test's cases are tried. Without WHIT_TEST_TIMES, as in the short run, a quarter of
-   the random ones, and some of those that take turns; with WHIT_TEST_TIMES=N, as in tests with the
-   label long, N times all. */
+/* How many of a test's cases are tried. Without WHIT_TEST_TIMES (the short run) these are a quarter
+   of the random cases, and some of those that take turns. With WHIT_TEST_TIMES=N, as in tests with
+   the label long, all cases are tried, and random ones N times as many. */
 #ifndef TESTS_CASES_H
 #define TESTS_CASES_H
 
@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* 0: the short run. */
+/* The value of WHIT_TEST_TIMES; 0: not set, the short run. */
 static inline uint32_t cases_times(void)
 {
     const char *times = getenv("WHIT_TEST_TIMES");
@@ -22,14 +22,14 @@ static inline uint32_t cases_of(uint32_t all)
     return times ? all * times : all / 4;
 }
 
-/* Gives how many of `all` cases are tried where each takes long: an eighth in the short run. */
+/* How many of `all` cases are tried if each takes long: an eighth in the short run. */
 static inline uint32_t cases_few(uint32_t all)
 {
     return cases_times() ? cases_of(all) : all / 8;
 }
 
-/* Whether a case is tried that takes turns with others: of `every` ones the short run has one,
-   others with each commit (WHIT_TEST_OFFSET). */
+/* Whether case `index` is tried if cases take turns: the short run tries one of `every` cases, and
+   another one with each commit (WHIT_TEST_OFFSET). */
 static inline bool cases_turn(size_t index, size_t every)
 {
     const char *offset = getenv("WHIT_TEST_OFFSET");

@@ -1,5 +1,5 @@
-/* A stand-in for child_run, linked in with --wrap: the child's side runs in this process, so that
-   sanitizers see it, and thousands of files take no time. */
+/* Replaces child_run, with --wrap at link time: the child's side runs in this process, so that
+   sanitizers see it, and thousands of files are tried quickly. */
 #ifndef TESTS_CHILD_IN_PLACE_H
 #define TESTS_CHILD_IN_PLACE_H
 
@@ -25,7 +25,7 @@ static inline bool in_place_write(void *to, const void *data, size_t size_bytes)
     return true;
 }
 
-/* `then`, which may be NULL, changes the reply. */
+/* Runs `fn` in this process. `then`, which may be NULL, changes its reply. */
 static inline enum child_end child_in_place(int (*fn)(void *user, void *to, child_write write),
                                             void *user, struct child_reply *reply,
                                             void (*then)(struct child_reply *reply))
@@ -35,7 +35,8 @@ static inline enum child_end child_in_place(int (*fn)(void *user, void *to, chil
     if (then)
         then(&written);
     *reply = written;
-    /* Exactly as long as it says, for sanitizers; and aligned, as a mapping is. */
+    /* A block of exactly the reply's length, so that sanitizers see reads beyond it; aligned like a
+       mapping. */
     reply->data = written.size_bytes ? malloc(written.size_bytes) : NULL;
     if (reply->data)
         memcpy(reply->data, written.data, written.size_bytes);

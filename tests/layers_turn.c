@@ -1,8 +1,9 @@
 /* Linked into every test program that makes devices. The synchronization checks of the validation
-   layers take an eighth to a third of such a test: of the entries that have WHIT_TEST_TURN, their
-   number, a quarter has them with each commit, by WHIT_TEST_OFFSET. Every eighth commit shifts the
-   turns, so that cases that take turns by the same offset (cases.h) all get there. Entries with the
-   label long have no such number, and always have the layers. */
+   layers take an eighth to a third of such a test's time, so ctest entries take turns: each entry
+   has its number in WHIT_TEST_TURN, and with each commit (WHIT_TEST_OFFSET) another quarter of them
+   has the checks. Every eighth commit shifts the turns, so that cases that take turns by the same
+   offset (cases.h) all get checked. Entries with the label long have no number, and always have the
+   checks. */
 #include <stdlib.h>
 #include <string.h>
 

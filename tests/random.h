@@ -1,13 +1,12 @@
-/* The random numbers of all tests: the same on every machine. A stream is one 64-bit number, its
-   seed at first, which every function takes and moves on; any two seeds give unrelated streams.
-   Compilers evaluate arguments and operands in orders of their own: of two numbers that one
-   expression needs, the first is drawn before it. */
+/* The random numbers of all tests: the same on every machine. The state of a stream is one 64-bit
+   number, at first its seed, which every function advances; any two seeds give unrelated streams.
+   Draw at most one number per expression, since the order of evaluation is the compiler's. */
 #ifndef TESTS_RANDOM_H
 #define TESTS_RANDOM_H
 
 #include <stdint.h>
 
-/* splitmix64 (Steele, Lea and Flood 2014) but for its last step, which changes the lower half. */
+/* splitmix64 (Steele, Lea and Flood 2014) without its last step, which changes the lower half. */
 static inline uint64_t random_mix(uint64_t *state)
 {
     *state += UINT64_C(0x9e3779b97f4a7c15);
@@ -27,13 +26,13 @@ static inline uint64_t random_bits64(uint64_t *state)
     return z ^ z >> 31;
 }
 
-/* A whole number of [0, count). */
+/* An integer in [0, count). */
 static inline uint32_t random_below(uint64_t *state, uint32_t count)
 {
     return random_bits(state) % count;
 }
 
-/* [0, 1), 53 bits */
+/* A number in [0, 1) of 53 bits. */
 static inline double random_unit(uint64_t *state)
 {
     return (double)(random_bits64(state) >> 11) * 0x1p-53;
@@ -45,7 +44,7 @@ static inline double random_signed(uint64_t *state)
     return 2.0 * random_unit(state) - 1.0;
 }
 
-/* [0, 1), 24 bits */
+/* A number in [0, 1) of 24 bits. */
 static inline float random_float(uint64_t *state)
 {
     return (float)(random_bits(state) >> 8) * 0x1p-24f;

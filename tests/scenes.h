@@ -1,12 +1,11 @@
-/* Scenes of tests, each in three calls:
+/* Builds scenes for tests, in three calls:
 
        struct scene *scene = scene_begin(&log, "name");
        scene_put(scene, mesh_box(1, 1, 1), &(struct put){.at = {0, 2, 0}});
        scene_ready(scene);
 
-   Between the first and the last one any number of meshes, lights, ... may be put into it. What
-   runs out of memory or is refused ends the program with a message: no test expects it. Only base/
-   and scene/ are used here. */
+   Any number of meshes, lights, ... may be added in between. An error ends the program with a
+   message, since no test expects one. Only base/ and scene/ are used here. */
 #ifndef TESTS_SCENES_H
 #define TESTS_SCENES_H
 
@@ -22,41 +21,41 @@ struct scene_mesh mesh_sphere(double radius, uint32_t segments, uint32_t rings);
 struct scene_mesh mesh_icosphere(double radius, uint32_t level);
 struct scene_mesh mesh_torus(double radius, double tube, uint32_t segments, uint32_t sides);
 struct scene_mesh mesh_terrain(double size, double height, uint32_t steps, uint32_t seed);
-/* Spheres as such: `spheres` has centre and radius of each. */
+/* Sphere primitives: `spheres` has centre and radius of each. */
 struct scene_mesh mesh_balls(const double *spheres, uint32_t count);
-/* Positions and indices of zeros. */
+/* A mesh whose positions and indices are all 0. */
 struct scene_mesh mesh_zeroed(uint32_t vertex_count, uint32_t triangle_count);
-/* `corners`: nine numbers of each triangle; vertices are not shared. */
+/* `corners`: nine numbers per triangle; vertices are not shared. */
 struct scene_mesh mesh_triangles(const float *corners, uint32_t triangle_count);
-/* The same mesh, every primitive of it of this material. */
+/* The same mesh with this material for all its primitives. */
 struct scene_mesh mesh_wearing(struct scene_mesh mesh, uint32_t material);
 
-/* ---- Materials: their names are not theirs, and copied where they are put into a scene ---- */
+/* ---- Materials; names are borrowed, and copied when put into a scene ---- */
 
 struct scene_material material_grey(const char *name); /* see scene_material_init */
-/* Neither ambient light nor a highlight. */
+/* A grey material without ambient light and highlight. */
 struct scene_material material_plain(const char *name);
 
 /* ---- Scenes ---- */
 
-/* Empty. `log` may be NULL. */
+/* Begins an empty scene. `log` may be NULL. */
 struct scene *scene_begin(const whit_log *log, const char *name);
 
-/* How an instance is put into a scene; all zeros, or NULL for a pointer to it: where its mesh is,
-   under the mesh's own materials. Of matrix, node and at only one is meant at a time. */
+/* How an instance is put into a scene. Zeroed, or a NULL pointer to it: untransformed, with the
+   mesh's own materials. At most one of matrix, node and at is set. */
 struct put {
     const char *name;                      /* of mesh and instance; NULL: none */
-    const struct scene_material *material; /* all of the mesh; NULL: as the mesh says */
-    const struct affine *matrix;           /* the instance's own, below no node */
-    const uint32_t *node;                  /* the instance is below it */
-    double at[3];                          /* not (0, 0, 0): below a new node that is moved there */
+    const struct scene_material *material; /* for the whole mesh; NULL: the mesh's own ones */
+    const struct affine *matrix;           /* local matrix of the instance, below no node */
+    const uint32_t *node;                  /* node that the instance is below */
+    double at[3];                          /* not (0, 0, 0): below a new node, translated by this */
 };
 
-/* Adds the mesh, which is taken over, and one instance of it; the index of the mesh. */
+/* Adds the mesh, whose ownership it takes, and one instance of it; gives the index of the mesh. */
 uint32_t scene_put(struct scene *scene, struct scene_mesh mesh, const struct put *put);
-/* Once more a mesh that the scene has, put->material apart; the index of the instance. */
+/* Adds one more instance of a mesh, ignoring put->material; gives the index of the instance. */
 uint32_t scene_put_again(struct scene *scene, uint32_t mesh, const struct put *put);
-/* A mesh without an instance. Where the scene has no material so far, a grey one is added. */
+/* Adds a mesh without an instance; also a grey material if the scene has none yet. */
 uint32_t scene_put_mesh(struct scene *scene, struct scene_mesh mesh);
 
 /* Each gives the index of what it adds. */
@@ -67,29 +66,29 @@ uint32_t scene_put_matrix(struct scene *scene, uint32_t parent, const struct aff
 uint32_t scene_put_texture(struct scene *scene, uint32_t width, uint32_t height,
                            const uint8_t *rgba);
 uint32_t scene_put_light(struct scene *scene, struct scene_light light);
-/* Grey light that travels along a direction of any length. */
+/* A grey directional light that travels along (x, y, z), which may have any length. */
 uint32_t scene_put_sun(struct scene *scene, double x, double y, double z, float strength);
 /* A grey point light with falloff. */
 uint32_t scene_put_lamp(struct scene *scene, double x, double y, double z, float strength);
-/* A pinhole; up is +y, or -z where the view is upright. */
+/* A pinhole camera; up is +y, or -z for a vertical view. */
 uint32_t scene_put_camera(struct scene *scene, const double eye[3], const double target[3],
                           double fov_y);
 /* Linear keys: three (rotations: four) values each, copied. */
 void scene_put_channel(struct scene *scene, uint32_t node, enum scene_path path, uint32_t keys,
                        const float *times_s, const float *values);
 
-/* Freezes it; the same scene. */
+/* Freezes the scene, and gives it back. */
 struct scene *scene_ready(struct scene *scene);
-/* One of its notes has this text. */
+/* Whether one of the scene's notes has this text. */
 bool scene_noted(const struct scene *scene, const char *text);
 
 /* ---- Placements ---- */
 
-/* Moved by less than `spread` along each axis, turned, stretched by 0.34 to 1.66 along each axis.
- */
+/* A random matrix: translated by less than `spread`, rotated, and scaled by 0.34 to 1.66 per
+   axis. */
 struct affine placement_random(uint64_t *random, double spread, bool mirrored);
 
-/* whit_camera of eye, target, up and vertical angle in degrees. */
+/* Initializer of a whit_camera: eye, target, up and vertical angle in degrees. */
 #define CAMERA_AT(ex, ey, ez, tx, ty, tz, ux, uy, uz, fov)                                         \
     {                                                                                              \
         .own = true, .eye = {ex, ey, ez}, .target = {tx, ty, tz}, .up = {ux, uy, uz},              \

@@ -1,4 +1,5 @@
-/* The boxes that are drawn: those of a level, with the leaves above it, in world space. */
+/* The boxes that views draw: the nodes at a level of a tree and the leaves above it, in world
+   space. */
 #include "accel_fixture.h"
 
 #include "accel/boxes.h"
@@ -30,7 +31,7 @@ static struct world placed_spheres(bool flatten)
     return world_of(scene, (struct accel_params){.flatten = flatten});
 }
 
-/* The boxes of a level, of `max` at most. */
+/* Collects the boxes of a level, at most `max`. */
 static const struct seen *see(const struct world *world, bool instances, uint32_t level,
                               uint32_t max)
 {
@@ -41,7 +42,8 @@ static const struct seen *see(const struct world *world, bool instances, uint32_
     return &seen;
 }
 
-/* Every vertex of instance `i` is in some box of it: in the box's own space, by its three edges. */
+/* Checks that every vertex of an instance is in one of its boxes, in the box's space, which its
+   three edges span. */
 static void check_covered(const struct world *w, const struct seen *seen, uint32_t instance)
 {
     const struct scene_mesh *mesh = &w->scene->meshes[0];

@@ -1,4 +1,4 @@
-/* Trees over triangles, built every way and checked from end to end. */
+/* Builds trees over triangles by all builders and settings, and checks them completely. */
 #ifndef TESTS_ACCEL_BUILD_FIXTURE_H
 #define TESTS_ACCEL_BUILD_FIXTURE_H
 
@@ -17,8 +17,8 @@ static inline void soup_set_box(struct soup *soup, uint32_t i, const float lo[3]
     soup_set(soup, i, lo, (float[3]){hi[0], hi[1], lo[2]}, (float[3]){lo[0], hi[1], hi[2]});
 }
 
-/* Cells of a grid: every centroid is met many times on each axis, but no two boxes have the same.
- */
+/* Cells of a grid: on each axis many boxes share a centroid coordinate, but no two boxes share the
+   whole centroid. */
 static inline struct soup soup_grid(uint32_t side)
 {
     struct soup soup = soup_make("grid", side * side * side);
@@ -53,7 +53,7 @@ static inline struct bvh soup_build(const struct soup *soup, struct bvh_params p
     return bvh;
 }
 
-/* Whether `count` bytes are the same; there may be none, and no memory then. */
+/* Whether `count` bytes are equal; pointers may be NULL if `count` is 0. */
 static inline bool bytes_equal(const void *a, const void *b, size_t count)
 {
     return count == 0 || memcmp(a, b, count) == 0;
@@ -88,16 +88,16 @@ static inline void box_unite(struct bvh_box *a, const float lo[3], const float h
     }
 }
 
-/* ---- What bvh_validate does not look at ---- */
+/* ---- What bvh_validate does not check ---- */
 
 struct found {
     uint32_t depth, leaves;
     double cost; /* not yet divided by the root's area */
     double traversal_cost;
-    bool exact; /* every box is the union of what is below */
+    bool exact; /* every box is the union of the boxes below it */
 };
 
-/* Depth and cost are counted on the way. */
+/* Walks the tree and fills `found`: checks boxes, counts depth, leaves and cost. */
 static inline void walk_exact(const struct bvh *bvh, const struct bvh_box *boxes, uint32_t index,
                               uint32_t depth, struct found *found)
 {
@@ -154,7 +154,7 @@ static inline void triangle_points(const struct soup *soup, uint32_t triangle, q
     }
 }
 
-/* Bits of the points that are in a box. */
+/* The points that are in a box, as bits by index. */
 static inline uint32_t points_inside(quad points[POINTS][3], const float lo[3], const float hi[3])
 {
     uint32_t inside = 0;
@@ -167,8 +167,8 @@ static inline uint32_t points_inside(quad points[POINTS][3], const float lo[3], 
     return inside;
 }
 
-/* Every point of a triangle is in one of the leaves that hold the triangle, and no leaf holds one
-   twice. */
+/* Whether every point of each triangle is in one of the leaves that have the triangle, and no leaf
+   has a triangle twice. */
 static inline bool is_covered(const struct soup *soup, const struct bvh *bvh)
 {
     uint32_t *seen = calloc(soup->count + 1, sizeof *seen);
@@ -190,7 +190,7 @@ static inline bool is_covered(const struct soup *soup, const struct bvh *bvh)
     return covered;
 }
 
-/* What is wrong with a tree; NULL: nothing. */
+/* Describes what is wrong with a tree; NULL: nothing. */
 static inline const char *find_fault(const struct soup *soup, const struct bvh_params *params,
                                      const struct bvh *bvh)
 {
@@ -216,7 +216,7 @@ static inline const char *find_fault(const struct soup *soup, const struct bvh_p
 
 /* ---- Reinsertion ---- */
 
-/* Leaf boxes and what is in them, as sums that do not depend on the order. */
+/* A digest of all leaf boxes and their primitives that does not depend on the order of leaves. */
 static inline uint64_t leaves_digest(const struct bvh *bvh)
 {
     uint64_t sum = 0;
@@ -232,7 +232,7 @@ static inline uint64_t leaves_digest(const struct bvh *bvh)
     return sum;
 }
 
-/* Leaves stand in the order of the records they name, pairs in that of the walk. */
+/* Whether leaves are in the order of their records, and pairs of siblings in depth-first order. */
 static inline bool is_depth_first(const struct bvh *bvh)
 {
     uint32_t stack[BVH_DEPTH_MAX + 2] = {0}, top = 1, pair = 2, slot = 0;
@@ -251,7 +251,8 @@ static inline bool is_depth_first(const struct bvh *bvh)
     return ordered && slot == bvh->reference_count;
 }
 
-/* The same of an optimized tree: its leaves are those of the one that it was made of. */
+/* Describes what is wrong with an optimized tree, which must have the leaves of the tree that it
+   was made from; NULL: nothing. */
 static inline const char *find_optimizing_fault(const struct soup *soup, struct bvh_params params,
                                                 const struct bvh *better)
 {
@@ -311,7 +312,7 @@ static const struct bvh_params every_builder[] = {
 enum { EVERY_BUILDER = sizeof every_builder / sizeof *every_builder };
 _Static_assert(WHIT_BUILD_NONE == 4, "every builder is in the list");
 
-/* All of them on the same triangles, which are released. */
+/* Checks all builders on the same triangles, which it releases. */
 static inline void check_all(struct soup soup)
 {
     for (size_t i = 0; i < EVERY_BUILDER; ++i) {

@@ -1,9 +1,10 @@
-/* The same tree whatever the number of threads and the order of the input; the sweep finds the
-   splits of a quadratic search; and which way to build is the better one. */
+/* Trees are the same for any number of threads and any order of the input; the sweep builder finds
+   the splits of a quadratic search; some builders give better trees than others. */
 #include "accel_build_fixture.h"
 #include "unit.h"
 
-/* Also a heap that needs medians, and both zeros. */
+/* Scattered triangles, every fourth of them in one place, which only medians can split, with 0 and
+   -0. */
 static struct soup soup_with_heap(uint32_t count)
 {
     struct soup soup = soup_scattered(count, 0.02f);
@@ -15,16 +16,17 @@ static struct soup soup_with_heap(uint32_t count)
 }
 
 /* Under ThreadSanitizer (accel_race) there are fewer triangles and rows, by WHIT_TEST_TRIANGLES,
-   and what optimizes, which takes longest there, has two soups: accesses depend on code rather than
-   on shapes. What is printed does not depend on what f4.h is made of (accel_scalar). */
+   and optimizing builders, which take longest there, have fewer soups: memory accesses depend on
+   code rather than on shapes. The output is the same with vectors and with scalars in f4.h
+   (accel_scalar). */
 TEST(same_bytes_for_any_thread_count)
 {
     enum { SOUPS = 5 };
     const char *few = getenv("WHIT_TEST_TRIANGLES");
     const uint32_t count = few ? (uint32_t)atoi(few) : cases_of(12000);
     random_state = 7;
-    /* The first one has so many nodes that several threads complete its trees; in the grid, planes
-       cost the same but for rounding. */
+    /* The first soup has enough nodes for several threads to complete its trees. In the grid, the
+       costs of planes differ only by rounding. */
     struct soup soups[SOUPS] = {soup_with_heap(few ? 2 * count : 40000), soup_with_heap(count),
                                 soup_grid(13), soup_hair(count, 1e-3f), soup_rooms(count / 2)};
     for (size_t i = 0; i < SOUPS * EVERY_BUILDER; ++i) {
@@ -33,7 +35,7 @@ TEST(same_bytes_for_any_thread_count)
         bool plain = params.builder != WHIT_BUILD_SPATIAL && !params.optimize;
         if (i % SOUPS == 0 ? i > 0 : i % SOUPS > 2 && plain)
             continue;
-        if (few && (i / SOUPS % 2 == 1 || /* the others are of every builder as well */
+        if (few && (i / SOUPS % 2 == 1 || /* the remaining rows have every builder, too */
                     (params.optimize && i % SOUPS > 2)))
             continue;
         params.thread_count = 1;
@@ -56,8 +58,8 @@ TEST(same_bytes_for_any_thread_count)
         soup_finish(&soups[i]);
 }
 
-/* Planes depend on the set of triangles alone, and what they do not part is told apart by index
-   only where all three centroids agree. */
+/* Planes depend only on the set of triangles. The index decides only between triangles that no
+   plane separates, those with equal centroids on all three axes. */
 TEST(same_tree_for_any_order)
 {
     static const struct bvh_params params[] = {{.builder = WHIT_BUILD_BINNED},
@@ -72,7 +74,7 @@ TEST(same_tree_for_any_order)
     for (size_t i = 0; i < 3 * 4; ++i) {
         struct soup *soup = &soups[i % 3];
         if (i % 3 != 2 && params[i / 3].builder == WHIT_BUILD_SPATIAL)
-            continue; /* boxes of parts are rounded */
+            continue; /* spatial splits round the boxes of parts */
         struct bvh first = soup_build(soup, params[i / 3]);
         soup_shuffle(soup);
         struct bvh second = soup_build(soup, params[i / 3]);
@@ -92,7 +94,7 @@ static float centroid_of(const struct bvh_box *box, uint32_t axis)
     return box->lo[axis] * 0.25f + box->hi[axis] * 0.25f;
 }
 
-/* Primitives below `node`, written to `out`: how many. */
+/* Writes the primitives below `node` to `out`; gives their number. */
 static uint32_t gather(const struct bvh *bvh, const struct gpu_bvh_node *node, uint32_t *out)
 {
     uint32_t count = bvh_count(node);
@@ -104,7 +106,7 @@ static uint32_t gather(const struct bvh *bvh, const struct gpu_bvh_node *node, u
     return count + gather(bvh, &bvh->nodes[node->first + 1], out + count);
 }
 
-/* What it costs to split the primitives before `plane`; infinity where a side is empty. */
+/* The SAH cost of a split at `plane`; infinity where a side is empty. */
 static double split_cost(const struct bvh_box *boxes, const uint32_t *primitives, uint32_t count,
                          uint32_t axis, float plane)
 {
@@ -122,7 +124,7 @@ static double split_cost(const struct bvh_box *boxes, const uint32_t *primitives
            half_area(sides[1].lo, sides[1].hi) * counts[1];
 }
 
-/* The least cost of all splits of three axes, each summed up anew: quadratic. */
+/* The least cost of all splits on the three axes, by quadratic search. */
 static double min_cost(const struct bvh_box *boxes, const uint32_t *primitives, uint32_t count)
 {
     double min = INFINITY;
@@ -135,7 +137,7 @@ static double min_cost(const struct bvh_box *boxes, const uint32_t *primitives, 
     return min;
 }
 
-/* Inner nodes whose split was compared. */
+/* Checks all splits below `node` against min_cost; gives how many were compared. */
 static uint32_t check_splits(const struct bvh *bvh, const struct bvh_box *boxes,
                              const struct gpu_bvh_node *node)
 {
@@ -152,7 +154,8 @@ static uint32_t check_splits(const struct bvh *bvh, const struct bvh_box *boxes,
     gather(bvh, node, primitives);
     double min = min_cost(boxes, primitives, counts[0] + counts[1]);
     free(primitives);
-    /* The builder's costs are floats; equal centroids on all axes are halved by their order. */
+    /* 1e-5: the builder's costs are floats. Without a split (equal centroids on all axes)
+       primitives are halved in their order. */
     if (min < INFINITY)
         assert_true(cost <= min * (1.0 + 1e-5));
     return (min < INFINITY) + check_splits(bvh, boxes, &pair[0]) +
@@ -209,11 +212,11 @@ TEST(the_better_way_costs_less)
                                    full = {.leaf_limit = BVH_LEAF_MAX,
                                            .bins = 2,
                                            .traversal_cost = 3.0f};
-    /* `better` NULL: the same, optimized */
+    /* `better` NULL: `other` with optimization */
     static const struct {
         const char *name;
         const struct bvh_params *better, *other;
-        double share[SOUPS]; /* of the other's cost, below which it stays; 0: anything goes */
+        double share[SOUPS]; /* largest cost, as a share of the cost of `other`; 0: any */
     } rows[] = {
         {"SAH beside medians", &plain, &median, {[UNEVEN] = 0.9}},
         {"spatial splits", &spatial, &plain, {[ROOMS] = 0.9, [HAIR] = 0.97, [SPHERE] = 1.01}},
@@ -241,7 +244,7 @@ TEST(the_better_way_costs_less)
         soup_finish(&soups[i]);
 }
 
-/* Greedy, so better on the whole and not at each node. */
+/* Both builders are greedy, so sweeping is better only on average. */
 TEST(sweeping_is_as_good_as_bins)
 {
     static const float sizes[] = {0.003f, 0.03f, 0.3f};
@@ -263,7 +266,7 @@ TEST(sweeping_is_as_good_as_bins)
 
 /* ---- No tree ---- */
 
-/* Full leaves but for one, in the order of the input, and not a box that leaves anything out. */
+/* All leaves but one are full and in the order of the input, and no box excludes any ray. */
 TEST(no_tree_is_one_box_for_all)
 {
     static const uint32_t counts[] = {1, 15, 16, 1000};

@@ -1,5 +1,5 @@
-/* The arrays of a whole scene: where each mesh lies, what its triangles say, and instances posed
-   anywhere. */
+/* The arrays of a whole scene: where each mesh is in them, what the records of triangles say, and
+   instances at any pose. */
 #include "accel/pose.h"
 #include "accel/validate.h"
 #include "accel_fixture.h"
@@ -24,7 +24,7 @@ static struct accel_params by_threads(uint32_t count)
                                  .instances = {.thread_count = count}};
 }
 
-/* Two large meshes, three small ones, one without triangles; turned, mirrored, far away. */
+/* Two large meshes, three small ones and one without triangles; rotated, mirrored, far away. */
 static struct scene *mixed_scene(void)
 {
     struct scene *scene = scene_begin(&silent, "test");
@@ -88,7 +88,7 @@ TEST(same_bytes_for_any_thread_count)
     world_finish(&world);
 }
 
-/* Leaf of the tree over instances that holds `instance`. */
+/* The leaf of the instance tree that has `instance`. */
 static const struct gpu_bvh_node *instance_leaf(const struct accel *accel, uint32_t instance)
 {
     for (uint32_t i = 0; i < accel->instance_node_count; ++i) {
@@ -99,8 +99,8 @@ static const struct gpu_bvh_node *instance_leaf(const struct accel *accel, uint3
     return NULL;
 }
 
-/* Every vertex, placed by the scene's own matrix in double, is inside with room to spare; the room
-   is not wasteful. */
+/* Checks the boxes of instances: every vertex, transformed by the pose's matrix in double, is
+   inside with a margin, and the margin is small. */
 static void assert_posed(const struct accel *accel, const struct scene_pose *pose)
 {
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
@@ -238,7 +238,7 @@ TEST(matrices_without_inverse_are_refused)
         assert_int_equal(accel_pose(accel, pose), WHIT_ERROR_INPUT);
         assert_string_equal(messages.last_error,
                             "test: instance 1 ``: its matrix has no inverse in range at 0 s");
-        assert_int_equal(accel_validate(accel), WHIT_OK); /* as it was */
+        assert_int_equal(accel_validate(accel), WHIT_OK); /* unchanged */
     }
     /* These matrices are of rank 2, 1 and 0: no single entry shows that they have no inverse. The
        second one is of rank 3 by rounding alone: in double 0.1 + 0.4 is 0.5, but 0.3 + 0.6 is not
@@ -281,7 +281,7 @@ static struct scene *moving_scene(void)
     return scene;
 }
 
-/* Things of all sizes, shapes and hands that fly through each other. */
+/* Moves instances of various sizes and shapes, also mirrored ones, through each other. */
 static void move_all(struct scene_pose *pose, double t)
 {
     for (uint32_t i = 0; i < pose->instance_count; ++i) {
@@ -291,7 +291,7 @@ static void move_all(struct scene_pose *pose, double t)
     }
 }
 
-/* How many rays of `count` met something. */
+/* Checks that random rays have the same hits in both; gives how many of `count` rays hit. */
 static uint32_t same_hits(const struct accel *a, const struct accel *b, uint32_t count)
 {
     uint32_t met = 0;
@@ -305,7 +305,7 @@ static uint32_t same_hits(const struct accel *a, const struct accel *b, uint32_t
     return met;
 }
 
-/* A thousand steps, each way against a tree built for that step alone. */
+/* Compares each way of updating with a tree built anew, over a thousand steps. */
 TEST(moved_instances_are_hit_alike_whatever_the_tree)
 {
     struct world fresh = world_of(moving_scene(), (struct accel_params){0});
@@ -337,7 +337,7 @@ TEST(moved_instances_are_hit_alike_whatever_the_tree)
     world_finish(&fresh);
 }
 
-/* The shape of a refitted tree is that of its first pose; a rebuilt one follows the instances. */
+/* A refitted tree keeps the topology of its first pose; a rebuilt one follows the instances. */
 TEST(only_a_rebuild_changes_the_tree)
 {
     for (size_t w = 0; w < WAYS; ++w) {
@@ -362,7 +362,7 @@ TEST(only_a_rebuild_changes_the_tree)
     }
 }
 
-/* The source report drew the first object alone. */
+/* A regression: once only the first object was drawn. */
 TEST(every_instance_is_hit)
 {
     enum { SIDE = 12 };
@@ -387,19 +387,19 @@ TEST(every_instance_is_hit)
     }
 }
 
-/* ---- What triangles say to shadow rays ---- */
+/* ---- Flags and filters of records for shadow rays ---- */
 
-/* The materials are grey but for what is named here. `flags` and `shadow` are what the records of
-   their triangles have to hold. */
+/* Materials are grey except for the values given here. `flags` and `shadow`: what the records of
+   their triangles must have. */
 static const struct {
     const char *name;
-    float transmission[3], opacity; /* 0: 1 */
+    float transmission[3], opacity; /* opacity 0 stands for 1 */
     enum scene_alpha alpha;
     bool texture, lamp;
     uint32_t flags, shadow;
 } materials[] = {
     {.name = "plain"},
-    {.name = "glass", /* one halving: 64 */
+    {.name = "glass", /* half of the light: 64 units of 1/64 stop */
      .transmission = {0.5f, 1.0f, 0.0f},
      .flags = TRIANGLE_FILTER | TRIANGLE_GLASS,
      .shadow = 64u | 0u << 10 | 1023u << 20},

@@ -1,4 +1,4 @@
-/* Trees over triangles that builders get wrong, every way to build on each of them. */
+/* Triangles that builders get wrong, each with all builders and settings. */
 #include "accel_build_fixture.h"
 #include "bvh/complete.h"
 #include "bvh/optimize.h"
@@ -6,7 +6,7 @@
 
 /* ---- Meshes ---- */
 
-/* Points at the origin where `size` is 0. */
+/* Equal triangles; with `size` 0 points at the origin. */
 static struct soup soup_equal(uint32_t count, float size)
 {
     struct soup soup = soup_make("equal", count);
@@ -16,7 +16,7 @@ static struct soup soup_equal(uint32_t count, float size)
     return soup;
 }
 
-/* Two that are each other's mirror, by turns. */
+/* Two triangles, each the other's mirror image, in alternation. */
 static struct soup soup_crossing(uint32_t count)
 {
     struct soup soup = soup_make("crossing", count);
@@ -37,7 +37,7 @@ static struct soup soup_nested(uint32_t count)
     return soup;
 }
 
-/* On a line or in a plane: centres differ along so many axes. */
+/* Triangles whose centres differ along `axes` axes only: on a line or in a plane. */
 static struct soup soup_along(uint32_t count, int axes)
 {
     struct soup soup = soup_make("on a line or in a plane", count);
@@ -64,7 +64,7 @@ static struct soup soup_giants(uint32_t count)
     return soup;
 }
 
-/* Points on multiples of `step`: extents whose reciprocal is infinite. */
+/* Points at multiples of a tiny `step`, so that the reciprocal of extents is infinite. */
 static struct soup soup_steps(float from, float step)
 {
     struct soup soup = soup_make("points in steps", 64);
@@ -78,7 +78,7 @@ static struct soup soup_steps(float from, float step)
     return soup;
 }
 
-/* Planes that rounding puts beside a centroid: github.com/RenderKit/embree. */
+/* Rounding puts a bin's plane on the wrong side of a centroid (github.com/RenderKit/embree). */
 static struct soup soup_beside_planes(void)
 {
     static const float at[] = {-6.4000024f, 25.6f, 57.6000022f};
@@ -153,7 +153,7 @@ TEST(few_triangles)
     soup_finish(&one);
 }
 
-/* Extents and areas overflow, denormals vanish, many centroids meet. */
+/* Random floats: extents and areas overflow, denormals vanish, many centroids coincide. */
 TEST(a_thousand_trees_are_right)
 {
     for (uint32_t round = 0; round < cases_few(1000); ++round) {
@@ -171,8 +171,8 @@ TEST(a_thousand_trees_are_right)
 
 /* ---- One way ---- */
 
-/* Two bins halve the extent, so each split takes off one box: deeper than any stack but for the
-   medians. */
+/* With two bins each split separates a single box, since these get smaller by half each: without
+   the builder's switch to medians the tree would be deeper than the stack. */
 TEST(depth_is_capped)
 {
     const struct bvh_params params = {.bins = 2, .leaf_limit = 1};
@@ -189,7 +189,8 @@ TEST(depth_is_capped)
     soup_finish(&soup);
 }
 
-/* Points in ten heaps on a line, shuffled: what is left of a median is not right of it. */
+/* Points at ten places on a line, shuffled: no point on the left side of a median split lies to the
+   right of it. */
 TEST(medians_separate)
 {
     const struct bvh_params params = {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1};
@@ -275,6 +276,5 @@ TEST(bad_input_is_refused)
         assert_int_equal(bvh_build(&silent, boxes, 3, &params[k], &bvh), WHIT_ERROR_USAGE);
         assert_null(bvh.nodes);
     }
-    assert_non_null(
-        strstr(messages.last_error, "triangles")); /* of which there are none to split */
+    assert_non_null(strstr(messages.last_error, "triangles")); /* there are no triangles to split */
 }

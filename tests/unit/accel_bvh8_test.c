@@ -1,4 +1,5 @@
-/* Trees of eight children a node have the leaves of the trees of two, each once, boxes and all. */
+/* Trees with eight children per node have the leaves of the binary trees, each once and with the
+   same box. */
 #include "accel/bvh8.h"
 #include "accel/pose.h"
 #include "accel_fixture.h"
@@ -16,7 +17,8 @@ static void add_leaf(struct leaves *leaves, const struct gpu_bvh_node *leaf)
     leaves->all[leaves->count++].count = bvh_count(leaf);
 }
 
-/* `width` children a node: refs of two are those of the first child, of eight those of the node. */
+/* Collects all leaves. `width`: children per node. `ref`: in binary trees the first child's index,
+   in trees of eight the node's. */
 static void collect(const struct gpu_bvh_node *nodes, uint32_t ref, uint32_t width, uint32_t depth,
                     struct leaves *leaves)
 {
@@ -67,7 +69,7 @@ TEST(leaves_are_those_of_two)
         struct world world = world_of(scene, (struct accel_params){.flatten = flat != 0});
         struct accel *accel = world.accel;
         assert_int_equal(accel_pose(accel, &world.pose), WHIT_OK);
-        /* Again: what moves is made anew, the rest stays. */
+        /* The second time only trees of what moved are made again. */
         for (int again = 0; again < 2; ++again) {
             assert_int_equal(accel_widen(accel), WHIT_OK);
             for (uint32_t i = 0; i < (flat ? 1 : accel->mesh_count); ++i)

@@ -1,4 +1,4 @@
-/* One tree over all triangles in world space, against the same scene with instances. */
+/* Compares the single-level tree, over all triangles in world space, with instances. */
 #include "accel_fixture.h"
 
 #include "accel/flat_choice.h"
@@ -18,7 +18,7 @@ static struct scene *new_scene(void)
     return scene;
 }
 
-/* Turned, scaled, mirrored (every third) and sheared. */
+/* A random matrix: rotated, scaled, mirrored (every third) and sheared. */
 static struct affine random_matrix(uint64_t *state, uint32_t i)
 {
     struct affine placed = placement_random(state, 6.0, i % 3 == 0), shear = affine_identity();
@@ -63,7 +63,7 @@ static double normals_cosine(const struct gpu_hit *a, const struct gpu_hit *b)
 
 struct comparison {
     uint32_t other, met;
-    double t_off, cosine; /* the largest, the smallest */
+    double t_off, cosine; /* the largest difference of t, the smallest cosine of normals */
 };
 
 static struct comparison compare(const struct accel *instanced, const struct accel *flat,
@@ -95,7 +95,7 @@ TEST(hits_are_those_of_the_instances)
                   c.other, RAYS, c.met, c.t_off, 1.0 - c.cosine);
     assert_true(c.met > RAYS / 3);
     assert_true(c.other <= RAYS / 100000);
-    assert_true(c.t_off < 1e-4); /* t is 1 at a distance of some 10: grazing hits */
+    assert_true(c.t_off < 1e-4); /* t is 1 at a distance of about 10; grazing hits differ most */
     assert_true(c.cosine > 1.0 - 1e-6);
     accel_destroy(flat);
     world_finish(&instanced);
@@ -152,7 +152,8 @@ TEST(the_oracle_agrees)
     world_finish(&world);
 }
 
-/* As `whit scene --triangles` has it: in double, and rounded once. */
+/* Checks that a record's vertices were placed in double and rounded once, as by `whit scene
+   --triangles`. */
 static void assert_placed(const struct scene *scene, const struct scene_pose *pose,
                           const struct gpu_triangle *record)
 {
@@ -220,7 +221,7 @@ TEST(a_pose_builds_anew)
     const struct gpu_bvh_node *nodes = flat->nodes;
     assert_int_equal(accel_pose(flat, pose), WHIT_OK);
     assert_ptr_equal(flat->nodes, nodes); /* nothing has moved */
-    /* What is refused leaves everything as it was. */
+    /* A pose that is refused changes nothing. */
     struct gpu_ray ray = random_ray();
     struct gpu_hit before = trace(flat, &ray), after;
     pose->instances[3].m[3] = 1e30;
@@ -289,9 +290,9 @@ TEST(scenes_without_anything)
     }
 }
 
-/* ---- Where nobody says ---- */
+/* ---- The choice by WHIT_INSTANCES_AUTO ---- */
 
-/* Triangles and a ball of the same size, each once, where `place` says. */
+/* A mesh of triangles and a sphere of the same size, one instance each, placed by `place`. */
 static struct scene *two_objects(const struct affine *place)
 {
     const double ball[4] = {0, 0, 0, 1};
@@ -352,8 +353,8 @@ TEST(a_scene_takes_one_tree_where_nothing_is_lost)
     takes_one_tree("one object that is where it was", one_object(NULL), 0, false);
     takes_one_tree("one object that is moved", one_object(&there), 0, true);
 
-    /* From 256 of its longest sides on, which are 2, an object's vertices are rounded too much; of
-       a mesh that is where it was made nothing is rounded. */
+    /* At distances from 256 times its longest side (2) on, an object's vertices are rounded too
+       much. A mesh without a transform is not rounded at all. */
     struct affine near = moved_by(510, 1), far = moved_by(512, 1);
     takes_one_tree("near", two_objects(&near), 0, true);
     takes_one_tree("far", two_objects(&far), 0, false);

@@ -1,5 +1,5 @@
-/* The cases of `whit hard`: that they are what they say, on every machine the same, and that the
-   judge sees what is wrong. */
+/* Checks that the cases of `whit hard` are as described and the same on every machine, and that the
+   judge finds wrong hits. */
 #include "accel_fixture.h"
 
 #include "base/hash.h"
@@ -11,8 +11,8 @@
 
 enum { RAYS = 512, THREADS = 2 };
 
-/* This is the hash of the exact identities of the first RAYS rays of every case: `whit hard` prints
-   it, and every device has to meet it. */
+/* Hash of the exact hits' ids of the first RAYS rays of every case. `whit hard` prints it, and hits
+   on every device must have it. */
 #define HASH UINT64_C(0x24a2309bfa7331e3)
 
 struct shots {
@@ -76,7 +76,7 @@ static uint32_t count_hits(const struct shots *shots)
     return hits;
 }
 
-/* No triangle was dropped: closed meshes are closed. */
+/* Checks that no triangle of a case was dropped: closed meshes are still closed. */
 static void check_case(const struct hard_case *hard, const struct shots *shots)
 {
     const struct hard_topology *t = &shots->topology;
@@ -126,7 +126,7 @@ TEST(cases_are_what_they_say)
     assert_true(wrong[NUMERICS_FAST] > 0);
 }
 
-/* A hit that is taken away, put elsewhere or made up is seen, and breaks the promise. */
+/* The judge notices hits that are removed, moved or invented, and reports a broken promise. */
 TEST(the_judge_sees)
 {
     struct shots *shots = shots_make(&sphere, 1);
@@ -158,8 +158,8 @@ TEST(the_judge_sees)
     shots_free(shots);
 }
 
-/* A ray from the middle of triangle `i`, which lies to one side of it by rounding alone, almost
-   along it and outwards: it may go through that very triangle, but far from its start. */
+/* A ray from the rounded middle of triangle `i`, almost parallel to the triangle and outwards.
+   Since its origin is off the plane by rounding, it may hit that same triangle, but far away. */
 static struct hard_ray ray_in_plane(const struct scene_mesh *mesh, uint32_t i)
 {
     const float *v[3];
@@ -178,7 +178,7 @@ TEST(rays_in_a_plane_are_no_leaks)
     struct shots *shots = shots_make(&sphere, 1);
     const struct scene_mesh *mesh = &shots->hard.scene->meshes[0];
     uint32_t far = 0;
-    shots->hard.truth = HARD_ORACLE; /* as of a scene that is not known to be closed */
+    shots->hard.truth = HARD_ORACLE; /* as for a scene that is not known to be closed */
     for (uint32_t i = 0; i < RAYS; ++i)
         shots->rays[i] = ray_in_plane(mesh, i % mesh->triangle_count);
     assert_int_equal(hard_trace_exact(&shots->hard, shots->rays, RAYS, THREADS, shots->exact),
@@ -199,7 +199,7 @@ TEST(rays_in_a_plane_are_no_leaks)
     shots_free(shots);
 }
 
-/* The convex body is left without a hit; a hit made up is a self-hit. */
+/* Rays that leave a convex body hit nothing; an invented hit counts as a self-hit. */
 TEST(self_hits_are_seen)
 {
     static const struct hard_case body = {
@@ -216,8 +216,8 @@ TEST(self_hits_are_seen)
     shots_free(shots);
 }
 
-/* A cube of 12 triangles, unwelded; without the last, with the first turned round, with the first
-   in place of the last. */
+/* A cube of 12 triangles with unshared vertices: complete, without the last triangle, with the
+   first reversed, and with the first in place of the last. */
 TEST(surfaces_are_described)
 {
     static const struct {

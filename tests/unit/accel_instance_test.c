@@ -1,5 +1,4 @@
-/* What transforms cost in accuracy: hits in instances against the same triangles placed in double.
- */
+/* How accurate hits in instances are, compared with the same triangles transformed in double. */
 #include "accel_fixture.h"
 #include "unit.h"
 
@@ -12,7 +11,8 @@ static struct world sphere_world(const struct affine *matrices, uint32_t count)
     return world_of(scene, (struct accel_params){0});
 }
 
-/* A corner, and the normal on the side of the instance's, of a triangle placed in double. */
+/* A corner and the normal of a triangle transformed in double; the normal is on the instance's
+   side. */
 static void world_plane(const struct scene *scene, const struct affine *matrix, uint32_t primitive,
                         double at[3], double normal[3])
 {
@@ -32,7 +32,7 @@ static void world_plane(const struct scene *scene, const struct affine *matrix, 
         normal[i] = -normal[i];
 }
 
-/* From outside the instance to a point inside its unit sphere, rounded to floats. */
+/* A ray from outside of the instance to a point in its unit sphere, rounded to floats. */
 static struct gpu_ray aimed_ray(const struct affine *matrix, uint64_t *state)
 {
     double from[3], to[3], size = 0.0;
@@ -103,8 +103,8 @@ static const char *const level_names[] = {
     [NUMERICS_WATERTIGHT] = "watertight", [NUMERICS_EXACT] = "exact"};
 static const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
 
-/* `stretch` is how much longer the world's longest axis is than the shortest one, where these are
-   turned: each coordinate of the object is then a difference of the world's longest. */
+/* `stretch`: ratio of the longest and the shortest axis in world space, if the matrix rotates. Each
+   object coordinate is then a difference of large world coordinates. */
 static void assert_precision(const char *what, struct affine matrix, double stretch)
 {
     for (int l = 0; l < 2; ++l) {
@@ -141,7 +141,8 @@ TEST(scales_keep_their_precision)
     assert_precision("mirrored twice", turned(1, 2, 3, -2, -1, 3), 3);
 }
 
-/* diag(2, 1, 1) puts a normal that goes by the matrix itself off by 36.87 degrees at worst. */
+/* A normal transformed by the matrix itself would be off by up to 36.87 degrees for diag(2, 1,
+   1). */
 TEST(normals_go_by_the_inverse_transpose)
 {
     struct affine stretched = affine_identity(), sheared = turned(1, 2, 3, 2, 0.5, -1.5);
@@ -160,7 +161,7 @@ TEST(normals_go_by_the_inverse_transpose)
     }
 }
 
-/* 0 + 0 may come with another sign; nothing else may. */
+/* An identity matrix changes nothing but perhaps the sign of zeros. */
 TEST(an_identity_is_no_transform)
 {
     struct affine identity = affine_identity();
@@ -186,7 +187,8 @@ TEST(an_identity_is_no_transform)
     world_finish(&world);
 }
 
-/* What is hit first of all that stand in one place, at every order; and that all were looked at. */
+/* Checks the hit among instances in one place, at every traversal order, and that all of them were
+   entered. */
 static void assert_all_are_entered(const struct accel *accel, uint32_t count, uint32_t numerics,
                                    uint32_t rays)
 {
@@ -209,8 +211,8 @@ static void assert_all_are_entered(const struct accel *accel, uint32_t count, ui
                   (unsigned long long)count * rays, rays, depth);
 }
 
-/* Equal boxes: nothing can be ruled out, and the first instance is the one that is hit. With the
-   label long there are a million of them. */
+/* Instances with equal boxes: none can be culled, and the first one is hit. With the label long
+   there are a million of them. */
 TEST(instances_in_one_place_are_all_entered)
 {
     const char *many = getenv("WHIT_TEST_INSTANCES");
@@ -222,7 +224,7 @@ TEST(instances_in_one_place_are_all_entered)
         matrices[i] = affine_identity();
     struct world world = sphere_world(matrices, count);
     const struct accel *accel = world.accel;
-    /* Halved each time, and the tree of the mesh below. */
+    /* The instance tree halves its instances at each level; 1 more for the mesh tree below. */
     assert_int_equal(accel->instance_node_count, 2 * count);
     assert_true(accel->instance_depth <= 1 + (uint32_t)ceil(log2(count)));
     const uint32_t rays = count > 100000 ? 6 : 21;

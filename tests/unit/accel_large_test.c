@@ -1,6 +1,5 @@
-/* Ten million triangles in one mesh: nothing overflows, every triangle is in the tree, rays are
-   answered, and what it takes is told (U11 of the catalogue of hard cases). Not run by tools/test.
- */
+/* Ten million triangles in one mesh (U11 of the catalogue of hard cases): nothing overflows, every
+   triangle is in the tree, rays hit; prints time and memory. Not run by tools/test. */
 #include "hard_fixture.h"
 
 #include <sys/resource.h>
@@ -18,7 +17,7 @@ static double peak_gib(void)
     return (double)usage.ru_maxrss * 0x1p-20; /* from KiB */
 }
 
-/* From above; where the landscape goes on all round. */
+/* A ray from above at a record, not at the border of the landscape. */
 static struct gpu_ray ray_at_record(const struct accel *accel, uint32_t i)
 {
     struct vec3 target;

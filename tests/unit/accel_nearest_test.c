@@ -1,4 +1,4 @@
-/* Distances to a scene: by trees, by every triangle, and by formula. */
+/* Compares distances to a scene by trees, by testing every triangle, and by formula. */
 #include "accel_fixture.h"
 
 #include "oracle/nearest.h"
@@ -17,8 +17,8 @@ static struct scene *ring_scene(void)
     return scene;
 }
 
-/* Trees leave nothing out: the bits are those of all triangles in turn. A tree over the scene in
-   world space has other vertices, rounded once more. */
+/* Distances by trees have the bits of those by testing all triangles. A single-level tree is
+   compared within rounding, since its vertices are rounded once more. */
 TEST(trees_find_the_nearest)
 {
     random_state = 3;
@@ -40,7 +40,7 @@ TEST(trees_find_the_nearest)
     world_finish(&world);
 }
 
-/* To a box: faces, edges, corners. */
+/* Distances to faces, edges and corners of a box. */
 TEST(distances_are_those_of_a_box)
 {
     random_state = 5;
