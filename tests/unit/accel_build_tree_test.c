@@ -276,5 +276,6 @@ TEST(bad_input_is_refused)
         assert_int_equal(bvh_build(&silent, boxes, 3, &params[k], &bvh), WHIT_ERROR_USAGE);
         assert_null(bvh.nodes);
     }
-    assert_non_null(strstr(messages.last_error, "triangles")); /* there are no triangles to split */
+    assert_non_null(
+        strstr(messages.last_error, "triangles")); /* there are no triangles for it to split */
 }
