@@ -25,8 +25,8 @@
 static const struct child_limits ordinary = {
     .who = "test", .cpu_s = 20.0, .memory_bytes = 256u << 20, .reply_bytes = 64u << 20};
 
-/* What is wrapped at link time: the clocks that a child's time is measured by, which these tests
-   turn, and what tells whether a child is started while forks are held. */
+/* Functions that are wrapped at link time: the clocks by which a child's time is measured, which
+   these tests advance, and fork, to see whether a child is started while forks are held. */
 double __wrap_clock_ms(void);
 double __real_clock_of_process_ms(pid_t pid);
 double __wrap_clock_of_process_ms(pid_t pid);
@@ -37,12 +37,12 @@ int __wrap_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit);
 int __real_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
 int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
 
-static double now_ms, step_ms;       /* Each reading turns the clock by a step, */
-static double used_ms, used_step_ms; /* and so the child's. */
+static double now_ms, step_ms;       /* the clock, which each reading advances by a step */
+static double used_ms, used_step_ms; /* likewise the child's processor time */
 static uint32_t reading_count, cancel_at;
-static bool child_stops;        /* itself, until the third reading */
-static pid_t child;             /* the last one */
-static volatile bool cancelled; /* at the reading `cancel_at` */
+static bool child_stops;        /* the child stops itself until the third reading */
+static pid_t child;             /* the child started last */
+static volatile bool cancelled; /* set at reading `cancel_at` */
 static atomic_bool forks_are_held, child_is_wanted, forked_while_held;
 
 static void set_clock(double step)
@@ -58,7 +58,7 @@ double __wrap_clock_ms(void)
     if (++reading_count == cancel_at)
         cancelled = true;
     if (child_stops && reading_count >= 3)
-        kill(child, SIGCONT); /* again and again: it may be about to stop */
+        kill(child, SIGCONT); /* repeatedly, since the child may not have stopped yet */
     now_ms += reading_count <= 3 || !child_stops ? step_ms : 0.0;
     return now_ms;
 }
@@ -122,7 +122,7 @@ static void hold_forks(void *context)
     child_release_forks();
 }
 
-/* The child tells what it saw at its start. */
+/* The child replies whether forks were held when it started. */
 static int reply_held(void *user, void *to, child_write write)
 {
     (void)user;
@@ -218,7 +218,7 @@ TEST(hangs_end_at_the_limit)
     set_clock(0.0);
 }
 
-/* On a busy machine the clock runs on while a child waits for the processor. */
+/* Limits are of processor time, since on a busy machine a child may wait for the processor. */
 TEST(time_of_the_processor_counts)
 {
     struct child_limits limits = ordinary;
@@ -242,7 +242,7 @@ static int wait_for_readings(void *user, void *to, child_write write)
     return write(to, "k", 1) ? 0 : 1;
 }
 
-/* Valid files were refused where other programs had the processor. */
+/* A regression: valid files were refused while other programs used the processor. */
 TEST(a_busy_machine_refuses_nothing)
 {
     struct child_limits limits = ordinary;
@@ -306,7 +306,7 @@ static int reply_processor_limit(void *user, void *to, child_write write)
     return write(to, &processor_limit_s, sizeof processor_limit_s) ? 0 : 3;
 }
 
-/* The kernel ends it even while its parent is stopped. */
+/* The kernel ends a child by RLIMIT_CPU even while its parent is stopped. */
 TEST(processor_time_is_limited_too)
 {
     struct child_reply reply;

@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "folder_fixture.h"
 
-/* All that is said, however small. */
+/* A log that takes messages of all levels. */
 static const whit_log full_log = {
     .fn = messages_collect, .user = &messages, .level = WHIT_LOG_DEBUG};
 
@@ -172,7 +172,7 @@ TEST_IN(read_refuses_with_one_message, folder_begin, folder_end)
     free(data);
 }
 
-/* The number of a process that is no more. */
+/* The id of a process that has ended. */
 static pid_t ended_process(void)
 {
     pid_t pid = fork();
@@ -188,7 +188,8 @@ static bool is_there(const char *path)
     return lstat(path, &info) == 0;
 }
 
-/* Puts something at the name that process `writer` gives to an unfinished a.txt, with `end`. */
+/* Writes a file with the name of an unfinished a.txt of process `writer`; `end`: end of that
+   name. */
 static char *leave(pid_t writer, const char *end, const char *text)
 {
     char *path = string_format("%s/.a.txt.%ld%s.tmp", folder, (long)writer, end);
@@ -243,7 +244,7 @@ TEST_IN(nothing_else_is_swept, folder_begin, folder_end)
     close(lock);
 }
 
-/* Both are begun before either ends, in one process and in two. */
+/* Two writers begin before either ends, in one process and in two. */
 TEST_IN(two_writers_of_one_file, folder_begin, folder_end)
 {
     static const char *const texts[] = {"first", "second"};

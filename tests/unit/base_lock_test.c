@@ -1,4 +1,4 @@
-/* Locks of files: one holder at a time, and none is ever stale. */
+/* Locks on files have one holder at a time, and never stay behind a process that has ended. */
 #include "base/lock.h"
 
 #include <signal.h>

@@ -1,5 +1,5 @@
-/* host/base/same.h beside libm of long doubles where these have more digits than doubles, and by a
-   hash of bits that every compiler and machine has to meet. */
+/* Tests host/base/same.h against libm's long doubles, where these have more digits than doubles,
+   and by a hash of result bits that must be the same with every compiler and machine. */
 #include <float.h>
 #include <math.h>
 
@@ -109,7 +109,7 @@ static long double exponential_long(long double x, long double y)
     return expl(x);
 }
 
-/* Arguments: from -size to size, or 2^-size to 2^size. */
+/* Arguments are drawn from -size to size, or from 2^-size to 2^size. */
 static const struct row {
     const char *name;
     binary *same;
@@ -197,8 +197,8 @@ TEST(special_values_are_those_of_c)
         assert_true(i < 0 || is_same(same_log10(same_pow(10.0, i)), i));
 }
 
-/* The bits themselves: a compiler that fuses or reorders, or a machine without IEEE doubles, is
- * seen here. */
+/* A hash of result bits: it shows compilers that contract or reorder operations, and machines
+   without IEEE doubles. */
 TEST(bits_are_the_same_everywhere)
 {
     uint64_t hash = HASH_START;

@@ -1,4 +1,4 @@
-/* Medians, their intervals, and which differences can be told from chance. */
+/* Tests medians, their intervals, and which differences count as more than chance. */
 #include <math.h>
 
 #include "base/sample.h"
@@ -35,8 +35,8 @@ TEST(runs_are_summed_up)
     assert_int_equal(a.count, SAMPLE_RUNS_MAX);
 }
 
-/* Ranks and coverages of sums of binomial coefficients in whole numbers; those of 10, 20, 30, 50
-   and 100 are in tables of many textbooks. */
+/* Ranks and coverages are from sums of binomial coefficients in integers; those for 10, 20, 30, 50
+   and 100 are also in tables of many textbooks. */
 TEST(ranks_are_those_of_the_binomial)
 {
     static const struct {
@@ -71,7 +71,7 @@ TEST(ranks_are_those_of_the_binomial)
     assert_true(none.median == 0.0 && none.coverage == 0.0 && none.count == 0);
 }
 
-/* As times of runs are: none below a floor, a long tail above. */
+/* A random number with the distribution of run times: a least value, and a long tail above. */
 static double skewed(void)
 {
     double u = ((double)random_bits(&random_state) + 0.5) / 4294967296.0;
@@ -95,8 +95,8 @@ TEST(intervals_hold_the_median)
     assert_true(held > 0.955 * TRIALS && held < 0.975 * TRIALS); /* 0.9648 expected */
 }
 
-/* Two times of the same runs, while the machine becomes slower and recovers. `slower`: of the
-   second one. */
+/* Compares two series of run times, while the machine becomes slower and recovers. `slower`: factor
+   by which the second series is slower. */
 static int compare_once(double slower)
 {
     double a[COUNT], b[COUNT], differences[COUNT];

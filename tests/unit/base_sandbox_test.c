@@ -1,4 +1,4 @@
-/* A stand-in child that tries each thing which foreign code must not do. */
+/* Sandboxed children that try everything which foreign code must not do. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -28,7 +28,7 @@
 int __real_seccomp_load(const scmp_filter_ctx filter);
 int __wrap_seccomp_load(const scmp_filter_ctx filter);
 
-static bool no_filter; /* The system refuses it. */
+static bool no_filter; /* makes loading of the seccomp filter fail */
 
 int __wrap_seccomp_load(const scmp_filter_ctx filter)
 {
@@ -38,7 +38,7 @@ int __wrap_seccomp_load(const scmp_filter_ctx filter)
 static const struct child_limits ordinary = {
     .who = "test", .cpu_s = 20.0, .memory_bytes = 256u << 20, .reply_bytes = 1u << 20};
 
-/* What there is to be harmed: two files, a descriptor that reads one, and this process. */
+/* Targets of the trials: two files, an inherited descriptor of one of them, and this process. */
 static struct {
     char *secret, *other;
     int fd;
@@ -51,7 +51,7 @@ static int begin(void **state)
     victim.secret = string_format("%s/secret", folder);
     victim.other = string_format("%s/other", folder);
     put_file(victim.secret, "secret", 6);
-    /* Inherited: nothing closes it at exec. Not the number of the reply's. */
+    /* The child inherits it. Its number is none of those that the sandbox keeps for the reply. */
     int low = open(victim.secret, O_RDWR);
     victim.fd = fcntl(low, F_DUPFD, 2 * SANDBOX_FD_COUNT);
     close(low);
@@ -73,7 +73,7 @@ static int end(void **state)
 static char room[8];
 static int numbers[2];
 
-/* Its name, and what it calls. */
+/* Each trial's name, and the call that it makes. */
 #define TRIALS(TRY)                                                                                \
     TRY(open_to_read, open(victim.secret, O_RDONLY))                                               \
     TRY(open_to_write, open(victim.other, O_WRONLY | O_CREAT, 0600))                               \
@@ -154,7 +154,7 @@ static const struct trial {
     long (*fn)(void);
 } trials[] = {TRIALS(ROW)};
 
-/* What the calls of a child gave it. */
+/* The result and errno of a child's call. */
 struct outcome {
     long result;
     int error;
@@ -270,7 +270,7 @@ static long limits_of_processes_and_files(void)
                : -1;
 }
 
-/* Descriptors, privileges and limits go whether or not there is a filter. */
+/* Descriptors, privileges and limits are taken away even where the filter cannot be loaded. */
 TEST_IN(the_rest_holds_without_the_filter, begin, end)
 {
     no_filter = true;
@@ -303,7 +303,7 @@ static int write_shared(void *user, void *to, child_write write)
     return write(to, "", 1) ? 0 : 1;
 }
 
-/* As a driver maps its cache. */
+/* Shared mappings, such as a driver's cache, are not in the child. */
 TEST_IN(shared_memory_is_gone, begin, end)
 {
     struct child_reply reply;

@@ -1,4 +1,4 @@
-/* What is kept from one run to the next, and what is found in its place. */
+/* Tests the cache of files between runs, and what it does about damaged or foreign files. */
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -10,12 +10,13 @@
 #include "base/store.h"
 #include "folder_fixture.h"
 
-static char kept_in[80];    /* the folder below XDG_CACHE_HOME, which is the folder of the check */
-static uid_t owner_of_next; /* what fstat says from call `foreign_from` on; 0: the truth */
+static char kept_in[80]; /* whit's folder below XDG_CACHE_HOME, which is this test's folder */
+static uid_t
+    owner_of_next; /* owner that fstat gives from call `foreign_from` on; 0: the real one */
 static int foreign_from;
-static int64_t disk_bytes = -1; /* that are left; < 0: enough */
-static pid_t dies_at_write;     /* this process */
-static int opened;              /* files named "a", to be read */
+static int64_t disk_bytes = -1; /* free bytes on the simulated disk; < 0: enough */
+static pid_t dies_at_write;     /* id of a process that ends in its next large write */
+static int opened;              /* how often a file named "a" was opened to be read */
 
 int __real_openat(int at, const char *name, int flags, ...);
 int __wrap_openat(int at, const char *name, int flags, ...);
@@ -74,7 +75,7 @@ static bool exists(const char *name)
     return lstat(path_of(name), &info) == 0;
 }
 
-/* Silent; each test looks at messages where there may be some. */
+/* A log without output; tests that expect messages use another one. */
 static const whit_log silent;
 enum { BYTES = 1000 };
 
@@ -86,7 +87,7 @@ static void keep(const char *name, int seed)
     store_write(&silent, name, data, BYTES);
 }
 
-/* What is read is right or nothing. */
+/* Whether the file is kept; what is read must be what was written. */
 static bool is_kept(const char *name, int seed)
 {
     uint8_t *data = NULL;
@@ -142,7 +143,8 @@ TEST_IN(what_is_kept_is_read, begin, folder_end)
     free(data);
 }
 
-/* Any byte flipped, any length, payload of zeros, another version, another file in its place. */
+/* Damage: any byte flipped, any length, payload of zeros, another version, another file's
+   content. */
 TEST_IN(damage_is_thrown_away, begin, folder_end)
 {
     uint8_t good[2 * BYTES], bad[2 * BYTES] = {0};
@@ -225,7 +227,8 @@ static void put_writable(const char *name)
     assert_int_equal(chmod(path_of(name), 0622), 0);
 }
 
-/* None is opened, none is followed; each is gone after it, and what is kept then is a file. */
+/* Entries that are no regular files of this user are neither opened nor followed; they are removed,
+   and a file can be kept in their place. */
 TEST_IN(what_is_no_file_of_ours_is_thrown_away, begin, folder_end)
 {
     static void (*const puts[])(const char *) = {put_link,   put_nowhere, put_second_name,
@@ -233,7 +236,7 @@ TEST_IN(what_is_no_file_of_ours_is_thrown_away, begin, folder_end)
                                                  put_device, put_writable};
     char text[2 * BYTES];
     struct stat info;
-    keep("a", 1); /* what links lead to is whole, and would be taken */
+    keep("a", 1); /* links lead to a valid file, which would be accepted */
     assert_int_equal(rename(path_of("a"), in_folder("target")), 0);
     for (size_t i = 0; i < sizeof puts / sizeof *puts; ++i) {
         puts[i]("a");
@@ -261,7 +264,7 @@ TEST_IN(files_of_others_are_thrown_away, begin, folder_end)
 {
     keep("a", 1);
     owner_of_next = geteuid() + 1;
-    foreign_from = 2; /* the first call is about the folder */
+    foreign_from = 2; /* the first call of fstat is for the folder */
     assert_false(is_kept("a", 1));
     foreign_from = 0;
     assert_false(exists("a"));
@@ -278,7 +281,7 @@ static bool store_is_used(void)
     return found;
 }
 
-/* The first to be said is the only one of this process. */
+/* A folder of another user is not used, which is logged once per process. */
 TEST_IN(folders_of_others_are_not_used, begin, folder_end)
 {
     whit_cache_info info;
@@ -302,15 +305,15 @@ TEST_IN(folders_of_others_are_not_used, begin, folder_end)
         assert_string_equal(info.folder, kept_in);
         assert_null(store_folder(&silent));
     }
-    assert_int_equal(chmod(kept_in, 0755), 0); /* others may look: they may not any more */
+    assert_int_equal(chmod(kept_in, 0755), 0); /* readable by others: whit changes that */
     assert_true(store_is_used());
     assert_int_equal(messages.count, 0);
     assert_int_equal(stat(kept_in, &about), 0);
     assert_int_equal(about.st_mode & 0777, 0700);
 }
 
-/* No place, a file or a link in place of the folder, a parent that is not there, WHIT_NO_CACHE:
-   whit goes on without, quietly. */
+/* Without a place for the cache whit works silently without one: no such variable, a file or a link
+   in place of the folder, a missing parent, WHIT_NO_CACHE. */
 TEST_IN(without_a_folder_nothing_is_kept, begin, folder_end)
 {
     assert_int_equal(mkdir(in_folder("other"), 0700), 0);
@@ -359,7 +362,7 @@ static uint64_t used_bytes(void)
     return info.used_bytes;
 }
 
-/* At each length that fits on the disk. */
+/* Tries disks with room for each length of a partial file. */
 TEST_IN(full_disks_leave_nothing_half, begin, folder_end)
 {
     keep("a", 1);
@@ -392,7 +395,8 @@ static void die_writing(void)
     keep("a", 2);
 }
 
-/* What a killed writer leaves is swept by the next one; what a live one writes is not. */
+/* The next writer removes the unfinished files of a killed writer, but not those of a running
+   one. */
 TEST_IN(killed_writers_leave_nothing_half, begin, folder_end)
 {
     int status;
@@ -401,7 +405,7 @@ TEST_IN(killed_writers_leave_nothing_half, begin, folder_end)
     pid_t pid = run_apart(die_writing);
     assert_int_equal(waitpid(pid, &status, 0), pid);
     assert_int_equal(WEXITSTATUS(status), 9);
-    snprintf(name, sizeof name, ".a.%ld.tmp", (long)pid); /* as whit once named it */
+    snprintf(name, sizeof name, ".a.%ld.tmp", (long)pid); /* a name by an older whit */
     put_file(path_of(name), "x", 1);
     snprintf(name, sizeof name, ".a.%ld.99999999.tmp", (long)getpid());
     put_file(path_of(name), "x", 1);
@@ -426,7 +430,7 @@ TEST_IN(two_writers_do_no_harm, begin, folder_end)
     size_t bytes;
     for (int i = 0; i < 50; ++i) {
         keep("a", 100 + i);
-        assert_true(store_read(&silent, "a", &data, &bytes)); /* some writer's, and whole */
+        assert_true(store_read(&silent, "a", &data, &bytes)); /* complete, by either writer */
         assert_int_equal(bytes, BYTES);
         free(data);
     }
@@ -435,7 +439,7 @@ TEST_IN(two_writers_do_no_harm, begin, folder_end)
     assert_int_equal(used_bytes(), BYTES + 24);
 }
 
-/* Files as large as it takes, with nothing in them. */
+/* Makes a sparse file of this size and age. */
 static void put_large(const char *name, off_t bytes, time_t days)
 {
     assert_int_equal(close(open(path_of(name), O_WRONLY | O_CREAT, 0600)), 0);

@@ -1,5 +1,5 @@
-/* Text that others wrote: nothing of it steers a terminal or hides, and what is left of it is
- * there. */
+/* Text that others wrote is shown without anything that controls a terminal or hides text; the rest
+   of it is unchanged. */
 #include "../random.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -39,14 +39,14 @@ TEST(each_kind_is_shown)
     }
 }
 
-/* ---- A reader of its own, by the tables of RFC 3629 ---- */
+/* ---- An independent reader, by the tables of RFC 3629 ---- */
 
 static bool within(unsigned char byte, int first, int last)
 {
     return byte >= first && byte <= last;
 }
 
-/* Bytes of a character that may be printed, 0: none. */
+/* Length in bytes of the character at `t` if it is printable; else 0. */
 static size_t printable(const unsigned char *t)
 {
     if (t[0] < 0x80)
@@ -63,7 +63,8 @@ static size_t printable(const unsigned char *t)
     return within(t[3], 0x80, 0xbf) ? 4 : 0;
 }
 
-/* Few kinds of bytes, so that whole characters, nearly whole ones and escapes come up often. */
+/* Draws random text from few kinds of bytes, so that valid characters, nearly valid ones and
+   escapes come up often. */
 static void draw(uint64_t *random, char *text, uint32_t max)
 {
     static const unsigned char likely[] = {0x1b, 0x7f, 0x80, 0x81, 0x8e, 0x9b, 0xa0, 0xad,
@@ -122,7 +123,7 @@ static void keep(void *user, whit_log_level level, const char *message)
     snprintf(user, 64, "%s", message);
 }
 
-/* Host programs print what libwhit tells them. */
+/* Messages of libwhit, which host programs print, are escaped too. */
 TEST(messages_are_shown)
 {
     char message[64];

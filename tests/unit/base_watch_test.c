@@ -1,4 +1,4 @@
-/* Files that are written, replaced, or not. */
+/* Tests the watching of files that are written, replaced, or left alone. */
 #include <semaphore.h>
 #include <time.h>
 

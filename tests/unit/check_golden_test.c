@@ -1,4 +1,4 @@
-/* Goldens: what is written is read again, and what is damaged is told by its line. */
+/* Golden files: what is written is read again, and errors name the damaged line. */
 #include "app/check/golden.h"
 #include "folder_fixture.h"
 
@@ -46,7 +46,7 @@ static const char text[] =
          "part mesh ball of room.json\n"
          " deadbeef\n"
          "\n";
-/* What merges may make of it. */
+/* The same golden file with lines in another order and repeated, as merges may leave it. */
 static const char shuffled[] = HEAD "part mesh ball of room.json\n deadbeef\n"
                                     " room why a redder ball\n room parts deadbeef 00000007\n"
                                     "case cube of room.json --size 256x192\n"
@@ -84,7 +84,8 @@ TEST(text_is_read_again)
     golden_finish(&again);
 }
 
-/* Lines stand for themselves, in any order, and what two have accepted alike is one. */
+/* Lines may come in any order, and equal lines, as two people's acceptances of the same change,
+   count once. */
 TEST(order_and_repetition_mean_nothing)
 {
     struct golden golden;
@@ -97,8 +98,7 @@ TEST(order_and_repetition_mean_nothing)
     golden_finish(&golden);
 }
 
-/* A golden file that another whit wrote, or another version, is read all the same: its numbers
-   count. */
+/* A golden file of another version of whit is read all the same. */
 TEST(another_whit_is_no_reason_to_refuse)
 {
     struct golden golden;

@@ -1,4 +1,4 @@
-/* The page of `whit check` where cases have more pictures than it has room for. */
+/* The HTML page of `whit check` if its pictures exceed the page's limit of bytes. */
 #include "app/check/check.h"
 #include "base/file.h"
 #include "folder_fixture.h"
@@ -17,7 +17,7 @@ static struct check_png make_png(size_t size_bytes)
     return png;
 }
 
-/* A case that differs, with pictures of so many bytes each, and a thumbnail. */
+/* Fills in a case that differs, with pictures of `picture_bytes` each, and a thumbnail. */
 static void fill(struct check_case *item, struct check_result *result, uint32_t index,
                  size_t picture_bytes)
 {
@@ -35,7 +35,7 @@ static void fill(struct check_case *item, struct check_result *result, uint32_t 
                                                  .flip = make_png(picture_bytes)}};
 }
 
-/* The text of a page of cases that all differ; free() it. */
+/* Makes a page of `count` cases that all differ; free() it. */
 static char *make_page(uint32_t count, size_t picture_bytes)
 {
     char path[512];

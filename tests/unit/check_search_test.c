@@ -1,13 +1,14 @@
-/* The search for the cause of a difference, over pictures that are only reckoned. */
+/* The search for the cause of a difference, with simulated pictures. */
 #include "app/check/search.h"
 #include "base/random.h"
 #include "unit.h"
 
-/* The old picture comes with all changes of `needed` taken back, or with all of `instead`. */
+/* A simulated difference: the old picture is drawn if all changes in `needed` are undone, or all in
+   `instead`. */
 struct model {
     uint32_t count;
     const bool *needed, *instead;
-    uint32_t fails_at; /* the picture that cannot be drawn for want of a device; 0: none */
+    uint32_t fails_at; /* number of the picture that fails, as without a device; 0: none */
     uint32_t drawn;
 };
 
@@ -54,7 +55,7 @@ TEST(one_cause_is_found_in_few_pictures)
             assert_int_equal(search.end, SEARCH_FOUND);
             assert_int_equal(search.cause_count, 1);
             assert_true(search.cause[cause]);
-            assert_true(search.pictures <= 14); /* all of them, and six halvings of two */
+            assert_true(search.pictures <= 14); /* all undone, and six halvings of two */
             free(search.cause);
             needed[cause] = false;
         }

@@ -1,4 +1,4 @@
-/* Suites: cases, alternatives, quotes, and every wrong line told by its number. */
+/* Suite files: cases, alternatives, quotes, and errors with line numbers. */
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,7 +101,7 @@ TEST_IN(expectations_go_to_their_cases, folder_begin, folder_end)
     suite_finish(&suite);
 }
 
-/* Each wrong line is told, whatever else is wrong. */
+/* Each wrong line is reported, whatever else is wrong. */
 TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
 {
     static const struct {

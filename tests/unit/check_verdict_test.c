@@ -1,4 +1,4 @@
-/* What is said of a case, by what a golden has and what was found, and the exit code of all. */
+/* Verdicts on cases, by the golden file and by what was found, and the exit code of all cases. */
 #include "app/check/verdict.h"
 #include "unit.h"
 
@@ -130,7 +130,7 @@ TEST(the_worst_counts)
     }
 }
 
-/* A verdict that is worse takes the place of another, and both are told. */
+/* A worse verdict replaces a better one; the texts of both are reported. */
 TEST(texts_add_up)
 {
     struct check_result result = {.verdict = CHECK_NOT_RUN};

@@ -1,4 +1,4 @@
-/* What `whit cost` and --budget-ms give up for time, by reports that nobody measured. */
+/* Which settings `whit cost` and --budget-ms give up for time, tested with invented reports. */
 #include <math.h>
 
 #include "cost/within.h"
@@ -21,7 +21,7 @@ static double random_up_to(double most)
     return most * (random_bits() % 10000) / 1e4;
 }
 
-/* How far down the order a setting is, from 1; 0: nothing is given up by it. */
+/* The position of a setting in the order of within.c, from 1; 0: it gives up nothing. */
 static uint32_t rank_of(uint32_t knob, uint32_t setting)
 {
     uint32_t count;
@@ -29,8 +29,8 @@ static uint32_t rank_of(uint32_t knob, uint32_t setting)
     return cost_step_of(k->name, knob_setting_name(k, setting)) + 1;
 }
 
-/* Gives the time of a setting as a multiple of the usual one: longer for more samples and for what
-   is more careful than usual, shorter the later in the order a setting is given up. */
+/* Invents the time of a setting as a multiple of the usual one: longer for more samples and for
+   settings better than usual, shorter the later in the order a setting is. */
 static double ratio_of(uint32_t knob, uint32_t setting)
 {
     uint32_t count;
@@ -84,7 +84,8 @@ static void make_report(void)
     }
 }
 
-/* Whether the row is known to save time beside the settings of its knob that come before it. */
+/* Whether the row saves time compared with the settings of its knob that come earlier in the
+   order. */
 static bool saves_time(const struct cost_row *row)
 {
     double ratio = row->price.ratio[COST_WALL].median;
@@ -99,8 +100,8 @@ static bool saves_time(const struct cost_row *row)
     return saves;
 }
 
-/* The last thing in the order that the choice gives up, and whether all before it are too, as far
-   as they save time. */
+/* Gives the last position in the order that the choice gives up; checks that all earlier ones that
+   save time are given up, too. */
 static uint32_t check_order(const struct cost_choice *choice)
 {
     uint32_t last = 0, count;
@@ -118,7 +119,7 @@ static uint32_t check_order(const struct cost_choice *choice)
     return last;
 }
 
-/* The time of a bail-out beside that of the usual one; 0: it was not measured. */
+/* The time of a bail-out as a multiple of the usual one's; 0: it was not measured. */
 static double bailout_ratio(const char *setting)
 {
     for (uint32_t i = 1; i < report.row_count; ++i) {
@@ -131,8 +132,8 @@ static double bailout_ratio(const char *setting)
     return 0.0;
 }
 
-/* Whether the bail-out is between two that were measured; half of it would take too long then, by
-   a line over the logarithm. */
+/* Whether the chosen bail-out lies between two measured ones. Checks that half of it would exceed
+   the limit, by linear interpolation over the logarithm. */
 static bool check_bailout(const struct cost_choice *choice, double limit)
 {
     struct settings settings = settings_usual();
@@ -186,7 +187,7 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
     assert_true(between > found / 20);
 }
 
-/* Where 9 of 10 pictures of no setting keep a time, one is chosen that keeps it in the median. */
+/* If no setting keeps a time in 9 of 10 pictures, one is chosen that keeps it in the median. */
 TEST(a_short_budget_is_kept_in_the_median)
 {
     make_report();
@@ -199,7 +200,7 @@ TEST(a_short_budget_is_kept_in_the_median)
     assert_false(cost_choose_budget(&report, goal.limit / 1.6).found);
 }
 
-/* Shadows, glass and textures go behind all that is only rough. */
+/* Shadows, glass and textures are given up last, after all that only makes pictures rougher. */
 TEST(the_order_ends_with_what_is_missed_most)
 {
     static const char *const last[][2] = {{"shadows", "opaque"},
@@ -213,8 +214,8 @@ TEST(the_order_ends_with_what_is_missed_most)
     assert_int_equal(cost_step_of("shadows", "tinted"), WHIT_NONE);
 }
 
-/* A report of which a sample in four leaves this share of the visible error, and where exact hits
-   take so much longer; with what it opens with. */
+/* The opening sentence of a report in which four samples leave the share `left` of the visible
+   error, and exact hits take `exact_ratio` times as long. */
 static const char *sentence_of(double usual_flip, double left, double exact_ratio)
 {
     static char text[COST_SENTENCE_BYTES];

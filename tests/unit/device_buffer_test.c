@@ -2,10 +2,10 @@
 #include "one_device_fixture.h"
 #include "unit.h"
 
-/* More than one staging buffer, and no multiple of anything. */
+/* Larger than one staging buffer, and not aligned to anything. */
 enum { LARGE_BYTES = (33 << 20) + 12345 };
 
-/* What was asked of Vulkan last. */
+/* Sizes in the last calls of Vulkan. */
 static VkDeviceSize created_bytes, viewed_bytes;
 
 VkResult __real_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
@@ -77,13 +77,14 @@ TEST(starts_as_zeros)
         assert_int_equal(buffer_read(buffer, 0, bytes, sizeof bytes), WHIT_OK);
         for (size_t i = 0; i < sizeof bytes; ++i)
             assert_int_equal(bytes[i], 0);
-        memset(bytes, 0xa5, sizeof bytes); /* what the next one may be given */
+        memset(bytes, 0xa5, sizeof bytes); /* the next buffer may get this memory */
         assert_int_equal(buffer_write(buffer, 0, bytes, sizeof bytes), WHIT_OK);
         buffer_destroy(buffer);
     }
 }
 
-/* So that what relies on zeros shows. */
+/* Buffers without BUFFER_ZEROED are filled with garbage in tests, to show code that relies on
+   zeros. */
 TEST(others_are_poisoned_in_tests)
 {
     uint8_t bytes[256] = {0};

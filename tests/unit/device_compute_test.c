@@ -12,7 +12,7 @@
 #include "device_texels.h"
 #include "unit.h"
 
-/* So that a kernel cannot be specialized (-Wl,--wrap). */
+/* Makes spirv_evaluate fail, so that kernels cannot be specialized (-Wl,--wrap). */
 static bool cannot_specialize;
 
 whit_result __real_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
@@ -29,7 +29,7 @@ whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, cons
                : __real_spirv_evaluate(words, word_count, spec, spec_count, out, out_words);
 }
 
-/* What is known of the pipeline that was made, after its values are as they should be. */
+/* Runs a kernel with these constants and checks its results; gives the pipeline's info. */
 static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t added)
 {
     enum { COUNT = 1000 };
@@ -65,7 +65,7 @@ static int specialize_again(void **state)
     return 0;
 }
 
-/* A kernel that cannot be specialized still runs, and that is said. */
+/* A kernel that cannot be specialized still runs; the pipeline's info says so. */
 TEST_IN(kernels_go_to_the_driver_whole, NULL, specialize_again)
 {
     const uint32_t spec[] = {64, 3, 7};
@@ -136,7 +136,7 @@ static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
     return word;
 }
 
-/* Arguments made on the device in the same submission, at an offset. */
+/* The arguments of the dispatch are written on the device in the same submission, at an offset. */
 TEST(indirect_dispatch_takes_its_arguments)
 {
     struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
@@ -195,7 +195,7 @@ static void spin(struct commands *commands, const struct kernel_run *run, uint32
     commands_dispatch(commands, groups, 1, 1);
 }
 
-/* In place of what the device has measured, where there is something (-Wl,--wrap). */
+/* Time stamps that replace those of the device, if not NULL (-Wl,--wrap). */
 static const uint64_t *stamps;
 
 VKAPI_ATTR VkResult VKAPI_CALL __real_vkGetQueryPoolResults(VkDevice vk, VkQueryPool pool,
@@ -275,7 +275,7 @@ TEST(spans_are_timed)
 
 /* Stands for a device that does not finish its work (-Wl,--wrap): waiting for it times out. */
 static bool is_busy;
-static uint64_t limit_ns; /* that it was given */
+static uint64_t limit_ns; /* the timeout that the call was given */
 
 VKAPI_ATTR VkResult VKAPI_CALL __real_vkWaitForFences(VkDevice vk, uint32_t count,
                                                       const VkFence *fences, VkBool32 all,
@@ -368,7 +368,7 @@ TEST(recording_errors_surface_at_submit)
         assert_int_equal(messages.errors, 1);
         assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
     }
-    /* None of them ran, and the object is as good as new. */
+    /* Nothing was run, and the object can be used again. */
     assert_int_equal(read_word(buffer, 0), 0);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_bind(commands, run.pipeline, run.set);
@@ -429,7 +429,7 @@ TEST(refuses_wrong_pipelines_and_sets)
     pipeline_destroy(pipeline);
 }
 
-/* What the driver is asked for as `value` says; given back at once. */
+/* Makes a pipeline with constant `value` and destroys it at once; the pointer is only compared. */
 static struct pipeline *make_and_drop(struct device *keeper, uint32_t value)
 {
     const uint32_t spec[] = {64, value, 7};
@@ -455,7 +455,7 @@ static whit_result copy_kernel(const void *user, const uint32_t *words, size_t w
 
 TEST(a_device_that_keeps_pipelines_makes_each_once)
 {
-    enum { MANY = 140 }; /* more than it keeps */
+    enum { MANY = 140 }; /* more pipelines than a device keeps */
     struct messages said;
     struct device *keeper = device_open(&said, true);
     const uint32_t spec[] = {64, 3, 7}, copy[] = {64, 3, 7};

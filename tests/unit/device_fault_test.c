@@ -8,7 +8,7 @@
 #include "folder_fixture.h"
 #include "unit.h"
 
-/* Everything a user does with a device, once. */
+/* Objects of one cycle of everything that can be done with a device. */
 struct cycle {
     struct device *device;
     struct buffer *buffer;
@@ -74,7 +74,8 @@ static whit_result cycle_run(struct messages *told, bool validation)
     return result;
 }
 
-/* Until a run has fewer calls than the number of the one that is to fail. */
+/* Lets the first, second, ... checked call fail in one cycle each, until a cycle has no such
+   call. */
 static void fail_each_call(bool staged, bool validation)
 {
     whit_result result = WHIT_ERROR_FAILED;
@@ -89,7 +90,7 @@ static void fail_each_call(bool staged, bool validation)
             assert_true(result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_DEVICE);
             assert_int_equal(messages.errors - messages.validation, 1);
         }
-        /* An object left behind is reported when its device goes. */
+        /* Validation reports leaked objects when the device is destroyed. */
         if (messages.validation > 0)
             print_message("call %u: %s", call, messages.text);
         assert_int_equal(messages.validation, 0);
@@ -98,7 +99,7 @@ static void fail_each_call(bool staged, bool validation)
     unsetenv("WHIT_STAGING");
     assert_int_equal(result, WHIT_OK);
     print_message("%u checked calls\n", call - 1);
-    assert_true(call > (staged ? 50 : 28)); /* that it failed all along */
+    assert_true(call > (staged ? 50 : 28)); /* calls did fail */
 }
 
 TEST(each_call_may_fail)
@@ -170,7 +171,7 @@ TEST(fifty_devices_in_turn)
         assert_int_equal(cycle_run(&messages, false), WHIT_OK);
 }
 
-/* The one file of the cache whose name begins so, "" when there is none. */
+/* The path of the only cache file whose name starts with `begin`; "" when there is none. */
 static void cache_file(const char *begin, char *path, size_t path_bytes)
 {
     const char *cache = in_folder("whit");
@@ -195,7 +196,7 @@ static size_t read_all(const char *path, uint8_t *data, size_t data_bytes)
     return bytes;
 }
 
-/* Damages the file in several ways; each time the next run makes it anew, and says nothing. */
+/* Damages the file in several ways; each time the next run rewrites it silently. */
 static void damage_and_run(const char *path)
 {
     static uint8_t good[1 << 20], broken[1 << 20], now[1 << 20];
@@ -212,7 +213,7 @@ static void damage_and_run(const char *path)
         assert_int_equal(messages.lines, 0);
         assert_int_equal(read_all(path, now, sizeof now), bytes);
         assert_true(broken_bytes != bytes || memcmp(now, broken, bytes) != 0);
-        assert_memory_equal(now, good, 8); /* ours again, at the size it had */
+        assert_memory_equal(now, good, 8); /* whit's header again, and the same size */
     }
 }
 
@@ -248,7 +249,7 @@ bool __wrap_threads_have_room(uint32_t count)
     return !is_short && __real_threads_have_room(count);
 }
 
-/* A driver of the CPU would wait for them for ever. */
+/* Without room for its threads a CPU driver would wait for ever. */
 TEST(no_device_without_room_for_its_threads)
 {
     whit_log log = messages_log(&messages);
@@ -263,7 +264,8 @@ TEST(no_device_without_room_for_its_threads)
     device_destroy(device);
 }
 
-/* For the tests that count calls or messages: the plain case, whatever the suite runs under. */
+/* Unsets variables of the environment that change numbers of calls or messages, which tests
+   count. */
 static int plain_environment(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* The filter of NUMERICS_EXACT as the device computes it, beside its twin in C: bounds are not seen
-   in hits, so that a bound that is too small in one of them alone shows here only. What they must
-   be is the matter of accel_filter_test.c. */
+/* The filter of NUMERICS_EXACT on the device, compared with its twin in C. Bounds do not show in
+   hits, so only this test finds a bound that is too small in one of the two. Whether the bounds are
+   right is tested in accel_filter_test.c. */
 #include "hard_fixture.h"
 
 #include "device_fixture.h"
@@ -30,7 +30,8 @@ static float any_coordinate(int power)
     return ldexpf(random_within(1.0f), power + more);
 }
 
-/* A third at the inside, a third at an edge or a vertex, the others at random. */
+/* A target: a third of them inside of the triangle, a third on edges and vertices, others
+   random. */
 static struct vec3 target_of(const struct vec3 v[3], uint32_t i)
 {
     float s = random_below(&random_state, 4) ? random_float(&random_state) : 0.0f;

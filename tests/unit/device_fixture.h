@@ -1,4 +1,4 @@
-/* Shared by the device tests: a device whose messages are kept, and small pipelines on it. */
+/* For tests of devices: a device whose messages are collected, and small pipelines. */
 #ifndef DEVICE_FIXTURE_H
 #define DEVICE_FIXTURE_H
 
@@ -9,7 +9,7 @@
 #include "messages_fixture.h"
 #include "unit.h"
 
-/* No device fails the test, unless WHIT_TEST_NO_DEVICE=skip says that there is none. */
+/* Opens a device. Without one the test fails, or is skipped with WHIT_TEST_NO_DEVICE=skip. */
 static inline struct device *device_open(struct messages *told, bool validation)
 {
     whit_log log = messages_log(told);
@@ -25,7 +25,7 @@ static inline struct device *device_open(struct messages *told, bool validation)
     return device;
 }
 
-/* Leaks show here as validation messages, when validation is on. */
+/* Destroys the device; with validation, leaked objects are reported here and fail the test. */
 static inline void device_close(struct device *device, struct messages *told)
 {
     device_destroy(device);
@@ -34,7 +34,8 @@ static inline void device_close(struct device *device, struct messages *told)
     assert_int_equal(told->validation, 0);
 }
 
-/* A kernel whose one or two bindings are storage buffers; what it takes beside them is added. */
+/* Params of a kernel with one or two storage buffers as bindings; callers add what else it
+   needs. */
 static inline struct pipeline_params storage_params(const uint32_t *spirv, size_t spirv_bytes,
                                                     uint32_t binding_count, const char *name)
 {
@@ -90,7 +91,7 @@ static inline void commands_finish(struct commands *commands)
     assert_int_equal(commands_wait(commands, -1.0), WHIT_OK);
 }
 
-/* `groups` of it, once, to its end. */
+/* Dispatches `groups` workgroups once, and waits for the end. */
 static inline void kernel_dispatch(struct device *device, const struct kernel_run *run,
                                    const void *push, uint32_t push_bytes, uint32_t groups)
 {
@@ -104,8 +105,8 @@ static inline void kernel_dispatch(struct device *device, const struct kernel_ru
     commands_destroy(commands);
 }
 
-/* Runs a kernel that has `count` cases in its first buffer and answers each in its second, 64 a
-   group. `spec`: the first of `spec_count` specialization constants. */
+/* Runs a kernel that reads `count` cases from its first buffer and writes an answer for each to its
+   second, with 64 cases per workgroup. `spec`: `spec_count` specialization constants. */
 static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
                                     uint32_t spec_count, const uint32_t *spirv, size_t spirv_bytes,
                                     uint32_t count, const void *cases, size_t case_bytes,

@@ -131,7 +131,7 @@ TEST(refuses_what_is_not_there)
     }
 }
 
-/* In a process of its own, as drivers stay loaded: 0 when all is as it should be. */
+/* Runs in a child process, since drivers stay loaded. Gives 0 for success. */
 static int without_driver(void)
 {
     whit_log log = messages_log(&messages);

@@ -1,5 +1,5 @@
-/* shaders/lib/optics.glsl as the device computes it, against double precision. Oracles are other
-   formulas than the shader's, of the angle itself and not of its rounded cosine. */
+/* shaders/lib/optics.glsl on the device, compared with double precision. The oracles use other
+   formulas than the shader, with the exact angle instead of its rounded cosine. */
 #include <math.h>
 
 #include "one_device_fixture.h"
@@ -27,7 +27,7 @@ enum { CASES_MAX = 40000 };
 
 static struct optics_case cases[CASES_MAX];
 static struct optics_answer answers[CASES_MAX];
-static double angles[CASES_MAX]; /* of incidence, of each case */
+static double angles[CASES_MAX]; /* angle of incidence of each case */
 static uint32_t count;
 
 static const double indices[] = {1.33, 1.5, 2.42};
@@ -40,7 +40,7 @@ static int begin(void **state)
     return 0;
 }
 
-/* The case of a ray in the xy plane that falls at `angle` to the normal on a face y = 0. */
+/* Adds a case: a ray in the xy plane that hits the face y = 0 at `angle` to the normal. */
 static struct optics_case *add_angle(double angle, double eta)
 {
     assert_true(count < CASES_MAX);
@@ -64,7 +64,7 @@ static void run_cases(void)
 
 /* --- oracles -------------------------------------------------------------------------------- */
 
-/* Fresnel (1823) in sines and tangents of the two angles. */
+/* Fresnel reflectance by sines and tangents of the two angles (Fresnel 1823). */
 static double fresnel(double angle, double eta)
 {
     double sine = eta * sin(angle);
@@ -99,7 +99,7 @@ static void assert_within(double value, double expected, double max)
 TEST_IN(fresnel_at_known_angles, begin, NULL)
 {
     static const double degrees[] = {0, 45, 89};
-    /* From the thin side, by hand: 45 degrees into 1.5 refracts to 28.1255 degrees. */
+    /* From the side with the smaller index, by hand: 45 degrees into 1.5 refracts to 28.1255. */
     add_angle(45 * DEGREE, 1 / 1.5);
     add_angle(0, 1.5);
     for (int i = 0; i < 18; i++)
@@ -133,7 +133,7 @@ TEST_IN(critical_angle_is_met, begin, NULL)
             near = fmax(near, is_near ? off : 0);
             far = fmax(far, is_near ? 0 : off);
             assert_true(isfinite(answers[i].exact));
-            /* Both decide alike: what does not pass is reflected whole. */
+            /* Total reflection in both: if nothing passes, all is reflected. */
             assert_true((answers[i].passes == 0.0f) == (answers[i].exact == 1.0f));
         }
         print_message("  n %.2f: off by %.2g at the critical angle, %.2g elsewhere\n", indices[n],
@@ -143,8 +143,9 @@ TEST_IN(critical_angle_is_met, begin, NULL)
     }
 }
 
-/* What passes, from the two directions alone (Born and Wolf, 1.5.3), makes up one with what is
-   reflected. The direction's cosine near the critical angle is left out. */
+/* Reflectance and transmittance, the latter from the two directions alone (Born and Wolf,
+   1.5.3), sum to 1. Angles near the critical one are left out, where the direction's cosine is
+   inaccurate. */
 TEST_IN(nothing_is_lost, begin, NULL)
 {
     for (int n = 0; n < 3; n++)
@@ -217,7 +218,7 @@ TEST_IN(schlick_is_off_as_stated, begin, NULL)
         run_cases();
         double own = 0, off = 0;
         for (uint32_t i = 0; i < count; i++) {
-            /* The index itself, not its rounding. */
+            /* The exact index, not the float. */
             double eta = cases[i].eta > 1 ? indices[n] : 1 / indices[n];
             own = fmax(own, fabs((double)answers[i].schlick - schlick(angles[i], eta)));
             off = fmax(off, fabs((double)answers[i].schlick - fresnel(angles[i], eta)));
@@ -277,7 +278,8 @@ static void unit(float *out)
         out[k] = (float)(v[k] / sqrt(length));
 }
 
-/* Any frame: unit length, in the plane of ray and normal, on the far side. */
+/* For rays and normals in any orientation, the refracted direction is unit, in the plane of ray and
+   normal, and on the other side. */
 TEST_IN(refraction_in_any_frame, begin, NULL)
 {
     random_state = 7;
@@ -317,8 +319,8 @@ TEST_IN(refraction_in_any_frame, begin, NULL)
 
 /* --- highlights ----------------------------------------------------------------------------- */
 
-/* pow(x, y) is exp2(y log2 x): Vulkan grants log2 an error of 2^-21 between 1/2 and 2 and of 3 ulp
-   elsewhere, exp2 one of 3 + 2 |x| ulp. */
+/* pow(x, y) is exp2(y log2 x). Vulkan allows log2 an error of 2^-21 between 1/2 and 2 and of 3 ulp
+   elsewhere, and exp2 one of 3 + 2 |x| ulp. */
 TEST_IN(blinn_is_a_power, begin, NULL)
 {
     static const double exponents[] = {0, 1, 10, 60, 1000};

@@ -1,4 +1,4 @@
-/* shaders/lib/sequence.glsl as the device computes it: host/render/sequence.c, bit for bit. */
+/* shaders/lib/sequence.glsl on the device equals host/picture/sequence.c bit for bit. */
 #include "device_fixture.h"
 #include "picture/sequence.h"
 

@@ -9,7 +9,7 @@
 
 struct tally {
     uint32_t instructions, spec_constants, float_operations, exact, functions, calls;
-    uint32_t inexact; /* float operations that are not marked */
+    uint32_t inexact; /* float operations without the decoration NoContraction */
 };
 
 static bool is_float_operation(uint32_t opcode)
@@ -17,7 +17,7 @@ static bool is_float_operation(uint32_t opcode)
     return opcode == OP_F_ADD || opcode == OP_F_SUB || opcode == OP_F_MUL || opcode == OP_F_DIV;
 }
 
-/* Decorations come before functions, so one way through sees them first. */
+/* Counts in one pass: decorations come before functions. */
 static struct tally tally_of(const uint32_t *words, size_t count)
 {
     struct tally tally = {0};
@@ -76,7 +76,8 @@ TEST(constants_are_gone_and_floats_stay_exact)
     }
 }
 
-/* One function, as exact, that names no binding which the whole kernel does not. */
+/* An evaluated kernel is one function, with the same operations marked as exact, and uses no
+   binding that the whole kernel does not use. */
 TEST(evaluated_kernels_call_nothing)
 {
     const struct gpu_spec all = GPU_SPEC_DEFAULTS;
@@ -126,7 +127,7 @@ TEST(nonsense_is_left_to_the_driver)
     assert_false(spirv_inspect(words, 64, &info));
 }
 
-/* Kernels cut short after each of their first instructions, and after some of the others. */
+/* Kernels truncated after each of their first 500 instructions, and after some later ones. */
 TEST(cut_kernels_are_refused)
 {
     const uint32_t *words = kernels[KERNEL_TRACE].words;
@@ -134,7 +135,8 @@ TEST(cut_kernels_are_refused)
     const struct gpu_spec spec = GPU_SPEC_DEFAULTS;
     uint32_t cuts = 0;
     for (uint32_t at = SPV_HEADER_WORDS, i = 0; at < total; at += spv_length(words + at), ++i) {
-        uint32_t *cut = malloc(at * sizeof *cut), *out = NULL; /* so that reading on is seen */
+        uint32_t *cut = malloc(at * sizeof *cut),
+                 *out = NULL; /* exact size: sanitizers see reads beyond */
         size_t count = 0;
         if (!cut || (i > 500 && i % 97)) {
             free(cut);
@@ -152,7 +154,7 @@ TEST(cut_kernels_are_refused)
     assert_true(cuts > 500);
 }
 
-/* Every binding that a function names is counted, and no other. */
+/* info.bindings has exactly the bindings that the evaluated function uses. */
 TEST(bindings_follow_the_constants)
 {
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;

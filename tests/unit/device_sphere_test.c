@@ -1,5 +1,5 @@
-/* Spheres at `exact` as the device decides them, beside the twin in C, which hard_sphere_test.c
-   holds against fractions. */
+/* Spheres at `exact` on the device, compared with the twin in C, which hard_sphere_test.c compares
+   with fractions. */
 #include "hard_sphere_fixture.h"
 
 #include "abi/spec.h"

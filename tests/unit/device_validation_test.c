@@ -1,4 +1,4 @@
-/* The Khronos layer is part of the test suite's requirements: its absence fails these tests. */
+/* The Khronos validation layer is required by the test suite: without it these tests fail. */
 #include "affine_fixture.h"
 
 #include "device/buffer.h"
@@ -95,7 +95,7 @@ TEST(environment_turns_it_on)
     unsetenv("WHIT_VALIDATION");
 }
 
-/* Last, since it hides the layer. */
+/* The last test, since it hides the layer. */
 TEST(absence_is_an_error)
 {
     whit_log log = messages_log(&messages);

@@ -1,4 +1,4 @@
-/* A folder of a check's own, by TEST_IN(name, folder_begin, folder_end), and what it was told. */
+/* A temporary folder for a test, by TEST_IN(name, folder_begin, folder_end), with its messages. */
 #ifndef FOLDER_FIXTURE_H
 #define FOLDER_FIXTURE_H
 
@@ -25,7 +25,7 @@ static inline int folder_end(void **state)
     return system(command);
 }
 
-/* A path in the folder, which fifteen more calls leave as it is. */
+/* A path in the folder; the string stays valid for fifteen more calls. */
 static inline char *in_folder(const char *name)
 {
     static char paths[16][320];
@@ -43,7 +43,7 @@ static inline void put_file(const char *path, const void *data, size_t bytes)
     assert_int_equal(fclose(file), 0);
 }
 
-/* A file of the folder; its path, as in_folder(). */
+/* Writes a file in the folder; gives its path, as in_folder(). */
 static inline const char *put_data(const char *name, const void *data, size_t bytes)
 {
     const char *path = in_folder(name);
