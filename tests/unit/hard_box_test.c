@@ -1,5 +1,4 @@
-/* Boxes where they are hardest: a box that a ray does enter, by exact arithmetic, must be entered.
- */
+/* Hard tests of boxes: a box that a ray enters by exact arithmetic must be entered. */
 #include "hard_fixture.h"
 #include "unit.h"
 
@@ -7,7 +6,7 @@
 
 /* ---- By exact arithmetic ---- */
 
-/* (a - b) c, three floats. */
+/* The product (a - b) * c of three floats. */
 struct product {
     double a, b, c;
 };
@@ -24,7 +23,8 @@ static void set_product(mpq_t out, const struct product *p)
     mpq_clear(part);
 }
 
-/* left <= right. In double each product is off by two roundings, their difference by one. */
+/* Whether left <= right. Decided in double if the difference exceeds the rounding errors (two per
+   product, one of the difference), else exactly. */
 static bool not_above(struct product left, struct product right)
 {
     double l = (left.a - left.b) * left.c, r = (right.a - right.b) * right.c;
@@ -39,8 +39,8 @@ static bool not_above(struct product left, struct product right)
     return result;
 }
 
-/* Whether the ray is in the closed box somewhere in [t_min, t_max], finite numbers. All planes are
-   at distances (plane - origin) / dir, compared crosswise. */
+/* Whether the ray is in the closed box somewhere in [t_min, t_max], which are finite. Distances to
+   planes, (plane - origin) / dir, are compared by cross multiplication. */
 static bool enters_exactly(const struct gpu_ray *ray, const float lo[3], const float hi[3],
                            float t_min, float t_max)
 {
@@ -87,7 +87,7 @@ static struct crossing cross_box(const struct level *level, const struct gpu_ray
     return out;
 }
 
-/* Ends are of the second ray; those of the first one times `scale`. */
+/* Whether two crossings differ; the ends of `a` are multiplied by `scale` first. */
 static bool crossings_differ(const struct crossing *a, const struct crossing *b, float scale)
 {
     return a->entered != b->entered ||
@@ -121,9 +121,9 @@ struct box_kind {
     const char *name;
     float offset, size;
     int flat;     /* axes on which lo == hi */
-    int parallel; /* axes on which the ray does not move, on a face */
-    float speed;  /* |dir|, about; 0: as it comes */
-    bool wild;    /* not aimed */
+    int parallel; /* axes on which dir is 0 and the ray lies in a face */
+    float speed;  /* |dir|, about; 0: any */
+    bool wild;    /* rays are not aimed at the box */
 };
 
 static const struct box_kind box_kinds[] = {
@@ -145,7 +145,8 @@ static const struct box_kind box_kinds[] = {
     {"B6 box of 1e12", 0, 1e12f, 0, 0, 0, false},
 };
 
-/* At a corner, a point of an edge or of a face; every fourth from inside or from the surface. */
+/* A ray at a corner, or at a point of an edge or a face; every fourth starts inside or on the
+   surface. */
 static struct gpu_ray ray_at_box(const struct box_kind *kind, const float lo[3], const float hi[3])
 {
     struct gpu_ray ray = {.t_max = INFINITY};
@@ -186,7 +187,8 @@ static bool moves(const struct gpu_ray *ray)
     return ray->dir[0] != 0.0f || ray->dir[1] != 0.0f || ray->dir[2] != 0.0f;
 }
 
-/* Its reciprocals may be infinite: to boxes such components are 0, so that hits are lost. */
+/* Whether a component of dir is denormal. Its reciprocal may be infinite; tests of boxes then take
+   it as 0, and hits are lost. */
 static bool has_denormal(const struct gpu_ray *ray)
 {
     bool found = false;
@@ -231,7 +233,7 @@ TEST(entered_boxes_are_entered)
     }
 }
 
-/* B4: 27 directions, every zero with either sign. */
+/* B4: 27 directions, in which every zero is tried with both signs. */
 TEST(signs_of_zeros_do_not_matter)
 {
     const float lo[3] = {-1, -2, 0}, hi[3] = {1, 0, 3};
@@ -256,7 +258,7 @@ TEST(signs_of_zeros_do_not_matter)
     assert_int_equal(differ, 0);
 }
 
-/* B4 in a tree: octants of every order, rays in the planes of boxes among them. */
+/* B4 in a tree, in every traversal order, with rays in the planes of boxes among others. */
 TEST(signs_of_zeros_do_not_matter_in_trees)
 {
     enum { RAYS = 6000 };
@@ -289,7 +291,7 @@ TEST(signs_of_zeros_do_not_matter_in_trees)
     world_finish(&world);
 }
 
-/* B6: t is that of the longer direction, times a power of two. */
+/* B6: a direction scaled by a power of two has t scaled by its inverse, exactly. */
 TEST(lengths_of_directions_scale_t)
 {
     enum { RAYS = 20000 };
@@ -312,7 +314,7 @@ TEST(lengths_of_directions_scale_t)
     assert_int_equal(differ, 0);
 }
 
-/* Where the ray is in the box, in double; whether it is there from the origin on. */
+/* Computes in double where the line enters and leaves the box; whether it does so at t >= 0. */
 static bool find_ends(const struct gpu_ray *ray, const float lo[3], const float hi[3],
                       double *enter, double *leave)
 {
@@ -329,9 +331,10 @@ static bool find_ends(const struct gpu_ray *ray, const float lo[3], const float 
     return *enter <= *leave && *leave >= 0.0 && *leave < (double)FLT_MAX;
 }
 
-/* B8, any numbers: the interval ends where the box begins, rounded up to a float, or begins where
-   it ends, rounded down; or it is 0 alone, and the ray starts in the box. At `watertight` three
-   roundings may take the near end past the exact one: four of them behind it nothing is lost. */
+/* B8 with any numbers: the ray's interval ends where it enters the box, rounded up to a float, or
+   begins where it leaves the box, rounded down, or is only 0 for rays that start in the box. All of
+   these must enter. At `watertight` the near end may be off by three roundings, so the interval
+   ends four roundings later. */
 TEST(intervals_are_closed)
 {
     enum { RAYS = 100000 };
@@ -387,8 +390,8 @@ static struct gpu_ray integer_ray_at_box(float lo[3], float hi[3])
     return ray;
 }
 
-/* B8, where nothing is rounded: t_max is the entry itself, t_min the exit, and both count. One
-   float before the entry, or behind the exit, is outside: at `watertight` the near end tells so. */
+/* B8 without rounding: t_max at the entry and t_min at the exit both count as inside. t_max one
+   float before the entry, or t_min one float behind the exit, is outside. */
 TEST(ends_that_are_floats_count)
 {
     enum { RAYS = 200000 };
@@ -426,7 +429,7 @@ TEST(ends_that_are_floats_count)
     }
 }
 
-/* From anywhere, and from points of faces, at walls that are their own boxes. */
+/* Rays from anywhere, and from points on walls, at axis-aligned walls, whose boxes are flat. */
 static struct gpu_ray ray_at_wall(const struct soup *soup, const struct bvh_box *bounds, uint32_t i)
 {
     struct gpu_ray ray = soup_ray(soup, bounds, i);
@@ -444,8 +447,8 @@ struct ends {
     uint32_t hits, lost, early, starts;
 };
 
-/* `first` is hit by the ray with no end: t_max and, at `exact`, t_min at its t keep it, and t_max
-   one float before it leaves nothing. */
+/* `first` is the hit of the unbounded ray. It must stay the hit with t_max at its t, and at `exact`
+   also with t_min there; with t_max one float before, nothing may be hit. */
 static void try_ends(const struct level *level, const struct accel *accel, uint32_t order,
                      const struct gpu_ray *ray, const struct gpu_hit *first, struct ends *ends)
 {
@@ -463,9 +466,9 @@ static void try_ends(const struct level *level, const struct accel *accel, uint3
     ends->early += level_trace(level, accel, order, true, &cut).primitive != HIT_NONE;
 }
 
-/* B8 in a tree: walls along the axes are boxes without a thickness, entered where they are hit, by
-   rays from outside, from inside and from the wall itself. At `exact` hits are those of fractions,
-   at t 0 too. */
+/* B8 in a tree: axis-aligned walls have flat boxes, which rays from outside, from inside and
+   from the wall itself enter at the t of the hit. At `exact` hits equal those of fractions, also
+   at t 0. */
 TEST(hits_at_the_entry_of_their_box_count)
 {
     enum { RAYS = 12000 };
@@ -497,7 +500,7 @@ TEST(hits_at_the_entry_of_their_box_count)
     world_finish(&world);
 }
 
-/* A ray that has no sense in the way `what`, made of one that has. */
+/* Makes a valid ray invalid in the way `what`. */
 enum { SENSELESS = 14 };
 static struct gpu_ray spoiled(struct gpu_ray ray, uint32_t what, uint32_t axis)
 {
@@ -516,8 +519,8 @@ static struct gpu_ray spoiled(struct gpu_ray ray, uint32_t what, uint32_t axis)
     return ray;
 }
 
-/* B9 and B10: nothing is hit, and no tree is walked for it, in any order: a pair of nodes at most,
-   where a valid ray opens many. */
+/* B9 and B10: invalid rays hit nothing and visit at most one pair of nodes, in any order, where
+   valid rays visit many. */
 TEST(senseless_rays_cost_nothing)
 {
     struct world world = world_of_soup(soup_sphere(40, 20), (struct bvh_params){0});

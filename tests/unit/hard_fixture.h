@@ -1,5 +1,6 @@
-/* Levels of numerics and what they promise, for the catalogue of hard cases. The letters and
-   numbers in the tests' messages are those of that catalogue: B box, T triangle, W watertight. */
+/* The settings of numerics (levels) and what each promises, for tests of the catalogue of hard
+   cases (docs/hard-cases.md). Letters and numbers in these tests are entries of that catalogue: B
+   box, T triangle, W watertight. */
 #ifndef TESTS_HARD_FIXTURE_H
 #define TESTS_HARD_FIXTURE_H
 
@@ -13,8 +14,8 @@
 struct level {
     const char *name;
     uint32_t numerics; /* NUMERICS_* */
-    bool watertight;   /* no ray gets through a closed surface */
-    bool exact;        /* hits are those of rational.h */
+    bool watertight;   /* promises that no ray gets through a closed surface */
+    bool exact;        /* promises the hits of oracle/rational.h */
 };
 
 static const struct level levels[] = {
@@ -24,10 +25,10 @@ static const struct level levels[] = {
 
 enum { LEVELS = sizeof levels / sizeof *levels };
 
-/* It promises no closed surfaces. */
+/* `fast` promises nothing, also not that closed surfaces have no leaks. */
 static const struct level fast_level = {"fast", NUMERICS_FAST, false, false};
 
-/* Where a ray enters and leaves a box, as a tree's walk asks (step_siblings in traverse.c). */
+/* The test of a box by the traversal (step_siblings in traverse.c): t of entry and exit. */
 static inline bool level_enters(const struct level *level, const struct ray_setup *ray,
                                 const float lo[3], const float hi[3], float t_min, float t_max,
                                 float *t_near, float *t_far)
@@ -39,7 +40,7 @@ static inline bool level_enters(const struct level *level, const struct ray_setu
     return *t_near <= *t_far && *t_near <= t_max;
 }
 
-/* One triangle, without a tree. */
+/* The test of a single triangle at a level, without a tree. */
 static inline bool level_meets(const struct level *level, const struct gpu_ray *ray,
                                const struct vec3 v[3], struct gpu_hit *hit)
 {
@@ -66,7 +67,7 @@ static inline struct gpu_hit level_trace(const struct level *level, const struct
     return trace_with(accel, params, ray, NULL);
 }
 
-/* Without a tree. */
+/* The closest hit at a level by testing all triangles. */
 static inline struct gpu_hit level_brute(const struct level *level, const struct accel *accel,
                                          const struct gpu_ray *ray)
 {

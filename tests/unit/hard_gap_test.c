@@ -1,6 +1,6 @@
 /* How near a second surface may be to the one that a ray leaves (S2 of the catalogue of hard
-   cases): rays start where secondary rays do, moved off the surface by the bound of their own
-   error, and must still meet the sheet in front of them. */
+   cases). Rays start as secondary rays do, moved off the surface by the error bound of their
+   origin, and must still hit the sheet in front of them. */
 #include "hard_fixture.h"
 
 #include "hard/judge.h"
@@ -21,21 +21,21 @@ static const uint32_t widths[] = {1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 
 struct gap {
     const char *name;
     float offset, size;
-    bool placed; /* the sheets stand at the origin, and an instance moves them */
-    bool corner; /* the large sheet leans on an edge of the small one, by SLOPE */
+    bool placed; /* the mesh is at the origin, and an instance moves it */
+    bool corner; /* the large sheet touches an edge of the small one, at an angle of SLOPE */
 };
 
 #define SLOPE 0.017455065f /* tan 1 degree */
 
 struct sheets {
-    struct vec3 normal, edge, away; /* a point of the edge that is leant on, the way from it */
+    struct vec3 normal, edge, away; /* edge: a point of the touched edge; away: direction from it */
     float ulp;                      /* of the largest coordinate in the world */
     struct scene *scene;
     struct hard_scene hard;
 };
 
-/* Triangles 0 and 1: a square, turned. 2 and 3: the same, three times as large, `ulps` before it or
-   leaning on it. */
+/* Makes two sheets in random orientation. Triangles 0 and 1 are a square, 2 and 3 a parallel one
+   three times as large, `ulps` in front of it, or touching its edge at an angle. */
 static struct sheets make_sheets(const struct gap *gap, uint32_t ulps)
 {
     struct vec3 u = vec3_normalize(random_point(1.0f)), v = vec3_normalize(random_point(1.0f));
@@ -82,7 +82,7 @@ static void free_sheets(struct sheets *sheets)
 
 struct leaks {
     uint32_t rays, leaks;
-    uint32_t differ[LEVELS]; /* what a level says, from exact arithmetic */
+    uint32_t differ[LEVELS]; /* rays for which a level disagrees with exact arithmetic */
 };
 
 /* Counts rays from the small sheet towards the large one that meet nothing of it, by exact

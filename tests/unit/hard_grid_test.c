@@ -1,11 +1,11 @@
-/* W3 of the catalogue, its second half: closed meshes of integers, rays along the axes at multiples
-   of a half and a quarter. Nothing is rounded there: integers of 64 bits say which triangles a ray
-   meets, and all of these must be among its hits, and no others. Counted by a rule for ties, the
+/* The second half of W3 of the catalogue: closed meshes with integer vertices, and rays along the
+   axes at multiples of a half and a quarter. Nothing is rounded: 64-bit integers tell which
+   triangles a ray crosses, and its hits must be exactly these. Counted with a rule for ties,
    crossings are even from outside and odd from inside (github.com/jbikker/tinybvh, issue 168). */
 #include "hard_fixture.h"
 #include "unit.h"
 
-enum { STEPS = 24, PARTS = 4 }; /* of the landscape; units of integers in one of floats */
+enum { STEPS = 24, PARTS = 4 }; /* steps of the landscape; integer units per float unit */
 
 /* ---- The meshes ---- */
 
@@ -13,7 +13,7 @@ struct heights {
     float top[STEPS + 1][STEPS + 1], bottom[STEPS + 1][STEPS + 1];
 };
 
-/* Two triangles, by the corners of a square in turn; the diagonal is one of both. */
+/* Two triangles of a square with corners in order, split along a random diagonal. */
 static void set_square(struct soup *soup, uint32_t *at, float p[4][3])
 {
     uint32_t turn = random_below(&random_state, 2);
@@ -38,7 +38,7 @@ static void set_floor(struct soup *soup, uint32_t *at, float heights[][STEPS + 1
         }
 }
 
-/* From one end of a border to the other; the landscape is to the left. */
+/* The wall below a border of the landscape, which is to the left of the direction (dx, dz). */
 static void set_wall(struct soup *soup, uint32_t *at, const struct heights *h, int x, int z, int dx,
                      int dz)
 {
@@ -51,7 +51,7 @@ static void set_wall(struct soup *soup, uint32_t *at, const struct heights *h, i
     }
 }
 
-/* A block whose top and bottom are landscapes of integers, above and below 0. */
+/* A block whose top and bottom are landscapes with integer heights above and below 0. */
 static struct soup soup_block(void)
 {
     struct soup soup = soup_make("block", 4 * STEPS * STEPS + 8 * STEPS);
@@ -74,7 +74,7 @@ static struct soup soup_block(void)
     return soup;
 }
 
-/* A ring, its vertices moved to the nearest integers. */
+/* A torus whose vertices are rounded to integers. */
 static struct soup soup_quantised(void)
 {
     struct soup soup = soup_of_mesh("ring", mesh_torus(1.0, 0.45, 40, 20));
@@ -86,10 +86,10 @@ static struct soup soup_quantised(void)
 
 /* ---- By integers ---- */
 
-/* A triangle seen along an axis, in parts of a unit. */
+/* A triangle projected along an axis, in units of 1 / PARTS. */
 struct seen {
     int64_t p[3][2];
-    int64_t area; /* twice, with the sign of its turn */
+    int64_t area; /* twice the signed area */
 };
 
 static int64_t parts_of(float x)
@@ -112,8 +112,8 @@ static struct seen *see_mesh(const struct soup *soup, uint32_t axis)
     return seen;
 }
 
-/* Whether the closed triangle has the point; `owned`: whether it still has it when the point is
-   moved by (e, e^2), as small as you like, so that it is on no edge. That is the rule for ties. */
+/* Whether the closed triangle contains the point. *owned: whether it contains the point moved by an
+   infinitesimal (e, e^2), which lies on no edge: the rule for ties. */
 static bool has_point(const struct seen *s, const int64_t at[2], bool *owned)
 {
     int64_t sign = s->area < 0 ? -1 : 1;
@@ -136,7 +136,7 @@ struct crossings {
     uint64_t rays, on_edges, exact, missed, invented, wrong_parity;
 };
 
-/* Where a ray is among the triangles, and which of them are ahead of it. */
+/* An axis-aligned ray: its place in the projection, and where it starts. */
 struct line {
     uint32_t axis;
     int64_t at[2];
@@ -156,7 +156,7 @@ static struct gpu_ray ray_of_line(const struct line *line)
     return ray;
 }
 
-/* All hits of the ray, one by one, into marks. */
+/* Marks the primitives of all hits along the ray. */
 static void mark_hits(const struct level *level, const struct accel *accel,
                       const struct gpu_ray *ray, uint8_t *marks)
 {
@@ -179,7 +179,7 @@ static void count_crossings(const struct soup *soup, const struct seen *seen,
     bool on_edge = false;
     for (uint32_t i = 0; i < soup->count; ++i) {
         bool owned, met = has_point(&seen[i], line->at, &owned);
-        if (line->inside && met) /* tops are above, and turn to the left */
+        if (line->inside && met) /* from inside, only the top or the bottom is ahead */
             met = (soup_vertex(soup, i, 0)[1] > 0.0f) == line->up;
         tally->exact += met;
         tally->missed += met && !marks[i];
@@ -192,7 +192,7 @@ static void count_crossings(const struct soup *soup, const struct seen *seen,
     tally->wrong_parity += owners % 2 != line->inside;
 }
 
-/* All rays along an axis, `step` parts apart, past the mesh on both sides too. */
+/* Traces a grid of rays along an axis, `step` / PARTS apart, which extends beyond the mesh. */
 static void cross_mesh(const struct level *level, const struct soup *soup,
                        const struct accel *accel, uint32_t axis, int64_t step, bool block,
                        struct crossings *tally)

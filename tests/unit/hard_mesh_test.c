@@ -1,11 +1,11 @@
-/* Closed surfaces: no ray gets out of them, but where the traversal is built with a * b + c
-   contracted. Other meshes with what is not promised of them. */
+/* Closed surfaces: no ray gets out of them, except if the traversal is compiled with a * b + c
+   contracted. And what happens in meshes for which nothing is promised. */
 #include "hard_fixture.h"
 #include "unit.h"
 
 enum { RAYS = 100000 };
 
-/* ---- host/twin/traverse.c under other names and with other flags ---- */
+/* ---- host/twin/traverse.c compiled once more, under other names and with contraction ---- */
 
 #ifdef HARD_CONTRACTED
 void traverse_ray_contracted(const struct accel *accel, const struct traverse_params *params,
@@ -28,7 +28,7 @@ static bool has_contracted(void)
 
 /* ---- Rays at edges and vertices ---- */
 
-/* As well as a rounded direction can. */
+/* A ray from `origin` to `target`, with its direction rounded to floats. */
 static struct gpu_ray ray_at(struct vec3 origin, const double target[3])
 {
     return ray_along(origin, vec3_make((float)(target[0] - (double)origin.x),
@@ -36,7 +36,7 @@ static struct gpu_ray ray_at(struct vec3 origin, const double target[3])
                                        (float)(target[2] - (double)origin.z)));
 }
 
-/* A vertex or a point of an edge, in the mesh's space. */
+/* A random vertex or point of an edge, in object space. */
 static void target_of(const struct soup *soup, double out[3])
 {
     uint32_t triangle = random_below(&random_state, soup->count),
@@ -48,8 +48,8 @@ static void target_of(const struct soup *soup, double out[3])
         out[k] = (double)a[k] + s * ((double)b[k] - (double)a[k]);
 }
 
-/* A ray from near the middle of the mesh to `target`. Every fourth one starts level with the target
-   along an axis where it can, and only every eighth exactly. */
+/* A ray from near the middle of the mesh to `target`. Every fourth one starts at the target's
+   coordinate on one axis if it can; only every eighth exactly. */
 static struct gpu_ray leaving_ray(const float middle[3], const double target[3], float reach,
                                   uint32_t i)
 {
@@ -69,12 +69,12 @@ struct hunt {
     float at[3];
     struct soup (*make)(void);
     struct gpu_ray (*aim)(const struct hunt *hunt, const struct soup *soup, uint32_t i);
-    bool placed; /* turned and mirrored there, as an instance; else moved by its vertices */
+    bool placed; /* a rotated and mirrored instance at `at`; else the vertices are moved there */
 };
 
 struct tally {
     uint64_t rays, leaks, exact_leaks, contracted_leaks;
-    uint64_t other; /* not what exact arithmetic says */
+    uint64_t other; /* hits that differ from exact arithmetic */
 };
 
 static void tell(const struct level *level, const char *name, const struct tally *tally)
@@ -121,7 +121,8 @@ static struct soup make_plane(void)
     return soup_of_mesh("plane", mesh);
 }
 
-/* Vertices go out and in by turns, as in pbrt's Triangle.Watertight. Equal vertices stay equal. */
+/* A sphere whose vertices are moved outwards and inwards alternately, as in pbrt's
+   Triangle.Watertight. Equal vertices stay equal. */
 static struct soup make_spikes(void)
 {
     struct soup soup = soup_sphere(16, 16);
@@ -156,7 +157,7 @@ static struct gpu_ray from_inside(const struct hunt *hunt, const struct soup *so
     return leaving_ray(hunt->at, target, hunt->placed ? 0.3f : 0.4f, i);
 }
 
-/* Across edges and vertices that are not at the border, from both sides. */
+/* Rays through inner edges and vertices of a plane, from both sides. */
 static struct gpu_ray through_plane(const struct hunt *hunt, const struct soup *soup, uint32_t i)
 {
     struct vec3 from = vec3_add(vec3_load(hunt->at), random_point(1.5f));
@@ -165,14 +166,14 @@ static struct gpu_ray through_plane(const struct hunt *hunt, const struct soup *
         target_of(soup, to);
     while (fmax(fabs(to[0] - (double)hunt->at[0]), fabs(to[2] - (double)hunt->at[2])) > 1.7);
     from.y = hunt->at[1] + (i % 2 ? 1.0f : -1.0f) * (0.01f + random_float(&random_state));
-    if (i % 4 == 0) /* down along the axis, or in the planes of boxes */
+    if (i % 4 == 0) /* in the planes of boxes; every eighth along the axis */
         from.x = (float)to[0];
     if (i % 8 == 0)
         from.z = (float)to[2];
     return ray_at(from, to);
 }
 
-/* Soups do not share vertices, so that W7 is what all of them are. */
+/* All of these also test W7 (equal but unshared vertices), since soups share no vertices. */
 static const struct hunt hunts[] = {
     {"W1 sphere", {0, 0, 0}, make_sphere, from_inside, false},
     {"W1 sphere at 10", {10, -10, 10}, make_sphere, from_inside, false},
@@ -203,7 +204,7 @@ static struct world world_of_hunt(const struct hunt *hunt)
     return world;
 }
 
-/* W1, W2, W4, W7, W8; W10: the rays are hard enough for contraction to leak. */
+/* W1, W2, W4, W7, W8. W10: the rays are so hard that a contracted traversal leaks. */
 TEST(no_ray_gets_through)
 {
     uint64_t contracted_leaks = 0;
@@ -230,7 +231,7 @@ TEST(no_ray_gets_through)
 
 /* ---- Crossings ---- */
 
-/* From inside a ring, across its hole. */
+/* A ray from inside a torus, across its hole. */
 static struct gpu_ray ray_in_ring(void)
 {
     struct vec3 origin = vec3_add(random_point(0.2f), vec3_make(1, 0, 0)), dir = random_point(1.0f);
@@ -242,7 +243,7 @@ struct parity {
     uint64_t rays, crossings, wrong, exact_wrong, other; /* other: lists that differ */
 };
 
-/* All hits of the ray, one after the other, beside those of fractions. */
+/* Compares all hits along the ray with those by fractions. */
 static void count_crossings(const struct level *level, const struct accel *accel,
                             struct rational *rational, const struct gpu_ray *ray,
                             struct parity *parity)
@@ -273,8 +274,8 @@ static void count_crossings(const struct level *level, const struct accel *accel
     parity->other += !same;
 }
 
-/* W5: a ray from inside a closed surface crosses it an odd number of times, exactly and at every
-   level. Rays are not aimed: one through an edge may count both its triangles. */
+/* W5: a ray from inside a closed surface crosses it an odd number of times, by exact arithmetic and
+   at every level. Rays are not aimed at edges, where both triangles may count. */
 TEST(crossings_are_odd)
 {
     const uint32_t rays = cases_of(RAYS / 3);
@@ -301,8 +302,8 @@ TEST(crossings_are_odd)
     world_finish(&world);
 }
 
-/* W6: a vertex beside the edge of a larger triangle, by some roundings: the crack is real. What
-   leaks there is counted; elsewhere nothing does. */
+/* W6: at a T-junction a vertex lies beside the edge of a larger triangle, by rounding, so there is
+   a real crack. Leaks there are counted; elsewhere there may be none. */
 TEST(only_t_junctions_leak)
 {
     const float a[3] = {-1, -1, 0.1f}, b[3] = {1, -1, 0.3f}, c[3] = {1, 1.1f, 0.7f},
@@ -340,8 +341,8 @@ TEST(only_t_junctions_leak)
     world_finish(&world);
 }
 
-/* W9: two halves of a floor, turned alike and placed side by side. Each has its own ray, and so its
-   own roundings: not promised, counted. */
+/* W9: two instances are halves of a floor, side by side. The ray is rounded separately in each
+   one's object space, so leaks between them are only counted. */
 TEST(edges_between_instances_are_counted)
 {
     const double turn[4] = {0.3, -0.5, 0.2, 0.8}, one[3] = {1, 1, 1}, zero[3] = {0, 0, 0};

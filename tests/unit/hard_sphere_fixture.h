@@ -1,5 +1,5 @@
-/* Rays and spheres that are hard at `exact`: near and far, of all sizes, tangent exactly, with t
-   between two floats, from the surface. */
+/* Hard rays and spheres for numerics `exact`: near and far, of all sizes, exactly tangent, with t
+   halfway between two floats, from the surface. */
 #ifndef TESTS_HARD_SPHERE_FIXTURE_H
 #define TESTS_HARD_SPHERE_FIXTURE_H
 
@@ -15,7 +15,7 @@ struct subject {
 
 typedef struct subject (*make_fn)(void);
 
-/* Through the sphere or past it; a third grazes it. */
+/* A ray through the sphere or past it; a third of them graze it. */
 static inline struct subject aim(float radius, float away, float size)
 {
     struct subject s = {.radius = radius, .center = random_point(size)};
@@ -56,13 +56,14 @@ static inline struct subject make_huge(void)
     return aim(1e11f * random_float(&random_state), 1e13f, 1e12f);
 }
 
-/* Squares of all that is here are 0 in floats. */
+/* Numbers so small that their squares are 0 in floats. */
 static inline struct subject make_denormal(void)
 {
     return aim(1e-40f * random_float(&random_state), 1e-38f, 1e-39f);
 }
 
-/* Directions that floats do not square, or do not divide by; components that they lose. */
+/* Directions whose squares or reciprocals overflow or vanish in floats, or that have components
+   that are lost in sums. */
 static inline struct subject make_stretched(void)
 {
     struct subject s = make_ordinary();
@@ -74,7 +75,7 @@ static inline struct subject make_stretched(void)
     return s;
 }
 
-/* Within a float of the shortest directions that the filter takes. */
+/* Directions within one float of the shortest that the filter accepts. */
 static inline struct subject make_short(void)
 {
     static const float next_to[] = {0.0f, 1.0f, 0x1p-100f};
@@ -91,7 +92,7 @@ static inline struct subject make_short(void)
     return s;
 }
 
-/* Past a small sphere as near as a float for its radius tells: by 2^-25 of it. */
+/* Rays that pass a sphere as close as its radius, a float, can express: within 2^-25 of it. */
 static inline struct subject make_grazing(void)
 {
     struct subject s = {.origin = random_point(1.0f), .center = random_point(1.0f)};
@@ -112,7 +113,7 @@ static inline struct subject make_grazing(void)
 
 struct frame {
     struct vec3 x, y;
-    float length; /* of x and y, which are at right angles, all in integers */
+    float length; /* of x and y, which are orthogonal; all are integers */
 };
 
 /* Makes two vectors of integers at right angles from a random integer quaternion (Euler,
@@ -139,7 +140,7 @@ static inline struct vec3 grid_point(int max)
     return vec3_make(x, y, floorf(random_float(&random_state) * range) - middle);
 }
 
-/* In one point exactly. */
+/* A ray that touches the sphere in exactly one point. */
 static inline struct subject make_tangent(void)
 {
     struct frame f = integer_frame(20);
@@ -150,7 +151,7 @@ static inline struct subject make_tangent(void)
     return s;
 }
 
-/* Within a float of that. */
+/* The same with the radius one float larger or smaller. */
 static inline struct subject make_nearly_tangent(void)
 {
     struct subject s = make_tangent();
@@ -170,7 +171,7 @@ static inline struct subject make_between(void)
     return s;
 }
 
-/* On the sphere; inwards, outwards, along it. */
+/* Rays that start on the sphere and go inwards, outwards or along it. */
 static inline struct subject make_on_surface(void)
 {
     struct frame f = integer_frame(20);
@@ -182,7 +183,7 @@ static inline struct subject make_on_surface(void)
     return s;
 }
 
-/* Along z, a sphere at height `z`, `aside` of it. */
+/* A ray along z and a sphere at height `z`, with its centre `aside` of the ray. */
 static inline struct subject upright(float z, float radius, float aside, float origin, float dir)
 {
     return (struct subject){{aside, 0, origin}, {0, 0, dir}, {0, 0, z}, radius, 0.0f};
@@ -206,14 +207,14 @@ static inline struct subject make_tie(void)
                    shapes[shape].origin, ldexpf(1.0f, scale));
 }
 
-/* Ends at i 2^-150 and 2048 more of these. */
+/* Hits at t = i 2^-150 and (i + 2048) 2^-150. */
 static inline struct subject make_denormal_tie(void)
 {
     float at = (float)(1024 + random_below(&random_state, 10000));
     return upright(ldexpf(at, -100), 0x1p-90f, 0.0f, 0.0f, 0x1p50f);
 }
 
-/* Small and far away: keys of both ends are next to each other, or one. */
+/* Small and far away: the keys of both hits are neighbouring floats, or equal. */
 static inline struct subject make_small(void)
 {
     struct subject s = {.origin = point_of(in_cube), .center = point_of(in_cube)};
@@ -234,8 +235,8 @@ static inline struct subject scattered(float (*coordinate)(void))
 static const struct sphere_kind {
     const char *name;
     make_fn make;
-    float (*coordinate)(void); /* of scattered ones */
-    double filtered, sure;     /* shares that the filter and pairs decide, at least */
+    float (*coordinate)(void); /* for scattered subjects */
+    double filtered, sure;     /* least shares that the filter, and the pairs of floats, decide */
 } sphere_kinds[] = {
     {"ordinary", make_ordinary, NULL, 0.6, 0.99},
     {"grazing", make_grazing, NULL, 0.0, 0.3},

@@ -1,12 +1,12 @@
-/* Spheres beside fractions: which ends of the chord the rational oracle and the level `exact` find,
-   and the floats that t is between; and what the filter says of them. */
+/* Compares spheres with fractions: which ends of the chord the rational oracle and numerics `exact`
+   find, between which floats t lies, and what the filter decides. */
 #include "hard_sphere_fixture.h"
 
 #include "fraction_fixture.h"
 #include "twin/ff_sphere.h"
 #include "unit.h"
 
-/* ---- What is so ---- */
+/* ---- The truth, in fractions ---- */
 
 struct truth {
     mpq_t p, s, q; /* the t of both ends: p t^2 - 2 s t + q = 0 */
@@ -61,7 +61,7 @@ static void find_truth(const struct subject *subject, struct truth *truth)
     mpq_clear(rr);
 }
 
-/* Where an end is beside t: 1 beyond it. */
+/* Compares an end of the chord with t: 1 if it is beyond t, -1 before, 0 equal. */
 static int side_of(const struct truth *truth, const mpq_t t, bool far)
 {
     mpq_t slope, f;
@@ -114,8 +114,7 @@ static bool is_key(const struct truth *truth, float key, bool far)
            (key == 0.0f || is_above(truth, nextafterf(key, 0.0f), far));
 }
 
-/* Tells whether an end of the chord counts as a hit: it is there, and its key is not below
-   t_min. */
+/* Whether an end of the chord counts as a hit: it exists, and its key is not below t_min. */
 static bool counts(const struct truth *truth, float t_min, bool far)
 {
     return truth->met && is_ahead(truth, far) && !is_above(truth, FLT_MAX, far) &&
@@ -126,8 +125,8 @@ static bool counts(const struct truth *truth, float t_min, bool far)
 
 struct tally {
     uint32_t rays, met, exits, wrong, sure, wrong_pairs, inside, outside, bad_bounds;
-    uint32_t touching, on_surface, equal_keys, wrong_chords; /* of the rational oracle */
-    double worst;                                            /* error of the room, of its bound */
+    uint32_t touching, on_surface, equal_keys, wrong_chords; /* by the rational oracle */
+    double worst;                                            /* largest error of room / its bound */
 };
 
 static bool is_right(const struct truth *truth, const struct sphere_candidate *m, bool near,

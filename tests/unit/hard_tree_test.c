@@ -1,6 +1,6 @@
-/* B11, R1, R2, R8, U1, U7 and U14 of the catalogue: which tree there is, and in which order it is
-   walked, does not tell; nor whether any hit is asked for or the closest one. At every level, bit
-   for bit beside no tree at all. tests/peers/equal.c does the same for scenes and devices. */
+/* B11, R1, R2, R8, U1, U7 and U14 of the catalogue: hits depend neither on the tree nor on the
+   order of traversal, and any-hit and closest-hit queries agree. Compared bit for bit, at every
+   level, with hits without a tree. tests/peers/equal.c does the same for scenes and devices. */
 #include "hard_fixture.h"
 
 #include "sphere_fixture.h"
@@ -25,7 +25,8 @@ enum { TREES = sizeof trees / sizeof *trees, ORDERS = 3 };
 
 /* ---- Scenes ---- */
 
-/* Each triangle of a terrain of integers several times, in any order: ties everywhere. */
+/* Each triangle of an integer terrain several times, shuffled, so that there are ties
+   everywhere. */
 static struct soup soup_layers(uint32_t layers)
 {
     struct soup terrain = soup_landscape(8);
@@ -46,7 +47,7 @@ struct counts {
     uint64_t rays, hits, differ, ends;
 };
 
-/* The same at every order; `ends` counts where any hit and the closest one disagree. */
+/* Compares hits at every order; `ends` counts rays for which any-hit and closest-hit disagree. */
 static void try_orders(const struct level *level, const struct accel *accel,
                        const struct gpu_ray *ray, const struct gpu_hit *wanted,
                        struct counts *counts)
@@ -89,7 +90,7 @@ static void compare_trees(const struct level *level, const struct world *world,
     }
 }
 
-/* Releases the world, of which trees[0] are the trees. */
+/* Compares all kinds of trees on one world, which has trees of kind trees[0]; releases it. */
 static void try_trees(struct world world)
 {
     const uint32_t rays = cases_few(1200);
@@ -117,7 +118,7 @@ static void try_trees(struct world world)
     world_finish(&world);
 }
 
-/* B11, R1, R8, U14: also where a hit's t is less than its box's, by roundings. */
+/* B11, R1, R8, U14: also where a hit's t is below that of its box, by rounding. */
 TEST(trees_and_orders_do_not_matter)
 {
     random_state = 100;
@@ -160,8 +161,8 @@ static struct soup soup_equal(uint32_t count)
     return soup;
 }
 
-/* At a vertex, the middle of an edge or a point inside, from all eight sides, so that `sign` meets
-   the second of every pair first: t is 1. */
+/* A ray at a vertex, the middle of an edge or a point inside, with the hit at t = 1; from all eight
+   octants, so that order `sign` also visits the second node of every pair first. */
 static struct gpu_ray ray_at_equal(uint32_t i)
 {
     static const float weights[3][2] = {{0, 0}, {0.5f, 0}, {0.25f, 0.25f}};
@@ -174,7 +175,7 @@ static struct gpu_ray ray_at_equal(uint32_t i)
     return ray_through(vec3_load(from), vec3_load(target));
 }
 
-/* R2: of so many triangles in one place the first is hit, inside, at edges and at vertices. */
+/* R2: among many triangles in one place the first is hit, inside, at edges and at vertices. */
 TEST(the_first_of_equal_triangles_is_hit)
 {
     const uint32_t counts[] = {2, 3, 10, 100, 1000};
@@ -198,7 +199,7 @@ TEST(the_first_of_equal_triangles_is_hit)
     }
 }
 
-/* U1: leaves hold as many as they may, and no more, of so many triangles in one place. */
+/* U1: with many triangles in one place leaves are filled up to their limit, and not beyond. */
 TEST(equal_triangles_are_shared_out)
 {
     const uint32_t count = cases_times() > 1 ? 1000000 : 10000;
@@ -222,20 +223,20 @@ TEST(equal_triangles_are_shared_out)
     }
 }
 
-/* Any bits, NaN and infinity among them. */
+/* Triangles with random bits as coordinates, among them NaN and infinity. */
 static struct soup soup_bits(uint32_t count)
 {
     struct soup soup = soup_make("bits", count);
     for (uint32_t i = 0; i < 9 * count; ++i) {
         uint32_t bits = random_bits(&random_state);
-        if (i % 3) /* every third is of some size that others share */
+        if (i % 3) /* two of three get an exponent near that of 1, so that sizes match */
             bits = (bits & 0x807fffffu) | (0x7e + bits % 3) << 23;
         memcpy(&soup.positions[i], &bits, sizeof bits);
     }
     return soup;
 }
 
-/* Triangles with vertices that are there and below 1e18. */
+/* Number of triangles whose indices are in range and whose vertices are below 1e18. */
 static uint32_t count_usable(const struct scene_mesh *mesh)
 {
     uint32_t usable = 0;
