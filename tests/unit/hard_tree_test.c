@@ -268,8 +268,8 @@ static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
     return scene;
 }
 
-/* U5, U6, U7: a thousand scenes (label long) of twenty meshes of any bits: what cannot be used is
-   dropped, what is left has a valid tree, and rays meet in it what they meet without. */
+/* U5, U6, U7: a thousand scenes (label long) of twenty meshes with random bits. Unusable triangles
+   are dropped, the others have a valid tree, and rays have the same hits with it as without. */
 TEST(any_bits_have_trees)
 {
     const uint32_t scenes = cases_times() > 1 ? 1000 : 40;

@@ -1,5 +1,5 @@
-/* Rays and triangles that are hard: of all sizes, at edges and vertices exactly, with t between two
-   floats, edge-on, without area. */
+/* Hard rays and triangles: of all sizes, exactly through edges and vertices, with t halfway between
+   two floats, edge-on, without area. */
 #ifndef TESTS_HARD_TRIANGLE_FIXTURE_H
 #define TESTS_HARD_TRIANGLE_FIXTURE_H
 
@@ -27,7 +27,7 @@ static inline struct vec3 weighted(const struct vec3 v[3], float a, float b)
     return vec3_add(p, vec3_scale(v[2], 1.0f - a - b));
 }
 
-/* At a point inside, well away from the edges. */
+/* A point inside of the triangle, well away from its edges. */
 static inline struct vec3 inner_point(const struct vec3 v[3])
 {
     float a = 0.1f + 0.3f * random_float(&random_state),
@@ -35,8 +35,8 @@ static inline struct vec3 inner_point(const struct vec3 v[3])
     return weighted(v, a, b);
 }
 
-/* Within `spread` of a point within `around`, seen from within `away` of the origin; a bit beside
-   it by `beside` of its size. */
+/* A triangle within `spread` of a point in a cube of half size `around`, and a ray from a cube of
+   half size `away`, aimed to miss it by up to `beside` of its size. */
 static inline struct subject seen_from(float spread, float around, float away, float beside)
 {
     struct subject s = {.origin = random_point(away)};
@@ -77,7 +77,7 @@ static inline struct subject make_unit(void)
     return s;
 }
 
-/* Neither seen at a sharp angle nor from near by. */
+/* A triangle that is seen neither at a grazing angle nor from near by. */
 static inline struct subject make_well_conditioned(void)
 {
     struct subject s;
@@ -97,7 +97,7 @@ static inline struct subject make_any_size(void)
     return s;
 }
 
-/* At a vertex or a point of an edge, as well as a rounded direction can. */
+/* A ray at a vertex or a point of an edge, with its direction rounded to floats. */
 static inline struct subject make_at_edge(void)
 {
     struct subject s = make_unit();
@@ -106,7 +106,7 @@ static inline struct subject make_at_edge(void)
     return s;
 }
 
-/* Straight through a vertex, or the middle of an edge. */
+/* A ray exactly through a vertex, or the middle of an edge. */
 static inline struct subject make_at_edge_of_grid(void)
 {
     struct subject s = scattered(of_grid);
@@ -122,8 +122,8 @@ static inline float of_large_grid(void)
     return (float)((int)random_below(&random_state, 1 << 22) - (1 << 21));
 }
 
-/* Through the middle of an edge exactly, where the edge function is 0 and its terms are of 68 bits.
- */
+/* A ray exactly through the middle of an edge, where the edge function is 0 and its terms have 68
+   bits. */
 static inline struct subject make_on_edge(void)
 {
     struct subject s = {.origin = vec3_scale(point_of(of_large_grid), 2.0f)};
@@ -141,7 +141,7 @@ static inline float of_even_grid(void)
     return 2.0f * (float)((int)random_below(&random_state, 10001) - 5000);
 }
 
-/* At a t exactly in the middle between two floats: 2^24, and 1 more. */
+/* A hit at t = 2^24 + 1, exactly halfway between two floats. */
 static inline struct subject make_between(void)
 {
     struct subject s = {.dir = vec3_make(either(-1, 1), either(-1, 1), either(-1, 1))};
@@ -154,13 +154,14 @@ static inline struct subject make_between(void)
     return s;
 }
 
-/* A wall in the plane z, seen along it: t = (z - origin) / dir. */
+/* A triangle in the plane of height `z`, and a ray along the z axis: t = (z - origin) / dir. */
 static inline struct subject wall(float z, float origin, float dir)
 {
     return (struct subject){{0, 0, origin}, {0, 0, dir}, {{-2, -1, z}, {2, -1, z}, {0, 2, z}}};
 }
 
-/* At and beside middles of floats: between 2^25 and 2^26 they are 4 apart. */
+/* Hits with t halfway between two floats, or close to that: from 2^25 to 2^26 floats are 4
+   apart. */
 static inline struct subject make_tie(void)
 {
     static const float origins[] = {-1.0f, -2.0f, -3.0f, -2.0f - 0x1p-22f, -2.0f + 0x1p-23f};
@@ -169,7 +170,7 @@ static inline struct subject make_tie(void)
     return wall(z, origins[random_below(&random_state, 5)], ldexpf(1.0f, scale));
 }
 
-/* At multiples of 2^-150. */
+/* Hits with t a multiple of 2^-150. */
 static inline struct subject make_denormal_tie(void)
 {
     return wall(ldexpf((float)random_below(&random_state, 20000), -100), 0.0f, 0x1p50f);
@@ -184,7 +185,7 @@ static inline struct subject make_needle(void)
     return s;
 }
 
-/* Within 1e-3 to 1e-7 of the plane. */
+/* A ray that starts 1e-3 to 1e-7 above the triangle's plane, almost parallel to it. */
 static inline struct subject make_grazing(void)
 {
     struct subject s = make_unit();
@@ -196,7 +197,7 @@ static inline struct subject make_grazing(void)
     return s;
 }
 
-/* Origin and direction in the plane. */
+/* Origin and direction are in the triangle's plane, which is axis-aligned. */
 static inline struct subject make_coplanar(void)
 {
     struct subject s = scattered(random_below(&random_state, 2) ? of_grid : in_cube);
@@ -207,7 +208,7 @@ static inline struct subject make_coplanar(void)
     return s;
 }
 
-/* From one point of a plane of integers to another. */
+/* A ray in the plane of an integer triangle. */
 static inline struct subject make_in_plane(void)
 {
     struct subject s = scattered(of_grid);
@@ -226,7 +227,7 @@ static inline struct subject make_equal_corners(void)
     return s;
 }
 
-/* Two or three equal corners, or three on a line. */
+/* A triangle with two or three equal corners, or three on a line. */
 static inline struct subject make_without_area(void)
 {
     struct subject s = make_at_edge_of_grid();
@@ -241,10 +242,10 @@ static inline struct subject make_without_area(void)
    shear of the watertight test is rounded all the same, so that it may take a triangle that is seen
    edge-on for one that is not; scenes hold none without area. */
 enum {
-    FLOATS = 1, /* within what `watertight` promises */
-    EDGES = 2,  /* some rays go through edges and vertices exactly */
-    PLAIN = 4,  /* nothing is near any limit: levels are right but for few */
-    GOOD = 8,   /* t is far within its bound */
+    FLOATS = 1, /* sizes are within what `watertight` promises */
+    EDGES = 2,  /* some rays go exactly through edges and vertices */
+    PLAIN = 4,  /* easy: nearly all answers of all levels are right */
+    GOOD = 8,   /* t is far more accurate than its bound */
 };
 
 static const struct triangle_kind {

@@ -1,5 +1,4 @@
-/* Triangles where they are hardest: what fractions say of them, beside the rational oracle, pairs
-   of floats, and each level. */
+/* Hard triangles: compares the rational oracle, pairs of floats and all levels with fractions. */
 #include "hard_triangle_fixture.h"
 
 #include "fraction_fixture.h"
@@ -49,21 +48,21 @@ static void meet_in_fractions(struct vec3 origin, struct vec3 dir, const struct 
     mpq_clear(det);
 }
 
-/* Neighbours of the largest float: where it would go on. */
+/* The next float in direction `way`; beyond the largest one 2^128, where floats would continue. */
 static double float_after(float key, double way)
 {
     float next = nextafterf(key, (float)(way * (double)INFINITY));
     return isinf(next) ? way * 0x1p128 : (double)next;
 }
 
-/* Whether the key is the float nearest to t, with even bits at a tie. */
+/* Whether the key is t rounded to the nearest float, ties to even. */
 static bool is_rounded(float key, const mpq_t t)
 {
     uint32_t bits;
     memcpy(&bits, &key, sizeof bits);
     mpq_t middle;
     mpq_init(middle);
-    /* Middles have one bit more than floats: doubles hold them. */
+    /* The middle of two floats has one bit more than a float, so it is a double. */
     mpq_set_d(middle, 0.5 * ((double)key + float_after(key, -1.0)));
     int lower = mpq_cmp(t, middle);
     mpq_set_d(middle, 0.5 * ((double)key + float_after(key, 1.0)));
@@ -72,7 +71,7 @@ static bool is_rounded(float key, const mpq_t t)
     return lower >= 0 && upper <= 0 && ((lower > 0 && upper < 0) || bits % 2 == 0);
 }
 
-/* Rounded, it would be infinite. */
+/* Whether t rounded to float would be infinite. */
 static bool is_beyond_floats(const mpq_t t)
 {
     return mpq_sgn(t) != 0 &&
@@ -80,9 +79,9 @@ static bool is_beyond_floats(const mpq_t t)
            (mpq_get_d(t) >= 0x1.ffffffp127 || mpq_get_d(t) <= -0x1.ffffffp127);
 }
 
-/* ---- All beside each other ---- */
+/* ---- Comparisons ---- */
 
-/* What is wrong in any case, whatever the level. */
+/* Whether a hit is valid at any level: finite t, barycentric coordinates in range. */
 static bool is_sound(const struct gpu_hit *hit)
 {
     return isfinite(hit->t) && hit->u >= 0.0f && hit->v >= 0.0f &&
@@ -94,13 +93,13 @@ struct tally {
     uint32_t sure, wrong_pairs;                    /* pairs of floats */
     struct {
         uint32_t met, missed, invented, unsound;
-        uint32_t undoubted, far_off; /* beyond the bound of floats: another answer, another t */
+        uint32_t undoubted, far_off; /* wrong answers, and wrong t, beyond the bound of floats */
         uint32_t over_4_ulp;
         double worst_ulp;
     } of[LEVELS];
 };
 
-/* The triangle in double (oracle.c), with the bound of what floats may say of it. */
+/* Tests the triangle in double (oracle.c), with the error bound of the float test. */
 static void ask_oracle(const struct gpu_ray *ray, const struct vec3 v[3], struct oracle_hit *oracle)
 {
     struct gpu_triangle record = {0};
@@ -115,7 +114,7 @@ static void ask_oracle(const struct gpu_ray *ray, const struct vec3 v[3], struct
     oracle_trace(&accel, ray, true, oracle);
 }
 
-/* Whether the bound leaves room for another answer. */
+/* Whether floats may give another answer within the error bound. */
 static bool is_in_doubt(const struct gpu_ray *ray, const struct vec3 v[3])
 {
     struct oracle_hit oracle;
@@ -128,7 +127,7 @@ struct truth {
     float key;
 };
 
-/* What a level that is not exact says is wrong only where the bound allows it. */
+/* Judges a level: where it is not exact, a wrong answer must be within the error bound. */
 static void judge_level(int l, const struct gpu_ray *ray, const struct vec3 v[3],
                         const struct truth *truth, struct tally *tally)
 {
@@ -200,8 +199,8 @@ static void tell(const char *name, const struct tally *tally)
                       tally->of[l].over_4_ulp, tally->of[l].far_off);
 }
 
-/* T1 to T5, T12. Of `plain` ones t is nearly always far within its bound: one in 1,600 of those
-   well conditioned is more than 4 ulp off, whatever the seed. */
+/* T1 to T5, T12. For kinds marked PLAIN t is nearly always far within its bound: for
+   well-conditioned ones 1 in 1,600 is off by more than 4 ulp, with any seed. */
 TEST(triangles_are_met_as_fractions_say)
 {
     const uint32_t cases = cases_of(80000);
@@ -254,8 +253,9 @@ TEST(keys_end_with_the_floats)
     rational_destroy(rational);
 }
 
-/* T6: both ends count, for closest and any hits. The watertight test holds t_min against t as it is
-   before it is moved into the triangle's box: where it was moved, the beginning may be past it. */
+/* T6: hits at both ends of the interval count, for closest-hit and any-hit. The watertight test
+   compares t_min with t before t is clamped to the triangle's box, so where t is clamped, t_min may
+   be beyond it. */
 TEST(ends_of_intervals_count)
 {
     enum { RAYS = 5000 };
@@ -295,9 +295,9 @@ TEST(ends_of_intervals_count)
     world_finish(&world);
 }
 
-/* T7: from 1e-15 (rays at edges: 1e-11, where products are smaller) to 1e18 in size, bit for bit
-   what is at 1, whether directions are as long as scenes are large, or of the length of 1 as those
-   of cameras. `fast` multiplies three lengths: from 6e-8 to 7e10. */
+/* T7: scenes scaled by powers of two from 1e-15 (rays at edges, whose products are smaller: 1e-11)
+   to 1e18 have bit for bit the hits of size 1, with directions scaled as well, or of length 1 as
+   for cameras. `fast`, which multiplies three lengths: from 6e-8 to 7e10. */
 TEST(size_does_not_matter)
 {
     enum { RAYS = 40000 };
@@ -332,7 +332,7 @@ TEST(size_does_not_matter)
     }
 }
 
-/* T8: pbrt-v4, shapes_test.cpp, Triangle.BadCases: it has no area, so that no scene holds it.
+/* T8: pbrt-v4, shapes_test.cpp, Triangle.BadCases; the triangle has no area, so it is in no scene.
    T9: github.com/Oblikovati/Oblikovati, issue 2146: a ray at the diagonal of a square. */
 TEST(known_cases)
 {
@@ -368,9 +368,8 @@ TEST(known_cases)
     print_message("T8 0 hits of 1 ray, T9 0 leaks of 1 ray\n");
 }
 
-/* An edge of a mesh held against a triangle of another part of it: both in one plane but for
-   roundings, at least 0.05 of their size apart. Its line passes beside the triangle, or towards it
-   and ends before it. */
+/* A ray along an edge, and a triangle elsewhere in the same plane within rounding, at least 0.05 of
+   their size apart. The ray passes beside the triangle, or goes towards it and ends before it. */
 static struct gpu_ray make_edge_apart(bool towards, struct vec3 v[3])
 {
     struct vec3 o = random_point(1.0f), u = random_point(1.0f), w = random_point(1.0f), end[2];
@@ -434,7 +433,7 @@ TEST(edges_apart_do_not_meet)
     rational_destroy(rational);
 }
 
-/* T11: turned round, the same rays hit, at the same t; T12 is part of is_sound. */
+/* T11: with reversed winding the same rays hit at the same t. (T12 is part of is_sound.) */
 TEST(winding_does_not_matter)
 {
     enum { RAYS = 40000 };

@@ -12,7 +12,7 @@ static inline int hooks_begin(void **state)
     return device_begin(state);
 }
 
-/* Closes the scene too, where there is one. */
+/* Destroys compiler and device, and the scene if one is open. */
 static inline int hooks_end(void **state)
 {
     scene_close();
@@ -21,7 +21,7 @@ static inline int hooks_end(void **state)
     return 0;
 }
 
-/* From a file of `text`, which is gone afterwards. */
+/* Loads functions from a temporary file with this text. */
 static inline whit_result hooks_load(const char *text, whit_shader **shader)
 {
     char path[] = "/tmp/whit_hooks_XXXXXX";

@@ -95,7 +95,7 @@ TEST(nonfinite_counts_but_does_not_spread)
     image_finish(&b);
 }
 
-/* By hand: what is relative to the reference, and on which side of it the other one is. */
+/* Values by hand: errors relative to the reference, and signs of mean differences. */
 TEST(means_are_those_of_the_formulas)
 {
     struct image a, b, difference_image;
@@ -123,7 +123,7 @@ TEST(means_are_those_of_the_formulas)
     image_finish(&b);
 }
 
-/* Grey is as three equal channels, no alpha is as one of 1. */
+/* Grey compares as three equal channels, and a missing alpha as 1. */
 TEST(channels_may_differ)
 {
     struct image grey = fixture_floats(5, 4, 1), colours[2];

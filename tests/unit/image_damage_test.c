@@ -1,4 +1,4 @@
-/* Damaged pictures: one error and no picture, or a picture; never more than that. Run under the
+/* Damaged pictures give either one error and no picture, or a picture and no error. Under
    sanitizers this also finds accesses out of bounds. */
 #include "../child_in_place.h"
 #include "image/image_reply.h"
@@ -48,7 +48,7 @@ static struct sample hdr_sample(void)
     return sample;
 }
 
-/* True when it loaded. Everything about the outcome must agree. */
+/* Tries to load a picture; true if it loads. Checks that result, messages and image agree. */
 static bool try_load(const char *path, const uint8_t *data, size_t size_bytes)
 {
     struct image image;
@@ -110,7 +110,7 @@ TEST_IN(damaged_files_load_or_are_refused, folder_begin, folder_end)
 
 static uint64_t reply_seed;
 
-/* A child that a file has taken over may answer anything: here, any numbers, and any length. */
+/* Simulates a child that a hostile file has taken over: random numbers and length in its reply. */
 static void answer_anything(struct child_reply *reply)
 {
     uint8_t *answer = reply->data + reply->size_bytes - sizeof(struct foreign_answer);

@@ -5,7 +5,7 @@
 
 enum { WIDTH = 4, HEIGHT = 3, COUNT = WIDTH * HEIGHT };
 
-/* Instances and primitives by rows of digits; `wanted` has an x where it is black. */
+/* Instances and primitives are given as rows of digits; `wanted` has an x for each black pixel. */
 static void assert_edges(const char *instances, const char *primitives, bool of_primitives,
                          const char *wanted)
 {
@@ -54,7 +54,7 @@ TEST(edges_are_of_objects_or_of_primitives)
                  "xx..");
 }
 
-/* The last column and the last row have nobody beyond them: not the row that memory has next. */
+/* Pixels in the last column and row have no neighbour there, not even the one next in memory. */
 TEST(edges_of_the_picture_are_none)
 {
     assert_edges("0000"

@@ -1,4 +1,4 @@
-/* What the estimate of an error is made of, by hand. */
+/* The parts of the error estimate, with values by hand. */
 #include "image_fixture.h"
 
 #include <math.h>

@@ -77,7 +77,7 @@ TEST_IN(pfm_is_bottom_up_little_endian, folder_begin, folder_end)
     image_finish(&image);
 }
 
-/* The nearest of 256 codes, from the formula in double. */
+/* The nearest 8-bit sRGB code, by the formula in double. */
 static int srgb_code(float linear)
 {
     double v = linear < 0.0f ? 0.0 : linear > 1.0f ? 1.0 : (double)linear;
@@ -203,7 +203,7 @@ TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
     image_finish(&words);
 }
 
-/* With a text that packs well, unless `text_bytes` is 0. */
+/* Writes a PNG with libpng, with a compressible text of `text_bytes`, unless that is 0. */
 static void png_write_raw(const char *path, int colour_type, int bit_depth, int interlace,
                           size_t text_bytes)
 {
@@ -274,7 +274,7 @@ TEST_IN(png_kinds_are_converted, folder_begin, folder_end)
     assert_int_equal(messages.errors, 0);
 }
 
-/* A picture with R, G, B written by the library's own calls. */
+/* Writes an RGB picture directly with OpenEXRCore. */
 static void exr_write_raw(const char *path, const struct image *image, bool tiled, bool half,
                           exr_compression_t compression)
 {
@@ -336,7 +336,7 @@ static void exr_write_raw(const char *path, const struct image *image, bool tile
     assert_int_equal(exr_finish(&context), 0);
 }
 
-/* The four channels of `name` in a file of scanlines, as OpenEXR reads them. */
+/* Reads the four channels of layer `name` from a file of scanlines with OpenEXRCore. */
 static void exr_read_layer(const char *path, const char *name, struct image *out)
 {
     exr_context_t context;
@@ -464,8 +464,7 @@ void *__wrap_malloc(size_t size_bytes)
     return __real_malloc(size_bytes);
 }
 
-/* The file of a picture with its text, a chunk of `text_bytes` that hold a thousandfold, written
-   many times over. */
+/* A PNG whose text chunk, which expands a thousandfold, is repeated many times. */
 static uint8_t *repeat_text(const char *path, size_t *size_bytes)
 {
     enum { TIMES = 90, HEAD = 8, IHDR = 25, TAIL = 4 };
@@ -499,7 +498,7 @@ TEST_IN(png_texts_take_what_they_may, folder_begin, folder_end)
     fixture_put(path, file, size_bytes);
     const struct image_source source = {&warnings_log, path, file, size_bytes};
     malloc_bytes = 0;
-    assert_int_equal(image_decode(&source, &image), WHIT_OK); /* which runs in a child else */
+    assert_int_equal(image_decode(&source, &image), WHIT_OK); /* directly, not in a child */
     assert_in_range(malloc_bytes, TEXT_BYTES, FREE_BYTES + 10 * size_bytes + (1 << 20));
     image_finish(&image);
     free(file);

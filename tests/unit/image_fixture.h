@@ -10,8 +10,8 @@
 #include "folder_fixture.h"
 #include "image/image.h"
 
-/* Written over what is there: file systems are slow to make a file anew, and some wait for the disk
-   when a file is cut to nothing and filled again. */
+/* Overwrites a file in place: creating files is slow, and some file systems wait for the disk when
+   a file is truncated to 0 and filled again. */
 static inline void fixture_put(const char *path, const void *data, size_t size_bytes)
 {
     int file = open(path, O_WRONLY | O_CREAT, 0666);

@@ -1,6 +1,6 @@
-/* FLIP against: the same written a second time, in doubles and without separating any filter;
-   figures of a third program, in Python; a figure published by a fourth; distances by hand where
-   pictures have one colour. */
+/* Compares FLIP with a second implementation here, in doubles and without separable filters; with
+   figures of a third one in Python; with a published figure of a fourth; and with distances by hand
+   for pictures of one colour. */
 #include "image_fixture.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static struct image image_of_one(uint32_t width, uint32_t height, const uint8_t 
     return image;
 }
 
-/* The map is kept when `map` is not NULL. */
+/* The mean FLIP; `map`: receives the map, or NULL. */
 static double flip_of(const struct image *a, const struct image *b, double pixels_per_degree,
                       struct image *map)
 {
@@ -53,7 +53,7 @@ static double flip_of(const struct image *a, const struct image *b, double pixel
     return summary.mean;
 }
 
-/* ---- The second one ---- */
+/* ---- The second implementation ---- */
 
 /* The fractions are those of the authors' program. */
 static const double direct_matrix[3][3] = {
@@ -86,7 +86,7 @@ static double minor(int row, int column)
     return m[r][c] * m[s][d] - m[r][d] * m[s][c];
 }
 
-/* Cramer's rule; clamped. */
+/* Converts back to RGB by Cramer's rule, clamped. */
 static void direct_rgb(const double ycc[3], double rgb[3])
 {
     double y = (ycc[0] + 16.0) / 116.0, determinant = 0.0;
@@ -121,7 +121,7 @@ static double direct_hyab(const double p[3], const double q[3])
     return fabs(lab[0][0] - lab[1][0]) + hypot(lab[0][1] - lab[1][1], lab[0][2] - lab[1][2]);
 }
 
-/* By hand: what a distance becomes where no feature differs. */
+/* FLIP for a HyAB distance where no feature differs, by hand. */
 static double direct_color(double hyab)
 {
     const double green[3] = {0.0, 1.0, 0.0}, blue[3] = {0.0, 0.0, 1.0};
@@ -132,7 +132,7 @@ static double direct_color(double hyab)
 
 enum kind { KIND_A, KIND_RG, KIND_BY, KIND_EDGE, KIND_POINT, KIND_COUNT };
 
-/* Before any scaling, at (x, y) pixels. */
+/* A filter's weight at offset (x, y) in pixels, before scaling. */
 static double direct_weight(enum kind kind, double ppd, int x, int y)
 {
     double z = (x * x + y * y) / (ppd * ppd), deviation = 0.5 * 0.082 * ppd;
@@ -158,7 +158,8 @@ struct direct {
     double ppd;
 };
 
-/* `turned`: the filter along y. `channel` of ycc; of Y relative to white for features. */
+/* Filters one pixel: of a colour channel of ycc, or for features of Y relative to white. `turned`:
+   the filter along y. */
 static double direct_filter(const struct direct *d, enum kind kind, bool turned, int px, int py)
 {
     bool feature = kind >= KIND_EDGE;
@@ -216,7 +217,8 @@ static struct direct direct_of(const struct image *image, double ppd)
 
 /* ---- Checks ---- */
 
-/* Gradients, steps and a line of single pixels: colours and features differ in all ways. */
+/* Two pictures with gradients, steps and a line of single pixels, which differ in colours and
+   features. */
 static void make_pair(struct image pair[2])
 {
     enum { WIDTH = 24, HEIGHT = 18 };
@@ -265,7 +267,7 @@ TEST(every_pixel_is_that_of_direct_sums)
     finish_pair(pair);
 }
 
-/* Means and largest values by a program in Python, direct sums in doubles. */
+/* Means and largest values are from a program in Python, with direct sums in doubles. */
 TEST(means_are_those_of_another_program)
 {
     static const struct {
@@ -323,8 +325,8 @@ TEST(one_colour_is_as_by_hand)
     assert_true(fabs(flip_of_colors(colors[3], colors[4]) - 1.0) < 1e-6);
 }
 
-/* OpenImageIO's testsuite/flip (commit 66c3c5e, ref/out.txt): 64 x 64 of 0.1 and of 0.9, kept as
-   half floats, linear, by an implementation of its own: mean and largest 0.9514. */
+/* OpenImageIO's testsuite/flip (commit 66c3c5e, ref/out.txt) has an implementation of its own: for
+   64 x 64 pixels of 0.1 and of 0.9, linear half floats, mean and largest are 0.9514. */
 TEST(grey_pair_is_as_published)
 {
     static const float dark = 0.099975586f, light = 0.89990234f;
@@ -375,7 +377,8 @@ static struct image noisy(const struct image *image, float amplitude)
     return out;
 }
 
-/* More noise is a larger difference; seen from farther away it is a smaller one. */
+/* More noise gives a larger difference; seen from farther away the same noise gives a smaller
+   one. */
 TEST(noise_counts_by_its_size)
 {
     static const uint8_t grey[3] = {150, 150, 150};
@@ -393,7 +396,7 @@ TEST(noise_counts_by_its_size)
     image_finish(&a);
 }
 
-/* What a PNG cannot show makes no difference, what is not finite is magenta. */
+/* Values that a PNG clamps make no difference; non-finite pixels count as magenta. */
 TEST(pictures_are_taken_as_shown)
 {
     static const uint8_t white[3] = {255, 255, 255}, magenta[3] = {255, 0, 255};

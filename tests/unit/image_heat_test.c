@@ -43,7 +43,7 @@ TEST(colors_are_those_of_viridis)
     assert_color(1e30, 0xfd, 0xe7, 0x25);
 }
 
-/* Colours of the map that lie between those of the table. */
+/* Colours of viridis between the entries of the table are matched closely. */
 TEST(colors_between_are_near)
 {
     static const struct {
@@ -67,7 +67,7 @@ static double light_of(const uint8_t codes[3])
     return light;
 }
 
-/* Brighter is more, also for who sees no colours. */
+/* Brightness rises with the value, so that maps can be read without seeing colours. */
 TEST(brightness_rises)
 {
     double before = -1.0;
@@ -155,7 +155,7 @@ TEST(the_scale_of_few_or_no_values)
     image_finish(&values);
 }
 
-/* Through a PNG and back: its codes are those of heat_color. */
+/* A heat map saved as PNG has exactly the codes of heat_color. */
 TEST_IN(the_file_has_the_codes_of_the_table, folder_begin, folder_end)
 {
     char *path = in_folder("heat.png");

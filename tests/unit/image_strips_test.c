@@ -1,4 +1,4 @@
-/* Pictures that are written in strips: the file is that of the whole, or there is none. */
+/* Pictures written in strips: the file equals that of the whole picture, or there is none. */
 #include "image_fixture.h"
 
 #include "image/rows.h"
@@ -15,7 +15,7 @@ static struct image_rows *begin(const char *path, const struct image *shape)
     return rows;
 }
 
-/* Rows `first` and on, borrowed from the whole. */
+/* A strip of `count` rows from `first` on, borrowed from the whole picture. */
 static struct image strip_of(const struct image *whole, uint32_t first, uint32_t count)
 {
     struct image strip = *whole;

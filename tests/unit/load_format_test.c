@@ -1,4 +1,4 @@
-/* What kind of file bytes are. */
+/* Recognizing a file's format by its bytes. */
 #include "load/format.h"
 #include "unit.h"
 
@@ -50,7 +50,7 @@ TEST(what_nothing_tells_is_nothing)
         says(cases[i], NULL);
 }
 
-/* Its header may begin like that of a text. */
+/* A binary STL is recognized by its size, since its header may begin like that of a text STL. */
 TEST(a_binary_stl_is_told_by_its_size)
 {
     uint8_t data[84 + 2 * 50 + 1] = "solid facet";

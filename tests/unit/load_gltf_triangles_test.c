@@ -1,10 +1,10 @@
-/* Triangles of glTF: every kind of accessor, every mode, and what Draco packs. */
+/* Triangles of glTF: every kind of accessor, every mode, and Draco. */
 #include <math.h>
 
 #include "load_model_fixture.h"
 #include "unit.h"
 
-/* Writes b.bin and a file of one mesh around it, in whose texts ' stands for ". */
+/* Writes b.bin and a glTF with one mesh that uses it. In the given texts ' stands for ". */
 static const char *write_gltf(const void *data, size_t size_bytes, const char *views,
                               const char *accessors, const char *primitives)
 {
@@ -41,7 +41,7 @@ static void assert_floats(const float *found, const double *wanted, size_t count
 
 #define POSITIONS "{'bufferView':0,'componentType':5126,'count':3,'type':'VEC3'}"
 
-/* Three positions, and behind them what a test is about. */
+/* A buffer: three positions, and behind them the data of a test. */
 struct data {
     float positions[9];
     uint8_t more[64];
@@ -54,7 +54,7 @@ static struct data triangle_data(const void *more, size_t size_bytes)
     return data;
 }
 
-/* A colour of the second vertex, 20 bytes behind that of the first, which has an offset of 4. */
+/* Tests the colour of the second vertex, 20 bytes behind the first one's, which has offset 4. */
 TEST_IN(components_become_floats, fixture_begin, fixture_end)
 {
     static const struct {
@@ -96,7 +96,7 @@ TEST_IN(components_become_floats, fixture_begin, fixture_end)
     }
 }
 
-/* Elements 0 and 2 are replaced; without a view the others are zeros. */
+/* Elements 0 and 2 are replaced by sparse ones; without a view the others are zeros. */
 TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
 {
     static const struct {
@@ -180,7 +180,7 @@ TEST_IN(modes_and_indices, fixture_begin, fixture_end)
     assert_true(fixture_noted(*state, "meshes[0].primitives[0]: 1 of 2 triangles are damaged and"));
 }
 
-/* Normals that are no direction, and those of a part without any, are those of the faces. */
+/* Invalid normals, and those of a part without any, are replaced by the normals of faces. */
 TEST_IN(normals_that_are_missing, fixture_begin, fixture_end)
 {
     const float normals[9] = {NAN, 0, 0, 1, 0, 0, 0, 0, 0};
@@ -250,7 +250,8 @@ TEST_IN(bad_accessors_are_refused, fixture_begin, fixture_end)
     }
 }
 
-/* Twelve bytes that claim half a gigabyte of zeros, many times over. */
+/* A small file whose primitives share a sparse accessor with 10 million elements, nearly all
+   zeros. */
 TEST_IN(small_files_stay_small, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
@@ -268,8 +269,8 @@ TEST_IN(small_files_stay_small, fixture_begin, fixture_end)
 
 /* --- Draco ---------------------------------------------------------------------------------- */
 
-/* Two triangles of four vertices with texture coordinates and colours of bytes, as Draco 1.5 packs
-   them without any compression. */
+/* Two triangles of four vertices with texture coordinates and 8-bit colours, encoded by Draco 1.5
+   without compression. */
 static const uint8_t packed[150] = {
     0x44, 0x52, 0x41, 0x43, 0x4f, 0x02, 0x02, 0x01, 0x00, 0x00, 0x00, 0x02, 0x04, 0x01, 0x00,
     0x01, 0x02, 0x02, 0x01, 0x03, 0x01, 0x03, 0x00, 0x09, 0x03, 0x00, 0x00, 0x03, 0x09, 0x02,
@@ -307,7 +308,7 @@ static const char *write_packed(const uint8_t *bytes, unsigned vertices, const c
     return path;
 }
 
-/* The normals are not packed: they come from their accessor. */
+/* Normals are not in the Draco data: they come from their accessor. */
 TEST_IN(draco_is_unpacked, fixture_begin, fixture_end)
 {
     const double positions[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};

@@ -36,7 +36,7 @@ static inline whit_result fixture_load(struct fixture *fixture, const char *path
     return load_model(fixture->scene, path, SCENE_NONE, true, true, NULL);
 }
 
-/* Loading fails with one error, which names the file and holds `reason`. */
+/* Checks that loading fails with one error, which names the file and contains `reason`. */
 static inline void fixture_refused(struct fixture *fixture, const char *path, const char *reason)
 {
     assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);

@@ -1,4 +1,4 @@
-/* glTF: what comes from the JSON, and how it meets the triangles. */
+/* glTF: nodes, cameras, lights, materials and animation from the JSON. */
 #include <math.h>
 
 #include "load/model.h"
@@ -30,8 +30,9 @@ static void append_base64(char *to, const uint8_t *from, size_t size)
     "{\"bufferView\":0,\"byteOffset\":" #offset ",\"componentType\":5126,\"count\":" #count        \
     ",\"type\":\"" type "\"}"
 
-/* The file with `members` beside its buffer, view, accessors and one mesh. Accessors: 0 positions,
-   1 times, 2 translations, 3 instances, 4 rotations, 5 texture coordinates. */
+/* Writes a glTF with these members of the root, and a buffer, view, accessors and one mesh.
+   Accessors: 0 positions, 1 times, 2 translations, 3 instances, 4 rotations, 5 texture
+   coordinates. */
 static const char *write_gltf(const char *members)
 {
     char base64[4 * sizeof data / 3 + 1];
@@ -206,7 +207,8 @@ TEST_IN(camera_angles_are_exact, fixture_begin, fixture_end)
     assert_float_equal(scene->cameras[1].height, 4, 0);
 }
 
-/* But for the pi by which glTF's surfaces are darker. 40 / pi * 0.5; bright enough at 1 unit. */
+/* Lights keep their intensity, divided by pi (glTF's surfaces reflect albedo / pi): 40 / pi * 0.5,
+   bright enough at 1 unit to stay unscaled. */
 TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
 {
     const struct scene *scene =
@@ -271,7 +273,7 @@ TEST_IN(faces_have_one_side_unless_said, fixture_begin, fixture_end)
                              "{\"transmissionFactor\":0.5}}}]");
     assert_true(scene->materials[0].one_sided);
     assert_false(scene->materials[1].one_sided);
-    /* It is left through the same faces that it is entered through. */
+    /* Refracted rays leave through the faces by which they entered. */
     assert_false(scene->materials[2].one_sided);
 }
 
@@ -335,7 +337,7 @@ TEST_IN(texture_coordinates_grow_downwards, fixture_begin, fixture_end)
     assert_float_equal(mesh->uvs[0][2 * mesh->indices[0] + 1], 0.125, 1e-6);
 }
 
-/* Normalized shorts, which assimp would take for floats. */
+/* Normalized shorts, which assimp would read as floats. */
 TEST_IN(quantized_attributes, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;

@@ -1,4 +1,4 @@
-/* The importer's process and its reply: nothing in it is believed. */
+/* The importer's child process, and the checks of its reply. */
 #include <fcntl.h>
 #include <math.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include "load_model_fixture.h"
 #include "unit.h"
 
-/* Wrapped at link time: an importer that never ends, beside a clock that each reading turns. */
+/* Wrapped at link time: an importer that never ends, and a clock that each reading advances. */
 double __real_clock_ms(void);
 double __wrap_clock_ms(void);
 int __real_importer_assimp_run(void *user, void *to, child_write write);
@@ -136,7 +136,7 @@ TEST(damaged_blocks_are_refused)
     }
 }
 
-/* Many arrays in one place would make a large scene out of a small block. */
+/* Arrays that share one place in the block would make a large scene of a small block. */
 TEST(arrays_may_not_be_claimed_twice)
 {
     char reason[128];
@@ -146,7 +146,7 @@ TEST(arrays_may_not_be_claimed_twice)
     assert_false(parse(&block, sizeof block, reason));
 }
 
-/* Names that end in one place would each be a text of their own. */
+/* Names that overlap in the block would each be copied in full. */
 TEST(names_may_not_be_claimed_twice)
 {
     char reason[128];
@@ -200,7 +200,7 @@ TEST_IN(colors_of_scans, fixture_begin, fixture_end)
     assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.2158605, 1e-5); /* sRGB 128 */
 }
 
-/* The first byte of the data is that of a line end. */
+/* A binary PLY whose first data byte is that of a line end. */
 TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
@@ -228,7 +228,8 @@ TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
     "property float y\nproperty float z\nelement tristrips 2\n"                                    \
     "property list uchar int vertex_indices\nelement tag 1\nproperty uchar value\nend_header\n"
 
-/* Every second triangle is turned, -1 begins anew, and triangles on one line only lead on. */
+/* Strips: every second triangle is reversed, -1 begins a new strip, degenerate triangles
+   connect. */
 static const int32_t strip_numbers[2][9] = {{9 - 1, 0, 1, 2, 3, -1, 3, 1, 0}, {4, 0, 1, 1, 2}};
 
 static void append_strip_file(FILE *file, const char *format)
@@ -315,7 +316,7 @@ TEST_IN(facets_are_welded, fixture_begin, fixture_end)
 
 /* --- hostile files -------------------------------------------------------------------------- */
 
-/* assimp sees the file under a name that says nothing to the user. */
+/* Errors name the file by its real path, not by the name under which assimp gets it. */
 TEST_IN(refusals_name_the_file, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
@@ -341,7 +342,7 @@ TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
                     ".ply:3: 4000000000 elements, but only 10 bytes behind the header");
 }
 
-/* assimp would read on until its time is over. */
+/* Headers without an end are refused, since assimp would read until its time limit. */
 TEST_IN(headers_without_an_end_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
@@ -350,7 +351,7 @@ TEST_IN(headers_without_an_end_are_refused, fixture_begin, fixture_end)
     fixture_refused(fixture, path, ".ply:6: the file ends within its header");
 }
 
-/* `count` corners on a circle, as lines of `word` x y z, in memory of the caller. */
+/* `count` corners on a circle, as lines "`word` x y z"; free() it. */
 static char *circle(const char *word, unsigned count)
 {
     char *text = NULL;
@@ -365,7 +366,7 @@ static char *circle(const char *word, unsigned count)
     return text;
 }
 
-/* The first half of the numbers, a line end that joins, the second half. */
+/* Writes an OBJ with one face of `count` corners, on two lines joined by a backslash. */
 static const char *write_round_obj(const char *name, unsigned count)
 {
     char *corners = circle("v ", count), *path = in_folder(name);
@@ -380,7 +381,7 @@ static const char *write_round_obj(const char *name, unsigned count)
     return path;
 }
 
-/* assimp's time for one face is its corners cubed. */
+/* assimp takes cubic time in a face's number of corners. */
 TEST_IN(faces_of_very_many_corners_are_refused, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;
@@ -412,7 +413,7 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
     free(text);
 }
 
-/* assimp 5.2 dies of a face index far out of range; whit must not. */
+/* assimp 5.2 crashes on a face index far out of range; whit must not. */
 TEST_IN(crashes_stay_in_the_child, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;

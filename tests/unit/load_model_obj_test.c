@@ -22,7 +22,7 @@ static const struct scene_mesh *only_mesh(const struct fixture *fixture)
     return &fixture->scene->meshes[0];
 }
 
-/* One quad for each class of material. */
+/* Loads a quad with the material of an MTL with this text. */
 static const struct scene_material *load_material(struct fixture *fixture, const char *mtl)
 {
     put_text("a.mtl", mtl);
@@ -40,7 +40,7 @@ TEST_IN(quads_and_negative_indices, fixture_begin, fixture_end)
     assert_int_equal(fixture_load(fixture, path), WHIT_OK);
     const struct scene_mesh *mesh = only_mesh(fixture);
     assert_int_equal(mesh->triangle_count, 2 + 3);
-    /* One vertex for each corner of the file was welded to one for each place. */
+    /* Vertices were merged: one for each position instead of one for each corner of the file. */
     assert_int_equal(mesh->vertex_count, 4 + 5);
     assert_null(mesh->normals);
     for (uint32_t i = 0; i < 6; i++)
@@ -265,7 +265,7 @@ TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 
 /* --- maps ----------------------------------------------------------------------------------- */
 
-/* A 4x4 picture, its left half clear. */
+/* Writes a 4x4 picture whose left half has alpha `left_alpha`. */
 static void write_picture(struct fixture *fixture, const char *name, float left_alpha)
 {
     struct image image;
@@ -301,7 +301,7 @@ TEST_IN(maps_with_options, fixture_begin, fixture_end)
     assert_true(fixture_noted(fixture, "a.mtl:4: texture `gone.png`: there is no such file"));
 }
 
-/* The code of a map's first texel, red. */
+/* The red 8-bit code of a map's first texel. */
 static int first_texel(const struct fixture *fixture, const struct scene_material *m,
                        enum scene_slot slot)
 {

@@ -1,4 +1,4 @@
-/* JPEG: pixels of files by two encoders, and what becomes of damaged ones; greedy PNGs. */
+/* JPEG: pixels of files by two encoders, and damaged files; PNGs that ask for too much memory. */
 #include "load_model_fixture.h"
 
 #include <errno.h>
@@ -20,7 +20,7 @@ struct bytes {
     size_t count;
 };
 
-/* Smooth, as JPEG likes it, and other in every channel. */
+/* A test picture: smooth, so that JPEG keeps it, and different in every channel. */
 static uint8_t texel(int x, int y, int channel)
 {
     int values[] = {40 + 5 * x, 220 - 7 * y, 60 + 2 * x + 3 * y, 200 - 2 * x};
@@ -42,7 +42,7 @@ static void append(void *user, void *data, int size)
     bytes->count += (size_t)size;
 }
 
-/* Half the colours where quality is 90 or less. */
+/* Encodes with stb, which subsamples colours at quality 90 or less. */
 static struct bytes write_stb(int quality)
 {
     uint8_t pixels[WIDTH * HEIGHT * 3];
@@ -95,7 +95,7 @@ static struct bytes progressive_file(void)
     return write_libjpeg((struct options){3, JCS_RGB, JCS_YCbCr, true, 0});
 }
 
-/* Adobe's CMYK, which libjpeg writes, has inverted inks. */
+/* The expected value of a decoded channel. CMYK as Adobe writes it has inverted inks. */
 static int expected(int x, int y, int channel, int channels)
 {
     if (channel == 3)
@@ -105,7 +105,7 @@ static int expected(int x, int y, int channel, int channels)
     return texel(x, y, channels == 1 ? 0 : channel);
 }
 
-/* Decodes and frees. */
+/* Decodes a JPEG, checks its pixels, and frees its bytes. */
 static void check(struct bytes bytes, int channels, int off_max)
 {
     struct picture picture;
@@ -136,7 +136,7 @@ TEST(jpegs_have_their_pixels)
     check(write_libjpeg((struct options){4, JCS_CMYK, JCS_YCCK, false, 0}), 4, 6);
 }
 
-/* Whether it decodes; what is told must agree. */
+/* Whether the data can be decoded; checks that result, picture and reason agree. */
 static bool decodes(const uint8_t *data, size_t size_bytes, const char **reason)
 {
     struct picture picture;
@@ -183,7 +183,7 @@ TEST(changed_jpegs_end)
     }
 }
 
-/* Where `marker` stands, from `at` on. */
+/* The offset of a JPEG marker, from `at` on. */
 static size_t find(const struct bytes *bytes, uint8_t marker, size_t at)
 {
     for (; at + 1 < bytes->count; at++)
@@ -201,7 +201,7 @@ static void check_reason(const struct bytes *bytes, const char *wanted)
         fail_msg("`%s` is not in `%s`", wanted, reason);
 }
 
-/* Little to read and much to do. */
+/* JPEGs with few bytes that need much memory or time are refused. */
 TEST(greedy_jpegs_are_refused)
 {
     struct bytes file = write_stb(95);
@@ -214,7 +214,7 @@ TEST(greedy_jpegs_are_refused)
     check_reason(&file, "more than there is in it");
     free(file.data);
 
-    /* One scan and its tables, over and over. */
+    /* One scan with its tables, repeated. */
     file = progressive_file();
     size_t begin = find(&file, 0xc4, find(&file, 0xda, 0));
     size_t end = find(&file, 0xc4, find(&file, 0xda, begin));
@@ -238,7 +238,7 @@ void *__wrap_realloc(void *block, size_t size_bytes)
     return __real_realloc(block, size_bytes);
 }
 
-/* 2x2 pixels by its header, and what would be 4 million. Checksums are not looked at. */
+/* A PNG with 2x2 pixels by its header, and data for 4 million. stb_image ignores checksums. */
 TEST(pngs_take_what_their_header_tells_of)
 {
     enum { SIDE = 2048, IHDR_WIDTH = 16 };
@@ -276,7 +276,7 @@ TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
 
 /* --- decoders that reach out ---------------------------------------------------------------- */
 
-/* Wrapped at link time: stand-ins for what decodes, and a system that refuses the sandbox. */
+/* Wrapped at link time: replacements of decoders, and a system that refuses the sandbox. */
 whit_result __real_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
                                const char **reason);
 whit_result __wrap_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
@@ -345,7 +345,8 @@ TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
     free(file.data);
 }
 
-/* A texture that cannot be had is magenta; one that whit was told not to read that way is not. */
+/* A texture that cannot be decoded is magenta, but a required sandbox that is missing is an
+   error. */
 TEST_IN(a_sandbox_that_is_required_is_an_error, fixture_begin, fixture_end)
 {
     struct fixture *fixture = *state;

@@ -1,5 +1,5 @@
-/* What foreign files name reaches no further than their folder: each way to name a file is tried
-   with each kind of reference, and every file that is opened is looked at. */
+/* References in foreign files cannot lead out of their folder: each trick to name a file is tried
+   with each kind of reference, and every file that is opened is checked. */
 #define _GNU_SOURCE
 #include "base/array.h"
 #include "load/model.h"
@@ -25,10 +25,11 @@ static void print_path(char to[PATH_MAX], const char *format, ...)
 
 /* ---- What is opened ---- */
 
-static char outside[PATH_MAX];         /* no file below it may be opened, and no folder listed */
-static uint32_t leak_count, odd_count; /* files outside, and files that are no files */
-static const char *swapped; /* a folder that becomes a link once its path was resolved ... */
-static int swap_after;      /* ... that often */
+static char outside[PATH_MAX];         /* nothing below this folder may be opened or listed */
+static uint32_t leak_count, odd_count; /* opened: files outside, and what is no regular file */
+static const char
+    *swapped;          /* a folder that is replaced by a link after its path was resolved ... */
+static int swap_after; /* ... this many times */
 
 int __real_open(const char *path, int flags, ...);
 int __wrap_open(const char *path, int flags, ...);
@@ -83,7 +84,7 @@ char *__wrap_realpath(const char *path, char *resolved)
     return result;
 }
 
-/* ---- Folders: `in` holds the model, `out` what is nobody's business ---- */
+/* ---- Folders: `in` has the model, `out` has secrets ---- */
 
 struct place {
     char top[PATH_MAX], in[PATH_MAX];
@@ -104,7 +105,7 @@ static void write_text(const char *folder, const char *name, const char *text)
     write_file(folder, name, text, strlen(text));
 }
 
-/* One file of each kind. */
+/* Writes one secret file of each kind. */
 static void write_secrets(const char *folder)
 {
     static const uint8_t tga[] = {0, 0, 2, 0, 0, 0,  0,    0,   0,   0, 0,
@@ -175,7 +176,7 @@ static int end(void **state)
 
 /* ---- References ---- */
 
-/* Whole files, with %s for the reference. */
+/* Kinds of references: the text of a file, with %s for the reference in it. */
 static const struct kind {
     const char *file, *extension, *text;
     bool percent; /* the reference is a URI */
@@ -210,8 +211,8 @@ enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
 
 enum { NOTED = 1, PERCENT = 2 };
 
-/* %O: the absolute path of `out`; %E: the extension. NOTED: the message has the option that would
-   allow it; PERCENT: of URIs alone. */
+/* Tricks: references that lead out of the folder. %O: the absolute path of `out`; %E: the
+   extension. NOTED: the message names the option that would allow it; PERCENT: only for URIs. */
 static const struct trick {
     const char *name;
     int flags;
@@ -265,7 +266,7 @@ static void spell(const char *name, const char *extension, char *to, size_t byte
     }
 }
 
-/* An MTL is reached through an OBJ. */
+/* Writes a model with the reference; an MTL gets an OBJ that refers to it. */
 static void write_model(const struct place *place, const struct kind *kind, const char *reference,
                         char *path)
 {
@@ -290,7 +291,8 @@ struct outcome {
     whit_refused refused;
 };
 
-/* The secrets are the name of a material and of an object, a yellow texel, and one coordinate. */
+/* Whether the scene has anything of the secret files: a diffuse colour, a texel, a coordinate, the
+   environment, or the object in model.json. */
 static bool holds_secret(const struct scene *scene)
 {
     static const uint8_t cyan[3] = {0, 255, 255};
@@ -350,7 +352,7 @@ TEST_IN(nothing_outside_is_read, begin, end)
     assert_true(count >= 60);
 }
 
-/* The test above would see it: every kind reads the secret once its folder is allowed. */
+/* Shows that the test above can fail: every kind reads the secret if its folder is allowed. */
 TEST_IN(an_allowed_folder_is_read, begin, end)
 {
     struct place *place = *state;
@@ -400,8 +402,8 @@ TEST_IN(a_folder_that_is_not_there_cannot_be_allowed, begin, end)
     assert_non_null(strstr(out.text, "cannot be allowed: Not a directory"));
 }
 
-/* The folder becomes a link after any of the times that its path is resolved: so between the look
-   and the opening too. */
+/* The folder is replaced by a link after the first, second, ... time that its path is resolved, and
+   so also between the check and the opening. */
 TEST_IN(a_folder_that_is_swapped_is_not_followed, begin, end)
 {
     struct place *place = *state;
@@ -431,7 +433,7 @@ TEST_IN(a_folder_that_is_swapped_is_not_followed, begin, end)
     swapped = NULL;
 }
 
-/* Inside, but nothing to read: neither opened nor waited for. */
+/* Entries inside of the folder that are no regular files are neither opened nor waited for. */
 TEST_IN(what_is_no_file_is_not_opened, begin, end)
 {
     struct place *place = *state;
@@ -460,7 +462,7 @@ TEST_IN(what_is_no_file_is_not_opened, begin, end)
     close(socket_fd);
 }
 
-/* What is pasted from a message does what it says, whatever a folder is called. */
+/* The option in a message can be pasted into a shell, whatever characters the folder's name has. */
 TEST_IN(the_option_can_be_pasted, begin, end)
 {
     struct place *place = *state;

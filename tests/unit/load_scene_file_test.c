@@ -1,4 +1,4 @@
-/* whit's own scene files: what they mean, and where their errors are. */
+/* whit's own scene files: their meaning, and the places that errors name. */
 #include <math.h>
 
 #include "folder_fixture.h"
@@ -14,7 +14,7 @@ static whit_result load_text(const char *text, struct scene **out)
     return result;
 }
 
-/* The one error: behind the folder's name it reads `expected` and goes on with anything. */
+/* Checks that there is one error, which begins, after the folder's name, with `expected`. */
 static void assert_error(const char *text, const char *expected)
 {
     struct scene *scene = NULL;
@@ -278,7 +278,8 @@ TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
     scene_destroy(scene);
 }
 
-/* As such, in place of triangles; equal ones share a mesh, and each list is a mesh of its own. */
+/* "ball" and "spheres" are sphere primitives; equal balls share a mesh, each list has its own
+   mesh. */
 TEST_IN(balls_are_spheres, folder_begin, folder_end)
 {
     struct scene *scene =
@@ -446,8 +447,8 @@ TEST_IN(textures_are_found, folder_begin, folder_end)
     scene_destroy(scene);
 }
 
-/* Textures that a scene file names itself have to be there; models do with a stand-in, even if the
-   scene names it later. */
+/* A texture that a scene file names must exist. Missing textures of models become magenta, even if
+   the scene file names the same file later. */
 TEST_IN(missing_textures_are_refused, folder_begin, folder_end)
 {
     assert_error("{\"materials\":{\n\"a\":{\"texture\":\"no.png\"}}}",

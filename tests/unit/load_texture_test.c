@@ -1,4 +1,4 @@
-/* Pictures that are decoded and kept once, whatever their names. */
+/* Equal pictures are decoded and kept once, whatever their names. */
 #include "load_model_fixture.h"
 
 #include "load/picture.h"
@@ -40,12 +40,12 @@ static int begin(void **state)
     return fixture_begin(state);
 }
 
-/* 2x1 texels, and the same in base64. */
+/* A TGA of 2x1 texels, and the same in base64. */
 static const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
                               2, 0, 1, 0, 24, 0x20, 10, 20, 30, 20, 40, 61};
 #define TGA_BASE64 "AAACAAAAAAAAAAAAAgABABggChQeFCg9"
 
-/* A glTF of `count` images, each the picture of a material. */
+/* Writes a glTF with `count` images, each the texture of a material. */
 static const char *write_gltf(const char *const *images, uint32_t count)
 {
     char *lists[3] = {string_copy(""), string_copy(""), string_copy("")};
@@ -75,7 +75,7 @@ static const char *write_gltf(const char *const *images, uint32_t count)
 
 enum { SPELLINGS = 60 };
 
-/* a.tga in ways that lead to one file. */
+/* Spellings of a.tga that all lead to one file. */
 static void spell(char spellings[SPELLINGS][112])
 {
     for (uint32_t i = 0; i < SPELLINGS; i++) {
@@ -140,7 +140,8 @@ TEST_IN(limits_keep_pictures_apart, begin, fixture_end)
     assert_int_equal(fixture->scene->textures[halved].width, 1);
 }
 
-/* A damaged one is tried once, each of its names is told, and no scene file takes the magenta. */
+/* A damaged picture is decoded once, each of its names gets a note, and in a scene file it is an
+   error instead of magenta. */
 TEST_IN(damaged_pictures_are_tried_once, begin, fixture_end)
 {
     struct fixture *fixture = *state;
@@ -159,7 +160,7 @@ TEST_IN(damaged_pictures_are_tried_once, begin, fixture_end)
     assert_non_null(reason);
 }
 
-/* Neither of the folder nor of a long name more than 40 characters, nor within the reason. */
+/* Notes quote at most 40 characters of folder or name, also within the reason. */
 TEST_IN(notes_quote_little, begin, fixture_end)
 {
     struct fixture *fixture = *state;

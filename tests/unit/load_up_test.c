@@ -1,4 +1,4 @@
-/* Which way models are up whose files do not say. */
+/* Guessing which axis is up, for models whose files do not state it. */
 #include <math.h>
 
 #include "../scenes.h"
@@ -15,7 +15,7 @@ static struct scene_mesh laid(struct scene_mesh mesh)
     return mesh;
 }
 
-/* A scene of one model; `turn`: +y of what is made points there. */
+/* A scene of one model, made with +y up; `along_z`: rotated so that +z is up. */
 static struct scene *lying(struct scene_mesh mesh, bool along_z)
 {
     struct scene *scene = scene_begin(NULL, "test");
@@ -51,7 +51,7 @@ TEST(what_stands_on_z_is_turned)
 {
     assert_int_equal(guess(pyramid(0), false, false), WHIT_UP_Y);
     assert_int_equal(guess(pyramid(0), true, false), WHIT_UP_Z);
-    /* Elsewhere than on the ground it may be a relief that looks at who sees it. */
+    /* Not at z = 0 it may be a relief whose back is in the z plane. */
     assert_int_equal(guess(pyramid(-1), true, false), WHIT_UP_Y);
     assert_int_equal(guess(mesh_box(1, 1, 1), true, false), WHIT_UP_Y);
     assert_int_equal(guess(mesh_icosphere(1, 3), true, false), WHIT_UP_Y);
@@ -67,7 +67,7 @@ TEST(boards_keep_standing_and_floors_lie)
     scene_destroy(scene);
 }
 
-/* A ball in the middle of a plane, which it reaches below by a share of its height. */
+/* A ball in the middle of a plane; a share of its height is below the plane. */
 static whit_up guess_site(double share)
 {
     struct scene *scene = scene_begin(NULL, "test");
@@ -101,7 +101,7 @@ TEST(nothing_and_odd_numbers_stay)
     assert_int_equal(guess(mesh, false, true), WHIT_UP_Y);
 }
 
-/* Exact, and what points along the axis points up. */
+/* Rotations are exact, and turn the axis to +y. */
 TEST(turns_are_of_whole_numbers)
 {
     static const double axes[][3] = {

@@ -1,5 +1,5 @@
-/* FBX, COLLADA, 3MF and OFF: units, the axis that is up, nodes, materials and textures arrive, and
-   what does not is named. */
+/* FBX, COLLADA, 3MF and OFF: units, up axis, nodes, materials and textures are imported; notes name
+   what is not. */
 #include <math.h>
 
 #include "../random.h"
@@ -15,7 +15,7 @@ static const struct scene *load(struct fixture *fixture, const char *path)
     return fixture->scene;
 }
 
-/* The place in the world of a vertex of an instance, through all nodes above it. */
+/* Checks the world position of a vertex of an instance, through all nodes above it. */
 static void assert_place(const struct scene *scene, uint32_t instance, uint32_t vertex, double x,
                          double y, double z)
 {
@@ -64,7 +64,7 @@ TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
     "</accessor></technique_common></source>"
 #define PARAM(name) "<param name='" name "' type='float'/>"
 
-/* Half metres, z upwards; one triangle on two nodes, the second below the first. */
+/* Unit half a metre, z upwards; one triangle on two nodes, the second below the first. */
 static const char collada[] =
     "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
     "version='1.4.1'><asset><unit meter='0.5' name='half'/><up_axis>Z_UP</up_axis></asset>"
@@ -103,7 +103,7 @@ static const char collada[] =
                       "</instance_geometry></node>%s</node></visual_scene></library_visual_scenes>"
                       "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
 
-/* `libraries` and what a scene's node has of them. */
+/* Writes a COLLADA file with this effect, further `libraries`, and `nodes` that use them. */
 static const char *write_collada(const char *effect, const char *libraries, const char *nodes)
 {
     char *text = string_format(collada, effect, libraries, nodes);
@@ -197,7 +197,7 @@ TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
 
 /* --- FBX ------------------------------------------------------------------------------------ */
 
-/* Units of two centimetres, z upwards and -y to the front. */
+/* Unit two centimetres, z upwards, -y is the front. */
 static const char fbx[] =
     "; FBX 7.4.0 project file\n"
     "FBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n"
@@ -232,7 +232,7 @@ static const char fbx[] =
     "Connections:  {\n\tC: \"OO\",12,0\n\tC: \"OO\",11,12\n\tC: \"OO\",13,12\n"
     "\tC: \"OP\",14,13, \"DiffuseColor\"\n}\n";
 
-/* One face of `corners`. */
+/* Writes an FBX with one face of `corners` corners. */
 static const char *write_fbx(int corners)
 {
     char indices[4096] = "";
@@ -289,7 +289,7 @@ static uint32_t crc_of(const char *text, size_t bytes)
     return ~crc;
 }
 
-/* As it is, or as one block of deflate that packs nothing. */
+/* Adds a file to the ZIP, stored, or deflated as one uncompressed block. */
 static void add_file(struct package *package, const char *name, const char *text, bool deflated)
 {
     uint16_t bytes = (uint16_t)strlen(text), name_bytes = (uint16_t)strlen(name);

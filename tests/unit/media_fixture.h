@@ -1,4 +1,5 @@
-/* Glass, walls that say where they are hit, and optics in double, for tests of refraction. */
+/* Glass, walls whose colour shows where they are hit, and optics in double, for refraction
+   tests. */
 #ifndef TESTS_MEDIA_FIXTURE_H
 #define TESTS_MEDIA_FIXTURE_H
 
@@ -6,7 +7,7 @@
 #include "picture_fixture.h"
 #include "render/renderer.h"
 
-/* Clear, without a highlight: all light is reflected or let through, by Fresnel. */
+/* Clear glass without a highlight: all light is reflected or transmitted, by Fresnel. */
 static inline struct scene_material clear_glass(float ior, uint32_t priority)
 {
     struct scene_material m = matte(0, 0, 0);
@@ -17,8 +18,8 @@ static inline struct scene_material clear_glass(float ior, uint32_t priority)
     return m;
 }
 
-/* A closed profile of radii and heights, turned about the y axis; on the axis the radius is 0. The
-   points go so that the surface faces outwards: up at the outside, down at the axis. */
+/* A surface of revolution about y of a closed profile of radii and heights; points on the axis have
+   radius 0. For a surface that faces outwards the profile goes up outside and down at the axis. */
 static inline struct scene_mesh lathe(const double (*profile)[2], uint32_t count, uint32_t segments)
 {
     struct scene_mesh mesh = mesh_zeroed(count * segments, 2 * (count - 1) * segments);
@@ -50,8 +51,8 @@ static inline struct scene_mesh lathe(const double (*profile)[2], uint32_t count
     return mesh;
 }
 
-/* Shines with the coordinates at which it is met: red and green go from 0 to 1 over x and y from
-   -side to side, blue is 1. Faces +z. */
+/* Adds a wall that faces +z and emits the coordinates of the hit: red and green go from 0 to 1 for
+   x and y from -side to side, blue is 1. */
 static inline void add_coordinate_wall(struct scene *scene, double z, double side)
 {
     struct scene_mesh mesh = mesh_zeroed(4, 2);
@@ -69,13 +70,13 @@ static inline void add_coordinate_wall(struct scene *scene, double z, double sid
     add_object(scene, mesh, unlit(1, 1, 1), 0, 0, z);
 }
 
-/* Where a coordinate wall was met, by the colour that came from it. */
+/* The coordinate (`axis` 0: x, 1: y) at which a coordinate wall was hit, by its colour. */
 static inline double wall_coordinate(const float *color, int axis, double side)
 {
     return side * (2.0 * (double)color[axis] / (double)color[2] - 1.0);
 }
 
-/* The direction of a pixel's camera ray, z = -1, of a camera that looks along -z. */
+/* x and y of a pixel's camera ray with z = -1, for a camera that looks along -z. */
 static inline void pixel_slope(const struct image *image, uint32_t x, uint32_t y, double fov_y,
                                double slope[2])
 {
@@ -96,7 +97,7 @@ static inline double fresnel(double cos1, double n1, double n2)
     return 0.5 * (s * s + p * p);
 }
 
-/* What a pixel lost by rays that were not traced: for --depth and for --bailout. */
+/* Reads a pixel's weights of rays that were not traced: by depth and by bail-out. */
 static inline void pixel_cut(const struct fixture *f, size_t pixel, float cut[2])
 {
     assert_int_equal(buffer_read(f->renderer->picture.buffers.queues.cut_sums,

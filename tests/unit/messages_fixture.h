@@ -1,4 +1,4 @@
-/* What a check is told by the library. */
+/* Collects the library's log messages. */
 #ifndef MESSAGES_FIXTURE_H
 #define MESSAGES_FIXTURE_H
 
@@ -11,7 +11,7 @@ static struct messages {
     int count, errors, warnings, validation; /* count: notes too; validation: of the layers */
     char last[1024], last_error[1024];
     int lines;          /* errors and warnings */
-    char text[1 << 14]; /* of these, one a line, from the first */
+    char text[1 << 14]; /* errors and warnings, one per line */
 } messages;
 
 static inline void messages_collect(void *user, whit_log_level level, const char *message)
@@ -31,7 +31,7 @@ static inline void messages_collect(void *user, whit_log_level level, const char
     snprintf(told->text + used, sizeof told->text - used, "%s\n", message);
 }
 
-/* A log of all levels, of which nothing was told yet. */
+/* A log of all levels that collects into *told, which is emptied. */
 static inline whit_log messages_log(struct messages *told)
 {
     *told = (struct messages){0};

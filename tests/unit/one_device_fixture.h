@@ -1,4 +1,4 @@
-/* A device for all checks of a program. */
+/* One device for all tests of a program. */
 #ifndef ONE_DEVICE_FIXTURE_H
 #define ONE_DEVICE_FIXTURE_H
 

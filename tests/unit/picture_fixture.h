@@ -62,7 +62,7 @@ static inline struct scene *dark_scene(const double eye[3], const double target[
     return scene;
 }
 
-/* `mesh` with `m`, moved; the index of the material. */
+/* Adds `mesh` with material `m`, moved; gives the index of the material. */
 static inline uint32_t add_object(struct scene *scene, struct scene_mesh mesh,
                                   struct scene_material m, double x, double y, double z)
 {
@@ -70,7 +70,7 @@ static inline uint32_t add_object(struct scene *scene, struct scene_mesh mesh,
     return scene->material_count - 1;
 }
 
-/* A white floor in y = 0, seen from `height` above. */
+/* A white floor at y = 0, seen from `height` above. */
 static inline struct scene *floor_scene(double height)
 {
     struct scene *scene = dark_scene((double[]){0, height, 0}, (double[]){0, 0, 0});
@@ -78,7 +78,7 @@ static inline struct scene *floor_scene(double height)
     return scene;
 }
 
-/* A panel in y = `height` that glows to both sides, as a light in its plane; seen from 3 above. */
+/* A panel at y = `height` with a two-sided light in its plane, seen from 3 above. */
 static inline struct scene *glowing_panel(double height)
 {
     struct scene *scene = dark_scene((double[]){0, height + 3, 0}, (double[]){0, height, 0});
@@ -100,7 +100,7 @@ static inline uint32_t add_two_texels(struct scene *scene, uint8_t first, uint8_
     return scene_put_texture(scene, 2, 1, rgba);
 }
 
-/* Nearest texels, held beyond the edges. */
+/* Uses a texture with nearest texels, clamped at its edges. */
 static inline void use_texture(struct scene_material *m, enum scene_slot slot, uint32_t texture)
 {
     struct scene_texture_use *use = &m->textures[slot];
@@ -119,7 +119,7 @@ static inline const float *middle(const struct image *image)
     return &image->pixels[4 * ((size_t)image->height / 2 * image->width + image->width / 2)];
 }
 
-/* The sum of all red. */
+/* The sum of the red channel over all pixels. */
 static inline double red_sum(const struct image *image)
 {
     double sum = 0.0;
@@ -128,7 +128,7 @@ static inline double red_sum(const struct image *image)
     return sum;
 }
 
-/* No colour is anything but a number from `min` to `max`; alpha is from 0 to 1. */
+/* Checks that all colours are from `min` to `max`, and alpha from 0 to 1. */
 static inline void assert_range(const struct image *image, double min, double max)
 {
     for (size_t i = 0; i < (size_t)image->width * image->height * 4; ++i) {

@@ -1,4 +1,4 @@
-/* The smaller levels of textures, and which of them a pixel asks for. */
+/* Mipmap levels of textures, and which of them a pixel uses. */
 #include <math.h>
 
 #include "../random.h"
@@ -29,8 +29,8 @@ TEST(levels_go_down_to_one_texel)
 
 /* ---- A box filter by its definition ---- */
 
-/* How much of texel `texel` lies in the part of the side that texel `at` of `to` covers, of `from`.
- */
+/* On one axis: how much of texel `texel` of a side of `from` texels is covered by texel `at` of the
+   next level, whose side has `to` texels. */
 static double overlap(uint32_t from, uint32_t to, uint32_t texel, uint32_t at)
 {
     double low = (double)at * from / to, high = (at + 1.0) * from / to;
@@ -47,7 +47,7 @@ static double encode(double value, int channel, enum mipmap_kind kind)
     return 255.0 * (channel < 3 && kind != MIPMAP_LINEAR ? srgb_from_linear(value) : value);
 }
 
-/* The next level of a picture of four doubles a texel, in place. */
+/* Replaces a picture, four doubles per texel, by its next level. */
 static void shrink(double *rgba, uint32_t *width, uint32_t *height, enum mipmap_kind kind)
 {
     uint32_t across = *width > 1 ? *width / 2 : 1, down = *height > 1 ? *height / 2 : 1;
@@ -94,7 +94,7 @@ static void check_levels(uint32_t width, uint32_t height, enum mipmap_kind kind)
     while (width * height > 1) {
         shrink(rgba, &width, &height, kind);
         for (size_t i = 0; i < 4 * (size_t)width * height; ++i, ++at) {
-            /* A channel's code is halfway between two at the most, but for roundings of floats. */
+            /* A code is off by at most half a step, and by the rounding of floats. */
             double low = decode(fmax(*at - 0.5, 0.0), i % 4, kind) - 1e-6,
                    high = decode(fmin(*at + 0.5, 255.0), i % 4, kind) + 1e-6;
             if (!(rgba[i] >= low && rgba[i] <= high))

@@ -1,4 +1,4 @@
-/* Rays that meet a scene where tests break, and what the twin in C says of them. */
+/* Rays at the hardest points of a scene, and comparison of their hits with the twin in C. */
 #ifndef TESTS_RAY_FIXTURE_H
 #define TESTS_RAY_FIXTURE_H
 
@@ -7,7 +7,7 @@
 #include "scene/pose.h"
 #include "twin/traverse.h"
 
-/* A vertex or a point of an edge of a random triangle in world space, where tests break. */
+/* A vertex or a point of an edge of a random triangle, in world space. */
 static inline void aim_at_scene(const struct fixture *f, const struct scene_pose *pose,
                                 uint64_t *state, double out[3])
 {
@@ -26,7 +26,7 @@ static inline void aim_at_scene(const struct fixture *f, const struct scene_pose
     affine_point(&pose->instances[i], at, out);
 }
 
-/* A quarter each: random, aimed, axis-parallel, short. */
+/* Makes rays, a quarter each: random, aimed at the scene, parallel to an axis, short. */
 static inline void aim_rays(const struct fixture *f, struct gpu_ray *rays, uint32_t count,
                             uint64_t state)
 {
@@ -61,7 +61,7 @@ static inline void aim_rays(const struct fixture *f, struct gpu_ray *rays, uint3
     scene_pose_finish(&pose);
 }
 
-/* Half of them towards random points in the scene's bounds, half anywhere. */
+/* Makes rays, half of them towards random points in the scene's bounds, half in any direction. */
 static inline void aim_at_bounds(const struct fixture *f, struct gpu_ray *rays, uint32_t count,
                                  uint64_t state)
 {
@@ -77,7 +77,7 @@ static inline void aim_at_bounds(const struct fixture *f, struct gpu_ray *rays, 
                 i & 1 ? random_float_signed(&state) : (float)(at - (double)rays[i].origin[k]);
         }
     }
-    rays[1] = (struct gpu_ray){.dir = {0, 0, 0}}; /* not even started, but a ray */
+    rays[1] = (struct gpu_ray){.dir = {0, 0, 0}}; /* an empty interval: valid, hits nothing */
     rays[2] = (struct gpu_ray){.dir = {0, -0.0f, 1}, .t_max = INFINITY};
     scene_pose_finish(&pose);
 }
@@ -120,7 +120,7 @@ static inline struct unlike trace_beside_twin(const struct fixture *f, bool any,
     return unlike;
 }
 
-/* How many are met. */
+/* Number of rays that hit something. */
 static inline uint32_t count_met(const struct gpu_hit *hits, uint32_t count)
 {
     uint32_t met = 0;
@@ -129,8 +129,8 @@ static inline uint32_t count_met(const struct gpu_hit *hits, uint32_t count)
     return met;
 }
 
-/* The device's closest hits, which are left in `hits`, are the twin's; there is any hit just where
-   there is a closest one; costs of both are the twin's too. */
+/* Checks that the device's closest hits, which are left in `hits`, equal the twin's, that any-hit
+   finds a hit exactly where closest-hit does, and that costs of both equal the twin's. */
 static inline void check_rays(const struct fixture *f, const char *label,
                               const struct gpu_ray *rays, uint32_t count, struct gpu_hit *hits)
 {

@@ -1,12 +1,12 @@
-/* Every effect at once, by the device and by the reference in double: what the scenes of scenes/
- * lack. */
+/* Compares the device with the reference in scenes that have all effects at once, which no scene in
+   scenes/ has. */
 #include "picture_fixture.h"
 #include "reference_fixture.h"
 #include "unit.h"
 
 enum { SIDE = 48 };
 
-/* 4 x 4 texels of `lowest` and above; alpha from 0 to 255 where wanted. */
+/* Adds a texture of 4 x 4 random texels from `lowest` on; `alpha`: with alpha from 0 to 255. */
 static uint32_t add_noise(struct scene *scene, uint8_t lowest, bool alpha)
 {
     uint64_t random = 17;
@@ -207,8 +207,9 @@ TEST(every_effect_agrees_with_the_device)
     print_message("  %u of %u pixels over 1e-3, largest %.2g; for whole stops %u, largest %.2g\n",
                   d.over, SIDE * SIDE, d.largest, stops.over, stops.largest);
     assert_true(d.over * 500 <= SIDE * SIDE); /* 0.2 %, for edges */
-    /* Rounding to 1/64 stops: at most 0.6 % of the light of each of four filters on the way. More
-       than what the device is off by, or this would not tell whether it rounds. */
+    /* Rounding to 1/64 stops changes at most 0.6 % of the light per filter, with up to four on the
+       way. It must be more than the device's error, or this would not show whether the reference
+       rounds. */
     assert_true(stops.largest > d.largest && stops.largest < 4 * 0.006);
     image_finish(&device);
     picture_finish(&whole);
@@ -216,9 +217,9 @@ TEST(every_effect_agrees_with_the_device)
     fixture_close(&f);
 }
 
-/* Two smooth bodies of one shape that touch all over, the inner one of higher priority and turned,
-   so that what is hit first is another instance than what is seen; before a true sphere that
-   touches a mesh. Lit from the side, so that shadow rays leave along the surfaces. */
+/* Two smooth bodies of one shape that touch everywhere. The inner one has the higher priority and
+   is rotated, so that the instance hit first is not the visible one. Beside it the same with a true
+   sphere and a mesh. Lit from the side, so that shadow rays graze the surfaces. */
 static struct scene *touching_smooth_bodies(void)
 {
     struct scene *scene = dark_scene((double[]){0, 1.5, 5}, (double[]){0, 0, 0});

@@ -6,7 +6,8 @@
 
 #include "reference/reference.h"
 
-/* Colours and identities, of the reference's own statistics those that matter. */
+/* Renders colours and ids with the reference, and takes those statistics that renderers have
+   too. */
 static inline struct picture reference_picture(struct accel *accel,
                                                const struct reference_params *params)
 {

@@ -1,5 +1,5 @@
-/* The reference in double against formulas: its rays to 1e-12, its pictures to the rounding to
- * float. */
+/* Compares the reference with formulas: its rays within 1e-12, its pictures within the rounding to
+   float. */
 #include "media_fixture.h"
 #include "reference_fixture.h"
 #include "scene/pose.h"
@@ -62,7 +62,7 @@ static void assert_close(double value, double expected, double tolerance)
         fail_msg("%.17g is not %.17g within %g", value, expected, tolerance);
 }
 
-/* From (0, 0, 0) along -z, tilted towards +x by `angle`, at a face in the plane z = -4. */
+/* A camera at (0, 0, 0) that looks along -z, turned towards +x by `angle`, at a face at z = -4. */
 static struct scene *facing_scene(double angle, struct scene_material m)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){sin(angle), 0, -cos(angle)});
@@ -117,8 +117,7 @@ TEST(glass_follows_fresnel_and_snell)
         check_glass(angles[i / 6], iors[i / 2 % 3], i % 2);
 }
 
-/* From inside of a block of glass of index 1.5, beside and beyond the critical angle of 41.8
- * degrees. */
+/* From inside of glass of index 1.5, just below and beyond the critical angle of 41.8 degrees. */
 TEST(light_is_reflected_whole_from_inside)
 {
     for (int beyond = 0; beyond < 2; ++beyond) {
@@ -161,7 +160,8 @@ TEST(bodies_absorb_by_beer)
     close_reference(&d);
 }
 
-/* Nothing absorbs under a sky of 1: what reaches the sky and what was cut add up to 1. */
+/* A furnace test: without absorption, under a sky of 1, the weights of rays that reach the sky and
+   of rays that were cut add up to 1. */
 static void check_furnace(const struct drawn *d, uint32_t x, uint32_t y)
 {
     struct rays rays = reference_rays(d->reference, x, y, 0);
@@ -225,7 +225,7 @@ TEST(light_falls_with_cosine_and_square)
     assert_close(pixel_light(scene, &of_one_pixel), 2 * 0.8, 2e-7);
 }
 
-/* (n . h)^shininess, and GGX where light, eye and normal are one direction: 1 / (4 alpha^2). */
+/* Blinn-Phong: (n . h)^shininess; GGX where light, eye and normal coincide: 1 / (4 alpha^2). */
 TEST(highlights_follow_their_formulas)
 {
     struct scene_material m = matte(0, 0, 0);
@@ -244,7 +244,7 @@ TEST(highlights_follow_their_formulas)
     assert_close(pixel_light(scene, &of_one_pixel), 0.6 / (4 * 0.0625), 1e-6);
 }
 
-/* A rectangle above the floor, parallel to it: 4 times the closed form of a quarter. */
+/* A rectangle parallel to the floor: 4 times the closed form of one quarter. */
 TEST(emitters_follow_their_form_factor)
 {
     struct scene *scene = floor_scene(8);
@@ -259,7 +259,8 @@ TEST(emitters_follow_their_form_factor)
     assert_close(pixel_light(scene, &of_one_pixel), 5 * factor, 2e-6);
 }
 
-/* Light through sheets: (1 - opacity) each; in whole stops what kernels make of that. */
+/* Light through sheets is multiplied by 1 - opacity for each; with whole_stops by the rounded value
+   of the kernels. */
 TEST(filters_multiply)
 {
     for (int stops = 0; stops < 2; ++stops) {
@@ -356,8 +357,7 @@ TEST(ray_trees_add_up_to_pixels)
     close_reference(&d);
 }
 
-/* First rays are those of kernels (camera_all_rays has their bits), but for the roundings of
- * floats. */
+/* Camera rays equal those of the kernels (camera_all_rays has their bits) within float rounding. */
 TEST(cameras_are_those_of_kernels)
 {
     static const struct {
@@ -400,7 +400,8 @@ TEST(cameras_are_those_of_kernels)
     }
 }
 
-/* Trees of every kind hold the same surfaces; in one tree for all they are placed by floats. */
+/* Pictures do not depend on the kind of tree; a single-level tree has vertices rounded to
+   floats. */
 TEST(trees_do_not_matter)
 {
     const struct accel_params trees[] = {{.mesh.builder = WHIT_BUILD_MEDIAN},
@@ -428,7 +429,8 @@ TEST(trees_do_not_matter)
     close_reference(&d);
 }
 
-/* What glows lies in its light's plane, but for what its corners are rounded by in one tree. */
+/* An emissive surface does not light itself: it is in its light's plane, except that a single-level
+   tree rounds its corners. */
 TEST(emitters_do_not_light_themselves)
 {
     const struct accel_params flat = {.flatten = true};
