@@ -1,5 +1,5 @@
-/* One renderer at one time after another: the pictures are those of renderers made at these times,
-   byte for byte. */
+/* One renderer that is set to one time after another: each picture is, byte for byte, that of a
+   renderer that was made for this time. */
 #include "accel/pose.h"
 #include "ray_fixture.h"
 #include "render_scenes.h"
@@ -52,7 +52,8 @@ static struct scene *everything_moves(void)
     return scene;
 }
 
-/* One object, in its place at 0 s and at 2 s: without a transform the kernel is another one. */
+/* One object that moves, but is where its file puts it at 0 s and at 2 s: an object without a
+   transform gets another kernel. */
 static struct scene *leaves_its_place(void)
 {
     static const float times[] = {0, 1, 2};
@@ -66,7 +67,8 @@ static struct scene *leaves_its_place(void)
     return scene;
 }
 
-/* Even at first, then each 1.8 times as far as the one before: a tree by areas is deep there. */
+/* Evenly spaced at 0 s; at 1 s each is 1.8 times as far away as the one before, so that a tree that
+   is built by areas is deep. */
 static struct scene *strung_out(void)
 {
     enum { COUNT = 64 };
@@ -174,7 +176,7 @@ TEST_BY_TURNS(a_deeper_tree_gets_a_larger_stack, 0, 2)
     fixture_close(&f);
 }
 
-/* Root mean square over all channels, relative to the mean of the first. */
+/* The root mean square difference over all channels, relative to the mean of the first image. */
 static double difference(const struct image *a, const struct image *b)
 {
     size_t count = 4 * (size_t)a->width * a->height;
@@ -187,9 +189,9 @@ static double difference(const struct image *a, const struct image *b)
     return sqrt(sum / (double)count) / (mean / (double)count);
 }
 
-/* The vertices' last bits differ, and so do those of the pictures; a ray at an edge may go the
-   other way. At 0.9 s the glass is a mirrored instance: with inside and outside exchanged, or a
-   normal by the wrong matrix, the difference is 0.1 or more. */
+/* A flattened scene's vertices differ in their last bits, and so do the pictures; a ray at an edge
+   may pass it on the other side. At 0.9 s the glass is a mirrored instance: with inside and outside
+   exchanged, or with a normal by the wrong matrix, the difference would be 0.1 or more. */
 TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
 {
     static const double times_s[] = {0.0, 0.9, 2.0};
@@ -207,7 +209,7 @@ TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
     fixture_close(&f);
 }
 
-/* Batches of rays see what pictures see. */
+/* Rays that are traced in batches meet the scene at the time that pictures show. */
 TEST(traced_rays_follow)
 {
     struct fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);

@@ -1,6 +1,6 @@
-/* The general kernel draws while a thread compiles the specialised one: the same bytes, whichever
-   it is, and whatever comes in between. The linker puts the functions below around thread_start and
-   thread_join, so that the test says when the thread begins. */
+/* The general kernel draws while a thread compiles the specialised one: pictures are the same bytes
+   whichever kernel draws them, and whatever is called in between. The linker puts the functions
+   below in place of thread_start and thread_join, so that the test says when the thread begins. */
 #include <semaphore.h>
 
 #include "base/threads.h"
@@ -14,7 +14,8 @@ struct thread *__wrap_thread_start(void (*fn)(void *context), void *context);
 void __real_thread_join(struct thread *thread);
 void __wrap_thread_join(struct thread *thread);
 
-/* The one thread that compiles. */
+/* The thread that compiles, of which there is never more than one: what it runs, and the signals
+   that let it begin and that say that it has ended. */
 static struct {
     void (*fn)(void *context);
     void *context;
@@ -48,8 +49,7 @@ static void await_thread(void)
     assert_int_equal(sem_wait(&compiling.ended), 0);
 }
 
-/* Lets the compiling thread begin before it is waited for, so that callers that wait need not do
-   that. */
+/* Tells the compiling thread to begin before it joins it, so that callers need not do so. */
 void __wrap_thread_join(struct thread *thread)
 {
     let_thread_begin();
@@ -63,7 +63,7 @@ static whit_stats stats_of(const struct renderer *renderer)
     return stats;
 }
 
-/* The thread has not begun. */
+/* Draws while the thread has not begun: the picture is the general kernel's. */
 static struct image render_general(struct fixture *f)
 {
     struct image image = render(f);
@@ -71,7 +71,7 @@ static struct image render_general(struct fixture *f)
     return image;
 }
 
-/* The thread has ended: the next picture is the specialised kernel's. */
+/* Lets the thread run to its end and draws then: the picture is the specialised kernel's. */
 static struct image render_specialised(struct fixture *f)
 {
     let_thread_begin();
@@ -81,8 +81,8 @@ static struct image render_specialised(struct fixture *f)
     return image;
 }
 
-/* Its rows of triangles are shorter: no normals, no colours. Of two materials, so that it shows
-   when a kernel takes another row for a triangle's. */
+/* Without normals and colours, which makes the rows of its triangles shorter. It has two materials,
+   so that a kernel that reads the wrong row for a triangle draws another picture. */
 static struct scene *flat_scene(void)
 {
     struct scene *scene = terrain_scene();
@@ -96,8 +96,8 @@ static struct scene *flat_scene(void)
     return scene;
 }
 
-/* A general kernel without these is sooner made, and has more than the scenes call for all the
-   same: textures and cut-outs. */
+/* Effects left out so that the general kernel compiles faster. It still has some that the scenes do
+   not call for: textures and cut-outs. */
 static const uint64_t removed =
     UINT64_C(1) << SCENE_EFFECT_NORMAL_MAPS | UINT64_C(1) << SCENE_EFFECT_EMISSION |
     UINT64_C(1) << SCENE_EFFECT_SPOT_LIGHTS | UINT64_C(1) << SCENE_EFFECT_AREA_LIGHTS |
@@ -121,7 +121,7 @@ TEST(both_kernels_draw_the_same)
     static const whit_camera cameras[] = {GLASS_CAMERA, CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40),
                                           CAMERA_AT(0, 6, 14, 0, 0, 0, 0, 1, 0, 40)};
     for (int i = 0; i < 3; ++i) {
-        /* Packets and classes are chosen by whether kernels are for many pictures. */
+        /* Set, since else they would depend on whether the kernels are for many pictures. */
         whit_renderer_params params = beside_params(cameras[i]);
         params.packets = WHIT_PACKETS_OFF;
         params.classes = WHIT_CLASSES_MANY;
@@ -147,7 +147,7 @@ TEST(both_kernels_draw_the_same)
     }
 }
 
-/* What is taken out by name stays out of the general kernel too. */
+/* An effect that is removed by name is missing in the general kernel too. */
 TEST(removed_effects_stay_removed)
 {
     whit_renderer_params params = beside_params(glass_camera);
@@ -163,7 +163,7 @@ TEST(removed_effects_stay_removed)
     fixture_close(&f);
 }
 
-/* With everything compiled there is nothing to wait for. */
+/* A renderer that is asked for a kernel with all effects starts no thread. */
 TEST(all_effects_need_no_thread)
 {
     whit_renderer_params params = beside_params((whit_camera){.name = NULL});
@@ -176,8 +176,8 @@ TEST(all_effects_need_no_thread)
     fixture_close(&f);
 }
 
-/* Other scenes, other times, passes that are gone, cancelled pictures: all while a thread is at
-   work or has just left its pipeline. */
+/* Other scenes, other times, passes that were destroyed, cancelled pictures: each while the thread
+   is at work, or when it has just finished its pipeline. */
 TEST(anything_may_come_in_between)
 {
     bool cancel = false;

@@ -1,4 +1,4 @@
-/* How near the surfaces of bodies of media come: never said to be farther apart than they are. */
+/* The distance found between the surfaces of bodies of media: never more than the true one. */
 #include <math.h>
 
 #include "../cases.h"
@@ -46,7 +46,7 @@ static void assert_gap(struct scene *scene, double gap)
     scene_destroy(scene);
 }
 
-/* A ball of size[0]; a box; or, where size[1] is 0 and size[2] is not, a plane. */
+/* A ball of radius size[0]; a box; or, where size[1] is 0 and size[2] is not, a plane. */
 struct solid {
     double size[3], at[3];
 };
@@ -87,7 +87,8 @@ TEST(gaps_are_known)
     }
 }
 
-/* One body has none beside it, whatever its own shape; what is opaque or thin is none. */
+/* A lone body has no other to be near to, whatever its shape; and opaque or thin-walled objects are
+   no bodies. */
 TEST(one_body)
 {
     struct scene *scene = scene_begin(NULL, "one");
@@ -102,7 +103,8 @@ TEST(one_body)
     scene_destroy(scene);
 }
 
-/* A stretched sphere is known by its box alone, one that is turned and made larger as it is. */
+/* A stretched sphere is taken as its box; a sphere that is only turned and made
+   larger is taken as the sphere it is. */
 TEST(placed_spheres)
 {
     const double ball[4] = {0, 0, 0, 1};
@@ -127,7 +129,7 @@ static double apart(const double a[3], const double b[3])
     return sqrt(d2);
 }
 
-/* Beside the nearest of many points of a triangle. */
+/* Against the distance between a ball and the nearest of many points of a triangle. */
 TEST(no_distance_is_too_large)
 {
     enum { STEPS = 24 };

@@ -1,4 +1,5 @@
-/* Without trees: the hits, pictures and ids that trees give, whatever the number of triangles. */
+/* Renderers without trees give the hits, pictures and ids that trees give, whatever the number of
+   triangles. */
 #include "messages_fixture.h"
 #include "ray_fixture.h"
 #include "render/probe.h"
@@ -11,7 +12,8 @@ enum { RAYS = 500 };
 static const struct accel_params no_trees = {.mesh = {.builder = WHIT_BUILD_NONE},
                                              .update = ACCEL_REFIT};
 
-/* Against the C twin, hits and costs, and against another one's trees. */
+/* Compares hits and costs with those of the C twin, and hits with those of `trees`, which are the
+   same scene's. */
 static void check_hits(struct fixture *f, const struct accel *trees)
 {
     const uint32_t in_mesh = f->scene->meshes[0].triangle_count;
@@ -30,15 +32,15 @@ static void check_hits(struct fixture *f, const struct accel *trees)
         traverse_brute_float(f->accel, &rays[i], &brute);
         assert_memory_equal(&tree, &hits[i], sizeof tree);
         assert_memory_equal(&brute, &hits[i], sizeof brute);
-        /* Nothing in front of a box is met, so no hit takes it out: all of a mesh, or none of it.
-         */
+        /* All triangles share one box, and no hit lies before it that would rule it out: a ray
+           tests all triangles of a mesh or none. */
         assert_int_equal(cost.triangles % in_mesh, 0);
         assert_int_equal(cost.leaves * BVH_LEAF_MAX / in_mesh, cost.triangles / in_mesh);
         assert_true(hits[i].primitive == HIT_NONE || cost.triangles > 0);
     }
 }
 
-/* Every node of [first, first + count) but the unused one has this box. */
+/* All nodes of [first, first + count), but for the unused one, have the same box. */
 static void check_boxes(const struct accel *accel, uint32_t first, uint32_t count)
 {
     const struct gpu_bvh_node *nodes = &accel->nodes[first];
@@ -48,7 +50,7 @@ static void check_boxes(const struct accel *accel, uint32_t first, uint32_t coun
     }
 }
 
-/* All in one plane, and so is the box. */
+/* All triangles lie in one plane, so that their box is flat. */
 static struct scene *plain_scene(void)
 {
     struct scene *scene = scene_begin(&fixture_log, "plain");
@@ -73,8 +75,8 @@ TEST(rays_equal_those_of_trees)
     }
 }
 
-/* Triangles one behind the other, all in one box that all of them meet: in a mesh of their own
-   each, or in one. The nearest is anywhere. */
+/* Triangles one behind the other, tested by every ray that meets their one box. Each is an instance
+   of one triangle (`apart`), or all are one mesh. The nearest may be anywhere in their order. */
 static struct scene *stack_scene(uint32_t count, bool apart)
 {
     struct scene *scene = scene_begin(&fixture_log, "stack");
@@ -95,7 +97,8 @@ static struct scene *stack_scene(uint32_t count, bool apart)
     return scene;
 }
 
-/* Rays whose hit is anywhere in the stack, the last of them a miss: as the twin has them. */
+/* Traces 16 rays, each of which takes hits only from its own place in the stack on, and the last of
+   which misses all of it. Compares the hits with the twin's. */
 static whit_result trace_stack(const struct fixture *f, uint32_t count)
 {
     struct gpu_ray rays[16];
@@ -132,8 +135,8 @@ static void check_refused(struct scene *scene, const char *why)
     scene_destroy(scene);
 }
 
-/* As many primitives, or instances, as are possible, to the last of them: within the turns that a
-   driver grants. */
+/* The largest number of triangles, or of instances, for which the turns of loops suffice that a
+   driver grants: the last of them is drawn too, and one more is refused. */
 TEST(max_are_drawn_and_more_are_refused)
 {
     const struct {
@@ -170,8 +173,8 @@ static void check_picture(struct scene *scene, struct scene *again,
     picture_finish(&without);
 }
 
-/* Two lights, four instances, mirror and glass. Then cut-outs, blending and thin glass; media that
-   touch; balls, and shadows through filters; emitters. */
+/* The scenes: two lights, four instances, mirror and glass; cut-outs, blending and thin glass;
+   media that touch; balls, and shadows through filters; emitters. */
 TEST(pictures_equal_those_of_trees)
 {
     static const char *const names[] = {"layers", "glass-of-water", "whitted", "room"};
@@ -187,8 +190,8 @@ TEST(pictures_equal_those_of_trees)
         check_picture(file_scene(names[i]), file_scene(names[i]), &params);
 }
 
-/* All points of an area light share what a driver grants: refused where they are too many, and
-   noticed by the kernel. */
+/* The shadow rays to all points of an area light share the turns of loops that a driver grants:
+   too many points are refused, and the kernel itself notices too. */
 TEST(many_shadows_are_refused)
 {
     struct scene *scene = scene_begin(&fixture_log, "ground");

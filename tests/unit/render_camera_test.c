@@ -9,7 +9,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* A ball that shows 1 everywhere. */
+/* Adds a ball that is drawn with the value 1 everywhere. */
 static void add_marker(struct scene *scene, double radius, double x, double y, double z)
 {
     add_object(scene, mesh_sphere(radius, 16, 8), unlit(1, 1, 1), x, y, z);
@@ -86,9 +86,9 @@ static struct patch measure(const struct image *image)
     return patch;
 }
 
-/* Behind, before and in the focus: the circle of confusion in a plane at distance 1 has the radius
-   lens * |1 / z - 1 / focus|. A disk of even brightness has a mean square distance of half its
-   radius squared; 64 points in place of it are within 2 % of that. */
+/* Balls behind, before and in the focus: in a plane at distance 1 a point is blurred to a circle
+   with the radius lens * |1 / z - 1 / focus|. The mean square distance from the middle of an evenly
+   bright disk is half its radius squared; for 64 points of the lens it is within 2 % of that. */
 TEST(blur_has_its_size)
 {
     const double pixel = 2.0 * tan(0.3) / 75.0, ball = 1.5; /* radius of the ball, in pixels */
@@ -280,8 +280,8 @@ TEST(view_along_up_has_a_picture)
     fixture_close(&f);
 }
 
-/* The ray through the middle of the top row is half the angle off the view, but for half a pixel.
- */
+/* A ray through the top row's middle leaves the direction of view by half the angle of view, less
+   half a pixel. */
 TEST(angles_of_view_are_kept)
 {
     const double angles[] = {1e-3, 0.01, 1.0, 90.0, 179.0, 179.9};
@@ -302,7 +302,7 @@ TEST(angles_of_view_are_kept)
         camera_ray(&f.renderer->frame, CAMERA_PERSPECTIVE, 4, 0, &sample, &ray);
         assert_near(ray.dir[1], half / sqrt(1.0 + half * half), 1e-6);
         assert_near(ray.dir[2], -1.0 / sqrt(1.0 + half * half), 1e-6);
-        /* The sky's gradient is the height of the direction. */
+        /* The sky's gradient makes the pixel's value the y of the ray's direction. */
         assert_near(image.pixels[4 * 4], (double)ray.dir[1], 1e-6);
         image_finish(&image);
         fixture_close(&f);
@@ -371,7 +371,7 @@ TEST(sizes_may_be_odd)
     fixture_close(&f);
 }
 
-/* Walls a millionth and a million away, each to the edge of the other. */
+/* Two walls, one a millionth away and one a million, which in the picture meet at one edge. */
 TEST(near_and_far_share_a_picture)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 0}, (double[]){0, 0, -1});

@@ -15,7 +15,7 @@ static struct fixture open_counting(struct scene *scene, uint32_t order)
     return fixture_open(scene, NULL, &params);
 }
 
-/* Device and C agree on every hit and every cost. The sum over all rays. */
+/* Asserts that the device and C agree on every hit and every cost. Gives the sum over all rays. */
 static whit_cost check_costs(const struct fixture *f, bool any)
 {
     struct gpu_ray rays[RAYS];
@@ -62,7 +62,7 @@ TEST(instances_cost_the_same)
     check_scene(ring_scene, true);
 }
 
-/* Margins of boxes change what is visited, on both sides alike, but no hit. */
+/* The margins of boxes change which boxes are visited, on the device as in C, but change no hit. */
 TEST_BY_TURNS(clipped_trees_cost_the_same, 0, 2)
 {
     struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
@@ -138,7 +138,8 @@ static struct accel *caterpillar_accel(struct scene **scene, uint32_t depth)
     return accel;
 }
 
-/* A chain of `depth`, of which the renderer is told `stated`. */
+/* Traces through a chain of `depth` nodes, while the renderer is told that its depth is `stated`.
+ */
 static whit_result trace_caterpillar(uint32_t depth, uint32_t stated,
                                      const whit_renderer_params *params, struct gpu_hit hits[2],
                                      struct gpu_cost costs[2])
@@ -332,9 +333,9 @@ static struct scene *seen_by(struct scene *scene, const struct scene_camera *cam
     return scene;
 }
 
-/* From so far away that the last bit of a camera ray is a tenth of a triangle; the panorama, which
-   cannot look closer, over a terrain of that much smaller triangles. The first sample of several is
-   off the middles of pixel and lens. */
+/* From so far away that the last bit of a camera ray is a tenth of a triangle wide. The panorama,
+   which cannot zoom in, looks at a terrain whose triangles are smaller by as much. The first of
+   several samples is not in the middle of pixel and lens. */
 TEST(camera_rays_are_those_of_c)
 {
     static const struct scene_camera cameras[] = {
@@ -365,7 +366,8 @@ TEST(camera_rays_are_those_of_c)
     }
 }
 
-/* Sums are of all samples; pixels hold the first one, whatever came after it. */
+/* The sums of costs are over all samples; each pixel's costs are those of its first sample alone.
+ */
 TEST(samples_add_up)
 {
     whit_renderer_params params = {.width = 40,
@@ -383,7 +385,7 @@ TEST(samples_add_up)
     assert_true(first.costs[RAY_SHADOW].rays == first.rays_shadow);
     assert_true(first.costs[RAY_REFLECTED].rays == first.rays_reflected);
     counted_finish(&counted);
-    /* Again: nothing is left over. */
+    /* A second picture counts the same: nothing is left over from the first. */
     counted = render_counted(&f);
     assert_memory_equal(first.costs, counted.picture.stats.costs, sizeof first.costs);
     counted_finish(&counted);

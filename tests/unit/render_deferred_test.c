@@ -1,5 +1,5 @@
-/* Rays that floats leave open at `exact` wait for a dispatch of their own: what they find there is
-   what a kernel finds that looks in place, which is what counting takes. */
+/* Where floats cannot decide a ray's hit at `exact`, the ray waits for a dispatch of its own. It
+   finds there what a kernel finds that decides on the spot, as the kernels that count do. */
 #include "ray_fixture.h"
 
 #include "render_scenes.h"
@@ -69,8 +69,8 @@ static void check_picture(const char *name, struct scene *scene, whit_camera cam
     fixture_close(&f);
 }
 
-/* Looked at from straight above a corner of the grid of the ground: whole rows and columns of
-   pixels are seen along edges. */
+/* The view is from straight above a corner of the ground's grid, so that the rays of whole rows and
+   columns of pixels run along edges. */
 TEST(pictures_are_those_of_looks_in_place)
 {
     check_picture("ground", glass_scene_of(20, 12),

@@ -1,5 +1,5 @@
-/* Only what a scene calls for: kernels made for a scene draw the picture of the one with every
-   effect, and what is not called for is in no kernel, descriptor or buffer. */
+/* Kernels have only the effects that a scene calls for: they draw the same picture as the kernel
+   with every effect, and an effect that is not called for is in no kernel, descriptor or buffer. */
 #include "../cases.h"
 #include "device/pipeline.h"
 #include "picture_fixture.h"
@@ -161,7 +161,7 @@ static uint64_t bit(enum scene_effect effect)
     return UINT64_C(1) << effect;
 }
 
-/* The picture for the scene and the one with every effect. */
+/* Asserts that the kernel for the scene and the one with every effect draw the same picture. */
 static whit_stats assert_auto_is_all(struct scene *(*make)(void))
 {
     whit_renderer_params all = small;
@@ -210,9 +210,9 @@ static struct traced trace(struct scene *scene)
     return traced;
 }
 
-/* A driver that gets kernels whole and fills the constants in itself finds the same hits. Only
-   where WHIT_TEST_WHOLE_KERNELS is set, for lavapipe takes seconds for one: that they go to the
-   driver whole is in device_compute. */
+/* A driver that gets kernels whole and fills the constants in itself finds the same hits. Run only
+   where WHIT_TEST_WHOLE_KERNELS is set, since lavapipe takes seconds to compile one. The tests of
+   device_compute check that kernels do go to the driver whole. */
 TEST(the_driver_fills_in_the_same)
 {
     if (!getenv("WHIT_TEST_WHOLE_KERNELS"))
@@ -229,8 +229,8 @@ TEST(the_driver_fills_in_the_same)
     assert_in_range(met, RAYS / 4, RAYS - 1);
 }
 
-/* It draws the same too. lavapipe takes a quarter of a minute to inline the calls of the whole
-   kernel. */
+/* A driver that gets kernels whole draws the same picture too. lavapipe takes a quarter of a minute
+   to inline the calls of the whole kernel. */
 TEST(the_driver_draws_the_same)
 {
     if (!getenv("WHIT_TEST_WHOLE_KERNELS"))
@@ -300,8 +300,8 @@ static struct scene *alone_scene(void)
     return scene;
 }
 
-/* One at a time: what the scan of one effect misses, no other effect can hide. A third of them with
-   each commit. */
+/* Each effect is alone in its scene, so that no other effect can hide what the scan for it misses.
+   Each commit tests a third of them. */
 TEST(effects_alone_draw_the_same)
 {
     static const enum scene_effect effects[] = {
@@ -320,8 +320,8 @@ TEST(effects_alone_draw_the_same)
     }
 }
 
-/* What is left out leaves no rays of its kind and takes no others along, in the general kernel as
-   well. */
+/* Without an effect there are no rays of its kind, but still some of the other kinds: also where
+   all other effects are compiled in. */
 TEST_BY_TURNS(effects_left_out_are_gone, 0, 2)
 {
     static const enum scene_effect effects[] = {SCENE_EFFECT_SHADOWS, SCENE_EFFECT_REFLECTION,
@@ -436,8 +436,7 @@ static whit_kernel_info kernel_of(struct scene *scene, const whit_renderer_param
     return info;
 }
 
-/* Every effect that can be left out takes instructions with it, and each that is added brings
-   some, but what does nothing alone. */
+/* A kernel without one of the effects that can be left out has fewer instructions. */
 TEST(every_effect_has_its_code)
 {
     struct scene_effects effects;
@@ -455,7 +454,7 @@ TEST(every_effect_has_its_code)
         uint32_t left = kernel_of(rich_scene(), &params).instructions;
         print_message("  without %-20s %6d\n", scene_effect_name((enum scene_effect)i),
                       (int)left - (int)whole);
-        /* What points need, spots need too. */
+        /* Spot lights need all the code of point lights, so that it stays. */
         missing += i != SCENE_EFFECT_POINT_LIGHTS && left >= whole;
     }
     assert_int_equal(missing, 0);
@@ -534,7 +533,7 @@ static struct scene *quarters_scene(void)
     return scene;
 }
 
-/* What the rays of each pixel's one sample cost tells which it has. */
+/* The costs of each pixel's one sample tell which kinds of rays it had. */
 static void check_who_refracts(whit_classes classes)
 {
     whit_renderer_params params = small;

@@ -1,4 +1,4 @@
-/* Nothing gains light, nothing is lost but what was cut, and what was cut is counted. */
+/* No surface adds light, no light is lost but that of rays that were cut, and those are counted. */
 #include "media_fixture.h"
 #include "render_scenes.h"
 #include "unit.h"
@@ -62,7 +62,8 @@ TEST_BY_TURNS(white_furnace_of_nested_media, 0, 2)
 
 /* ---- Facing mirrors ---- */
 
-/* Mirrors that reflect everything and shine a little: each bounce adds as much, and it ends. */
+/* Mirrors that reflect everything and glow a little: each bounce adds the same amount of light, and
+   the bounces end at the depth. */
 TEST_BY_TURNS(facing_mirrors_end, 1, 2)
 {
     const uint32_t depths[] = {0, 1, 2, 3, 8, 64, 255};
@@ -146,7 +147,8 @@ TEST(highlights_that_nobody_sees_take_no_shadow_rays)
     image_finish(&images[1]);
 }
 
-/* No pixel is off by more than the statistics say, and that is no idle word. */
+/* No pixel is off by more than the bound in the statistics, and the bound is less than
+   100 times the largest error. */
 TEST(bailout_keeps_its_bound)
 {
     const double bailouts[] = {-1.0, 1.0 / 16, 1.0 / 64, 1.0 / 256};

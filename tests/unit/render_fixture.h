@@ -11,7 +11,7 @@
 #include "render/render.h"
 #include "unit.h"
 
-/* Messages of the validation layers since fixture_validate. */
+/* How many messages the validation layers have given since fixture_validate last looked. */
 static int fixture_validation;
 
 static void fixture_message(void *user, whit_log_level level, const char *message)
@@ -28,8 +28,8 @@ static const whit_log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WA
    pictures take to draw. Checks that want the same kernel share its pipeline. */
 static struct device *fixture_shared;
 
-/* Ends a program of which `failed` checks failed: after none, what they did not destroy on the
-   device becomes messages here. */
+/* Ends a program in which `failed` checks failed. If there were none, the device is destroyed, and
+   the validation layers report what the checks left on it. */
 static inline int fixture_end(int failed)
 {
     if (failed == 0) {
@@ -64,7 +64,7 @@ struct fixture {
     struct renderer *renderer;
 };
 
-/* Another renderer in place of the one that there is. */
+/* Puts a renderer with these params in place of the present one. */
 static inline void fixture_renew(struct fixture *f, const whit_renderer_params *params)
 {
     renderer_destroy(f->renderer);
@@ -96,7 +96,7 @@ static inline void fixture_close(struct fixture *f)
     scene_destroy(f->scene);
 }
 
-/* Every params of `wrong` is refused for a renderer of what `f` has. */
+/* Asserts that no renderer of the trees of `f` can be made with any params of `wrong`. */
 static inline void fixture_refuses(const struct fixture *f, const whit_renderer_params *wrong,
                                    size_t count)
 {
@@ -138,7 +138,7 @@ static inline void picture_finish(struct picture *picture)
     image_finish(&picture->ids);
 }
 
-/* What a scene looks like, which is freed. */
+/* The picture of a scene, which it destroys. */
 static inline struct image color_of(struct scene *scene, const struct accel_params *accel,
                                     const whit_renderer_params *params)
 {
@@ -157,7 +157,7 @@ static inline struct picture picture_of(struct scene *scene, const struct accel_
     return picture;
 }
 
-/* Pixels of other bytes. */
+/* The number of pixels whose bytes differ. */
 static inline uint32_t pixels_unlike(const struct image *a, const struct image *b)
 {
     const char *x = a->pixels ? (const char *)a->pixels : (const char *)a->words;
@@ -177,7 +177,7 @@ static inline void assert_same_image(const char *what, const struct image *a, co
         fail_msg("%s: %u pixels of other bytes", what, unlike);
 }
 
-/* Colours, identities, and the number of rays of every kind. */
+/* Asserts that two pictures have the same colours, identities and number of rays of every kind. */
 static inline void assert_same_picture(const char *what, const struct picture *a,
                                        const struct picture *b)
 {

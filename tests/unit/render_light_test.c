@@ -9,7 +9,7 @@ static const double pi = 3.14159265358979323846;
 enum { SIDE = 9 };
 static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
 
-/* Where pixel (x, y) of a picture of `side` pixels sees the floor. */
+/* The point of the floor that pixel (x, y) of a picture of side * side pixels shows. */
 static void floor_point(uint32_t x, uint32_t y, uint32_t side, double out[3])
 {
     double reach = eye_height * tan(view / 2.0);
@@ -30,7 +30,8 @@ static struct scene_light emitter(whit_light_kind kind, const double corner[3], 
     return light;
 }
 
-/* Form factor to a horizontal floor, by midpoints in double. A triangle fills half its square. */
+/* The form factor from an emitter to a horizontal floor, as a sum over midpoints in double. A
+   triangle is half of the square that its edges span. */
 static double form_factor(const struct scene_light *light, const double p[3])
 {
     enum { GRID = 1200 };
@@ -97,8 +98,8 @@ TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
     }
 }
 
-/* From the middle of the floor a plate hides just the half of the emitter on its side: of n points
-   each stands for 1 / n. */
+/* Seen from the middle of the floor a plate hides exactly half of the emitter. With n points on the
+   emitter, each stands for 1 / n of its light. */
 TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
 {
     static const uint32_t samples[] = {4, 16, 64};
@@ -127,7 +128,8 @@ TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
     }
 }
 
-/* Samples of the pixel move the points, so that steps of a soft shadow grow smaller. */
+/* Each sample of a pixel takes other points of the light, so that the steps within a soft shadow
+   become smaller. */
 TEST_BY_TURNS(pixel_samples_smooth_shadows, 2, 4)
 {
     double largest[2];
@@ -214,7 +216,8 @@ TEST_BY_TURNS(ranges_end_lights, 0, 4)
     image_finish(&image);
 }
 
-/* No light, light in the surface itself, none and far too much of it: a picture, and finite. */
+/* Without lights, with lights in the surface itself, without power, with far too much of it: there
+   is a picture, and all its values are finite. */
 TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 4)
 {
     for (int i = 0; i < 6; ++i) {
@@ -266,7 +269,8 @@ TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 2, 4)
     }
 }
 
-/* What glows lies in its light's plane, but for the roundings of where it is met. */
+/* Hits of a glowing surface lie in the plane of the light that stands for it, but for rounding; the
+   light must not light them. */
 TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)
 {
     const double heights[] = {1.99, 1001.3};
@@ -280,8 +284,9 @@ TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)
     }
 }
 
-/* Rings of glass and a table over terrain, moved far from the origin, as `light` is. Or over a
-   slope so large that hits on it are rounded to more than the rest is. */
+/* Rings, two of them of glass, and a table over terrain, all moved by `moved` along each axis, the
+   light too. With `slope` the ground is one triangle, so large that hits on it are rounded more
+   coarsely than those on the rest. */
 static struct scene *rings_under(struct scene_light light, double moved, float slope)
 {
     struct scene *scene =

@@ -51,7 +51,8 @@ static void pass_layers(const struct stack *s, double slope, double *aside, doub
     }
 }
 
-/* As many bounces as interfaces: nothing that was reflected comes back in time. */
+/* The depth is the number of interfaces: light that is reflected between them needs more bounces
+   than that, and is not in the picture. */
 static void check_layers(const struct stack *s)
 {
     const whit_renderer_params params = {.width = 24, .height = 24, .depth = (uint32_t)s->count};
@@ -80,8 +81,8 @@ TEST_BY_TURNS(layers_bend_as_snell_says, 0, 4)
 {
     static const struct stack stacks[] = {
         {"a slab", {{0.3, 1.5f, 0}}, 1, 2, {0.3, -0.3}, {1.0, 1.5}},
-        /* With equal priorities, the medium entered last is there; and so it is when they say the
-           same. */
+        /* With equal priorities the medium that was entered last counts; priorities that demand
+           just this give the same. */
         {"a bubble in glass in water",
          {{1.5, 1.33f, 0}, {1.0, 1.5f, 0}, {0.4, 1.0f, 0}},
          3,
@@ -106,7 +107,8 @@ TEST_BY_TURNS(layers_bend_as_snell_says, 0, 4)
         check_layers(&stacks[i]);
 }
 
-/* The highest priority wins, wherever it was entered: nothing of the others is seen. */
+/* The medium with the highest priority counts, whichever was entered last: the others inside it
+   cannot be seen. */
 TEST_BY_TURNS(priority_hides_what_is_inside, 1, 4)
 {
     static const struct stack hidden = {
@@ -115,8 +117,8 @@ TEST_BY_TURNS(priority_hides_what_is_inside, 1, 4)
     check_layers(&hidden);
 }
 
-/* What looks for touching surfaces is compiled where there are some, and changes nothing elsewhere.
- */
+/* The code that looks for touching surfaces is compiled only for scenes that need it; where it is
+   not needed, it changes nothing. */
 TEST_BY_TURNS(lone_bodies_need_less, 2, 4)
 {
     const struct layer layers[] = {{1.5, 1.33f, 0}, {1.0, 1.5f, 0}};
@@ -170,7 +172,8 @@ TEST(ninth_medium_is_an_error)
     }
 }
 
-/* Balls with holes: rays leave what they never entered, and enter what they never leave. */
+/* Balls with holes: rays leave media that they never entered, and enter some that they never leave.
+ */
 TEST_BY_TURNS(open_meshes_stay_finite, 3, 4)
 {
     struct scene *scene = dark_scene((double[]){0, 0.3, 4}, (double[]){0, 0, 0});

@@ -1,5 +1,5 @@
-/* What each class of an MTL draws, by the format's formulas: one strip for each material, from the
-   file to the pixel. */
+/* Each class of MTL material, from the file to the pixel, against the format's formulas. Every
+   material is on a strip of its own. */
 #include "folder_fixture.h"
 #include "load/model.h"
 #include "picture_fixture.h"
@@ -64,7 +64,7 @@ static const struct strip strips[] = {
 };
 enum { STRIPS = sizeof strips / sizeof *strips };
 
-/* What a ray that misses sees, at this cosine to the way up. */
+/* The sky's colour where the cosine between a ray and the way up is `up`. */
 static double sky(double up, int c)
 {
     double far = up > 0 ? zenith[c] : ground[c];

@@ -1,5 +1,5 @@
-/* The numeric levels on the device: against the C twin, bit for bit; `exact` against rational
-   arithmetic; what `fast` lacks. */
+/* The numeric levels on the device: all agree with the C twin bit for bit, `exact` agrees with
+   rational arithmetic, and `fast` alone lets rays through where they should hit. */
 #include "../cases.h"
 #include "ray_fixture.h"
 #include "unit.h"
@@ -65,7 +65,7 @@ TEST(instances)
     check_levels(ring_scene(), &(struct accel_params){.flatten = true});
 }
 
-/* 2^-20 as large as the terrain of one_mesh: no level knows a length. */
+/* At 2^-20 of the size of the terrain in one_mesh: no level may depend on a built-in length. */
 TEST(split_triangles)
 {
     if (!unit_turn(1, 2))
@@ -88,7 +88,8 @@ TEST(ties)
     check_levels(scene, NULL);
 }
 
-/* Balls through terrain: order among what is decided in both ways. aim_rays aims at triangles. */
+/* Balls that stick out of terrain: hits of spheres and of triangles, which are decided in two ways,
+   have to be put in order. aim_rays aims at triangles alone. */
 TEST(spheres)
 {
     if (!unit_turn(1, 2))
@@ -173,7 +174,8 @@ TEST(pictures_agree)
     fixture_close(&f);
 }
 
-/* Neither integers nor what waits for them mind that every box is that of everything. */
+/* Without trees every box is that of everything: neither the exact decisions in integers nor the
+   rays that wait for them are changed by that. */
 TEST(trees_do_not_matter)
 {
     const struct accel_params none = {.mesh = {.builder = WHIT_BUILD_NONE}};

@@ -1,5 +1,5 @@
-/* What must not change a picture, and what ends one. Radiance by formula is in the tests of light,
-   shadows, refraction and energy. */
+/* Settings that must not change a picture, and errors that end one. The tests of light, shadows,
+   refraction and energy compare radiance with formulas. */
 #include "picture_fixture.h"
 #include "render/pixels.h"
 #include "render/renderer.h"
@@ -69,7 +69,7 @@ TEST_BY_TURNS(texture_of_transmission_decides, 1, 4)
     image_finish(&clear);
 }
 
-/* What the eye sees of a smooth black box under a white sky: its mirror image alone. */
+/* What the eye sees of a smooth black box under a white sky, which is only the sky's reflection. */
 static float mirrored(float level, float tint, enum scene_slot slot, int texel)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
@@ -162,7 +162,8 @@ static struct scene *panes_scene(int count)
     return scene;
 }
 
-/* In one large tree, and of one picture where it has enough rays to pay for the kernels. */
+/* Packets are chosen for scenes that are one large tree, and for a single picture only if it has so
+   many rays that the kernels pay. */
 TEST_BY_TURNS(packets_are_chosen_where_they_pay, 3, 4)
 {
     static const struct {
@@ -247,7 +248,8 @@ TEST_BY_TURNS(many_lights_are_drawn, 1, 4)
     picture_finish(&picture);
 }
 
-/* In one tile, whose first submission takes some of its lights. */
+/* All in one tile: a cancellation in its first submission waits for a few lights, but not for all
+   of very many. */
 TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
 {
     bool cancel = false;
@@ -339,8 +341,8 @@ TEST(shares_are_those_of_hits)
     check_shares(&flat);
 }
 
-/* With two segments lists are filled from both ends. Hits of camera rays must still be there when
-   they are counted, after later generations have listed theirs. */
+/* With two segments lists are filled from both ends. The hits of camera rays are counted only after
+   later generations of rays have listed theirs, and must still be there. */
 TEST(shares_are_the_same_by_one_segment_and_by_two)
 {
     whit_renderer_params params = {
@@ -399,7 +401,8 @@ TEST(cancel_and_time_limit_stop)
     fixture_close(&f);
 }
 
-/* What a renderer has uploaded may go; another one may not be made then. */
+/* Once a renderer has uploaded a scene's pictures, the scene may drop them; no other renderer can
+   be made for it then. */
 TEST(pictures_may_be_dropped)
 {
     struct fixture f = fixture_open(mixed_scene(), NULL, &picture_params);

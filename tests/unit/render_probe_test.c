@@ -12,7 +12,7 @@ enum { SIDE = 8 };
 
 /* ---- What holds for every probed pixel ---- */
 
-/* Over the pixels of a picture. */
+/* What probes of all pixels of a picture add up to. */
 struct sums {
     uint64_t kinds[RAY_KIND_COUNT], cut_depth, cut_bailout;
     uint64_t ends[PROBE_BLOCKED + 1];
@@ -37,7 +37,7 @@ static void add_to_sums(const struct probe_report *report, struct sums *sums)
         ++sums->ends[ray->traced.end];
         sums->cut_depth += ray->traced.end == PROBE_DEPTH;
         sums->cut_bailout += ray->traced.end == PROBE_BAILOUT;
-        /* What passes through blended surfaces is counted as no further ray. */
+        /* A ray that goes straight on through a blended surface is not counted as another ray. */
         sums->kinds[kind_of(ray)] += !straight && !is_cut(ray);
         sums->straight += straight;
         sums->through += (ray->traced.kind & PROBE_THROUGH) != 0;
@@ -59,7 +59,7 @@ static double size_of(const float a[3])
     return distance_between(a, (const float[3]){0, 0, 0});
 }
 
-/* What a ray shares with the one it comes from. */
+/* Asserts that ray `i` fits the ray that it comes from. */
 static void assert_child(const struct probe_ray *rays, uint32_t i)
 {
     const struct probe_ray *ray = &rays[i], *parent = &rays[ray->parent];
@@ -336,7 +336,7 @@ TEST(scenes_of_all_kinds)
     }
 }
 
-/* Passes and buffers of the probe go along with the renderer's. */
+/* When the renderer's time or view changes, the probe's passes and buffers change as well. */
 TEST(another_time_and_size)
 {
     if (!unit_turn(0, 2))
@@ -434,7 +434,8 @@ static struct pipeline_info kernel_of(const struct pass *pass)
     return info;
 }
 
-/* Before the first probe there is nothing of it; afterwards it is in a kernel of its own. */
+/* Before the first probe a renderer has no kernel or buffer for it; afterwards the probe has
+   kernels of its own, and those of pictures are the same as before. */
 TEST(pictures_know_nothing_of_it)
 {
     struct fixture f = fixture_open(glass_scene(), NULL, &small);

@@ -15,7 +15,8 @@ static struct scene *lens_scene(const double eye[3])
 
 static const double SLAB_HALF = 0.3, SLAB_IOR = 1.5;
 
-/* A sky in which a ray's |y| can be read: red over blue; blue is what arrives of its weight. */
+/* A sky that tells a ray's |y|: it is red divided by blue, and blue is the share of the ray's
+   weight that arrives. */
 static void set_height_sky(struct scene *scene)
 {
     set_rgb(scene->environment.zenith, 1, 0, 1);
@@ -23,7 +24,7 @@ static void set_height_sky(struct scene *scene)
     set_rgb(scene->environment.ground, 1, 0, 1);
 }
 
-/* All rays leave as steep as they came, those reflected within too. */
+/* All rays leave a slab as steeply as they came, also those that were reflected inside it. */
 TEST(slab_keeps_directions)
 {
     struct scene *scene = lens_scene((double[]){0, 0, 5});
@@ -163,7 +164,8 @@ TEST(directions_stay_unit)
 
 /* ---- Absorption ---- */
 
-/* Straight through glass of index 1, a unit thick: what is left of each colour. */
+/* Straight through glass of index 1 and thickness 1: Beer's law says how much of each colour is
+   left. */
 TEST(beer_from_nothing_to_infinity)
 {
     const float absorptions[] = {0.0f, 1e-9f, 1.0f, 100.0f, 3e38f, INFINITY};

@@ -80,7 +80,7 @@ TEST_BY_TURNS(media_touch_for_cameras_far_away, 0, 2)
     fixture_close(&f);
 }
 
-/* Kernels of ray batches are bound to what a new size must keep. */
+/* A new size must keep what the kernels of ray batches are bound to. */
 TEST_BY_TURNS(rays_are_traced_in_between, 1, 2)
 {
     struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
@@ -109,7 +109,8 @@ TEST(nonsense_is_refused)
     fixture_close(&f);
 }
 
-/* The number of kernels is that for the picture which the renderer was made for. */
+/* Whether a renderer uses few kernels follows from the picture for which it was made, and a larger
+   view does not change it. */
 TEST(a_larger_view_keeps_the_kernels)
 {
     const whit_renderer_params small = {.width = 20, .height = 16, .depth = 4};

@@ -120,7 +120,7 @@ TEST_BY_TURNS(any_number_of_samples_is_their_mean, 0, 2)
     }
 }
 
-/* Halves of a tile keep their sums apart. */
+/* Where full queues halve a tile, each half has sums of its own, and the picture is the same. */
 TEST(full_queues_do_not_matter)
 {
     static float smaller[FLOATS];
@@ -176,8 +176,8 @@ TEST_BY_TURNS(rows_drawn_alone_are_those_of_the_picture, 1, 2)
 
 static uint32_t steps, steps_wrong;
 
-/* Every pixel of a step is one of the whole picture, in its own square, but in squares that the
-   picture cuts off. */
+/* Each pixel of a step is that of the whole picture at one place of the pixel's square. Where the
+   picture's border cuts this place off, it is that of the square before. */
 static void look_at_step(void *user, const whit_step *step)
 {
     const struct picture *all = user;
@@ -248,7 +248,8 @@ TEST(other_steps_are_refused)
     }
 }
 
-/* A buffer of the device holds one sample of all of it, but not the sums of more as well. */
+/* A picture of which one buffer of the device can hold a single sample, but not the sums of more
+   samples too. */
 TEST(large_pictures_have_room_for_sums)
 {
     const whit_renderer_params params = {.width = 4096, .height = 2048, .sampling.count = 4096};

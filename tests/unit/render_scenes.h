@@ -5,7 +5,7 @@
 #include "load/load.h"
 #include "render_fixture.h"
 
-/* scenes/NAME.json, which is not frozen. */
+/* Reads scenes/NAME.json; the scene is not frozen. */
 static inline struct scene *file_scene(const char *name)
 {
     char path[512];
@@ -16,7 +16,7 @@ static inline struct scene *file_scene(const char *name)
     return scene;
 }
 
-/* One mesh, not moved. */
+/* A scene of one mesh without a transform. */
 static inline struct scene *terrain_scene(void)
 {
     struct scene *scene = scene_begin(&fixture_log, "terrain");
@@ -24,7 +24,7 @@ static inline struct scene *terrain_scene(void)
     return scene;
 }
 
-/* Forty rings, turned, stretched, some mirrored. */
+/* Forty instances of a ring: turned, stretched, some of them mirrored. */
 static inline struct scene *ring_scene(void)
 {
     struct scene *scene = scene_begin(&fixture_log, "rings");

@@ -45,7 +45,8 @@ TEST(blocks_fill_all_boxes)
     assert_false(fills_all_boxes(2, 1)); /* these are not one block */
 }
 
-/* The mean of 4, 16, ... is near the middle: the nearer, the more they are. */
+/* The mean of the first 4, 16, ... points is near the middle, and the nearer the more points it is
+   of. */
 TEST(points_lean_to_no_side)
 {
     uint64_t sum[2] = {0, 0};
@@ -80,8 +81,8 @@ static void light_of(uint32_t index, uint32_t xy[2])
     sequence_point(sequence_light(index), xy);
 }
 
-/* The first 4^k take the first 4^k points, so that they fill all boxes too, and the first one the
- * first. */
+/* The first 4^k samples take the first 4^k points, in another order, so that they fill all boxes
+   too; and each later block of 4^k samples takes one block of points. */
 TEST(samples_keep_blocks)
 {
     uint32_t (*const orders[])(uint32_t) = {sequence_lens, sequence_light};

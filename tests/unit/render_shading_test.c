@@ -72,7 +72,7 @@ TEST_BY_TURNS(unusable_normals_are_those_of_the_faces, 0, 2)
     assert_even(sunny(from_above(), flat, white()), COS_SUN, 1e-6);
 }
 
-/* A longer normal weighs no more than its neighbours. */
+/* A longer normal counts no more than the others where normals are interpolated. */
 TEST_BY_TURNS(lengths_of_normals_do_not_matter, 1, 2)
 {
     static const float lengths[] = {1e-30f, 1e30f, 3.0f, 0.01f};
@@ -87,13 +87,14 @@ TEST_BY_TURNS(lengths_of_normals_do_not_matter, 1, 2)
         images[k] = color_of(sunny(from_above(), k ? mesh : even, white()), NULL, &all_params);
     for (int i = 0; i < SIDE * SIDE; ++i)
         assert_near(images[1].pixels[4 * i], (double)images[0].pixels[4 * i], 1e-6);
-    /* They do bend the light. */
+    /* The normals do change the shading over the floor. */
     assert_true(fabsf(images[0].pixels[4] - images[0].pixels[4 * SIDE - 8]) > 0.01f);
     image_finish(&images[0]);
     image_finish(&images[1]);
 }
 
-/* Normals to the other side, or corners the other way round, or both: the eye sees its own side. */
+/* With normals to the other side, or corners in the other order, or both: the side that faces the
+   eye is shaded. */
 TEST_BY_TURNS(turned_normals_shade_the_same, 0, 2)
 {
     for (int i = 0; i < 4; ++i) {

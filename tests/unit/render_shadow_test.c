@@ -4,7 +4,8 @@
 #include "unit.h"
 
 static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
-/* Depths are rounded to 1/64 stop: by half of that. */
+/* Optical depths are rounded to multiples of 1/64 stop, so that they are off by half of it at most.
+ */
 static const double half_a_step = 0.5 / 64.0 * 0.69314718056;
 
 /* The sun comes at 45 degrees, so that the pane is out of sight where its shadow is in it. */
@@ -179,7 +180,8 @@ static double ball_error(const struct image *a, const struct image *b)
     return sqrt(sum / count);
 }
 
-/* The coarsest ball's own shape is off by more than its shadows are. */
+/* For the coarsest ball the shape itself adds more to the error than shadows do, so that its limit
+   is wider. */
 TEST_BY_TURNS(coarse_balls_are_shaded_like_fine_ones, 3, 4)
 {
     struct image fine = ball_picture(512, true);
@@ -230,7 +232,7 @@ TEST_BY_TURNS(flat_meshes_do_not_change, 0, 4)
     }
 }
 
-/* Corners, each with one normal away from the middle. */
+/* A box of eight vertices, whose normals point away from its middle. */
 static struct scene_mesh round_box(void)
 {
     static const uint32_t faces[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
@@ -247,7 +249,7 @@ static struct scene_mesh round_box(void)
     return mesh;
 }
 
-/* From inside a closed mesh with smooth normals no lamp outside is seen to light anything. */
+/* A lamp outside lights nothing inside a closed mesh with smooth normals. */
 TEST_BY_TURNS(closed_rooms_stay_dark, 1, 4)
 {
     static const double lamps[][3] = {{3, 0.2, 0.1}, {1.6, 1.7, 1.5}, {0.3, 1.2, -0.4},

@@ -36,7 +36,7 @@ static struct image view_of(const struct image *all, uint32_t view, uint32_t hei
     return image;
 }
 
-/* What the twin meets, from camera ray by camera ray. */
+/* Asserts that a view of distances has what the C twin finds for each camera ray. */
 static void check_distances(const struct fixture *f, const whit_camera *camera,
                             const struct image *view)
 {
@@ -93,7 +93,8 @@ static void check_views(const struct fixture *f, const struct fixture *single,
     image_finish(&distances);
 }
 
-/* Buffers that hold some of the rows alone: in bands, which end within views. */
+/* The buffers hold only 24 rows, so that pictures are drawn in bands, whose ends are within views.
+ */
 static void check_bands(const struct fixture *f, const struct fixture *single,
                         const whit_camera *cameras, uint32_t count)
 {
@@ -161,7 +162,8 @@ TEST_BY_TURNS(views_of_all_kinds_of_cameras_and_lenses, 0, 2)
                 true, MANY);
 }
 
-/* So many rays pay for packets and for kernels of their own, which one view has not. */
+/* Many views together have so many rays that packets and more kernels pay, which they do not for
+   one view. */
 TEST_BY_TURNS(many_views_have_the_kernels_of_a_large_picture, 1, 2)
 {
     const whit_renderer_params small = {.width = 64, .height = 64, .depth = 2};
@@ -196,7 +198,7 @@ TEST_BY_TURNS(media_touch_where_they_do_for_one_view, 0, 2)
     fixture_close(&f);
 }
 
-/* What is left of one picture says nothing in the next. */
+/* Pictures of one camera and of several in turn: nothing that is left of one shows in the next. */
 TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
 {
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 2};

@@ -1,4 +1,4 @@
-/* What scene_freeze drops, mends, refuses and makes up. */
+/* What scene_freeze drops, mends and refuses, and what it adds. */
 #include <math.h>
 
 #include "../scenes.h"
@@ -129,7 +129,8 @@ TEST(attributes_are_mended)
     scene_destroy(scene);
 }
 
-/* Tells whether a triangle keeps its normals where the last of them leans by `lean` radians. */
+/* Tells whether freezing keeps a triangle's normals of length |side|, the last of which leans to
+   one side: its x is `lean`. */
 static bool keeps_normals(float side, float lean)
 {
     const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -303,7 +304,8 @@ TEST(flat_lamps_become_rectangles)
     scene_destroy(scene);
 }
 
-/* Halves that are no parallelogram, in a mirrored node: the front stays above. */
+/* Two triangles that form no parallelogram each become a light; in a mirrored node too they light
+   what is above. */
 TEST(single_triangles_become_lights)
 {
     struct scene *scene = panel_scene(10.0f, 1);

@@ -1,5 +1,5 @@
-/* Parts of scenes: names, hashes, what is other in words, scenes made of the parts of two, and
-   faults put into them. */
+/* Parts of scenes: their names and hashes, differences told in words, scenes made of the parts of
+   two, and faults put into them. */
 #include <glob.h>
 
 #include "../scenes.h"
@@ -202,7 +202,8 @@ TEST(references_count_by_name)
     drop(&after);
 }
 
-/* Both, with these parts of the first: those whose kind and name are given, or all. */
+/* The scene `after` with parts of `before` put back: all of them, the one of this kind and name, or
+   none where `name` is NULL. */
 static struct scene *mix(const struct loaded *before, const struct loaded *after, bool all,
                          whit_part_kind kind, const char *name)
 {
@@ -228,7 +229,8 @@ static void check_hash(struct scene *made, uint64_t hash)
     scene_destroy(made);
 }
 
-/* Two changes, one of which is taken back: what is left is the other. */
+/* Takes one of the two changes in `both` back: the scene left has the hash of one with only the
+   `other` change. */
 static void check_back(struct wish both, struct wish other, whit_part_kind kind, const char *name)
 {
     struct loaded before, after;
@@ -264,7 +266,8 @@ TEST(a_part_that_is_put_back_leaves_the_others)
     check_back(both, other, WHIT_PART_ANIMATION, "node translation");
 }
 
-/* The mesh of before wears what the objects of after have not: that comes along. */
+/* The box of `before` has a material that `after` lacks: the material and its texture come with it.
+ */
 TEST(what_a_part_names_comes_with_it)
 {
     struct loaded before, after;
@@ -313,7 +316,8 @@ TEST(scenes_of_all_or_no_parts_are_those_they_are_of)
     globfree(&files);
 }
 
-/* A model of another program, whose light is made to suit: of what glows in it, or its own. */
+/* A model from another program, whose light whit adjusts: it comes from a glowing material, or from
+   lights in its file. */
 static struct scene *model(bool lamp_glows, float strength)
 {
     struct scene *scene = scene_begin(NULL, "model");

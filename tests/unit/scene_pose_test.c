@@ -81,8 +81,8 @@ TEST(steps_hold_until_the_next_key)
     scene_destroy(scene);
 }
 
-/* Tangents are per second: with dt = 2 they count double. p(s) for values 0 -> 1, slopes 3 and 5.
- */
+/* Tangents are per second: with 2 s between keys they count double. Compares with the polynomial
+   p(s) from value 0 to 1 with the slopes 3 and 5. */
 TEST(cubic_is_hermite)
 {
     const float times[] = {0, 2};
@@ -114,7 +114,7 @@ TEST(rotation_is_slerp_by_the_shorter_way)
     scene_destroy(scene);
 }
 
-/* Equal keys must not divide by the sine of nothing. */
+/* Between equal keys interpolation must not divide by the sine of the angle, which is 0. */
 TEST(rotation_between_equal_keys)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 2, 0, 0, 0, 2};

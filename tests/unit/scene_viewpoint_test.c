@@ -1,4 +1,5 @@
-/* Where whit looks from, and how brightly models' lights are drawn, when a file leaves it open. */
+/* The camera that whit makes where a file has none, and how bright it makes the lights of
+   models. */
 #include <math.h>
 
 #include "../scenes.h"
@@ -262,7 +263,8 @@ static struct scene *lamp_scene(float emission, const char *file)
     return scene_ready(scene);
 }
 
-/* Over pi, straight on, from far away: flat lights state their radiance. */
+/* The sum of the intensities of all lights, straight ahead and from far away. Flat lights state
+   their radiance, which is multiplied by area over pi. */
 static double light_total(const struct scene *scene)
 {
     double total = 0.0;

@@ -3,7 +3,7 @@
 #include "settings/settings.h"
 #include "unit.h"
 
-/* What the option takes to say something else than the default. */
+/* Text for the option that gives it another value than the default. */
 static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES])
 {
     char usual[SETTING_VALUE_BYTES];
@@ -62,7 +62,7 @@ static const struct setting *next_row(const struct setting *row)
     return row->name ? row : NULL;
 }
 
-/* The usual ones but for this row. `text`: what is read. */
+/* The default settings, but with another value in this row, which is also given as `text`. */
 static struct settings other_settings(const struct setting *row, char text[SETTING_VALUE_BYTES])
 {
     struct settings settings = settings_usual();
@@ -91,7 +91,7 @@ TEST(a_value_is_written_as_it_is_read)
     assert_in_range(rows, 40, 64);
 }
 
-/* And changes no other row. */
+/* A new value in one row changes no other row. */
 TEST(a_row_has_a_field_of_its_own)
 {
     char text[SETTING_VALUE_BYTES];
@@ -130,7 +130,7 @@ TEST(defaults_are_named_as_they_are)
     assert_int_equal(fractions, 1); /* --bailout */
 }
 
-/* What a row needs is what comparing two settings says. */
+/* Comparing two settings that differ in one row says what the table says that this row needs. */
 TEST(needs_are_kept)
 {
     char text[SETTING_VALUE_BYTES];

@@ -1,5 +1,5 @@
-/* Functions of a shader that are kept beside the colour: what they say of the camera's hits, as
-   means over samples, and that nothing else changes by them. */
+/* Values that functions of a shader give for the camera's hits and that are kept beside the colour:
+   they are means over samples, and change nothing else. */
 #include <math.h>
 
 #include "hooks_fixture.h"
@@ -150,7 +150,7 @@ TEST(a_sample_says_what_the_camera_meets)
     drop(&drawn);
 }
 
-/* Neither colours nor identities, with any number of samples. */
+/* Such functions change neither colours nor identities, with any number of samples. */
 TEST(nothing_else_changes)
 {
     for (uint32_t samples = 1; samples <= 4; samples *= 4) {
@@ -367,7 +367,7 @@ static whit_shader *load_version(size_t i, bool posts)
     return version;
 }
 
-/* Where values beside the colour are others, and post(), colours are not drawn anew. */
+/* Where only post() and the values beside the colour are others, colours are not drawn anew. */
 static void draw_versions(whit_renderer_params params, bool posts)
 {
     whit_shader *before = load_version(0, posts);

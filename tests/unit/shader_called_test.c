@@ -1,4 +1,4 @@
-/* What a shading function of the user's asks for is compiled and traced, and nothing else. */
+/* Only what a user's shading function asks for is compiled and traced. */
 #include "../cases.h"
 #include "hooks_fixture.h"
 
@@ -38,7 +38,8 @@ static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *com
     return color;
 }
 
-/* All of them are drawn as they are, and in turns with every effect of lights beside it. */
+/* Each case is drawn as it is. In turns they are also drawn with every effect of lights added, and
+   the pictures compared. */
 TEST(what_is_not_asked_for_is_not_compiled)
 {
     static const struct {
@@ -117,7 +118,8 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     whit_renderer_get_stats(renderer, &stats);
     whit_renderer_get_stats(other, &stats_usual);
     assert_int_equal(stats.rays_reflected, stats_usual.rays_reflected);
-    /* Both parts, with another kernel's beginning and end, or the one kernel. */
+    /* In two parts the kernel has other instructions in sum, for its second beginning and end; as
+       one kernel it has the same. */
     assert_int_equal(stats.kernel_instructions == stats_usual.kernel_instructions,
                      !params->few_pixels);
     whit_image_destroy(a);
@@ -397,7 +399,8 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
     whit_shader_destroy(shaders[1]);
 }
 
-/* The picture without the shader has the lights that the shader does not ask for. */
+/* The picture without the shader, to which figures are compared, has the lights although the shader
+   does not ask for them. */
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
     whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");

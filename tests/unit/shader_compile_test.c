@@ -45,7 +45,7 @@ TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_
     assert_string_equal(messages.text, "");
 }
 
-/* Each of them, where it stands alone. */
+/* Every function without a portable form is named, each alone in a file. */
 TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
 {
     static const char *const calls[] = {"sinh(x)",
@@ -103,8 +103,8 @@ static uint32_t count_in(const uint32_t *words, size_t count, uint32_t functions
     return found;
 }
 
-/* Where the device's own comparisons are not right, functions stand in for all that GLSL has; the
-   numbers are those of SPIR-V. */
+/* For devices whose own comparisons are wrong, functions replace all that GLSL has; `number` is
+   the operation's in SPIR-V. */
 TEST_IN(comparisons_are_left_to_devices_that_are_right, compiler_begin, compiler_end)
 {
     static const struct {
@@ -408,7 +408,7 @@ TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
                 strstr(messages.text, "a.glsl:3: g calls f"));
 }
 
-/* A line of the user's is no line of whit's. */
+/* A macro that the user's file defines does not change whit's own text behind it. */
 TEST_IN(macros_of_users_end_with_their_text, compiler_begin, compiler_end)
 {
     struct shader_code code = must_compile("#define uint while(true) uint\n"
@@ -501,7 +501,7 @@ TEST(one_process_is_kept_and_none_is_left)
         assert_int_equal(children(), 1);
         assert_int_equal(only_child(), first);
     }
-    /* Where it dies there is another one. */
+    /* If the process dies, the compiler starts another one. */
     assert_int_equal(kill(first, SIGKILL), 0);
     struct shader_code code = must_compile(FINE);
     shader_code_free(&code);
@@ -553,7 +553,7 @@ TEST(no_process_outlives_its_parent)
     }
     close(ends[1]);
     assert_int_equal(read(ends[0], &kept, sizeof kept), sizeof kept);
-    /* The pipe ends when nobody has it any more: neither of the two. */
+    /* Reading gives the pipe's end as soon as neither of the two processes has it open any more. */
     char byte;
     assert_int_equal(read(ends[0], &byte, 1), 0);
     close(ends[0]);

@@ -1,5 +1,5 @@
-/* dbg(x): what it is for a pixel that is looked at, from each function of a file, and that a
-   picture knows nothing of it. */
+/* dbg(x): the values that it records for a probed pixel, in each function of a file; and pictures
+   are the same as without it. */
 #include "hooks_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, X = 20, Y = 30, FLOOR_X = 5, FLOOR_Y = 40 };

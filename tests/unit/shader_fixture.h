@@ -11,7 +11,7 @@
 #include "shader/compile.h"
 #include "unit.h"
 
-/* f(x, n) of the user's for each invocation, and which loop was without fuel. */
+/* Calls the user's f(x, n) for each case, and tells which loop ran out of fuel. */
 static const char test_kernel[] =
     "#version 460\n"
     "#extension GL_GOOGLE_include_directive : require\n"
@@ -54,7 +54,7 @@ static inline int compiler_end(void **state)
     return 0;
 }
 
-/* Texts as files "a.glsl", which is the user's, and, where it is not NULL, "b.glsl". */
+/* Compiles text `a` as the user's file "a.glsl", and `b`, where it is not NULL, as "b.glsl". */
 static inline whit_result compile_files(const char *a, const char *b, bool trust,
                                         struct shader_code *code)
 {

@@ -1,6 +1,6 @@
-/* Files that mean harm, as the program meets them: each is reported, or has a picture where that is
-   what is promised, and the next good file is compiled and drawn as before. How long each took is
-   printed, and is no part of the test. */
+/* Files that are meant to do harm, loaded as the program loads them. Each is reported, or drawn
+   where that is what is promised, and the next good file is compiled and drawn as before. The time
+   of each is printed, but not tested. */
 #include <sys/stat.h>
 
 #include "base/clock.h"
@@ -70,7 +70,8 @@ static bool is_told(const char *place, const char *reason)
     return why && why < strchr(line, '\n');
 }
 
-/* Counts a row that began at `start_ms`, and draws the good file behind it. */
+/* Counts and prints a case that began at `start_ms`, and checks that the good file is then drawn as
+   before. */
 static void count(const char *name, double start_ms, bool as_wanted)
 {
     double ms = clock_ms() - start_ms;
@@ -96,7 +97,7 @@ static void all_are_reported(void)
 
 /* ---- What is refused before it is drawn ---- */
 
-/* The file a.glsl of the folder. */
+/* Asserts that the folder's a.glsl is refused, at this place and for this reason. */
 static void refuse(const char *name, const char *place, const char *reason)
 {
     whit_shader *shader = NULL;
@@ -288,7 +289,7 @@ TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
     all_are_reported();
 }
 
-/* What stands in an aov may be no number. */
+/* A value that is no finite number ends the picture, unless it is only in an aov. */
 TEST_IN(what_is_no_number_has_no_picture, begin, end)
 {
     static const char *const hooks[] = {"camera", "surface", "shade", "scatter", "miss", "post"};
@@ -331,7 +332,7 @@ TEST_IN(what_is_no_number_has_no_picture, begin, end)
     all_are_reported();
 }
 
-/* Bounded, and drawn. */
+/* Indices out of range and divisions by 0 have defined results, and the picture is drawn. */
 TEST_IN(indices_and_divisions_of_integers_have_a_picture, begin, end)
 {
     static const struct {

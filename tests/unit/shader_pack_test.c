@@ -1,5 +1,5 @@
-/* Files of functions as pictures carry them: what is put there comes back, and nothing else is
-   believed. */
+/* Files of functions as they are packed into pictures: they come back as they were, and text that
+   was packed wrongly is refused. */
 #include "base/hash.h"
 #include "folder_fixture.h"
 #include "random_fixture.h"

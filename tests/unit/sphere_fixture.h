@@ -12,8 +12,8 @@ static inline double sphere_random(void)
     return (double)random_float_signed(&random_state);
 }
 
-/* Centres within a cube of half side `spread`; radii from `max` down to a thousandth of it. Every
-   tenth sphere is its neighbour again: ties. */
+/* Centres are within a cube of half side `spread`; radii from `max` down to a thousandth of it.
+   Every tenth sphere repeats the one before, so that rays hit both at the same distance. */
 static inline struct scene_mesh scattered_spheres(uint32_t count, double spread, double max)
 {
     double *spheres = malloc(4 * sizeof(double) * count);
@@ -30,7 +30,8 @@ static inline struct scene_mesh scattered_spheres(uint32_t count, double spread,
     return mesh;
 }
 
-/* `placed`: the mesh as several instances of every kind; else once, as it is. Not frozen. */
+/* A scene of `mesh`, not frozen: once without a transform and, with `placed`, also as eleven
+   instances at random places. */
 static inline struct scene *sphere_scene(const whit_log *log, struct scene_mesh mesh, bool placed)
 {
     struct scene *scene = scene_begin(log, "spheres");

@@ -9,7 +9,8 @@
 #include "base/array.h"
 #include "bvh/complete.h"
 
-/* Triangle i of a caterpillar: in the plane z = i, hit by any ray along the z axis. */
+/* Triangle i of a caterpillar, which is a tree that is one long chain of nodes: it lies in the
+   plane z = i, and any ray along the z axis hits it. */
 static inline void caterpillar_corners(uint32_t i, float corners[9])
 {
     const float z = (float)i;
@@ -24,8 +25,8 @@ static inline void caterpillar_box(uint32_t first, uint32_t last, struct gpu_bvh
     memcpy(node->hi, hi, sizeof hi);
 }
 
-/* 2 * depth + 2 nodes at `base`: pair k holds the rest of the chain first, then leaf k. A ray from
-   above keeps one ref a level, in every order. */
+/* A chain of 2 * depth + 2 nodes at `base`. Pair k holds the node of the rest of the chain, then
+   leaf k, so that a ray from above keeps one node a level on its stack, in every order. */
 static inline struct gpu_bvh_node *caterpillar_nodes(uint32_t depth, uint32_t base)
 {
     struct gpu_bvh_node *nodes = array_alloc_aligned(base + 2 * depth + 2, sizeof *nodes);

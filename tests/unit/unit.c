@@ -1,6 +1,6 @@
-/* Linked into every unit test: the list of its checks, and its main(). With WHIT_TEST_ONLY=NAME the
-   checks of that name alone run, in which * and ? stand for others. None of that name is no
-   failure: see what was run. */
+/* Linked into every unit test: the list of its checks, and its main(). With WHIT_TEST_ONLY=NAME
+   only checks of this name run; * and ? in it stand for any characters. A name that no check has is
+   no failure: look at what was run. */
 #include "unit.h"
 
 #include "../cases.h"

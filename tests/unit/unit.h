@@ -1,11 +1,11 @@
-/* What every unit test includes: cmocka, and checks that run because they are there. A check is a
-   function of cmocka's, TEST(name) { ... } or, with what sets `*state` up before it and takes it
-   down behind it, TEST_IN(name, begin, end). TEST_BY_TURNS(name, i, n) { ... } wants kernels of its
-   own, which the driver takes long to compile: of n such checks the short run has one, others with
-   each commit, and the entry *_long all of them. All checks of a program run in the order in which
-   they stand in its file, by the main() of unit.c, or between the two functions of
-   TESTS_IN(begin, end) behind them; a file that has more to do has a main() of its own, which calls
-   unit_run(). */
+/* Every unit test includes this: cmocka, and macros that define a check and also add it to the list
+   of those to run. TEST(name) { ... } defines a check. TEST_IN(name, begin, end) { ... } does so
+   too: `begin` runs before it and sets `*state` up, `end` runs after it. TEST_BY_TURNS(name, i, n)
+   { ... } is for checks that need kernels of their own, which the driver takes long to compile: the
+   short run has one of n such checks, another one with each commit, and the entry *_long has all of
+   them. The checks of a program run in the order of its file. The main() of unit.c runs them, or
+   the one of TESTS_IN(begin, end), which stands behind them and runs `begin` before all and `end`
+   after all; a file that has more to do has a main() of its own, which calls unit_run(). */
 #ifndef UNIT_H
 #define UNIT_H
 
@@ -40,13 +40,15 @@
 void unit_add(const char *name, CMUnitTestFunction check, CMFixtureFunction begin,
               CMFixtureFunction end);
 
-/* Whether it is the turn of a check: cases_turn, or checks are asked for by name. */
+/* Whether it is a check's turn, by cases_turn. Always true where WHIT_TEST_ONLY names checks. */
 bool unit_turn(size_t index, size_t every);
 
-/* Runs all checks between `begin` and `end`, which may be NULL. How many failed. */
+/* Runs `begin`, all checks and `end`; both functions may be NULL. Gives how many checks failed, or
+   what the function of unit_at_end makes of that. */
 int unit_run(CMFixtureFunction begin, CMFixtureFunction end);
 
-/* unit_run() then gives what `end` makes of that number, once all checks have run. */
+/* Once all checks have run, unit_run() calls `end` with the number of those that failed, and gives
+   what it returns. */
 void unit_at_end(int (*end)(int failed));
 
 #endif

@@ -1,5 +1,5 @@
-/* What draws beside the window: devices that are lost, memory that runs out, and pictures of one
-   who moves on. */
+/* The engine, which draws while the window runs: devices that are lost, memory that runs out, and
+   users who ask for the next picture before one is done. */
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -143,7 +143,8 @@ TEST(a_picture_comes_in_steps)
     close_engine(engine, &frame);
 }
 
-/* Behind one sample in steps, four and all of the settings are shown, and none is drawn twice. */
+/* After the steps of the first sample, pictures of four samples and of all samples of the settings
+   are shown, and no sample is drawn twice. */
 TEST(samples_of_the_settings_are_added_to_the_first)
 {
     struct engine_frame frame;
@@ -158,7 +159,8 @@ TEST(samples_of_the_settings_are_added_to_the_first)
     close_engine(engine, &frame);
 }
 
-/* What is asked for while the picture is refined comes next, and is refined in its turn. */
+/* A picture that is asked for while another one is refined is drawn at once, and is refined in its
+   turn. */
 TEST(whoever_moves_on_does_not_wait_for_refining)
 {
     struct engine_frame frame;
@@ -217,8 +219,8 @@ static void draw(struct engine *engine, const struct settings *settings, struct 
     take_all(engine, frame);
 }
 
-/* Without its n-th block a picture is as it should be, or the window says why it is not. Whether
-   there was an n-th block. */
+/* Draws while the n-th allocation of memory fails: the picture is whole, or the status says why it
+   is not. Gives whether there was an n-th allocation. */
 static bool draws_without(unsigned n, struct engine *engine, const struct settings *settings,
                           const struct engine_frame *right, bool *said)
 {
@@ -319,7 +321,8 @@ TEST(a_switch_keeps_the_picture)
     close_engine(engine, &frame);
 }
 
-/* Whoever turns the camera beside a scene that cannot be read is still told so. */
+/* Where one of two scenes side by side cannot be read, its error stays when the camera turns and
+   the other scene is drawn again. */
 TEST(an_error_outlives_the_other_side)
 {
     struct engine_frame frame, other = {0};

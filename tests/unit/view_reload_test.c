@@ -81,7 +81,7 @@ static double flip_of(const whit_image *a, const whit_image *b)
     return difference.flip_mean;
 }
 
-/* A column of pixels is another one, and what they hit is the same. */
+/* The new version changes one column of pixels, but not what they hit. */
 TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
 {
     struct engine_frame before = frame;
@@ -100,7 +100,7 @@ TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
     assert_string_equal(reload.why, "");
     assert_true(reload.ms.count >= 6 && reload.ms.coverage >= 0.95);
     assert_true(reload.ms.low <= reload.ms.median && reload.ms.median <= reload.ms.high);
-    /* What was measured left the picture and its session as they are. */
+    /* Measuring has changed neither the picture nor its session. */
     engine_frame_finish(&before);
     before = frame;
     frame = (struct engine_frame){.number = before.number};
@@ -124,7 +124,8 @@ static void wait_for_spare(bool makes)
     }
 }
 
-/* Its scene is loaded, its trees are built and its device is open before the first save. */
+/* Before the first save there is a spare session, whose scene is loaded, whose trees are built and
+   whose device is open. */
 TEST_IN(the_first_save_finds_a_session, begin, end)
 {
     uint64_t number = frame.number;
@@ -142,7 +143,8 @@ TEST_IN(the_first_save_finds_a_session, begin, end)
     assert_int_equal(status_now().reload.number, 1);
 }
 
-/* What is asked for comes first: nothing is guessed of what was not measured. */
+/* Measuring a reload stops where something else is asked for, and no values are made up for what
+   was not measured. */
 TEST_IN(measuring_gives_way, begin, end)
 {
     double start_ms = clock_ms();
@@ -160,7 +162,8 @@ TEST_IN(measuring_gives_way, begin, end)
     take_all(true);
     assert_int_equal(status_now().reload.ms.count, 0);
 
-    /* By other settings there is nothing to compare with, but both can be drawn by these. */
+    /* With new settings there is no earlier picture to compare with, but both versions can be drawn
+       with these settings and timed. */
     settings.picture.exposure_ev = 1.0;
     ask("vec3 post(ivec2 at, vec3 color) { return color.grb; }\n");
     take_all(false);

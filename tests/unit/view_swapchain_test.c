@@ -180,8 +180,9 @@ static unsigned number_of(const char *variable, unsigned otherwise)
     return text && text[0] ? (unsigned)strtoul(text, NULL, 10) : otherwise;
 }
 
-/* Every `step`-th call; WHIT_TEST_OFFSET says from which on, WHIT_TEST_EVERY=1 takes them all. A
-   few of them with the validation layers, which are slow: these see what is left behind. */
+/* Makes every `step`-th Vulkan call fail. WHIT_TEST_OFFSET says from which call on, and with
+   WHIT_TEST_EVERY=1 all of them fail. A few fail under the validation layers, which are slow, but
+   see objects that are left behind. */
 static void fail_each_call(bool validation, unsigned step)
 {
     whit_result result = WHIT_ERROR_FAILED;
@@ -218,8 +219,8 @@ TEST(nothing_is_left_behind)
     fail_each_call(true, 8);
 }
 
-/* What is asked of who shows pictures: that the window changed is told, and the next size mends it.
- */
+/* When `call` says that the window has changed, the swapchain reports that it is stale, and shows
+   nothing more until it gets its new size. */
 static void change_at(const char *call, int result, bool shown_then)
 {
     struct shop shop;
