@@ -6,8 +6,8 @@
 
 #include <math.h>
 
-/* Ratio of the changes by a doubling of samples and by the doubling before: the median over the
-   scenes in scenes/. */
+/* A doubling of samples changes a picture this many times as much as the doubling before: the
+   median over the scenes in scenes/. */
 #define CHANGE_FALLS    0.6f
 /* The sum of all later changes, in units of the last one. It would be 2.5 (1 + 0.6 + 0.36 ...) if
    all changes had the same sign. */

@@ -26,8 +26,8 @@ static bool head_has(const uint8_t *data, size_t size_bytes, const char *word)
     return false;
 }
 
-/* A binary STL has no magic number; it is told by its size, which fits the count of triangles in
-   its header. */
+/* A binary STL has no magic number; it is recognised by its size, which fits the count of triangles
+   in its header. */
 static bool is_binary_stl(const uint8_t *data, size_t size_bytes)
 {
     if (size_bytes < STL_HEADER_BYTES)

@@ -9,7 +9,7 @@
 /* A model stands on an axis' lower end if surface within SLAB of its extent from that end covers at
    least the share STANDS of its ground area, and does not if it covers less than HARDLY. */
 static const double SLAB = 0.02, STANDS = 0.15, HARDLY = 0.02;
-/* Surface that covers this share of the ground is a floor. */
+/* Surfaces that cover at least this share of the ground are a floor. */
 static const double FLOOR = 0.5;
 /* A floor may also lie up to this share of the extent above the end, as on a foundation. */
 static const double LOW = 0.1;

@@ -125,7 +125,8 @@ static void add_crossed(struct crossed *crossed, uint32_t entry, uint32_t instan
     crossed->leaving[crossed->count++] = leaving;
 }
 
-/* Distance along the ray within which hits count as at one place, by rounding errors. */
+/* The distance along the ray within which two hits count as one place, since rounding errors may
+   have put them that far apart. */
 static double slack(const struct surface *s, const struct ray *ray, double t)
 {
     double size = d3_size(ray->origin) + d3_size(s->p) + d3_size(s->e1) + d3_size(s->e2) + t;

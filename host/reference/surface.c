@@ -1,4 +1,4 @@
-/* Makes of a hit what shading needs: point, normals, texture coordinates, material. */
+/* Computes what shading needs of a hit: point, normals, texture coordinates, material. */
 #include "reference/surface.h"
 #include "base/same.h"
 #include "base/vec.h"

@@ -226,7 +226,8 @@ static whit_result help_lights(struct scene *scene, const struct scene_pose *pos
         found->key = true;
         result = add_own_light(scene, pose, viewpoint, why);
     }
-    /* Only a camera of the file can be in a box without lamps: whit's own one has them there. */
+    /* Only a camera of the file can be in a box without lamps: where whit puts its own camera
+       inside a box, it adds a lamp. */
     bool boxed = found->key && !scene->cameras[0].made_by_whit;
     if (result == WHIT_OK && boxed)
         result = freeze_lit_share(scene, &share);

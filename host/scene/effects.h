@@ -10,8 +10,8 @@ void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
    name. SCENE_NONE: there is none. */
 uint32_t scene_find_worn(const struct scene *scene, const char *name);
 
-/* Adds the effects that materials of this class call for, by those that primitives use; gives how
-   many these are. */
+/* Goes through the materials of this class that primitives use: adds the effects that they call
+   for, and gives how many materials they are. */
 uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
                                       struct scene_effects *out);
 

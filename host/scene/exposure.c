@@ -245,9 +245,10 @@ static double share_from(const double *sorted, uint32_t count, double value)
     return (double)(count - below) / count;
 }
 
-/* Gives the exposure in EV, in half stops. Negative, where too much is burnt out: until at most a
-   tenth of what is seen is above 1, but with half of it still above LOW. Positive, where nearly all
-   would be black even if white. Else 0. */
+/* Gives the exposure in EV, in half stops. Where too much is burnt out it is negative: as low as it
+   takes for at most a tenth of what is seen to be above 1, but not so low that less than half is
+   above LOW. Where nearly all would be black even if all surfaces were white it is positive. Else
+   it is 0. */
 static double exposure_of(struct freeze_seen *seen, double *burnt)
 {
     qsort(seen->shown, seen->count, sizeof *seen->shown, compare_values);
@@ -274,8 +275,8 @@ static bool has_own_light(const struct scene *scene)
     return own;
 }
 
-/* whit's own lights already suit the picture. Shadow rays are traced only where the picture would
-   be too bright without shadows. */
+/* Without lights of the model's own there is nothing to choose, since those that whit adds suit the
+   picture. Shadow rays are traced only where the picture would be too bright without shadows. */
 whit_result freeze_choose_exposure(struct scene *scene)
 {
     struct freeze_seen seen;
