@@ -159,15 +159,20 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
         target_drop_pixels(&renderer->probe);
     whit_result result = hooks_find_material(renderer);
     if (result == WHIT_OK)
+        hooks_warn_material(renderer);
+    if (result == WHIT_OK)
         result = stages_replace(&renderer->picture, before);
     return result == WHIT_OK ? renderer_set_view(renderer, params) : result;
 }
 
-/* Warns that no primitive has the material of the shape, and suggests the name that comes
-   nearest. */
-static void warn_of_material(const struct renderer *renderer, const struct shader_box *box)
+void hooks_warn_material(const struct renderer *renderer)
 {
     const struct scene *scene = renderer->scene;
+    const whit_shader *shader = renderer->params.shader;
+    if (!shader_has(shader, WHIT_HOOK_INTERSECT) ||
+        scene_find_worn(scene, shader->box.material) != SCENE_NONE)
+        return;
+    const struct shader_box *box = &shader->box;
     const char **names = array_alloc_zeroed(scene->material_count, sizeof *names);
     const char *nearest = NULL;
     uint32_t count = 0;
@@ -178,7 +183,7 @@ static void warn_of_material(const struct renderer *renderer, const struct shade
     }
     nearest = count > 0 ? text_nearest(box->material, names, count) : NULL;
     log_warning(&renderer->log, "%s:%u: nothing in the scene wears a material `%s`%s%s%s",
-                renderer->params.shader->text.files[box->file].name, box->line, box->material,
+                shader->text.files[box->file].name, box->line, box->material,
                 nearest ? "; did you mean `" : "", nearest ? nearest : "", nearest ? "`?" : "");
     free(names);
 }
@@ -190,10 +195,8 @@ whit_result hooks_find_material(struct renderer *renderer)
         return WHIT_OK;
     const struct shader_box *box = &shader->box;
     uint32_t index = scene_find_worn(renderer->scene, box->material);
-    if (index == SCENE_NONE) {
-        warn_of_material(renderer, box);
+    if (index == SCENE_NONE)
         index = scene_find_worn(renderer->scene, "");
-    }
     if (index == SCENE_NONE) {
         log_error(&renderer->log, "%s:%u: the scene has no material for the shape",
                   shader->text.files[box->file].name, box->line);

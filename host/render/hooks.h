@@ -14,9 +14,12 @@ uint32_t hooks_dbg_count(const struct target *target);
 uint32_t hooks_aov_count(const struct target *target);
 /* Sets renderer->sliders. WHIT_ERROR_USAGE, logged, for sliders that the shader does not have. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
-/* Finds the material of intersect()'s shape in the scene, or a substitute where no such name is
-   used. */
+/* Finds the material of intersect()'s shape in the scene. Where no primitive has a material of that
+   name, the first material that any primitive has stands in. */
 WHIT_CHECK whit_result hooks_find_material(struct renderer *renderer);
+/* Warns if no primitive has the material of intersect()'s shape, and suggests the name that comes
+   nearest. */
+void hooks_warn_material(const struct renderer *renderer);
 /* Clears the words of the status buffer about loops without fuel and wrong answers of
    intersect(). */
 WHIT_CHECK whit_result hooks_clear_status(const struct target *target);

@@ -122,6 +122,8 @@ whit_result renderer_create(const whit_log *log, struct device *device, struct a
         return WHIT_ERROR_MEMORY;
     whit_result result = renderer_init(renderer, log, device, accel, params);
     if (result == WHIT_OK)
+        hooks_warn_material(renderer);
+    if (result == WHIT_OK)
         result = create_parts(renderer);
     if (result == WHIT_OK && renderer->params.compile_async)
         result = renderer_compile(renderer);

@@ -59,8 +59,8 @@ static void draw_difference(const struct compare_figures *figures)
     ui_text("%llu %s differ", (unsigned long long)d->other_colors,
             figures->has_flip ? "colours" : "numbers");
     if (d->other_colors > 0) {
-        ui_text("by up to %.3g,", d->largest);
-        ui_text("%.2g on average", d->mean);
+        ui_text("by at most %.3g,", d->largest);
+        ui_text("on average %.2g%s", d->mean, figures->has_flip ? ", linear RGB" : "");
     }
     if (figures->has_flip)
         ui_text("FLIP %.3g, at most %.2g", figures->flip_mean, figures->flip_largest);

@@ -16,8 +16,7 @@ static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
                       COLOR_GOOD = 0xFFD0E090u, COLOR_TEXT = 0xFFFFFFFFu;
 static const float ROOM_FOR_BOTH = 400.0f; /* height of figures and a panel below them, pixels */
 
-/* Draws "full size, 4 samples". */
-static void draw_quality(const struct view *view)
+void hud_quality(const struct view *view, char text[HUD_QUALITY_BYTES])
 {
     const struct engine_frame *frame = &view->frame;
     char samples[32] = "adaptive samples";
@@ -25,12 +24,19 @@ static void draw_quality(const struct view *view)
         snprintf(samples, sizeof samples, "%u sample%s", frame->samples,
                  frame->samples > 1 ? "s" : "");
     if (frame->divisor > 1)
-        ui_text_color(COLOR_WARNING, "1/%u of the size, %s%s", frame->divisor, samples,
-                      view->status.drawing ? ", on its way" : "");
-    else if (!frame->whole)
-        ui_text_color(COLOR_WARNING, "full size, %s as yet", samples);
+        snprintf(text, HUD_QUALITY_BYTES, "1/%u of the size, %s%s", frame->divisor, samples,
+                 view->status.drawing ? ", on its way" : "");
     else
-        ui_text("full size, %s", samples);
+        snprintf(text, HUD_QUALITY_BYTES, "full size, %s%s", samples,
+                 frame->whole ? "" : " as yet");
+}
+
+static void draw_quality(const struct view *view)
+{
+    char text[HUD_QUALITY_BYTES];
+    bool preview = view->frame.divisor > 1 || !view->frame.whole;
+    hud_quality(view, text);
+    ui_text_color(preview ? COLOR_WARNING : COLOR_TEXT, "%s", text);
 }
 
 /* Whether all pixels are black; in other pictures the loop ends at the first one that is not. */
@@ -228,7 +234,7 @@ static void draw_change(const struct view *view)
                   (unsigned long long)c->difference.pixels);
     ui_text_beside(COLOR_TEXT, "what they hit,");
     if (c->difference.other_colors > 0)
-        ui_text("%llu colours by up to %.3g, %.2g on average",
+        ui_text("%llu colours, linear RGB by at most %.3g, on average %.2g",
                 (unsigned long long)c->difference.other_colors, c->difference.largest,
                 c->difference.mean);
     else

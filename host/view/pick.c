@@ -351,8 +351,9 @@ static void draw_panel(struct view *view)
         ui_separator();
         draw_calls(r);
         ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME,
-                      "%u ray%s, the twin differs at %u; %.0f ms", r->ray_count,
-                      r->ray_count == 1 ? "" : "s", r->differing, view->probe.ms);
+                      "%u ray%s in %.0f ms; on the CPU %u of them hit%s something else",
+                      r->ray_count, r->ray_count == 1 ? "" : "s", view->probe.ms, r->differing,
+                      r->differing == 1 ? "s" : "");
         if (has_moved_on(view))
             ui_text_dim("of a picture before this one");
         draw_tree(view);

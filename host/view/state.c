@@ -335,7 +335,7 @@ static json_t *memory_json(void)
 static json_t *state_json(struct view *view, const char *name)
 {
     static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
-    char words[4096], line[4096];
+    char words[4096], line[4096], quality[HUD_QUALITY_BYTES];
     struct swapchain_info chain;
     json_t *root = json_object();
     put_text(root, "at", name);
@@ -351,6 +351,8 @@ static json_t *state_json(struct view *view, const char *name)
     put_count(root, "window_height", chain.height);
     put_number(root, "ui_scale", (double)ui_scale(view->ui));
     put_text(root, "hud", huds[view->hud]);
+    hud_quality(view, quality);
+    put_text(root, "quality", quality);
     put_bool(root, "help", view->help);
     put_bool(root, "playing", view->clock.playing);
     put_text(root, "toast", view->toast);

@@ -39,8 +39,9 @@ NONE=
 if part 0 2; then
     steps >"$OUT/replay" <<END
 start: | toast has did you mean \`height\`? | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
-until shader.hash = $red
-red: | frame.ids as start | frame.pixels not as start | error =
+until shader.first = 1
+step! | quality has 1/8 of the size, 1 sample | shader.hash = $red
+red: | quality = full size, 1 sample | frame.ids as start | frame.pixels not as start | error =
 until error
 told: | toast as red | change.what = shader a.glsl, read again
 broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/part/tint.glsl:3: 'here' | errors_drawn = 5 | error has live/part/deep.glsl:2:14: 'nowhere'
