@@ -10,6 +10,7 @@
 #include "render/render.h"
 #include "scene/scene.h"
 #include "whit/whit.h"
+#include <stdatomic.h>
 
 struct whit_scene {
     struct scene *scene;
@@ -54,6 +55,7 @@ WHIT_CHECK whit_result api_need_device(const whit_renderer *renderer);
 
 struct whit_image {
     struct image image;
+    atomic_uint sharers; /* owners besides the first one, see whit_image_share */
 };
 
 struct whit_file {

@@ -59,22 +59,6 @@ whit_result whit_image_rows(const whit_image *image, uint32_t first, uint32_t co
     return WHIT_OK;
 }
 
-whit_result whit_image_create_words(uint32_t width, uint32_t height, uint32_t channels,
-                                    const uint32_t *words, whit_image **out)
-{
-    *out = NULL;
-    whit_image *image = calloc(1, sizeof *image);
-    whit_result result =
-        image ? image_init(&image->image, width, height, channels, true) : WHIT_ERROR_MEMORY;
-    if (result != WHIT_OK) {
-        free(image);
-        return result;
-    }
-    memcpy(image->image.words, words, (size_t)width * height * channels * sizeof *words);
-    *out = image;
-    return WHIT_OK;
-}
-
 whit_result whit_image_create_display(uint32_t width, uint32_t height, const uint8_t *rgba,
                                       whit_image **out)
 {
@@ -237,9 +221,16 @@ whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels
     return WHIT_OK;
 }
 
+whit_image *whit_image_share(whit_image *image)
+{
+    if (image)
+        atomic_fetch_add(&image->sharers, 1);
+    return image;
+}
+
 void whit_image_destroy(whit_image *image)
 {
-    if (!image)
+    if (!image || atomic_fetch_sub(&image->sharers, 1) > 0)
         return;
     image_finish(&image->image);
     free(image);

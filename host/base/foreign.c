@@ -63,8 +63,9 @@ static whit_result explain(enum child_end end, const struct child_limits *limits
                  who, limits->cpu_s, child_clock_limit_s(limits));
         return WHIT_ERROR_INPUT;
     case CHILD_MEMORY:
-        snprintf(reason, max, "the %s asked for more than %.4g MiB of memory, half of --memory-limit",
-                 who, (double)limits->memory_bytes / 1048576.0);
+        snprintf(reason, max,
+                 "the %s asked for more than %.4g MiB of memory, half of --memory-limit", who,
+                 (double)limits->memory_bytes / 1048576.0);
         return WHIT_ERROR_INPUT;
     case CHILD_CANCELLED:
         snprintf(reason, max, "loading was cancelled");

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/color.h"
+#include "base/threads.h"
 #include "image/compare.h"
 
 void display_encoder_init(struct display_encoder *encoder)
@@ -54,13 +55,30 @@ void display_encode(const struct display_encoder *encoder, const struct image *i
         to[c] = c == 3 ? encode_alpha(rgba[c]) : encode(encoder, rgba[c]);
 }
 
+enum { BAND_ROWS = 128 };
+
+struct display_job {
+    const struct image *image;
+    uint8_t *rgba;
+    struct display_encoder encoder;
+};
+
+static void encode_band(void *context, uint32_t band)
+{
+    const struct display_job *job = context;
+    const struct image *image = job->image;
+    size_t first = (size_t)band * BAND_ROWS * image->width;
+    size_t end = first + (size_t)BAND_ROWS * image->width;
+    size_t pixel_count = (size_t)image->width * image->height;
+    for (size_t i = first; i < end && i < pixel_count; ++i) {
+        job->rgba[4 * i + 3] = 255;
+        display_encode(&job->encoder, image, i, &job->rgba[4 * i], image->channels == 4 ? 4 : 3);
+    }
+}
+
 void display_bytes(const struct image *image, uint8_t *rgba)
 {
-    struct display_encoder encoder;
-    size_t pixel_count = (size_t)image->width * image->height;
-    display_encoder_init(&encoder);
-    for (size_t i = 0; i < pixel_count; ++i) {
-        rgba[4 * i + 3] = 255;
-        display_encode(&encoder, image, i, &rgba[4 * i], image->channels == 4 ? 4 : 3);
-    }
+    struct display_job job = {.image = image, .rgba = rgba};
+    display_encoder_init(&job.encoder);
+    threads_for(0, (image->height + BAND_ROWS - 1) / BAND_ROWS, encode_band, &job);
 }

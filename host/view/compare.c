@@ -44,46 +44,21 @@ static bool same_pair(const struct compare_pair *p, const struct compare_pair *q
     return p->numbers[0] == q->numbers[0] && p->numbers[1] == q->numbers[1];
 }
 
-static bool reads(const struct compare_pair *pair, const whit_image *image)
+/* A job owns the images of its pair until it is done: their frames may be replaced meanwhile. */
+static void share_images(struct compare_pair *pair)
 {
-    bool found = false;
-    for (int i = 0; i < 2; ++i)
-        found = found || pair->color[i] == image || pair->ids[i] == image;
-    return found;
-}
-
-static bool is_read(const struct compare *compare, const whit_image *image)
-{
-    const struct compare_job *heat = &compare->jobs[COMPARE_HEAT];
-    const struct compare_job *figures = &compare->jobs[COMPARE_FIGURES];
-    return image && ((heat->thread && reads(&heat->heat.pair, image)) ||
-                     (figures->thread && reads(&figures->figures.pair, image)));
-}
-
-static void keep_left(struct compare *compare, whit_image **image)
-{
-    for (size_t i = 0; i < sizeof compare->left / sizeof *compare->left; ++i) {
-        if (compare->left[i] || !is_read(compare, *image))
-            continue;
-        compare->left[i] = *image;
-        *image = NULL;
-        return;
+    for (int i = 0; i < 2; ++i) {
+        pair->color[i] = whit_image_share(pair->color[i]);
+        pair->ids[i] = whit_image_share(pair->ids[i]);
     }
 }
 
-void compare_leave(struct compare *compare, struct engine_frame *frame)
+static void drop_images(struct compare_pair *pair)
 {
-    keep_left(compare, &frame->color);
-    keep_left(compare, &frame->ids);
-}
-
-static void drop_left(struct compare *compare)
-{
-    for (size_t i = 0; i < sizeof compare->left / sizeof *compare->left; ++i) {
-        if (is_read(compare, compare->left[i]))
-            continue;
-        whit_image_destroy(compare->left[i]);
-        compare->left[i] = NULL;
+    for (int i = 0; i < 2; ++i) {
+        whit_image_destroy(pair->color[i]);
+        whit_image_destroy(pair->ids[i]);
+        pair->color[i] = pair->ids[i] = NULL;
     }
 }
 
@@ -144,15 +119,11 @@ static void run_figures(void *context)
     struct compare_job *job = context;
     struct compare_figures *figures = &job->figures;
     const struct compare_pair *pair = &figures->pair;
-    struct difference_side sides[2];
+    const struct difference_side a = {pair->color[0], pair->ids[0]};
+    const struct difference_side b = {pair->color[1], pair->ids[1]};
     whit_image_info info;
     whit_image_get_info(pair->color[0], &info);
-    for (int i = 0; i < 2; ++i) {
-        sides[i].color = whit_image_floats(pair->color[i]);
-        sides[i].ids = pair->ids[i] ? whit_image_words(pair->ids[i]) : NULL;
-    }
-    difference_measure(&sides[0], &sides[1], info.channels, (uint64_t)info.width * info.height,
-                       &figures->difference);
+    difference_measure(&a, &b, &figures->difference);
     figures->has_flip =
         info.channels > 1 && difference_flip(pair->color[0], pair->color[1], &figures->flip_mean,
                                              &figures->flip_largest);
@@ -161,11 +132,15 @@ static void run_figures(void *context)
     window_wake(NULL);
 }
 
-static void start(struct compare *compare, enum compare_work work, void (*fn)(void *context))
+static void start(struct compare_job *job, const struct compare_pair *pair,
+                  void (*fn)(void *context))
 {
-    struct compare_job *job = &compare->jobs[work];
     atomic_store(&job->done, false);
+    job->pair = *pair;
+    share_images(&job->pair);
     job->thread = thread_start(fn, job);
+    if (!job->thread)
+        drop_images(&job->pair);
 }
 
 static bool reap(struct compare *compare, enum compare_work work)
@@ -175,6 +150,7 @@ static bool reap(struct compare *compare, enum compare_work work)
         return false;
     thread_join(job->thread);
     job->thread = NULL;
+    drop_images(&job->pair);
     return true;
 }
 
@@ -210,7 +186,6 @@ static void run_jobs(struct view *view)
         compare->figures = compare->jobs[COMPARE_FIGURES].figures;
         view->dirty = true;
     }
-    drop_left(compare);
     if (!get_pair(view, &pair))
         return;
     struct compare_job *heat = &compare->jobs[COMPARE_HEAT];
@@ -218,13 +193,13 @@ static void run_jobs(struct view *view)
     if (!heat->thread && wants_heat(compare, &pair)) {
         heat->palette = &view->palette;
         heat->heat = (struct compare_heat){.pair = pair, .asked_scale = compare->scale};
-        start(compare, COMPARE_HEAT, run_heat);
+        start(heat, &pair, run_heat);
     }
     if (!figures->thread && wants_figures(compare, &pair)) {
         figures->figures = (struct compare_figures){.pair = pair};
         for (int i = 0; i < 2; ++i)
             figures->figures.ms[i] = engine_drawn_ms(&frame_of(view, i)->stats);
-        start(compare, COMPARE_FIGURES, run_figures);
+        start(figures, &pair, run_figures);
     }
 }
 
@@ -309,7 +284,6 @@ static whit_result show(struct view *view)
 static void replace_other(struct compare *compare, struct engine_frame *next)
 {
     engine_frame_inherit(&compare->other, next);
-    compare_leave(compare, &compare->other);
     engine_frame_finish(&compare->other);
     compare->other = *next;
     compare->stale = true;
@@ -396,9 +370,8 @@ void compare_finish(struct compare *compare)
 {
     for (int i = 0; i < COMPARE_WORKS; ++i) {
         thread_join(compare->jobs[i].thread);
-        compare->jobs[i].thread = NULL;
+        drop_images(&compare->jobs[i].pair);
     }
-    drop_left(compare);
     free(compare->jobs[COMPARE_HEAT].heat.rgba);
     free(compare->heat.rgba);
     free(compare->mixed);

@@ -17,10 +17,10 @@ enum compare_mode {
     COMPARE_DIFFERENCE, /* |A - B| of the largest channel, as a heat map */
 };
 
-/* The pictures of A and B that a job reads. They are kept until it is done: see compare_leave. */
+/* The pictures of A and B. */
 struct compare_pair {
-    const whit_image *color[2], *ids[2];
-    uint64_t numbers[2]; /* numbers of the frames */
+    whit_image *color[2], *ids[2]; /* borrowed, but those of a job */
+    uint64_t numbers[2];           /* numbers of the frames */
     bool whole;
     bool uneven; /* numbers of samples differ, as one was refined further */
 };
@@ -49,6 +49,7 @@ struct compare_job {
     struct thread *thread; /* NULL: the job is not running */
     atomic_bool done;
     const struct palette *palette;
+    struct compare_pair pair; /* owns its images while the job runs */
     struct compare_heat heat; /* the request, and then the result */
     struct compare_figures figures;
 };
@@ -64,8 +65,6 @@ struct compare {
     struct compare_heat heat;
     struct compare_figures figures;
     struct compare_job jobs[COMPARE_WORKS];
-    /* Images of frames that are gone, which a job still reads. */
-    whit_image *left[4 * COMPARE_WORKS];
     uint8_t *mixed; /* pixels of A and B side by side */
     uint32_t mixed_width, mixed_height;
 };
@@ -74,9 +73,6 @@ struct view;
 
 /* Changes the mode. From OFF to another mode it freezes B. */
 void compare_set(struct view *view, enum compare_mode mode);
-/* Call it before `frame` is replaced by a newer one: images of it that jobs read move to
-   compare->left. */
-void compare_leave(struct compare *compare, struct engine_frame *frame);
 /* Takes new pictures and finished jobs, and gives the window its picture; without comparison, that
    of A. */
 WHIT_CHECK whit_result compare_step(struct view *view);

@@ -31,13 +31,16 @@ static void measure_colors(const float *p, const float *q, uint32_t channels,
 }
 
 void difference_measure(const struct difference_side *a, const struct difference_side *b,
-                        uint32_t channels, uint64_t pixels, struct difference *out)
+                        struct difference *out)
 {
-    *out = (struct difference){.pixels = pixels};
+    whit_image_info info;
+    whit_image_get_info(a->color ? a->color : a->ids, &info);
+    *out = (struct difference){.pixels = (uint64_t)info.width * info.height};
     if (a->ids && b->ids)
-        measure_ids(a->ids, b->ids, out);
+        measure_ids(whit_image_words(a->ids), whit_image_words(b->ids), out);
     if (a->color && b->color)
-        measure_colors(a->color, b->color, channels, out);
+        measure_colors(whit_image_floats(a->color), whit_image_floats(b->color), info.channels,
+                       out);
 }
 
 bool difference_flip(const whit_image *a, const whit_image *b, double *mean, double *largest)

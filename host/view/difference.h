@@ -7,11 +7,10 @@
 
 #include "whit/whit_image.h"
 
-/* One of two pictures that are compared: `color` has `channels` linear floats a pixel (1, or 4 with
-   an alpha that does not count), `ids` two words of hit identity a pixel. Either may be NULL. */
+/* One of two pictures of the same size that are compared. `color` has floats, of which alpha does
+   not count; `ids` two words of hit identity a pixel. Either may be NULL. */
 struct difference_side {
-    const float *color;
-    const uint32_t *ids;
+    const whit_image *color, *ids;
 };
 
 struct difference {
@@ -24,6 +23,6 @@ struct difference {
    (may be NULL). False: not known, as they have no colours, or memory ran out. */
 bool difference_flip(const whit_image *a, const whit_image *b, double *mean, double *largest);
 void difference_measure(const struct difference_side *a, const struct difference_side *b,
-                        uint32_t channels, uint64_t pixels, struct difference *out);
+                        struct difference *out);
 
 #endif

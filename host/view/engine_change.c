@@ -67,10 +67,9 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
         return;
     bool colors = before->color && after->settings.paint == PAINT_COLOR;
     const struct difference_side a = {colors ? before->color : NULL, before->ids};
-    const struct difference_side b = {colors ? whit_image_floats(after->color) : NULL,
-                                      whit_image_words(after->ids)};
+    const struct difference_side b = {colors ? after->color : NULL, after->ids};
     struct difference difference;
-    difference_measure(&a, &b, 4, (uint64_t)after->width * after->height, &difference);
+    difference_measure(&a, &b, &difference);
     *change = (struct engine_change){
         .number = change->number + 1,
         .settings = after->settings,
@@ -123,44 +122,32 @@ bool engine_is_same(const struct engine_kept *before, const struct engine_frame 
     return before->ids && before->color && after->ids && after->settings.paint == PAINT_COLOR &&
            before->width == after->width && before->height == after->height &&
            settings_same_place(&before->settings, &after->settings) &&
-           memcmp(before->ids, whit_image_words(after->ids), pixels * 2 * sizeof(uint32_t)) == 0 &&
-           memcmp(before->color, whit_image_floats(after->color), pixels * 4 * sizeof(float)) == 0;
+           memcmp(whit_image_words(before->ids), whit_image_words(after->ids),
+                  pixels * 2 * sizeof(uint32_t)) == 0 &&
+           memcmp(whit_image_floats(before->color), whit_image_floats(after->color),
+                  pixels * 4 * sizeof(float)) == 0;
 }
 
 void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
 {
-    size_t pixels = (size_t)frame->width * frame->height;
     bool colors = frame->settings.paint == PAINT_COLOR;
     engine_kept_finish(kept);
     *kept = (struct engine_kept){.settings = frame->settings,
                                  .stats = frame->stats,
                                  .accel = frame->accel,
                                  .width = frame->width,
-                                 .height = frame->height};
-    kept->ids = malloc(pixels * 2 * sizeof *kept->ids);
-    kept->color = colors ? malloc(pixels * 4 * sizeof *kept->color) : NULL;
-    kept->plain = frame->plain ? malloc(pixels * 4 * sizeof *kept->plain) : NULL;
-    kept->cuts = frame->cuts ? malloc(pixels * 2 * sizeof *kept->cuts) : NULL;
-    if (!kept->ids || (colors && !kept->color) || (frame->plain && !kept->plain) ||
-        (frame->cuts && !kept->cuts)) {
-        engine_kept_finish(kept);
-        return;
-    }
-    memcpy(kept->ids, whit_image_words(frame->ids), pixels * 2 * sizeof *kept->ids);
-    if (frame->cuts)
-        memcpy(kept->cuts, whit_image_floats(frame->cuts), pixels * 2 * sizeof *kept->cuts);
-    if (frame->plain)
-        memcpy(kept->plain, whit_image_floats(frame->plain), pixels * 4 * sizeof *kept->plain);
-    if (colors)
-        memcpy(kept->color, whit_image_floats(frame->color), pixels * 4 * sizeof *kept->color);
+                                 .height = frame->height,
+                                 .color = colors ? whit_image_share(frame->color) : NULL,
+                                 .plain = whit_image_share(frame->plain),
+                                 .cuts = whit_image_share(frame->cuts),
+                                 .ids = whit_image_share(frame->ids)};
 }
 
 void engine_kept_finish(struct engine_kept *kept)
 {
-    free(kept->ids);
-    free(kept->color);
-    free(kept->plain);
-    free(kept->cuts);
-    kept->ids = NULL;
-    kept->color = kept->plain = kept->cuts = NULL;
+    whit_image_destroy(kept->ids);
+    whit_image_destroy(kept->color);
+    whit_image_destroy(kept->plain);
+    whit_image_destroy(kept->cuts);
+    kept->ids = kept->color = kept->plain = kept->cuts = NULL;
 }

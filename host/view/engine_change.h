@@ -10,10 +10,9 @@ struct engine_kept {
     whit_stats stats;
     whit_accel_info accel;
     uint32_t width, height;
-    float *color;  /* linear RGBA; NULL: costs were painted */
-    float *plain;  /* as engine_frame.plain, or NULL */
-    float *cuts;   /* as engine_frame.cuts, or NULL */
-    uint32_t *ids; /* instance, primitive; NULL: nothing is kept */
+    /* The images of the frame, shared with it. `color`: NULL if costs were painted. `plain` and
+       `cuts`: NULL where the frame has none. `ids`: NULL if nothing is kept. */
+    whit_image *color, *plain, *cuts, *ids;
 };
 
 /* Measures the last change, which takes a while, unless something else comes first. `late`: there
@@ -28,7 +27,7 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
                     struct engine_change *change);
 /* Whether both have the same camera, time and size, and the same ids and colours. */
 bool engine_is_same(const struct engine_kept *before, const struct engine_frame *after);
-/* Replaces *kept by a copy of the frame; it is empty if memory runs out. */
+/* Replaces *kept by the frame, whose images both then own. */
 void engine_keep(struct engine_kept *kept, const struct engine_frame *frame);
 void engine_kept_finish(struct engine_kept *kept);
 

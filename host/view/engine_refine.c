@@ -59,7 +59,7 @@ static void begin(struct engine_refine *refine, const struct engine_frame *frame
     refine->ended = frame->samples * ROUND > WHIT_SAMPLES_MAX;
 }
 
-/* Creates the whit_refine, whose first part is the picture that engine_keep copied. */
+/* Creates the whit_refine, whose first part is the picture that engine_keep kept. */
 static whit_result begin_parts(struct engine_refine *refine, whit_renderer *renderer,
                                const whit_renderer_params *params, const struct engine_kept *kept)
 {
@@ -75,7 +75,8 @@ static whit_result begin_parts(struct engine_refine *refine, whit_renderer *rend
     whit_result result = whit_refine_create(renderer, params, &refine->refine);
     if (result == WHIT_OK)
         result = whit_refine_begin(refine->refine, refine->samples,
-                                   kept->plain ? kept->plain : kept->color, kept->cuts);
+                                   whit_image_floats(kept->plain ? kept->plain : kept->color),
+                                   whit_image_floats(kept->cuts));
     if (result == WHIT_OK)
         result = whit_refine_image(refine->refine, &image);
     if (result == WHIT_OK)
@@ -133,7 +134,7 @@ static whit_result read_sum(const struct engine_refine *refine, const struct eng
 {
     const whit_renderer_params params = settings_picture(&refine->base.settings);
     whit_overlay overlay = settings_overlay(&refine->base.settings);
-    overlay.ids = kept->ids;
+    overlay.ids = whit_image_words(kept->ids);
     whit_result result = whit_refine_image(refine->refine, color);
     if (result == WHIT_OK)
         result = whit_renderer_draw_over(session->renderer, &overlay, *color);
@@ -283,9 +284,7 @@ whit_result engine_refine_whole(const struct engine_task *task, struct engine_fr
     whit_result result = draw_missing(task);
     if (result == WHIT_OK)
         result = show_sum(task->refine, single, task->session, frame);
-    if (result == WHIT_OK)
-        result =
-            whit_image_create_words(single->width, single->height, 2, single->ids, &frame->ids);
+    frame->ids = result == WHIT_OK ? whit_image_share(single->ids) : NULL;
     frame->refined = false;
     if (result == WHIT_OK)
         sum_stats(task, &frame->stats);

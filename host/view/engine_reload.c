@@ -9,23 +9,11 @@
 
 /* ---- How different they look ---- */
 
-static whit_result copy_picture(const struct engine_kept *kept, whit_image **image)
-{
-    const whit_renderer_params params = settings_picture(&kept->settings);
-    whit_result result = whit_image_create(kept->width, kept->height, 4, kept->color, image);
-    if (result == WHIT_OK)
-        whit_image_display_as(*image, &params);
-    return result;
-}
-
 static void run_flip(void *context)
 {
     struct engine_flip *flip = context;
     struct engine *engine = flip->engine;
-    whit_image *before = NULL;
-    flip->known = copy_picture(&flip->kept, &before) == WHIT_OK &&
-                  difference_flip(before, flip->after, &flip->mean, NULL);
-    whit_image_destroy(before);
+    flip->known = difference_flip(flip->before, flip->after, &flip->mean, NULL);
     pthread_mutex_lock(&engine->lock);
     flip->done = true;
     pthread_cond_signal(&engine->work);
@@ -37,29 +25,25 @@ void engine_flip_destroy(struct engine_flip *flip)
     if (!flip)
         return;
     thread_join(flip->thread);
-    engine_kept_finish(&flip->kept);
+    whit_image_destroy(flip->before);
     whit_image_destroy(flip->after);
     free(flip);
 }
 
-/* Starts a thread that compares the pictures before and after a reload by FLIP. The thread works on
-   copies, so that drawing does not wait for it. Call it with engine->lock held, which is released
-   while the picture is copied. */
+/* Starts a thread that compares the pictures before and after a reload by FLIP, while drawing goes
+   on. Call it with engine->lock held. */
 static void start_flip(struct engine *engine)
 {
     struct engine_flip *flip = calloc(1, sizeof *flip);
-    struct engine_kept kept = engine->reloading.before;
-    engine->reloading.before = (struct engine_kept){0};
-    if (!flip) {
-        engine_kept_finish(&kept);
-        return;
+    if (flip) {
+        *flip = (struct engine_flip){.engine = engine,
+                                     .number = engine->reload.number,
+                                     .before = whit_image_share(engine->reloading.before.color),
+                                     .after = whit_image_share(engine->last.color)};
+        flip->thread = flip->after ? thread_start(run_flip, flip) : NULL;
     }
-    *flip = (struct engine_flip){.engine = engine, .number = engine->reload.number, .kept = kept};
-    pthread_mutex_unlock(&engine->lock);
-    if (engine->last.color && copy_picture(&engine->last, &flip->after) == WHIT_OK)
-        flip->thread = thread_start(run_flip, flip);
-    pthread_mutex_lock(&engine->lock);
-    if (flip->thread)
+    engine_kept_finish(&engine->reloading.before);
+    if (flip && flip->thread)
         engine->flip = flip;
     else
         engine_flip_destroy(flip);

@@ -13,10 +13,9 @@ struct thread;
 struct engine_flip {
     struct engine *engine;
     struct thread *thread;
-    uint64_t number;         /* number of the reload */
-    struct engine_kept kept; /* the picture before it */
-    whit_image *after;
-    bool known, done; /* done: under the lock */
+    uint64_t number;            /* number of the reload */
+    whit_image *before, *after; /* its pictures */
+    bool known, done;           /* done: under the lock */
     double mean;
 };
 

@@ -126,7 +126,6 @@ static void take_frame(struct view *view)
     if (!engine_take(view->engine, false, &next))
         return;
     engine_frame_inherit(frame, &next);
-    compare_leave(&view->compare, frame);
     engine_frame_finish(frame);
     *frame = next;
     bool other_scene = view->scene != frame->scene;

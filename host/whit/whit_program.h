@@ -53,12 +53,11 @@ WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const wh
    not be written, and none is left. */
 WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
 void whit_image_strips_abandon(whit_image_strips *strips);
-/* Makes an image of integers, as hit identities are: it copies width * height * channels of them
-   from `words`. WHIT_ERROR_MEMORY. */
-WHIT_CHECK whit_result whit_image_create_words(uint32_t width, uint32_t height, uint32_t channels,
-                                               const uint32_t *words, whit_image **out);
 /* The floats of a picture, to be changed; NULL where it has integers. */
 float *whit_image_edit(whit_image *image);
+/* Adds an owner to an image that nobody changes any more, and gives `image`, NULL for NULL. Each
+   owner calls whit_image_destroy, from any thread; the last call frees the image. */
+whit_image *whit_image_share(whit_image *image);
 
 /* ---- Renderers ---- */
 
