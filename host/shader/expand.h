@@ -17,7 +17,7 @@ struct expanded {
 
 enum { EXPAND_NAME_BYTES = 256 };
 /* The name that a line of whit's own text includes: returns its length, 0: the line is no
-   #include. */
+   #include line. */
 size_t expand_included(const char *line, const char **name);
 /* Joins the path of the including file, as "kernel/y.comp", and a name such as "../bind/x.glsl" or
    "x.glsl". */

@@ -32,7 +32,7 @@ struct shader_file {
 };
 
 /* files[0] is the file that the user named; the others follow in the order of their first
-   #include. */
+   #include line. */
 struct shader_text {
     struct shader_file *files;
     uint32_t file_count, file_capacity;
