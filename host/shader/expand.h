@@ -16,8 +16,8 @@ struct expanded {
 };
 
 enum { EXPAND_NAME_BYTES = 256 };
-/* The name that a line of whit's own text includes: returns its length, 0: the line is no
-   #include line. */
+/* The name that a line of whit's own text includes: returns its length; 0: the line includes
+   nothing. */
 size_t expand_included(const char *line, const char **name);
 /* Joins the path of the including file, as "kernel/y.comp", and a name such as "../bind/x.glsl" or
    "x.glsl". */

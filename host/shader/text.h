@@ -31,8 +31,8 @@ struct shader_file {
     uint32_t include_count, include_capacity;
 };
 
-/* files[0] is the file that the user named; the others follow in the order of their first
-   #include line. */
+/* files[0] is the file that the user named; the others follow in the order in which they are first
+   included. */
 struct shader_text {
     struct shader_file *files;
     uint32_t file_count, file_capacity;
