@@ -272,6 +272,9 @@ static void draw_price_of(struct view *view, uint32_t index, bool in, bool can)
         ui_text_dim(strcmp(state.what, whit_effect_name(index)) == 0 ? "measuring" : "to come");
 }
 
+/* Characters that the columns of effects and prices take at most, and the column of reasons. */
+enum { EFFECT_CHARACTERS = 46, REASON_CHARACTERS = 60 };
+
 /* Whether there is room for the reasons of effects. */
 static bool say_reasons(void)
 {
@@ -296,11 +299,12 @@ static void draw_effect(struct view *view, uint32_t index)
     draw_price_of(view, index, in, can);
     if (!say_reasons())
         return;
-    ui_table_next();
-    if (info.called)
-        ui_text("%.60s", info.reason);
-    else
+    if (info.called) {
+        ui_cell(0xFFFFFFFFu, info.reason);
+    } else {
+        ui_table_next();
         ui_text_dim("not called for");
+    }
 }
 
 static void draw_effects(struct view *view)
@@ -318,9 +322,10 @@ static void draw_effects(struct view *view)
                     settings_compiles(&view->frame.settings)
                         ? "With --shader no price comes by itself."
                         : "Prices are of a small picture.");
-        int columns = say_reasons() ? 3 : 2;
+        int columns = say_reasons() ? 3 : 2, room = ui_characters(columns) - EFFECT_CHARACTERS;
+        const int widths[3] = {0, 0, room < REASON_CHARACTERS ? room : REASON_CHARACTERS};
         if (ui_table_begin("effects", columns)) {
-            ui_table_header(titles, columns);
+            ui_table_header(titles, widths, columns);
             for (uint32_t i = 0; i < EFFECTS_MAX && whit_effect_name(i); ++i)
                 draw_effect(view, i);
             ui_table_end();

@@ -8,7 +8,8 @@
 #include "view/pick.h"
 #include "view/view_private.h"
 
-static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u;
+static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u,
+                      COLOR_TEXT = 0xFFFFFFFFu, COLOR_DIM = 0xFF808080u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
@@ -219,86 +220,125 @@ static void draw_calls(const whit_probe_report *r)
         ui_separator();
 }
 
-static void draw_hit(const whit_probe_hit *hit)
+enum { RAY_COLUMNS = 7, CELL_BYTES = 160, NAME_MIN = 8 };
+static const char *const ray_columns[RAY_COLUMNS] = {"ray",      "t  inst/prim", "ends", "weight",
+                                                     "material", "twin",         "exact"};
+
+/* A row of the table of rays: its texts and their colours. */
+struct ray_row {
+    char cells[RAY_COLUMNS][CELL_BYTES];
+    uint32_t colors[RAY_COLUMNS];
+};
+
+static void write_hit(const whit_probe_hit *hit, char cell[CELL_BYTES])
 {
     if (hit->instance == WHIT_NONE)
-        ui_text("-");
+        snprintf(cell, CELL_BYTES, "-");
     else
-        ui_text("%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
+        snprintf(cell, CELL_BYTES, "%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
 }
 
-/* Draws the hit of the twin or of exact arithmetic; "=": the same as the device's (the twin's: in
+/* Writes the hit of the twin or of exact arithmetic; "=": the same as the device's (the twin's: in
    every bit). */
-static void draw_other(const whit_probe_hit *hit, bool known, bool equal)
+static void write_other(const whit_probe_hit *hit, bool known, bool equal, struct ray_row *row,
+                        int column)
 {
+    row->colors[column] = !known || equal ? COLOR_DIM : COLOR_DIFFERS;
     if (!known || equal)
-        ui_text_dim("%s", known ? "=" : "?");
+        snprintf(row->cells[column], CELL_BYTES, "%s", known ? "=" : "?");
     else
-        ui_text_color(COLOR_DIFFERS, "%.7g  %u/%u", hit->t, hit->instance, hit->primitive);
+        write_hit(hit, row->cells[column]);
 }
 
-/* Draws "6 shadow, lamp": so many rays to one light ended in the same way. */
-static void draw_kind(const whit_scene *scene, const whit_probe_ray *ray, uint32_t count)
+/* Writes "6 shadow, lamp": so many rays to one light ended in the same way. */
+static void write_kind(const whit_scene *scene, const whit_probe_ray *ray, uint32_t count,
+                       char cell[CELL_BYTES])
 {
-    const char *kind = value_word(values_rays, (int)ray->kind);
-    uint32_t color = kind_colors[ray->kind % WHIT_RAY_KINDS];
     whit_light_info light = {0};
     char number[16] = "";
     if (ray->light != WHIT_NONE)
         whit_scene_get_light(scene, ray->light, &light);
     if (count > 1)
         snprintf(number, sizeof number, "%u ", count);
-    ui_text_color(color, "%*s%s%s%s%.16s", (int)ray->generation, "", number, kind,
-                  light.name ? ", " : "", light.name ? light.name : "");
+    snprintf(cell, CELL_BYTES, "%*s%s%s%s%.100s", (int)ray->generation, "", number,
+             value_word(values_rays, (int)ray->kind), light.name ? ", " : "",
+             light.name ? light.name : "");
 }
 
-/* Draws why a ray ended, and for a shadow ray where: "blocked by vase". */
-static void draw_end(const whit_scene *scene, const whit_probe_ray *ray)
+/* Writes why a ray ended, and for a shadow ray where: "blocked by vase". */
+static void write_end(const whit_scene *scene, const whit_probe_ray *ray, char cell[CELL_BYTES])
 {
     whit_instance_info blocker = {0};
     if (ray->end == WHIT_PROBE_BLOCKED && ray->device.instance != WHIT_NONE)
         whit_scene_get_instance(scene, ray->device.instance, &blocker);
     bool named = blocker.name && blocker.name[0];
-    ui_text("%s%s%.16s", whit_probe_end_name(ray->end), named ? " by " : "",
-            named ? blocker.name : "");
+    snprintf(cell, CELL_BYTES, "%s%s%.100s", whit_probe_end_name(ray->end), named ? " by " : "",
+             named ? blocker.name : "");
 }
 
-static void draw_row(const struct view *view, const whit_probe_row *row)
+static void write_row(const struct view *view, const whit_probe_row *from, struct ray_row *row)
 {
-    const whit_probe_ray *ray = &view->probe.report->rays[row->ray];
+    const whit_scene *scene = view->probe.scene->scene;
+    const whit_probe_ray *ray = &view->probe.report->rays[from->ray];
+    const float *weight = ray->weight;
     whit_material_info material = {0};
     if (ray->material != WHIT_NONE)
-        whit_scene_get_material(view->probe.scene->scene, ray->material, &material);
-    ui_table_next();
-    draw_kind(view->probe.scene->scene, ray, row->count);
-    ui_table_next();
-    draw_hit(&ray->device);
-    ui_table_next();
-    draw_end(view->probe.scene->scene, ray);
-    ui_table_next();
-    if (ray->weight[0] == ray->weight[1] && ray->weight[1] == ray->weight[2])
-        ui_text("%.3f", (double)ray->weight[0]);
+        whit_scene_get_material(scene, ray->material, &material);
+    for (int i = 0; i < RAY_COLUMNS; ++i)
+        row->colors[i] = i == 0 ? kind_colors[ray->kind % WHIT_RAY_KINDS] : COLOR_TEXT;
+    write_kind(scene, ray, from->count, row->cells[0]);
+    write_hit(&ray->device, row->cells[1]);
+    write_end(scene, ray, row->cells[2]);
+    if (weight[0] == weight[1] && weight[1] == weight[2])
+        snprintf(row->cells[3], CELL_BYTES, "%.3f", (double)weight[0]);
     else
-        ui_text("%.2f %.2f %.2f", (double)ray->weight[0], (double)ray->weight[1],
-                (double)ray->weight[2]);
-    ui_table_next();
-    ui_text("%.16s", material.name ? material.name : "");
-    ui_table_next();
-    draw_other(&ray->twin, true, ray->equal);
-    ui_table_next();
-    draw_other(&ray->exact, ray->exact_known, ray->exact_equal);
+        snprintf(row->cells[3], CELL_BYTES, "%.2f %.2f %.2f", (double)weight[0], (double)weight[1],
+                 (double)weight[2]);
+    snprintf(row->cells[4], CELL_BYTES, "%.100s", material.name ? material.name : "");
+    write_other(&ray->twin, true, ray->equal, row, 5);
+    write_other(&ray->exact, ray->exact_known, ray->exact_equal, row, 6);
+}
+
+/* Chooses the widths of the columns in characters. Where the panel has no room for the longest
+   texts, the columns with names get narrower, and wrap. */
+static void choose_widths(const struct view *view, uint32_t shown, int widths[RAY_COLUMNS])
+{
+    static const int named[] = {0, 2, 4};
+    int room = ui_characters_here(RAY_COLUMNS), sum = 0;
+    for (int i = 0; i < RAY_COLUMNS; ++i)
+        widths[i] = (int)strlen(ray_columns[i]);
+    for (uint32_t k = 0; k < shown; ++k) {
+        struct ray_row row;
+        write_row(view, &view->probe.rows[k], &row);
+        for (int i = 0; i < RAY_COLUMNS; ++i)
+            widths[i] = (int)fmax(widths[i], (double)strlen(row.cells[i]));
+    }
+    for (int i = 0; i < RAY_COLUMNS; ++i)
+        sum += widths[i];
+    for (; sum > room; --sum) {
+        int widest = named[0];
+        for (int i = 1; i < 3; ++i)
+            widest = widths[named[i]] > widths[widest] ? named[i] : widest;
+        if (widths[widest] <= NAME_MIN)
+            return;
+        --widths[widest];
+    }
 }
 
 static void draw_tree(const struct view *view)
 {
-    static const char *const columns[] = {"ray",      "t  inst/prim", "ends", "weight",
-                                          "material", "twin",         "exact"};
     const struct engine_probe *probe = &view->probe;
     uint32_t shown = probe->row_count < RAYS_SHOWN ? probe->row_count : RAYS_SHOWN;
-    if (ui_table_begin("rays", 7)) {
-        ui_table_header(columns, 7);
-        for (uint32_t i = 0; i < shown; ++i)
-            draw_row(view, &probe->rows[i]);
+    int widths[RAY_COLUMNS];
+    choose_widths(view, shown, widths);
+    if (ui_table_begin("rays", RAY_COLUMNS)) {
+        ui_table_header(ray_columns, widths, RAY_COLUMNS);
+        for (uint32_t i = 0; i < shown; ++i) {
+            struct ray_row row;
+            write_row(view, &probe->rows[i], &row);
+            for (int k = 0; k < RAY_COLUMNS; ++k)
+                ui_cell(row.colors[k], row.cells[k]);
+        }
         ui_table_end();
     }
     if (shown < probe->row_count || probe->report->dropped > 0)
@@ -330,6 +370,16 @@ static struct place place_panel(const struct view *view, const whit_probe_report
     return place;
 }
 
+/* Draws the number of rays, and whether their twins on the CPU hit the same. */
+static void draw_count(const whit_probe_report *r, double ms)
+{
+    char same[48] = "the CPU finds the same hits";
+    if (r->differing)
+        snprintf(same, sizeof same, "the CPU finds other hits for %u", r->differing);
+    ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME, "%u ray%s in %.0f ms; %s",
+                  r->ray_count, r->ray_count == 1 ? "" : "s", ms, same);
+}
+
 static void draw_panel(struct view *view)
 {
     const whit_probe_report *r = view->probe.report;
@@ -350,10 +400,7 @@ static void draw_panel(struct view *view)
         ui_paragraph(why);
         ui_separator();
         draw_calls(r);
-        ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME,
-                      "%u ray%s in %.0f ms; on the CPU %u of them hit%s something else",
-                      r->ray_count, r->ray_count == 1 ? "" : "s", view->probe.ms, r->differing,
-                      r->differing == 1 ? "s" : "");
+        draw_count(r, view->probe.ms);
         if (has_moved_on(view))
             ui_text_dim("of a picture before this one");
         draw_tree(view);

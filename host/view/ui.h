@@ -147,7 +147,10 @@ void ui_cell(uint32_t color, const char *text); /* ui_table_next and a text */
 /* Number of characters that fit into a table of `columns` columns that is as wide as the window
    allows. */
 int ui_characters(int columns);
-void ui_table_header(const char *const *names, int count);
+/* The same for the panel or window as it is, whose width its content does not change. */
+int ui_characters_here(int columns);
+/* `characters`: the widths of the columns, 0: as wide as their texts; NULL: all so. */
+void ui_table_header(const char *const *names, const int *characters, int count);
 void ui_table_next(void); /* cell */
 void ui_table_end(void);
 

@@ -200,12 +200,22 @@ static float character_width()
     return ImGui::CalcTextSize("0").x;
 }
 
+static int characters_in(float width, int columns)
+{
+    float room = width - (float)columns * (2.0f * ImGui::GetStyle().CellPadding.x + 1.0f);
+    return (int)(room / character_width());
+}
+
 int ui_characters(int columns)
 {
     const ImGuiStyle &style = ImGui::GetStyle();
-    float room = panel_width() - 2.0f * style.WindowPadding.x - style.ScrollbarSize -
-                 (float)columns * (2.0f * style.CellPadding.x + 1.0f);
-    return (int)(room / character_width());
+    return characters_in(panel_width() - 2.0f * style.WindowPadding.x - style.ScrollbarSize,
+                         columns);
+}
+
+int ui_characters_here(int columns)
+{
+    return characters_in(ImGui::GetContentRegionAvail().x, columns);
 }
 
 void ui_table_widths(const int *characters, int count)
@@ -215,10 +225,14 @@ void ui_table_widths(const int *characters, int count)
                                 (float)characters[i] * character_width() + 1.0f);
 }
 
-void ui_table_header(const char *const *names, int count)
+void ui_table_header(const char *const *names, const int *characters, int count)
 {
-    for (int i = 0; i < count; ++i)
-        ImGui::TableSetupColumn(names[i]);
+    for (int i = 0; i < count; ++i) {
+        bool fixed = characters && characters[i] > 0;
+        ImGui::TableSetupColumn(
+            names[i], fixed ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_None,
+            fixed ? (float)characters[i] * character_width() + 1.0f : 0.0f);
+    }
     ImGui::TableHeadersRow();
 }
 
