@@ -82,5 +82,13 @@ else
         if (r[1] <= at[2] && at[2] < r[3] && r[2] <= at[3] && at[3] < r[4]) print $2 " over " $1 }' "$OUT/values")
     check "no panel covers the pixel ($over)" test -z "$over"
     check "its panel is seen each time" test "$(grep -c 'panels.Pixel' "$OUT/values")" = 5
+
+    # Long names wrap.
+    sed 's/"cube"/"a_name_that_is_as_long_as_a_modelling_program_makes_them_if_it_is_left_alone"/g' "$CUBE" >long.json
+    play "long names in a window of 640 x 480" long.json --size 320x240 --ui-scale 0.5 <<END
+long-effects: press X
+long-pixel: press X, click 160 120
+END
+    uncut long effects pixel
 fi
 finish
