@@ -18,19 +18,19 @@ def inexact: .aimed_rays | "\(.wrong), \(.leaks), \(.misses + .false_hits + .oth
 | "## The rows", "",
   "    whit cost scenes/SCENE.json \($options)", "",
   "On \($day), on \($reports[0].device) (\($reports[0].driver)), clock: \($reports[0].clock). Errors are against the "
-  + "reference in double. The usual picture takes, in ms, and beside itself:", "",
+  + "reference in double. Times of the usual picture, in ms, and relative to itself:", "",
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
   (["ms"] + ($reports | map(.rows[0].cpu_ms | round | tostring)) | line),
   (["beside itself"] + ($reports | map(.rows[0].price.cpu.ratio | "\(.low | digits(2)) to \(.high | digits(2))")) | line),
   (["judged at"] + ($reports | map("\(.judged_width) x \(.judged_height)")) | line),
   (["samples of the reference"] + ($reports | map(.reference.samples | tostring)) | line), "",
-  "Time beside the usual picture (`=`: not distinguishable from it), and FLIP:", "",
+  "Time relative to the usual picture (`=`: not distinguishable from it), and FLIP:", "",
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
   table($reports; $names; "\(time), \(.error.flip | digits(4))"), "",
-  "RMSE without what samples do (`alone`):", "",
+  "RMSE against a reference with one sample (`alone`):", "",
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
   table($reports; $names | map(select(.[0] | IN("usual", "numerics", "arithmetic", "instances")));
       .alone.rmse * 1e4 | round / 1e4 | tostring), "",
-  "Of 20,000 rays aimed at edges and vertices, beside exact arithmetic: wrong, leaks, and what the bounds of floats excuse:", "",
+  "Of 20,000 rays aimed at edges and vertices: wrong hits, leaks, and differences within the error bounds of floats:", "",
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
   table($reports; $names | map(select(.[0] | IN("usual", "numerics", "instances"))); inexact)
