@@ -40,8 +40,8 @@ bool clip_triangle_box(const struct clip_triangle *triangle, const struct bvh_bo
 
 /* For leaf boxes: the part's box with a margin around it, within the triangle's `own` box. The
    margin is more than what clipping rounds (an extent that is not 0 is at least 2^-24 of its
-   coordinates), and leaves room for the rounding of the triangle test: docs/numerics.md, "Clipped
-   triangles". */
+   coordinates), and leaves room for the rounding of the triangle test: docs/numerics-method.md,
+   "Clipped triangles". */
 #define CLIP_PART_MARGIN (1.0 / 4096.0) /* of the triangle's largest extent */
 struct bvh_box clip_widen(const struct bvh_box *part, const struct bvh_box *own);
 

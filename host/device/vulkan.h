@@ -4,7 +4,8 @@
    WHIT_FAULT=NAME:N    the N-th checked call of the Vulkan function NAME fails (N counts from 1,
                         NAME `*` is any function) with VK_ERROR_OUT_OF_DEVICE_MEMORY, or
                         VK_ERROR_DEVICE_LOST for vkQueueSubmit and vkWaitForFences. The call itself
-                        is not made. For tests of the error paths.
+                        is not made. NAME:N:RESULT names another result, see struct fault. For tests
+                        of the error paths.
 
    WHIT_POISON=1        buffers without BUFFER_ZEROED start as bytes 0xa5, so that what relies on
                         zeros shows.

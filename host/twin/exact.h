@@ -1,7 +1,7 @@
 /* shaders/lib/exact.glsl in C: whether and where a ray meets a triangle, as exact arithmetic on the
    given floats would find. The filter repeats the shader's operations one by one; the exact test is
    the same integer arithmetic, digit by digit, so that u and v have the same bits too. Method and
-   bounds: docs/numerics.md, "exact". */
+   bounds: docs/numerics-method.md, "exact". */
 #ifndef TWIN_EXACT_H
 #define TWIN_EXACT_H
 

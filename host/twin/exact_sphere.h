@@ -1,6 +1,6 @@
 /* shaders/lib/exact_sphere.glsl in C: whether and where a ray meets a sphere, as exact arithmetic
    on the given floats would find. The filter repeats the shader's operations one by one; the exact
-   test is the same integer arithmetic. Method and bounds: docs/numerics.md, "exact". */
+   test is the same integer arithmetic. Method and bounds: docs/numerics-method.md, "exact". */
 #ifndef TWIN_EXACT_SPHERE_H
 #define TWIN_EXACT_SPHERE_H
 

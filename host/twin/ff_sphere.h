@@ -1,5 +1,5 @@
 /* shaders/lib/ff_sphere.glsl in C, bit for bit: the result of exact_meet_sphere() in pairs of
-   floats, wherever their error bound leaves no doubt. Bounds: docs/numerics.md, "exact". */
+   floats, wherever their error bound leaves no doubt. Bounds: docs/numerics-method.md, "exact". */
 #ifndef TWIN_FF_SPHERE_H
 #define TWIN_FF_SPHERE_H
 

@@ -1,7 +1,7 @@
 /* shaders/lib/ff_triangle.glsl in C, bit for bit: the result of exact_meet() in pairs of floats,
    wherever their error bound leaves no doubt. A pair stands for the sum of two floats, of which the
    second is a rounding error of the first (Dekker 1971, "A floating-point technique for extending
-   the available precision"). Bounds: docs/numerics.md, "exact". */
+   the available precision"). Bounds: docs/numerics-method.md, "exact". */
 #ifndef TWIN_FF_TRIANGLE_H
 #define TWIN_FF_TRIANGLE_H
 

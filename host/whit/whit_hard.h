@@ -11,7 +11,7 @@ extern "C" {
 /* ---- Hard cases ---- */
 
 /* Meshes and rays at which ray tracers fail, traced at every level of numerics, on the device and
-   by its twin, and held against exact arithmetic: docs/numerics.md, "whit hard". */
+   by its twin, and held against exact arithmetic: docs/numerics-evidence.md, "whit hard". */
 
 typedef struct whit_hard_params {
     uint32_t rays;      /* per row; at least 512, which the hash needs; 0: 20000 */

@@ -321,8 +321,8 @@ typedef struct whit_stats {
                                 in parallel */
     bool general;            /* drawn by the general kernel: see params.compile_async */
     uint32_t dispatches, tiles, tile_size;
-    uint32_t deferred;        /* WHIT_NUMERICS_EXACT: number of traversals that floats left open and
-                                 that were finished in integers */
+    uint32_t deferred;        /* WHIT_NUMERICS_EXACT: number of items of lists (a ray, or a hit with
+                                 its shadow rays) that floats left open and integers finished */
     whit_load_path load_path; /* the path that was used, never WHIT_LOAD_AUTO */
     bool packets;             /* camera rays were traced in packets */
     whit_cost costs[WHIT_RAY_KINDS]; /* with params.count */

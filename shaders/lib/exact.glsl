@@ -1,6 +1,6 @@
 // NUMERICS_EXACT: whether and where a ray meets a triangle, as exact arithmetic on the given floats
 // would find. A filter of floats with a proven error bound decides nearly all cases; the rest go to
-// integers of many digits, which every device computes alike. docs/numerics.md derives the bounds.
+// integers of many digits, which every device computes alike. docs/numerics-method.md derives the bounds.
 // twin/exact.c is this file in C.
 #ifndef LIB_EXACT_GLSL
 #define LIB_EXACT_GLSL

@@ -1,6 +1,6 @@
 // NUMERICS_EXACT: whether and where a ray meets a sphere, as exact arithmetic on the given floats
 // would find. As with triangles (exact.glsl), a filter of floats with a proven error bound decides
-// nearly all cases, and integers the rest. docs/numerics.md derives the bounds. twin/exact_sphere.c
+// nearly all cases, and integers the rest. docs/numerics-method.md derives the bounds. twin/exact_sphere.c
 // is this file in C.
 #ifndef LIB_EXACT_SPHERE_GLSL
 #define LIB_EXACT_SPHERE_GLSL

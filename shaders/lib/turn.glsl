@@ -2,7 +2,7 @@
 #define LIB_TURN_GLSL
 
 // Whether a loop has another iteration, for loops behind which a check asks if work was left:
-// lavapipe 22.3 ends all loops of an invocation after 65,535 iterations. Compilers know that a loop
+// lavapipe 22.3 ends all loops of a subgroup after 65,535 iterations. Compilers know that a loop
 // ends only when its own condition fails, and would remove that check. They do not know that all
 // dispatches have one row of workgroups, which the condition here tests.
 bool another_iteration(bool again)

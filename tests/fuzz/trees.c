@@ -116,7 +116,7 @@ struct bvh_params fuzz_bvh_params(uint32_t which)
     return out;
 }
 
-/* docs/numerics.md, "Bad rays": they hit nothing. */
+/* docs/numerics-method.md, "Bad rays": they hit nothing. */
 static bool is_bad(const struct gpu_ray *ray)
 {
     bool bad = !(ray->t_min <= ray->t_max || isnan(ray->t_max)) || isnan(ray->t_min);
