@@ -31,6 +31,6 @@ def inexact: .aimed_rays | "\(.wrong), \(.leaks), \(.misses + .false_hits + .oth
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
   table($reports; $names | map(select(.[0] | IN("usual", "numerics", "arithmetic", "instances")));
       .alone.rmse * 1e4 | round / 1e4 | tostring), "",
-  "Of 20,000 rays aimed at edges and vertices: wrong hits, leaks, and differences within the error bounds of floats:", "",
+  "Of 20,000 rays at edges and vertices, against exact arithmetic: wrong hits, leaks, differences within the error bounds of floats:", "",
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
   table($reports; $names | map(select(.[0] | IN("usual", "numerics", "instances"))); inexact)

@@ -24,7 +24,7 @@ struct accel_mesh {
 enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
 
 /* With WHIT_BUILD_NONE: the most primitives over all instances, and the most loop iterations of one
-   ray. lavapipe grants an invocation 65,535. */
+   ray. lavapipe grants a subgroup 65,535. */
 enum { ACCEL_BARE_MAX = 40000, ACCEL_ITERATIONS_MAX = 65000 };
 
 struct accel_params {
