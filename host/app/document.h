@@ -31,7 +31,7 @@ void document_flag(json_t *object, const char *key, bool value);
 void document_hash(json_t *object, const char *key, uint64_t value); /* 16 hex digits */
 void document_floats(json_t *object, const char *key, const float *values, uint32_t count);
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
-/* Writes it to a file, indented. Takes over `value`. */
+/* Writes `value` to a file, indented, and takes it over. */
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
 /* Writes `text` to a file and frees it; `text` NULL: memory ran out before. Errors were printed. */
 WHIT_CHECK whit_result document_save_text(char *text, const char *path);

@@ -11,8 +11,8 @@
 enum { STACK_BYTES = 64 << 10 };
 static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT};
 enum { CRASH_COUNT = sizeof crashes / sizeof crashes[0] };
-/* If this much memory cannot be had, a crash counts as caused by lack of memory. It is more than
-   libraries allocate at a time, and too little to continue with. */
+/* A crash counts as caused by lack of memory if this much cannot be allocated when it happens. The
+   usual allocations of libraries are smaller, and whit could not go on with less. */
 #define CRASH_ROOM_BYTES ((uint64_t)16 << 20)
 static struct sigaction before[CRASH_COUNT];
 

@@ -27,8 +27,9 @@ struct watch {
     uint32_t count, capacity;
 };
 
-/* inotify merges an event with an equal one that is still unread, and then wakes nobody. So the
-   owner must read all events, by watch_changed, each time it is woken. */
+/* inotify merges an event with an equal one that is still unread, and then wakes nobody, as the
+   epoll is edge-triggered. So the owner must read all events, by watch_changed, each time it is
+   woken. */
 static void wait_for_events(void *context)
 {
     const struct watch *watch = context;

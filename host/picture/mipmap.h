@@ -32,7 +32,7 @@ uint64_t mipmap_first(uint32_t width, uint32_t height, uint32_t level);
 
 /* Makes all levels after level 0, one after the other, 8-bit RGBA, by a box filter: each texel is
    the mean of the texels of the level before that it covers, for odd sides also of parts of texels.
-   `kind` is not MIPMAP_NONE. free() it; NULL: memory ran out, or there is no such level. */
+   `kind` is not MIPMAP_NONE. free() it; NULL: memory ran out, or level 0 has only one texel. */
 uint8_t *mipmap_make(const uint8_t *rgba, uint32_t width, uint32_t height, enum mipmap_kind kind);
 
 /* mipmap_level approximates the logarithm of 1 .. 2 by this many linear pieces. */

@@ -1,4 +1,5 @@
-/* The parameters of a picture, with or without a device. */
+/* Checks the parameters of a picture, for the renderer and for the reference, which needs no
+   device. */
 #ifndef PICTURE_PARAMS_H
 #define PICTURE_PARAMS_H
 

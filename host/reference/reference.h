@@ -39,7 +39,8 @@ struct reference_params {
        schlick, cancel and progress count. `progress` is called from the calling thread. */
     whit_renderer_params picture;
     uint32_t thread_count; /* 0: one per core; the picture has the same bytes for any count */
-    bool whole_stops;      /* rounds filters of shadow rays to whole 1/64 stops, as kernels do */
+    bool whole_stops; /* rounds the light that each filter takes from a shadow ray to whole 1/64
+                         stops, as kernels do (a stop is a factor of 2) */
 };
 
 struct reference;

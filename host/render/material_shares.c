@@ -13,7 +13,7 @@
 /* The lists and rows of hits of a tile, read back from the device. Lists are filled from both ends:
    of `capacity` items the tile has used the `first` ones and the `last` ones. */
 struct tile_hits {
-    uint32_t *list; /* ids of hits, class by class */
+    uint32_t *list; /* ids of hits: `capacity` items for each class of materials (CLASS_*) */
     uint32_t *rows; /* by id: variant_hit_rows() rows of four words */
     uint32_t capacity, first, last;
 };

@@ -199,7 +199,8 @@ static bool is_in(const float *corners, const struct part *part)
     return in;
 }
 
-/* The box of all triangles that are in the core, or outside by no more than half its size. */
+/* The box of all triangles whose corners are in the core, or outside of it by no more than half the
+   core's diagonal along each axis. */
 static struct part find_part(const struct soup *soup)
 {
     struct part core, part = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};

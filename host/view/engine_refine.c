@@ -33,6 +33,7 @@ static void set_base(struct engine_refine *refine, const struct engine_frame *fr
     refine->base.boxes = NULL;
     refine->base.rgba = NULL;
     refine->base.scene = NULL;
+    refine->base.shader = NULL;
 }
 
 bool engine_refines(const struct settings *settings)

@@ -10,7 +10,7 @@ struct engine_task;
 
 /* A picture to which samples are added; used by the drawing thread. */
 struct engine_refine {
-    struct engine_frame base; /* the frame that it began with, without what that owns */
+    struct engine_frame base; /* copy of the frame that refining began with; owns nothing */
     double begun_ms;          /* time that drawing `base` took */
     uint32_t samples;    /* samples a pixel of the picture displayed last; 0: nothing to refine */
     bool settled;        /* more samples change nothing visible */

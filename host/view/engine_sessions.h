@@ -27,8 +27,9 @@ struct engine_job {
 /* Whether both differ only in the version of their shader, or in nothing that needs another
    session. */
 bool engine_same_but_version(const struct settings *a, const struct settings *b);
-/* Starts making a session for the next version of the window's shader, once its picture has been
-   shown for a while, so that the first save does not have to wait for one. */
+/* Starts making a spare session once the present picture has been shown for a while, unless the
+   scene is large. When the user saves the shader's file, the new version is drawn in that session
+   without waiting for one to be made. */
 void engine_make_spare(struct engine *engine);
 /* Starts making a session in a thread. False: the reason is in engine->error. */
 bool engine_start_job(struct engine *engine, const struct settings *settings, bool is_spare);

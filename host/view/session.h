@@ -41,8 +41,9 @@ enum session_stage {
 };
 const char *session_stage_name(enum session_stage stage);
 
-/* Room for the 32 errors that a compiler of shaders keeps, each with a name and a reason of up to
-   512 bytes. */
+/* SESSION_ERROR: room for one line, a file name and a reason of up to 512 bytes each, with line and
+   column. SESSION_ERRORS: room for the 32 errors that a shader compiler keeps, for the line "and N
+   more errors", and one line to spare. */
 enum { SESSION_ERROR = 1100, SESSION_ERRORS = 34 * SESSION_ERROR };
 
 struct session {

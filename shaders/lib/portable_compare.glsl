@@ -2,8 +2,8 @@
 #ifndef LIB_PORTABLE_COMPARE_GLSL
 #define LIB_PORTABLE_COMPARE_GLSL
 
-// Whether the device's comparisons and abs() tell denormals from 0. NVIDIA's do not, though its
-// sums and products do.
+// True: the device's own comparisons and abs() are used, as they tell denormals from 0. NVIDIA's do
+// not, though its sums and products do.
 layout(constant_id = 2) const bool OWN_COMPARISON = true;
 
 const uint INFINITE_BITS = 0x7f800000u, SIGN_BIT = 0x80000000u;

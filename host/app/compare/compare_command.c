@@ -181,8 +181,8 @@ static whit_result save_json(const struct compare *compare)
 
 /* ---- Tolerance ---- */
 
-/* Pixels that are not finite in one picture are in no mean, so with such pixels no tolerance for a
-   mean is met. */
+/* Pixels that are not finite in only one of the two pictures are in no mean, so with such pixels no
+   tolerance for a mean is met. */
 static bool is_within(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
