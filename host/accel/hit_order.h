@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What orders a hit. t is the ray's parameter, in lengths of its direction. */
+/* Hits are ordered by these fields, the first one first. t is the ray's parameter, in lengths of
+   its direction. */
 struct hit_place {
     double t;
     uint32_t instance, primitive;

@@ -1,4 +1,4 @@
-/* What a tree's records say of materials. */
+/* The bits in the records of a tree that hold properties of materials. */
 #ifndef ACCEL_MATERIAL_BITS_H
 #define ACCEL_MATERIAL_BITS_H
 

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* What a stream adds to its state for each number. */
+/* The constant that splitmix64 adds to the state for each number. */
 #define SPLITMIX64_STEP UINT64_C(0x9e3779b97f4a7c15)
 
 static inline uint64_t splitmix64(uint64_t *state)

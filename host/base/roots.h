@@ -46,7 +46,8 @@ void roots_finish(struct roots *roots);
    names are kept, and so are names with a scheme, which then reach nothing. Release with free(). */
 char *roots_join(const char *from, const char *relative);
 
-/* What `path` reaches; opens only the folders on the way. */
+/* Finds out what `path` leads to: a file below one of the roots, or why not. Opens only the folders
+   on the way. */
 enum reach roots_reach(const struct roots *roots, const char *path);
 /* NULL for REACH_FILE; else why the file cannot be read, as text to stand behind `name: `. For
    REACH_MISSING the reason comes from errno. */

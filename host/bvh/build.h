@@ -77,8 +77,8 @@ struct build_output {
     uint32_t *slots; /* of each pair slot: 1 if in use; then its number in the finished tree */
 };
 
-/* What differs between builders. Several threads call these functions at once, for ranges that do
-   not overlap. `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
+/* The functions that each builder has of its own. Several threads call them at once, for ranges
+   that do not overlap. `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
 struct builder {
     const struct bvh_params *params;
     struct build_record *records;

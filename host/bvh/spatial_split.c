@@ -284,7 +284,8 @@ bool spatial_apply(struct build_record *records, const struct build_range *range
         if (side == SIDE_BOTH) {
             bool has_low = record_half(&records[i], plane, false, triangles, &low);
             bool has_high = record_half(&records[i], plane, true, triangles, &high);
-            /* Where rounding leaves no part on one side, the whole reference goes to the other. */
+            /* A triangle whose part on one side is empty by rounding goes to the other side whole.
+             */
             if (!has_high || (has_low && end == range->count + range->spare))
                 side = SIDE_LEFT;
             else if (!has_low)

@@ -50,10 +50,10 @@ static void draw_difference(const struct compare_figures *figures)
     const struct difference *d = &figures->difference;
     ui_text("A %.2f ms, B %.2f ms, one picture each", figures->ms[0], figures->ms[1]);
     if (d->other_ids == 0 && d->other_colors == 0) {
-        ui_text_color(0xFFD0E090u, "identical");
+        ui_text_color(UI_COLOR_GOOD, "identical");
         return;
     }
-    ui_text_color(d->other_ids ? 0xFF40C0FFu : 0xFFD0E090u, "%llu of %llu pixels",
+    ui_text_color(d->other_ids ? UI_COLOR_WARNING : UI_COLOR_GOOD, "%llu of %llu pixels",
                   (unsigned long long)d->other_ids, (unsigned long long)d->pixels);
     ui_text("hit something else,");
     ui_text("%llu %s differ", (unsigned long long)d->other_colors,

@@ -12,8 +12,6 @@
 #include "view/scenes.h"
 #include "view/view_private.h"
 
-static const uint32_t COLOR_WARNING = 0xFF40C0FFu, COLOR_ERROR = 0xFF6070FFu,
-                      COLOR_GOOD = 0xFFD0E090u, COLOR_TEXT = 0xFFFFFFFFu;
 static const float ROOM_FOR_BOTH = 400.0f; /* height of figures and a panel below them, pixels */
 
 void hud_quality(const struct view *view, char text[HUD_QUALITY_BYTES])
@@ -36,7 +34,7 @@ static void draw_quality(const struct view *view)
     char text[HUD_QUALITY_BYTES];
     bool preview = view->frame.divisor > 1 || !view->frame.whole;
     hud_quality(view, text);
-    ui_text_color(preview ? COLOR_WARNING : COLOR_TEXT, "%s", text);
+    ui_text_color(preview ? UI_COLOR_WARNING : UI_COLOR_TEXT, "%s", text);
 }
 
 /* Whether all pixels are black; in other pictures the loop ends at the first one that is not. */
@@ -67,7 +65,7 @@ static void draw_figures(const struct view *view)
     if (view->rate.fps > 0.0 && view_is_moving(view))
         snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
     ui_text("%9s  render %.2f ms", fps, ms);
-    ui_text_beside(COLOR_TEXT, " %.2f Mray/s",
+    ui_text_beside(UI_COLOR_TEXT, " %.2f Mray/s",
                    ms > 0.0 ? (double)whit_stats_rays(s) / ms * 1e-3 : 0.0);
     if (frame->scene->info.time_end_s > 0.0)
         ui_text("%s at %.2f of %.2f s", view->clock.playing ? "plays" : "stands",
@@ -226,13 +224,13 @@ static void draw_change(const struct view *view)
     }
     draw_change_ms(c);
     if (c->difference.other_ids == 0 && c->difference.other_colors == 0) {
-        ui_text_color(COLOR_GOOD, "same picture");
+        ui_text_color(UI_COLOR_GOOD, "same picture");
         return;
     }
-    ui_text_color(c->difference.other_ids ? COLOR_WARNING : COLOR_GOOD,
+    ui_text_color(c->difference.other_ids ? UI_COLOR_WARNING : UI_COLOR_GOOD,
                   "%llu of %llu pixels changed", (unsigned long long)c->difference.other_ids,
                   (unsigned long long)c->difference.pixels);
-    ui_text_beside(COLOR_TEXT, "what they hit,");
+    ui_text_beside(UI_COLOR_TEXT, "what they hit,");
     if (c->difference.other_colors > 0)
         ui_text("%llu colours, linear RGB by at most %.3g, on average %.2g",
                 (unsigned long long)c->difference.other_colors, c->difference.largest,
@@ -265,7 +263,7 @@ static void draw_hud(const struct view *view)
         draw_quality(view);
         if (view->frame.whole && view->frame.settings.paint == PAINT_COLOR &&
             is_black(&view->frame))
-            ui_text_color(COLOR_WARNING, "all of it is black: Tab has `light` and `exposure`");
+            ui_text_color(UI_COLOR_WARNING, "all of it is black: Tab has `light` and `exposure`");
         if (view->hud == HUD_FULL)
             draw_more(view);
         wish_draw(view);
@@ -300,8 +298,8 @@ static void draw_key(const struct view *view, const struct key_binding *key)
     char state[SETTING_TEXT_BYTES] = "";
     if (key)
         key_state(view, key, state, sizeof state);
-    ui_cell(COLOR_GOOD, key ? key->keys : "");
-    ui_cell(COLOR_TEXT, !key ? "" : key->title ? key->title : key->name);
+    ui_cell(UI_COLOR_GOOD, key ? key->keys : "");
+    ui_cell(UI_COLOR_TEXT, !key ? "" : key->title ? key->title : key->name);
     ui_cell(0xFFA0A0A0u, state);
 }
 
@@ -344,8 +342,8 @@ static void draw_help(struct view *view)
         if (ui_table_begin("mouse", 2)) {
             ui_table_widths(widths, 2);
             for (size_t i = 0; i < sizeof mouse / sizeof *mouse; ++i) {
-                ui_cell(COLOR_GOOD, mouse[i][0]);
-                ui_cell(COLOR_TEXT, mouse[i][1]);
+                ui_cell(UI_COLOR_GOOD, mouse[i][0]);
+                ui_cell(UI_COLOR_TEXT, mouse[i][1]);
             }
             ui_table_end();
         }
@@ -409,7 +407,7 @@ static void draw_errors(struct view *view)
         snprintf(line, sizeof line, "%.*s", (int)length, at);
         room -= lines_of(view, line);
         if (left == 0 && (drawn == 0 || room >= 0.0f)) {
-            ui_text_color(COLOR_ERROR, "%s", line);
+            ui_text_color(UI_COLOR_ERROR, "%s", line);
             ++drawn;
         } else {
             ++left;
@@ -417,7 +415,7 @@ static void draw_errors(struct view *view)
         at += length + (at[length] == '\n');
     }
     if (left > 0)
-        ui_text_color(COLOR_ERROR, "and %u more, told on the terminal", left);
+        ui_text_color(UI_COLOR_ERROR, "and %u more, told on the terminal", left);
     view->shaders.errors_drawn = drawn;
 }
 
@@ -432,9 +430,9 @@ static void draw_messages(struct view *view)
         if (error)
             draw_errors(view);
         if (toast)
-            ui_text_color(COLOR_TEXT, "%s", view->toast);
+            ui_text_color(UI_COLOR_TEXT, "%s", view->toast);
         if (hint)
-            ui_text_color(COLOR_GOOD, "%s", view->params->hint);
+            ui_text_color(UI_COLOR_GOOD, "%s", view->params->hint);
     }
     ui_panel_end();
 }
@@ -447,7 +445,7 @@ static void draw_question(struct view *view)
         return;
     if (ui_panel_begin("Files elsewhere", 0.5f, 0.0f, UI_PANEL_HOLD)) {
         ui_text("The scene names files outside of its folder, in");
-        ui_text_color(COLOR_WARNING, "%s", folder);
+        ui_text_color(UI_COLOR_WARNING, "%s", folder);
         ui_text("May it read what is there?");
         bool allow = ui_button("allow");
         ui_same_line(0);
@@ -473,7 +471,7 @@ static void draw_boxes(const struct view *view)
         ui_same_line(0);
         ui_text_color(0xFF20A0FFu, "leaves, also from above");
         if (!overlay_is_possible(view))
-            ui_text_color(COLOR_WARNING, "not drawn: the camera is not perspective");
+            ui_text_color(UI_COLOR_WARNING, "not drawn: the camera is not perspective");
     }
     ui_panel_end();
 }

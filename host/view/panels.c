@@ -245,7 +245,7 @@ static void draw_dearest(struct prices *measured, const whit_scene *scene)
             return;
         whit_effect_info info;
         whit_scene_get_effect(scene, dearest, &info);
-        ui_text_color(0xFFD0E090u, "%s: %.0f %% of the time, for %.60s", info.name, 100.0 * part,
+        ui_text_color(UI_COLOR_GOOD, "%s: %.0f %% of the time, for %.60s", info.name, 100.0 * part,
                       info.reason);
         last = part;
     }
@@ -300,7 +300,7 @@ static void draw_effect(struct view *view, uint32_t index)
     if (!say_reasons())
         return;
     if (info.called) {
-        ui_cell(0xFFFFFFFFu, info.reason);
+        ui_cell(UI_COLOR_TEXT, info.reason);
     } else {
         ui_table_next();
         ui_text_dim("not called for");

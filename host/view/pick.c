@@ -8,8 +8,6 @@
 #include "view/pick.h"
 #include "view/view_private.h"
 
-static const uint32_t COLOR_DIFFERS = 0xFF6070FFu, COLOR_NAME = 0xFFD0E090u,
-                      COLOR_TEXT = 0xFFFFFFFFu, COLOR_DIM = 0xFF808080u;
 /* By kind of ray: white, yellow, sky blue, orange (Okabe and Ito's colours). */
 static const uint32_t kind_colors[WHIT_RAY_KINDS] = {0xFFFFFFFFu, 0xFF42E4F0u, 0xFFE9B456u,
                                                      0xFF009FE6u};
@@ -196,7 +194,7 @@ static void draw_call(const whit_probe_call *call)
     uint32_t shown = values_shown(call);
     for (uint32_t i = 0; i < shown; ++i) {
         whit_probe_value_text(&call->values[i], 6, text, sizeof text);
-        ui_text_color(COLOR_NAME, "%s:%u", path_name(call->file), call->line);
+        ui_text_color(UI_COLOR_GOOD, "%s:%u", path_name(call->file), call->line);
         ui_same_line(0);
         ui_text("%s = %s", call->text, text);
         if (call->values[i].generation) {
@@ -243,7 +241,7 @@ static void write_hit(const whit_probe_hit *hit, char cell[CELL_BYTES])
 static void write_other(const whit_probe_hit *hit, bool known, bool equal, struct ray_row *row,
                         int column)
 {
-    row->colors[column] = !known || equal ? COLOR_DIM : COLOR_DIFFERS;
+    row->colors[column] = !known || equal ? UI_COLOR_DIM : UI_COLOR_ERROR;
     if (!known || equal)
         snprintf(row->cells[column], CELL_BYTES, "%s", known ? "=" : "?");
     else
@@ -285,7 +283,7 @@ static void write_row(const struct view *view, const whit_probe_row *from, struc
     if (ray->material != WHIT_NONE)
         whit_scene_get_material(scene, ray->material, &material);
     for (int i = 0; i < RAY_COLUMNS; ++i)
-        row->colors[i] = i == 0 ? kind_colors[ray->kind % WHIT_RAY_KINDS] : COLOR_TEXT;
+        row->colors[i] = i == 0 ? kind_colors[ray->kind % WHIT_RAY_KINDS] : UI_COLOR_TEXT;
     write_kind(scene, ray, from->count, row->cells[0]);
     write_hit(&ray->device, row->cells[1]);
     write_end(scene, ray, row->cells[2]);
@@ -376,7 +374,7 @@ static void draw_count(const whit_probe_report *r, double ms)
     char same[48] = "the CPU finds the same hits";
     if (r->differing)
         snprintf(same, sizeof same, "the CPU finds other hits for %u", r->differing);
-    ui_text_color(r->differing ? COLOR_DIFFERS : COLOR_NAME, "%u ray%s in %.0f ms; %s",
+    ui_text_color(r->differing ? UI_COLOR_ERROR : UI_COLOR_GOOD, "%u ray%s in %.0f ms; %s",
                   r->ray_count, r->ray_count == 1 ? "" : "s", ms, same);
 }
 

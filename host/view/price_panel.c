@@ -10,8 +10,6 @@
 
 static const double SPEND_S = 12.0;
 enum { RANGE = 32 };
-static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu,
-                      COLOR_ERROR = 0xFF6070FFu;
 
 void prices_leave(struct view *view, struct prices *prices)
 {
@@ -96,7 +94,7 @@ static void draw_row(struct view *view, const struct cost_report *report,
     else if (index > 0 && row->price.verdict == 0)
         ui_text_dim("as before");
     else
-        ui_text_color(row->price.verdict < 0 ? COLOR_GOOD : 0xFFFFFFFFu, "%.1f ms",
+        ui_text_color(row->price.verdict < 0 ? UI_COLOR_GOOD : UI_COLOR_TEXT, "%.1f ms",
                       row->ms[report->clock]);
     if (row->broken)
         snprintf(text, sizeof text, "changed %llu pixels", (unsigned long long)row->pixels_changed);
@@ -106,8 +104,8 @@ static void draw_row(struct view *view, const struct cost_report *report,
         snprintf(text, sizeof text, "FLIP %.3g", cost_error_of(&row->error, COST_FLIP));
     else
         snprintf(text, sizeof text, "%s", row->note);
-    ui_cell(row->broken ? COLOR_ERROR : 0xFFFFFFFFu, text);
-    ui_cell(COLOR_GOOD, row->best && cost_is_judged(report, row) ? "*" : "");
+    ui_cell(row->broken ? UI_COLOR_ERROR : UI_COLOR_TEXT, text);
+    ui_cell(UI_COLOR_GOOD, row->best && cost_is_judged(report, row) ? "*" : "");
 }
 
 static void widen(double range[2], double value)
@@ -206,7 +204,7 @@ void price_draw(struct view *view)
     prices_get_state(view->prices, &state);
     if (ui_window_begin("Prices", 1.0f, 0.0f, 440.0f, 640.0f, false, &open)) {
         if (!settings_same_place(&state.settings, &view->settings))
-            ui_text_color(COLOR_WARNING, "of another view: press P twice");
+            ui_text_color(UI_COLOR_WARNING, "of another view: press P twice");
         if (!state.finished) {
             char text[PRICES_TEXT + 32];
             snprintf(text, sizeof text, "%.60s, %.0f s", state.what, state.seconds_left);
@@ -214,7 +212,7 @@ void price_draw(struct view *view)
         } else if (state.report) {
             draw_report(view, state.report, state.strip);
         } else {
-            ui_text_color(COLOR_ERROR, "%s", state.what);
+            ui_text_color(UI_COLOR_ERROR, "%s", state.what);
         }
     }
     ui_panel_end();

@@ -16,6 +16,12 @@ extern "C" {
 struct swapchain;
 struct ui;
 
+#define UI_COLOR_TEXT    0xFFFFFFFFu
+#define UI_COLOR_DIM     0xFF808080u
+#define UI_COLOR_GOOD    0xFFD0E090u
+#define UI_COLOR_WARNING 0xFF40C0FFu
+#define UI_COLOR_ERROR   0xFF6070FFu
+
 /* `scale`: size of text and everything else, 1 on a screen of 96 dots an inch. `font`: a TrueType
    file, read during this call only; NULL: Dear ImGui's own font. Errors are logged. */
 WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, const uint8_t *font,

@@ -9,7 +9,6 @@
 
 static const double SPEND_S = 20.0;
 enum { TRIES_MAX = 3 };
-static const uint32_t COLOR_GOOD = 0xFFD0E090u, COLOR_WARNING = 0xFF40C0FFu;
 
 const char *wish_stage_name(enum wish_stage stage)
 {
@@ -267,10 +266,11 @@ static void draw_chosen(const struct view *view)
 {
     const struct wish *wish = &view->wish;
     double budget_ms = view->params->settings.budget_ms;
-    ui_text_color(COLOR_GOOD, "%s", wish->text);
+    ui_text_color(UI_COLOR_GOOD, "%s", wish->text);
     ui_text("predicted %.4g ms, RMSE %.3g", wish->predicted_ms, wish->predicted_error);
     if (wish->took_ms > 0.0)
-        ui_text_color(budget_ms > 0.0 && wish->took_ms > budget_ms ? COLOR_WARNING : COLOR_GOOD,
+        ui_text_color(budget_ms > 0.0 && wish->took_ms > budget_ms ? UI_COLOR_WARNING
+                                                                   : UI_COLOR_GOOD,
                       "it took %.4g ms", wish->took_ms);
     if (wish->known)
         ui_text_dim("kept, by figures of %s", wish->figures->made);
@@ -298,7 +298,7 @@ void wish_draw(const struct view *view)
         prices_get_state(wish->prices, &state);
         ui_text_dim("measuring %.40s, %.0f s", state.what, state.seconds_left);
     } else if (wish->stage == WISH_NO_CHOICE || wish->stage == WISH_FAILED) {
-        ui_text_color(COLOR_WARNING, "%s", wish->text);
+        ui_text_color(UI_COLOR_WARNING, "%s", wish->text);
     } else {
         draw_chosen(view);
     }

@@ -54,7 +54,8 @@ static const struct setting refused[] = {
     {0},
 };
 
-/* It is named after the command whose help lists the options. */
+/* The options of a case are parsed as those of `whit render`, so that messages refer to the help
+   of that command. */
 static const struct cli_command case_command = {
     .name = "render", .arguments = "", .summary = "", .options = refused, .settings = IN_RENDER};
 

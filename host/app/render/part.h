@@ -45,7 +45,7 @@ void part_sum(const struct part *part, uint32_t samples, whit_image *image);
 /* Colours times `factor`; alpha stays. */
 void part_scale(float factor, whit_image *image);
 
-/* What a recipe says of a part: which part it is, and of which picture. */
+/* A part as its recipe describes it: which part it is, and of which picture. */
 struct part_place {
     struct part part;
     uint32_t width, height, samples; /* of the whole picture */
