@@ -36,6 +36,9 @@ printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z =
 printf '\nfloat deep = nowhere;\n\n' >live/part/deep.glsl
 mkfifo "$OUT/pipe"
 NONE=
+# put FILE AT: renames a copy over AT. Of two saves in a row the second must not truncate the file while the window reads
+# the first: an empty file is an error that no state waits for.
+put() { cp "$1" live/new && mv live/new "$2"; }
 if part 0 2; then
     steps >"$OUT/replay" <<END
 start: | toast has did you mean \`height\`? | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
@@ -70,8 +73,8 @@ END
         case $state in
         *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
         *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
-        *'"at":"turned"'*) cp green.new live/new && mv live/new live/part/tint.glsl ;; # put in its place
-        *'"at":"alone"'*) cp blue.new live/part/tint.glsl && cp violet.new live/part/tint.glsl ;;
+        *'"at":"turned"'*) put green.new live/part/tint.glsl ;;
+        *'"at":"alone"'*) put blue.new live/part/tint.glsl && put violet.new live/part/tint.glsl ;;
         esac
     done <"$OUT/pipe"
     wait $viewer
@@ -325,8 +328,8 @@ END
         *'"at":"endless"'*) cp nan.new live/h.glsl ;;
         *'"at":"nan"'*) cp deep.new live/h.glsl ;;
         *'"at":"deep"'*) cp bomb.new live/h.glsl ;;
-        *'"at":"bomb"'*) cp gbr.new live/new && mv live/new live/h.glsl ;;
-        *'"at":"renamed"'*) cp grb.new live/h.glsl && cp rrr.new live/h.glsl ;;
+        *'"at":"bomb"'*) put gbr.new live/h.glsl ;;
+        *'"at":"renamed"'*) put grb.new live/h.glsl && put rrr.new live/h.glsl ;;
         esac
     }
     follow "saves that mean harm" cube.json --size 96x64 --shader live/h.glsl
