@@ -4,6 +4,7 @@
 #include <assimp/cexport.h>
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
+#include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/mesh.h>
 #include <assimp/postprocess.h>
@@ -359,7 +360,13 @@ static const struct aiScene *import(struct library *library)
             return NULL;
         }
     }
-    const struct aiScene *scene = aiImportFileEx(request->files[0].name, 0, &io);
+    /* Without this, assimp makes a mesh of the skeleton, or of the nodes, of a file without meshes.
+     */
+    struct aiPropertyStore *wants = aiCreatePropertyStore();
+    aiSetImportPropertyInteger(wants, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+    const struct aiScene *scene =
+        aiImportFileExWithProperties(request->files[0].name, 0, &io, wants);
+    aiReleasePropertyStore(wants);
     key_table_finish(&library->names);
     return scene;
 }
@@ -392,6 +399,8 @@ static bool write_header(const struct import_counts *counts, size_t glb_bytes, v
 static int write_glb(const struct aiScene *scene, const struct import_request *request,
                      struct import_counts *counts, void *to, child_write write)
 {
+    if (!scene->mRootNode) /* assimp 5.2.4 reports no error where it cannot read a 3MF's XML */
+        return write_error("the file has no model that it can read", to, write);
     const struct aiExportDataBlob *blob =
         importer_glb((struct aiScene *)(uintptr_t)scene, request, counts);
     if (!blob)

@@ -119,14 +119,21 @@ static void shorten_paths(struct aiMaterial *material)
 
 /* --- the whole ------------------------------------------------------------------------------ */
 
-/* Removes from assimp's scene what whit does not import, and counts it for notes. */
-static void drop(struct aiScene *scene, struct import_counts *counts)
+/* Removes from assimp's scene what whit does not import, and counts it for notes. Texture
+   coordinates keep two components: assimp writes three as they are, which glTF does not allow. */
+static void drop(struct aiScene *scene, enum import_kind kind, struct import_counts *counts)
 {
     for (unsigned i = 0; i < scene->mNumMeshes; i++) {
-        counts->skins += scene->mMeshes[i]->mNumBones > 0;
-        scene->mMeshes[i]->mNumBones = 0;
+        struct aiMesh *mesh = scene->mMeshes[i];
+        counts->skins += mesh->mNumBones > 0;
+        mesh->mNumBones = 0;
+        for (int set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; set++)
+            mesh->mNumUVComponents[set] = 2;
     }
     counts->animations = scene->mNumAnimations;
+    /* assimp 5.2.4 gives pictures of a 3MF that it has freed, most often a thumbnail. */
+    if (kind == IMPORT_3MF)
+        scene->mNumTextures = 0;
     counts->lights = scene->mNumLights;
     counts->cameras = scene->mNumCameras;
     scene->mNumAnimations = 0;
@@ -137,7 +144,7 @@ const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
                                             const struct import_request *request,
                                             struct import_counts *counts)
 {
-    drop(scene, counts);
+    drop(scene, request->kind, counts);
     place(scene, request);
     for (unsigned i = 0; i < scene->mNumMaterials; i++)
         shorten_paths(scene->mMaterials[i]);

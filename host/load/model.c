@@ -207,12 +207,16 @@ static void note_dropped(struct scene *scene, const char *path, const struct imp
     if (counts->skins)
         scene_note(scene, SCENE_NOTE_WARNING,
                    "%s: skins are not animated: %u drawn in the bind pose", name, counts->skins);
-    if (counts->animations)
-        scene_note(scene, SCENE_NOTE_WARNING, "%s: %u animations are not played", name,
-                   counts->animations);
-    if (counts->lights || counts->cameras)
-        scene_note(scene, SCENE_NOTE_WARNING, "%s: %u lights and %u cameras are not read", name,
-                   counts->lights, counts->cameras);
+    const struct {
+        const char *one, *several;
+        uint32_t count;
+    } unread[] = {{"animation is not played", "animations are not played", counts->animations},
+                  {"light is not read", "lights are not read", counts->lights},
+                  {"camera is not read", "cameras are not read", counts->cameras}};
+    for (size_t i = 0; i < sizeof unread / sizeof *unread; i++)
+        if (unread[i].count)
+            scene_note(scene, SCENE_NOTE_WARNING, "%s: %u %s", name, unread[i].count,
+                       unread[i].count == 1 ? unread[i].one : unread[i].several);
 }
 
 static whit_result load_whole(struct scene *scene, const struct model_request *request,

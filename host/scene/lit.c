@@ -29,6 +29,7 @@ struct ray {
 };
 struct hit {
     double t, u, v, normal[3]; /* u, v: barycentric weights of corners 1 and 2; normal: in world */
+    double at[3];              /* point hit by a camera ray, in world space */
     const struct scene_mesh *mesh;
     uint32_t triangle;
     const struct scene_material *material;
@@ -37,12 +38,6 @@ struct hit {
 static bool is_black(const float rgb[3])
 {
     return !(rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f);
-}
-
-/* Surfaces that let light through, as glass and cut-out leaves, are skipped by all rays. */
-static bool is_solid(const struct scene_material *m)
-{
-    return m->alpha == SCENE_ALPHA_OPAQUE && is_black(m->transmission);
 }
 
 /* Intersects a triangle in object space, on both sides: Moeller and Trumbore (1997). */
@@ -71,6 +66,56 @@ static bool meet(const struct scene_mesh *mesh, uint32_t triangle, const struct 
     return true;
 }
 
+/* The nearest texel of the texture in `slot` at the hit, white without one. Textures repeat here,
+   whatever their wrap mode. */
+static void pick_texel(const struct scene *scene, const struct hit *hit, enum scene_slot slot,
+                       uint8_t rgba[4])
+{
+    const struct scene_texture_use *use = &hit->material->textures[slot];
+    const float *uvs =
+        hit->mesh->uvs[use->uv_set] ? hit->mesh->uvs[use->uv_set] : hit->mesh->uvs[0];
+    const uint32_t *index = hit->mesh->indices + 3 * (size_t)hit->triangle;
+    const double weights[3] = {1.0 - hit->u - hit->v, hit->u, hit->v};
+    double uv[2] = {0.0, 0.0};
+    uint32_t at[2];
+    memset(rgba, 255, 4);
+    if (use->texture == SCENE_NONE || !uvs || !scene->textures[use->texture].rgba)
+        return;
+    const struct scene_texture *texture = &scene->textures[use->texture];
+    for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 2; ++i)
+            uv[i] += weights[k] * (double)uvs[2 * (size_t)index[k] + (size_t)i];
+    }
+    for (int i = 0; i < 2; ++i) {
+        const float *m = use->transform + 3 * i;
+        double place = (double)m[0] * uv[0] + (double)m[1] * uv[1] + (double)m[2];
+        double part = isfinite(place) ? place - floor(place) : 0.0;
+        uint32_t size = i ? texture->height : texture->width, texel = (uint32_t)(part * size);
+        at[i] = texel < size ? texel : size - 1;
+    }
+    memcpy(rgba, texture->rgba + 4 * ((size_t)at[1] * texture->width + at[0]), 4);
+}
+
+/* Whether all rays stop at a hit. They pass glass, and where a surface is more transparent than
+   opaque, as between the leaves of a picture of leaves. The exporters of some programs call every
+   material transparent, with an opacity of 1. */
+static bool is_solid(const struct scene *scene, const struct hit *hit)
+{
+    const struct scene_material *m = hit->material;
+    uint8_t texel[4];
+    if (m->alpha == SCENE_ALPHA_OPAQUE || !is_black(m->transmission))
+        return is_black(m->transmission);
+    double opacity = (double)m->opacity;
+    if (m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE) {
+        pick_texel(scene, hit, SCENE_SLOT_OPACITY, texel);
+        opacity *= (texel[3] < 255 ? texel[3] : texel[0]) / 255.0;
+    } else {
+        pick_texel(scene, hit, SCENE_SLOT_DIFFUSE, texel);
+        opacity *= texel[3] / 255.0;
+    }
+    return opacity >= (m->alpha == SCENE_ALPHA_MASK ? (double)m->alpha_cutoff : 0.5);
+}
+
 static bool meets_box(const struct scene_mesh *mesh, const struct ray *ray)
 {
     double from = 0.0, to = ray->t_max;
@@ -96,16 +141,17 @@ static bool trace(const struct scene *scene, const struct scene_pose *pose,
         if (!meets_box(mesh, &ray))
             continue;
         for (uint32_t k = 0; k < mesh->triangle_count; ++k) {
-            const struct scene_material *m = &scene->materials[mesh->materials[k]];
             struct hit own;
-            if (!is_solid(m) || !meet(mesh, k, &ray, &own))
+            if (!meet(mesh, k, &ray, &own))
+                continue;
+            own.material = &scene->materials[mesh->materials[k]];
+            if (!is_solid(scene, &own))
                 continue;
             found = true;
             if (any)
                 return true;
             ray.t_max = own.t;
             *hit = own;
-            hit->material = m;
             /* Normals go to world space by the inverse transpose. */
             for (int c = 0; c < 3; ++c)
                 hit->normal[c] = inverses[i].m[c] * own.normal[0] +
@@ -147,13 +193,15 @@ static bool reaches(const struct scene *scene, const struct scene_pose *pose,
     return !trace(scene, pose, inverses, &ray, true, &hit);
 }
 
+/* Brightness is taken at the point that was hit, and not at `point`, which lies off the surface: an
+   emissive surface that was hit must not light itself. */
 static bool is_lit(const struct scene *scene, const struct scene_pose *pose,
-                   const struct affine *inverses, const double point[3], const double normal[3],
+                   const struct affine *inverses, const double point[3], const struct hit *hit,
                    uint32_t index)
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < pose->light_count && sum < LIT; ++i) {
-        double brightness = freeze_brightness(&pose->lights[i], point, normal);
+        double brightness = freeze_brightness(&pose->lights[i], hit->at, hit->normal);
         if (brightness > 0.1 * LIT &&
             reaches(scene, pose, inverses, &pose->lights[i], point, index))
             sum += brightness;
@@ -201,57 +249,14 @@ static bool see(const struct scene *scene, const struct scene_pose *pose,
     struct ray ray = look(&pose->cameras[0], index, count);
     if (!trace(scene, pose, inverses, &ray, false, hit))
         return false;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
+        hit->at[k] = ray.origin[k] + hit->t * ray.dir[k];
         point[k] = ray.origin[k] + (1.0 - OFFSET) * hit->t * ray.dir[k];
+    }
     return true;
 }
 
-static double measure_share(const struct scene *scene, const struct scene_pose *pose,
-                            const struct affine *inverses)
-{
-    uint32_t count = ray_count(scene), seen = 0, lit = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        struct hit hit;
-        double point[3];
-        if (!see(scene, pose, inverses, i, count, &hit, point) || !is_black(hit.material->emission))
-            continue;
-        ++seen;
-        lit += is_lit(scene, pose, inverses, point, hit.normal, i);
-    }
-    return seen ? (double)lit / seen : 1.0;
-}
-
 /* ---- How bright what is seen is ---- */
-
-/* The nearest texel of the texture in `slot` at the hit, white without one. Textures repeat here,
-   whatever their wrap mode. */
-static void pick_texel(const struct scene *scene, const struct hit *hit, enum scene_slot slot,
-                       uint8_t rgba[4])
-{
-    const struct scene_texture_use *use = &hit->material->textures[slot];
-    const float *uvs =
-        hit->mesh->uvs[use->uv_set] ? hit->mesh->uvs[use->uv_set] : hit->mesh->uvs[0];
-    const uint32_t *index = hit->mesh->indices + 3 * (size_t)hit->triangle;
-    const double weights[3] = {1.0 - hit->u - hit->v, hit->u, hit->v};
-    double uv[2] = {0.0, 0.0};
-    uint32_t at[2];
-    memset(rgba, 255, 4);
-    if (use->texture == SCENE_NONE || !uvs || !scene->textures[use->texture].rgba)
-        return;
-    const struct scene_texture *texture = &scene->textures[use->texture];
-    for (int k = 0; k < 3; ++k) {
-        for (int i = 0; i < 2; ++i)
-            uv[i] += weights[k] * (double)uvs[2 * (size_t)index[k] + (size_t)i];
-    }
-    for (int i = 0; i < 2; ++i) {
-        const float *m = use->transform + 3 * i;
-        double place = (double)m[0] * uv[0] + (double)m[1] * uv[1] + (double)m[2];
-        double part = isfinite(place) ? place - floor(place) : 0.0;
-        uint32_t size = i ? texture->height : texture->width, texel = (uint32_t)(part * size);
-        at[i] = texel < size ? texel : size - 1;
-    }
-    memcpy(rgba, texture->rgba + 4 * ((size_t)at[1] * texture->width + at[0]), 4);
-}
 
 /* The brightest channel of `rgb` times the texture in `slot`. */
 static double shine(const struct scene *scene, const struct hit *hit, const float rgb[3],
@@ -263,6 +268,29 @@ static double shine(const struct scene *scene, const struct hit *hit, const floa
     for (int c = 0; c < 3; ++c)
         most = fmax(most, (double)rgb[c] * linear_from_srgb(texel[c] / 255.0));
     return most;
+}
+
+/* Whether a surface is a lamp: what it emits is at least as bright as its own colour in white
+   light. A surface that emits less shows its shape only where light reaches it. */
+static bool glows(const struct scene *scene, const struct hit *hit)
+{
+    double own = shine(scene, hit, hit->material->emission, SCENE_SLOT_EMISSION);
+    return own > 0.0 && own >= shine(scene, hit, hit->material->diffuse, SCENE_SLOT_DIFFUSE);
+}
+
+static double measure_share(const struct scene *scene, const struct scene_pose *pose,
+                            const struct affine *inverses)
+{
+    uint32_t count = ray_count(scene), seen = 0, lit = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        struct hit hit;
+        double point[3];
+        if (!see(scene, pose, inverses, i, count, &hit, point) || glows(scene, &hit))
+            continue;
+        ++seen;
+        lit += is_lit(scene, pose, inverses, point, &hit, i);
+    }
+    return seen ? (double)lit / seen : 1.0;
 }
 
 /* Whether a surface shows mostly its surroundings instead of its own colour. */
@@ -285,7 +313,7 @@ static double light_at(const struct scene *scene, const struct scene_pose *pose,
     uint32_t step = (pose->light_count + LIGHTS_ASKED - 1) / LIGHTS_ASKED;
     double sum = 0.0, asked = 0.0, reached = 0.0;
     for (uint32_t i = 0; i < pose->light_count; ++i) {
-        double brightness = freeze_brightness(&pose->lights[i], point, hit->normal);
+        double brightness = freeze_brightness(&pose->lights[i], hit->at, hit->normal);
         sum += brightness;
         if (!shadows || !(brightness > 0.0) || (i + index) % step != 0)
             continue;

@@ -17,7 +17,9 @@
 
 #include "../child_in_place.h"
 
-const struct aiScene *__wrap_aiImportFileEx(const char *name, unsigned flags, struct aiFileIO *io);
+const struct aiScene *__wrap_aiImportFileExWithProperties(const char *name, unsigned flags,
+                                                          struct aiFileIO *io,
+                                                          const struct aiPropertyStore *wants);
 const struct aiScene *__wrap_aiApplyPostProcessing(const struct aiScene *scene, unsigned flags);
 void __wrap_aiReleaseImport(const struct aiScene *scene);
 const char *__wrap_aiGetErrorString(void);
@@ -188,9 +190,11 @@ const char *__wrap_aiGetErrorString(void)
 }
 
 /* Each refusal by assimp is one byte in 16. */
-const struct aiScene *__wrap_aiImportFileEx(const char *name, unsigned flags, struct aiFileIO *io)
+const struct aiScene *__wrap_aiImportFileExWithProperties(const char *name, unsigned flags,
+                                                          struct aiFileIO *io,
+                                                          const struct aiPropertyStore *wants)
 {
-    (void)flags;
+    (void)flags, (void)wants;
     if (!open_stream(name, io) || take() % 16 == 15)
         return NULL;
     struct aiScene *scene = zeroed(1, sizeof *scene);

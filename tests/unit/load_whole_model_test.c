@@ -64,6 +64,11 @@ TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
     "</accessor></technique_common></source>"
 #define PARAM(name) "<param name='" name "' type='float'/>"
 
+static const char two_coordinates[] =
+    SOURCE("u", "6", "0.25 0.75 1 0 0 1", "2", PARAM("S") PARAM("T"));
+static const char three_coordinates[] =
+    SOURCE("u", "9", "0.25 0.75 7 1 0 7 0 1 7", "3", PARAM("S") PARAM("T") PARAM("P"));
+
 /* Unit half a metre, z upwards; one triangle on two nodes, the second below the first. */
 static const char collada[] =
     "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
@@ -79,38 +84,43 @@ static const char collada[] =
     "</effect></library_effects><library_materials><material id='m' name='painted'>"
     "<instance_effect url='#%s'/></material></library_materials>"
     "<library_geometries><geometry id='g' name='tri'><mesh>" SOURCE(
-        "p", "9", "0 0 0 2 0 0 0 0 4", "3", PARAM("X") PARAM("Y") PARAM("Z"))
-        SOURCE(
-            "u", "6", "0.25 0.75 1 0 0 1", "2",
-            PARAM("S") PARAM(
-                "T")) "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
-                      "<triangles material='mm' count='1'><input semantic='VERTEX' source='#v' "
-                      "offset='0'/>"
-                      "<input semantic='TEXCOORD' source='#u' offset='0' set='0'/><p>0 1 "
-                      "2</p></triangles></mesh>"
-                      "</geometry></library_geometries>%s<library_visual_scenes><visual_scene "
-                      "id='w'>"
-                      "<node id='a' name='a'><translate>2 0 0</translate><instance_geometry "
-                      "url='#g'>"
-                      "<bind_material><technique_common><instance_material symbol='mm' "
-                      "target='#m'/>"
-                      "</technique_common></bind_material></instance_geometry><node id='b' "
-                      "name='b'>"
-                      "<translate>0 0 6</translate><instance_geometry "
-                      "url='#g'><bind_material><technique_common>"
-                      "<instance_material symbol='mm' "
-                      "target='#m'/></technique_common></bind_material>"
-                      "</instance_geometry></node>%s</node></visual_scene></library_visual_scenes>"
-                      "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+        "p", "9", "0 0 0 2 0 0 0 0 4", "3",
+        PARAM("X") PARAM("Y") PARAM(
+            "Z")) "%s<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
+                  "<triangles material='mm' count='1'><input semantic='VERTEX' source='#v' "
+                  "offset='0'/>"
+                  "<input semantic='TEXCOORD' source='#u' offset='0' set='0'/><p>0 1 "
+                  "2</p></triangles></mesh>"
+                  "</geometry></library_geometries>%s<library_visual_scenes><visual_scene "
+                  "id='w'>"
+                  "<node id='a' name='a'><translate>2 0 0</translate><instance_geometry "
+                  "url='#g'>"
+                  "<bind_material><technique_common><instance_material symbol='mm' "
+                  "target='#m'/>"
+                  "</technique_common></bind_material></instance_geometry><node id='b' "
+                  "name='b'>"
+                  "<translate>0 0 6</translate><instance_geometry "
+                  "url='#g'><bind_material><technique_common>"
+                  "<instance_material symbol='mm' "
+                  "target='#m'/></technique_common></bind_material>"
+                  "</instance_geometry></node>%s</node></visual_scene></library_visual_scenes>"
+                  "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
 
-/* Writes a COLLADA file with this effect, further `libraries`, and `nodes` that use them. */
-static const char *write_collada(const char *effect, const char *libraries, const char *nodes)
+/* Writes a COLLADA file with this effect, `uvs` as its texture coordinates, further `libraries`,
+   and `nodes` that use them. */
+static const char *write_collada_uvs(const char *effect, const char *uvs, const char *libraries,
+                                     const char *nodes)
 {
-    char *text = string_format(collada, effect, libraries, nodes);
+    char *text = string_format(collada, effect, uvs, libraries, nodes);
     assert_non_null(text);
     const char *path = put_text("a.dae", text);
     free(text);
     return path;
+}
+
+static const char *write_collada(const char *effect, const char *libraries, const char *nodes)
+{
+    return write_collada_uvs(effect, two_coordinates, libraries, nodes);
 }
 
 TEST_IN(collada_in_half_metres_and_z_up, fixture_begin, fixture_end)
@@ -133,6 +143,27 @@ TEST_IN(collada_names_its_textures, fixture_begin, fixture_end)
     assert_float_equal(material_of(scene)->emission[0], 0.5, 1e-6);
     assert_float_equal(scene->meshes[0].uvs[0][0], 0.25, 1e-6);
     assert_float_equal(scene->meshes[0].uvs[0][1], 0.25, 1e-6); /* downwards */
+}
+
+TEST_IN(collada_with_three_texture_coordinates, fixture_begin, fixture_end)
+{
+    const struct scene *scene = load(*state, write_collada_uvs("f", three_coordinates, "", ""));
+    assert_float_equal(scene->meshes[0].uvs[0][0], 0.25, 1e-6);
+    assert_float_equal(scene->meshes[0].uvs[0][3], 1.0, 1e-6);
+}
+
+/* assimp would make a mesh of the nodes. */
+TEST_IN(collada_without_meshes_draws_nothing, fixture_begin, fixture_end)
+{
+    const struct scene *scene =
+        load(*state, put_text("a.dae",
+                              "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/"
+                              "COLLADASchema' version='1.4.1'><library_visual_scenes>"
+                              "<visual_scene id='w'><node id='a'/></visual_scene>"
+                              "</library_visual_scenes><scene><instance_visual_scene url='#w'/>"
+                              "</scene></COLLADA>"));
+    assert_int_equal(scene->mesh_count, 0);
+    assert_true(fixture_noted(*state, "a.dae: there are no triangles in it"));
 }
 
 #define NAMES(id, names)                                                                           \
@@ -191,8 +222,9 @@ TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
         skins += strstr(scene->notes[i].text, "skins") != NULL;
     assert_int_equal(skins, 1);
     assert_true(fixture_noted(*state, "a.dae: skins are not animated: 1 drawn in the bind pose"));
-    assert_true(fixture_noted(*state, "a.dae: 1 animations are not played"));
-    assert_true(fixture_noted(*state, "a.dae: 1 lights and 1 cameras are not read"));
+    assert_true(fixture_noted(*state, "a.dae: 1 animation is not played"));
+    assert_true(fixture_noted(*state, "a.dae: 1 light is not read"));
+    assert_true(fixture_noted(*state, "a.dae: 1 camera is not read"));
 }
 
 /* --- FBX ------------------------------------------------------------------------------------ */
@@ -344,6 +376,7 @@ static const char *write_3mf(const char *unit, bool deflated)
              "schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel'/></Relationships>",
              deflated);
     add_file(&package, "3D/3dmodel.model", model, deflated);
+    add_file(&package, "Metadata/thumbnail.png", "a picture that is not read", deflated);
     free(model);
     const uint32_t ends[2] = {(uint32_t)package.directory_size, (uint32_t)package.size};
     const uint16_t entries[2] = {package.entries, package.entries};
@@ -385,6 +418,8 @@ TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
         messages.errors = 0;
         fixture_refused(fixture, put_text(names[i], "no model at all\n"), "assimp: ");
     }
+    messages.errors = 0;
+    fixture_refused(*state, write_3mf("<", false), "assimp: the file has no model");
 }
 
 /* --- damaged files -------------------------------------------------------------------------- */

@@ -467,6 +467,31 @@ TEST(lamps_that_nobody_sees_get_help)
     scene_destroy(scene);
 }
 
+/* A block of one material, with a little emission, which some exporters call transparent. */
+static struct scene *block_that_emits(float emission)
+{
+    struct scene *scene = empty_scene();
+    struct scene_material glow = material_plain("glow");
+    glow.alpha = SCENE_ALPHA_BLEND;
+    for (int i = 0; i < 3; ++i)
+        glow.emission[i] = emission * glow.diffuse[i];
+    scene_put(scene, mesh_box(2, 2, 2), &(struct put){.material = &glow});
+    scene_put_camera(scene, (const double[]){0, 0, 60}, (const double[]){0, 0, 0}, 0.5);
+    scene->is_model = true;
+    return scene_ready(scene);
+}
+
+/* From so far away, points a little before the block would be lit by its own front. */
+TEST(surfaces_brighter_by_light_than_by_emission_get_help)
+{
+    struct scene *scene = block_that_emits(0.9f);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
+    scene_destroy(scene);
+    scene = block_that_emits(2.0f);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
+    scene_destroy(scene);
+}
+
 /* A wall, of which a spot lights a circle of `radius` in a picture of 5.1 by 6.8. */
 static struct scene *wall_with_spot(double radius)
 {
