@@ -141,6 +141,8 @@ static bool read_number(struct reader *reader, struct mtl_entry *entry, enum mtl
         return true;
     entry->numbers[number] = transparency ? 1.0f - value : value;
     entry->has_number[number] = true;
+    if (number == MTL_D)
+        entry->d_by_tr = transparency;
     return true;
 }
 

@@ -36,6 +36,7 @@ struct mtl_entry {
     float colors[MTL_COLOR_COUNT][3];
     float numbers[MTL_NUMBER_COUNT];
     bool has_color[MTL_COLOR_COUNT], has_number[MTL_NUMBER_COUNT];
+    bool d_by_tr; /* numbers[MTL_D] is 1 - Tr */
     struct mtl_texture maps[MTL_MAP_COUNT];
 };
 

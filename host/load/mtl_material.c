@@ -312,9 +312,16 @@ static int32_t class_of(struct scene *scene, const struct mtl_entry *entry)
     return 2;
 }
 
-static void set_opacity(const struct mtl_entry *entry, struct scene_material *out)
+static void set_opacity(struct scene *scene, const struct mtl_entry *entry,
+                        struct scene_material *out)
 {
     float d = entry->has_number[MTL_D] ? entry->numbers[MTL_D] : 1.0f;
+    if (entry->d_by_tr && d <= 0) { /* MeshLab writes the opacity as Tr */
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "%s:%u: material `%s`: Tr 1 is drawn as opaque: nothing would be seen of it",
+                   path_name(entry->file), entry->line, text_token(entry->name).text);
+        d = 1;
+    }
     out->opacity = fminf(fmaxf(d, 0.0f), 1.0f);
     if (out->opacity < 1)
         out->alpha = SCENE_ALPHA_BLEND;
@@ -348,7 +355,7 @@ static void set_class(struct scene *scene, const struct mtl_entry *entry,
     if (glass)
         set_transmission(scene, entry, out);
     else
-        set_opacity(entry, out);
+        set_opacity(scene, entry, out);
     if (out->illum == 8)
         scene_note(scene, SCENE_NOTE_INFO,
                    "%s:%u: material `%s`: illum 8 reflects without rays, drawn as illum 2",

@@ -249,6 +249,20 @@ TEST_IN(transparency_the_other_way_round, fixture_begin, fixture_end)
     assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
 }
 
+TEST_IN(transparency_of_one_is_meant_as_opaque, fixture_begin, fixture_end)
+{
+    const struct scene_material *m = load_material(*state, "newmtl m\nTr 1.0\nillum 2\n");
+    assert_float_equal(m->opacity, 1, 0);
+    assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
+    assert_true(fixture_noted(*state, "Tr 1 is drawn as opaque"));
+}
+
+TEST_IN(transparency_of_one_is_clear_glass, fixture_begin, fixture_end)
+{
+    const struct scene_material *m = load_material(*state, "newmtl m\nTr 1.0\nillum 7\n");
+    assert_float_equal(m->transmission[0], 1, 0);
+}
+
 TEST_IN(class_10_catches_shadows, fixture_begin, fixture_end)
 {
     const struct scene_material *m = load_material(*state, "newmtl m\nillum 10\n");
