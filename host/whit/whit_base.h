@@ -51,7 +51,7 @@ typedef enum whit_log_level {
 /* `message` is one line without its newline, as whit_text_show shows it, valid during the call
    only. The function may be called from any thread, but never by two at once. */
 typedef void (*whit_log_fn)(void *user, whit_log_level level, const char *message);
-/* Where messages go. Zeroed, or NULL: nowhere. */
+/* The receiver of messages. Zeroed, or NULL: messages go nowhere. */
 typedef struct whit_log {
     whit_log_fn fn;
     void *user;

@@ -8,9 +8,9 @@
 extern "C" {
 #endif
 
-/* How `b` differs from `a`, the reference; over RGB, linear, unless said otherwise. Grey counts as
-   three equal channels, a missing alpha as 1. For images of hit identities only pixel_count and
-   differing_pixels have a meaning. */
+/* The difference of `b` from `a`, the reference; over RGB, linear, unless said otherwise. Grey
+   counts as three equal channels, a missing alpha as 1. For images of hit identities only
+   pixel_count and differing_pixels have a meaning. */
 typedef struct whit_difference {
     uint64_t pixel_count;
     uint64_t differing_pixels; /* pixels in which any bit differs, alpha included */

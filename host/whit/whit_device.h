@@ -51,7 +51,7 @@ WHIT_CHECK whit_result whit_device_create(const whit_device_params *params, cons
 void whit_device_destroy(whit_device *device);
 void whit_device_get_info(const whit_device *device, whit_device_info *info);
 
-/* How a device computes with 32-bit floats where Vulkan leaves it a choice.
+/* A device's arithmetic with 32-bit floats where Vulkan leaves it a choice.
    whit_renderer_params.portable asks the driver for keeps_denormals and rounds_nearest, and
    replaces division, square root and comparison by functions of whit's where own_division or
    own_comparison is false. */

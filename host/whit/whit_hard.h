@@ -28,7 +28,7 @@ typedef struct whit_hard_params {
     void *progress_user;
 } whit_hard_params;
 
-/* How hits compare with those of exact arithmetic. Every count is a number of rays out of
+/* A comparison of hits with those of exact arithmetic. Every count is a number of rays out of
    `rays`. */
 typedef struct whit_tally {
     uint64_t rays;
@@ -132,7 +132,7 @@ WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_jud
 void whit_judge_destroy(whit_judge *judge);
 const whit_ray *whit_judge_rays(const whit_judge *judge, uint64_t *count);
 
-/* How hits compare with the exact ones, over all of a judge's rays. */
+/* A comparison of hits with the exact ones, over all of a judge's rays. */
 typedef struct whit_judgement {
     whit_tally tally;
     uint64_t non_finite; /* hits with a t, u or v that is NaN or infinite */

@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* Why a ray ended. */
+/* The reason why a ray ended. */
 typedef enum whit_probe_end {
     WHIT_PROBE_MISSED = 0, /* it meets nothing, and sees the environment */
     WHIT_PROBE_OPAQUE,     /* it meets a surface that spawns no further ray */

@@ -1,7 +1,7 @@
-/* What whit's own programs use of libwhit beside whit.h: files that appear whole or not at all,
-   clocks, pictures in strips, kernels as drivers make them, parts of scenes for `whit check`, the
-   cache folder. This header is not installed, the shared library does not export these functions,
-   and they may change with every commit. */
+/* Functions of libwhit for whit's own programs, beside whit.h: files that appear whole or not at
+   all, clocks, pictures in strips, kernels as drivers make them, parts of scenes for `whit check`,
+   the cache folder. This header is not installed, the shared library does not export these
+   functions, and they may change with every commit. */
 #ifndef WHIT_PROGRAM_H
 #define WHIT_PROGRAM_H
 

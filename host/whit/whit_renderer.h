@@ -11,7 +11,8 @@ extern "C" {
 
 /* ---- Rendering ---- */
 
-/* Which of two sibling nodes that a ray meets is visited first. It does not change the picture. */
+/* The order in which a ray visits two sibling nodes that it meets. It does not change the
+   picture. */
 typedef enum whit_traversal {
     WHIT_TRAVERSAL_DISTANCE = 0, /* the one entered earlier */
     WHIT_TRAVERSAL_SIGN,  /* by the sign of the ray's direction on the axis where their centres are
@@ -19,7 +20,8 @@ typedef enum whit_traversal {
     WHIT_TRAVERSAL_BASIC, /* in the order in which they are stored */
 } whit_traversal;
 
-/* What decides whether a ray meets a triangle, and which one first: see docs/numerics.md. */
+/* The arithmetic that decides whether a ray meets a triangle, and which one first: see
+   docs/numerics.md. */
 typedef enum whit_numerics {
     WHIT_NUMERICS_WATERTIGHT = 0, /* no cracks; the same hit whatever the tree */
     WHIT_NUMERICS_FAST,  /* Moeller and Trumbore 1997, slabs of Williams et al. 2005: rays leak
@@ -28,14 +30,14 @@ typedef enum whit_numerics {
                             nearest */
 } whit_numerics;
 
-/* Whether surfaces between a point and a light keep the light from that point. */
+/* The shadows that surfaces between a point and a light cast on that point. */
 typedef enum whit_shadows {
     WHIT_SHADOWS_TINTED = 0, /* glass and blended surfaces let light through */
     WHIT_SHADOWS_OPAQUE,     /* they cast full shadows too */
     WHIT_SHADOWS_NONE,       /* light reaches everything */
 } whit_shadows;
 
-/* Which samples of the sequence each pixel gets. */
+/* The samples of the sequence that each pixel gets. */
 typedef enum whit_sampling_kind {
     WHIT_SAMPLING_FIXED = 0, /* `count` samples from `first` on */
     WHIT_SAMPLING_ADAPTIVE,  /* 4 samples; 16 where a pixel then differs from a neighbour by more
@@ -49,13 +51,13 @@ typedef struct whit_sampling {
     double contrast; /* ADAPTIVE: above 0, up to 1 */
 } whit_sampling;
 
-/* How textures are sampled for a pixel that covers many texels. */
+/* The sampling of textures for a pixel that covers many texels. */
 typedef enum whit_minification {
     WHIT_MINIFICATION_MIPMAP = 0, /* the mean of about as many texels, from smaller levels */
     WHIT_MINIFICATION_NONE,       /* only the texels at its samples */
 } whit_minification;
 
-/* How kernels read trees. */
+/* The kind of buffer through which kernels read trees. */
 typedef enum whit_load_path {
     WHIT_LOAD_AUTO = 0, /* by the device */
     WHIT_LOAD_STORAGE,  /* storage buffers */

@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* Which axis of a model points up. */
+/* The axis of a model that points up. */
 typedef enum whit_up {
     WHIT_UP_Y = 0, /* coordinates stay as the file or its format defines them */
     WHIT_UP_X,
@@ -20,7 +20,7 @@ typedef enum whit_up {
                      model */
 } whit_up;
 
-/* Which lights a scene has. */
+/* The lights that a scene has. */
 typedef enum whit_lights {
     WHIT_LIGHTS_AUTO = 0, /* the file's lights; lights made by whit where those light nothing that
                              is seen */

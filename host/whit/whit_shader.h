@@ -42,7 +42,7 @@ typedef struct whit_shader_error {
    until the next call. */
 uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
                                      const whit_shader_error **errors);
-/* How many more errors that call found beyond those. */
+/* The number of errors of that call beyond those. */
 uint32_t whit_shader_compiler_errors_left(const whit_shader_compiler *compiler);
 
 /* Reads the file with all that it includes, or the functions that a .png or .exr carries under
@@ -156,7 +156,7 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info);
 WHIT_CHECK whit_result whit_shader_compile_tests(whit_shader_compiler *compiler,
                                                  whit_shader *shader);
 
-/* What a check of a test found for the seeds 0 to WHIT_TEST_SEEDS - 1. */
+/* The result of a check of a test for the seeds 0 to WHIT_TEST_SEEDS - 1. */
 #define WHIT_TEST_SEEDS 4096
 typedef struct whit_check_result {
     bool reached;        /* for at least one seed; a check that is never reached proves nothing */

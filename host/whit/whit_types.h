@@ -52,8 +52,8 @@ typedef struct whit_camera {
                                         world units; 0: that of the target */
 } whit_camera;
 
-/* Whether a scene gets a single tree over the triangles of all instances, with each vertex
-   transformed to world space in double and rounded once, or a tree for each mesh and one over
+/* The trees of a scene: a single one over the triangles of all instances, with each vertex
+   transformed to world space in double and rounded once, or one for each mesh and one over
    instances. */
 typedef enum whit_instances {
     WHIT_INSTANCES_AUTO = 0, /* a single tree where whit_scene_info.one_tree is true */
@@ -61,7 +61,7 @@ typedef enum whit_instances {
     WHIT_INSTANCES_OFF,      /* always a single tree */
 } whit_instances;
 
-/* Whether camera rays, and the shadow rays from their hits, are traced in packets. */
+/* The use of packets for camera rays and for the shadow rays from their hits. */
 typedef enum whit_packets {
     WHIT_PACKETS_AUTO =
         0,           /* where packets are faster: on lavapipe, in a single large tree, and with
@@ -71,8 +71,8 @@ typedef enum whit_packets {
     WHIT_PACKETS_OFF,
 } whit_packets;
 
-/* How many kernels draw a picture. One kernel for several stages and materials is compiled sooner,
-   one for each draws faster. */
+/* The number of kernels that draw a picture. One for several stages and materials is compiled
+   sooner, one for each draws faster. */
 typedef enum whit_classes {
     WHIT_CLASSES_AUTO = 0, /* by the number of rays of the picture that the renderer is created
                               for */
