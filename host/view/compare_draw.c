@@ -1,4 +1,4 @@
-/* What is drawn over the picture while A and B are compared. */
+/* Drawing over the picture while A and B are compared: the divider, names and figures. */
 #include <stdio.h>
 #include <string.h>
 

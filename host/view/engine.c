@@ -14,7 +14,8 @@
 /* The longest time that drawing waits until the first picture of a new shader version is on
    screen. */
 static const double YIELD_MS = 40.0;
-/* How long a picture is at rest before a session is made for the next version of its shader. */
+/* Time for which a picture is at rest before a session is made for the next version of its
+   shader. */
 static const double SPARE_MS = 1e3;
 
 /* The time `ms` from now, for pthread_cond_timedwait. */
@@ -96,7 +97,7 @@ static bool shows_it(const struct engine *engine, const struct engine_lane *lane
            !lane->stale && lane->frames > 0 && settings_same(&lane->last, &lane->settings);
 }
 
-/* What to draw for a lane now; false: nothing. Called with engine->lock held. */
+/* Chooses the picture to draw for a lane now; false: none. Called with engine->lock held. */
 static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     if (engine_is_done(lane))

@@ -88,8 +88,8 @@ void engine_frame_inherit(struct engine_frame *before, struct engine_frame *refi
 /* Time of drawing in ms, without presenting: device time if that is measured. */
 double engine_drawn_ms(const whit_stats *stats);
 
-/* What a change of kernel, tree or setting did: the difference from the last whole picture before
-   it to the first whole one after it, with the same camera, time and size. */
+/* The effect of a change of kernel, tree or setting: the difference from the last whole picture
+   before it to the first whole one after it, with the same camera, time and size. */
 struct engine_change {
     uint64_t number;          /* counts up; 0: none yet */
     struct settings settings; /* settings after the change */
@@ -97,14 +97,15 @@ struct engine_change {
     struct difference difference;
     /* engine_drawn_ms of one picture each, or the medians of the pictures in `ms`. */
     double before_ms, after_ms;
-    /* How much longer drawing takes, by pairs of pictures drawn in turns; count 0: not measured. */
+    /* Time by which drawing takes longer, from pairs of pictures drawn in turns; count 0: not
+       measured. */
     struct sample_median ms;
     bool over; /* nothing more will be measured */
 };
 
-/* What a new version of the shader changed in the window's picture, compared with the version
-   before. Sessions of both are kept: what is not known at once is measured while there is nothing
-   else to do. */
+/* The effect of a new version of the shader on the window's picture, compared with the version
+   before. Sessions of both are kept: figures that are not known at once are measured while there is
+   nothing else to do. */
 struct engine_reload {
     uint64_t number;          /* counts up; 0: none yet */
     struct settings settings; /* settings of the first whole picture after it */
@@ -115,7 +116,8 @@ struct engine_reload {
     bool has_flip; /* `flip`: the mean over all pixels */
     double flip;
     bool over; /* nothing more will be measured */
-    /* How much longer a whole picture takes, by pairs drawn in turns; count 0: not measured. */
+    /* Time by which a whole picture takes longer, from pairs drawn in turns; count 0: not
+       measured. */
     struct sample_median ms;
     const char *why; /* why it was not measured; "": it was, or may still be */
 };

@@ -1,4 +1,4 @@
-/* What a change of settings did to the picture. */
+/* The effect of a change of settings on the picture. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

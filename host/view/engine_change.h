@@ -1,4 +1,4 @@
-/* What a change of settings did to the picture, measured on whole pictures. */
+/* The effect of a change of settings on the picture, measured on whole pictures. */
 #ifndef VIEW_ENGINE_CHANGE_H
 #define VIEW_ENGINE_CHANGE_H
 

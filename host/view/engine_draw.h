@@ -4,7 +4,7 @@
 
 #include "view/engine_private.h"
 
-/* What engine_draw is to draw. */
+/* A picture that engine_draw is to draw. */
 struct engine_task {
     struct session *session;
     struct settings settings;

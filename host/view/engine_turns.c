@@ -8,7 +8,7 @@
 /* 9 pairs are drawn at most: their confidence interval goes from the second to the eighth
    difference. 6 pairs are the fewest that give an interval of 95 % (base/sample.h). */
 enum { PAIRS = 9, PAIRS_MIN = ENGINE_PAIRS_MIN };
-/* When to stop: with 6 pairs, and with any number of pairs. */
+/* Times after which measuring stops: with 6 pairs, and with any number of pairs. */
 static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3;
 const char ENGINE_TURNS_STOPPED[] = "something else came first";
 

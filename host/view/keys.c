@@ -1,4 +1,4 @@
-/* What keys do, in one table: keys, their rows of the cheat sheet, and the states that it shows. */
+/* The table of keys: their actions, their rows of the cheat sheet, and the states that it shows. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

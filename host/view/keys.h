@@ -1,4 +1,4 @@
-/* What keys do, and the state that they change. */
+/* The keys of the viewer, their actions, and the states that they change. */
 #ifndef VIEW_KEYS_H
 #define VIEW_KEYS_H
 

@@ -13,7 +13,7 @@ struct view_figures {
     double values[FIGURES_MAX];
 };
 
-/* What the user has waited for since the last `state` of a replay. */
+/* Times that the user has waited for pictures since the last `state` of a replay. */
 struct view_measure {
     double first_ms; /* clock_ms() when the first picture was shown; 0: none yet */
     double last_ms;  /* when the last picture was shown, if something moved then; else 0 */

@@ -76,13 +76,13 @@ struct session {
     uint64_t made;
 };
 
-/* How far session_open is; other threads read it meanwhile. */
+/* The progress of session_open; other threads read it meanwhile. */
 struct session_progress {
     _Atomic(int) stage; /* enum session_stage */
 };
 
-/* What a session is made from: the scene and the shader of its settings if they are loaded already,
-   else NULL; and the compiler of shaders, NULL if there is none. */
+/* Parts that a session is made from: the scene and the shader of its settings if they are loaded
+   already, else NULL; and the compiler of shaders, NULL if there is none. */
 struct session_parts {
     struct scene_ref *scene;
     struct shader_ref *shader;

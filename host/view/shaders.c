@@ -12,7 +12,8 @@
 #include "view/view_private.h"
 
 enum { PAIR_BYTES = 256 };
-/* How long a picture is shown before times are measured: a user who goes on typing comes first. */
+/* Time for which a picture is shown before times are measured: a user who goes on typing comes
+   first. */
 static const double SEEN_MS = 250.0;
 
 /* ---- The file ---- */

@@ -11,7 +11,7 @@ struct watch;
 
 enum { SHADERS_LINE = 256 };
 
-/* What the user waits for after a save: times by whit_clock_ms, 0 if that has not happened yet. */
+/* Moments that the user waits for after a save, by whit_clock_ms; 0 if one has not come yet. */
 struct shaders_wait {
     bool goes_on;          /* true until its line was shown, or until the next save */
     struct settings asked; /* the settings when the window noticed the save */
@@ -21,7 +21,7 @@ struct shaders_wait {
     double error_ms;       /* when an error was shown instead */
 };
 
-/* How many saves have come to each of these moments, for replays. */
+/* Numbers of saves that have come to each of these moments, for replays. */
 struct shaders_counts {
     uint64_t first, whole, refused;
 };
