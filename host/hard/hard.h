@@ -28,7 +28,7 @@ enum hard_mesh {
     HARD_MESHES
 };
 
-/* What must hold for every ray of a set. */
+/* The answer that every ray of a set must give. */
 enum hard_truth {
     HARD_MUST_HIT,  /* it starts inside a closed surface */
     HARD_MUST_MISS, /* it leaves a convex surface that it starts on */

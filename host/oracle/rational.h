@@ -1,5 +1,5 @@
-/* What exact arithmetic says of a ray and of triangles and spheres, for the floats as they are
-   given: the answers that the level `exact` is held against. Integers of any size (GMP) decide;
+/* Hits of a ray with triangles and spheres by exact arithmetic, for the floats as they are given:
+   the answers that the level `exact` is held against. Integers of any size (GMP) decide;
    with a filter in double before them where many rays are traced.
 
    The triangle, with its vertices a, b, c relative to the origin, is met when
@@ -35,7 +35,7 @@ struct rational_hit {
     uint32_t edges; /* number of edges that the point is on: 0 inside, 1, or 2 at a vertex */
 };
 
-/* What rational_trace looks for; zeroed: the closest hit. */
+/* The hit that rational_trace looks for; zeroed: the closest hit. */
 struct rational_query {
     bool any;                          /* any hit, not the closest */
     bool brute;                        /* no tree and no filter: integers for every primitive */
@@ -57,7 +57,7 @@ void rational_destroy(struct rational *rational);
 bool rational_meet(struct rational *rational, struct vec3 origin, struct vec3 dir,
                    const struct vec3 v[3], float *key, uint32_t *edges);
 
-/* Where the line of a ray meets a sphere. */
+/* The two ends of the chord in which the line of a ray meets a sphere. */
 struct rational_chord {
     bool near_there, far_there;
     float near_key, far_key; /* set for an end that is there */

@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 
-/* What is averaged. Alpha is always averaged linearly. */
+/* The values that are averaged. Alpha is always averaged linearly. */
 enum mipmap_kind {
     MIPMAP_NONE,   /* no smaller levels: the texture is read by traversal, which does not know the
                       pixel */

@@ -15,7 +15,7 @@ struct shadow_ray {
     uint32_t skip_instance, skip_primitive;
 };
 
-/* What a shadow ray meets between a point and a light. */
+/* The result of a shadow ray: surfaces between a point and a light. */
 struct shadow {
     bool blocked;
     struct hit blocker; /* if `blocked` */

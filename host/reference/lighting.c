@@ -13,7 +13,7 @@
 #define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: above it a mesh is not smooth */
 #define STOPS_OF_ABSORPTION 92.33248261893118  /* 64 / ln 2 */
 
-/* What all shadow rays of a hit share. */
+/* The hit point that shadow rays start from: data that all shadow rays of the hit share. */
 struct receiver {
     const struct surface *s;
     const struct ray *ray; /* the ray that hit the surface */

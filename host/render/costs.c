@@ -1,4 +1,4 @@
-/* What traversals cost: the kernel's counts of each chunk, summed up; those of a pixel's first
+/* Costs of traversals: the kernel's counts of each chunk, summed up; those of a pixel's first
    sample are kept as images. */
 #include <string.h>
 

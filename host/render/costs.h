@@ -1,4 +1,4 @@
-/* What rays cost. These functions do nothing without params.count. */
+/* Costs of rays. These functions do nothing without params.count. */
 #ifndef RENDER_COSTS_H
 #define RENDER_COSTS_H
 

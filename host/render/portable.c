@@ -126,7 +126,7 @@ static bool is_denormal(uint32_t bits)
     return (bits & 0x7f800000) == 0 && (bits & 0x7fffffff) != 0;
 }
 
-/* What kernel/portable.comp must answer: this processor's result, which is IEEE's. */
+/* The answer that kernel/portable.comp must give: this processor's result, which is IEEE's. */
 static uint32_t right_answer(uint32_t function, float x, float y)
 {
     float right = function == PORTABLE_SUM       ? x + y

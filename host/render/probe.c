@@ -249,8 +249,8 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
 
 /* ---- The tree ---- */
 
-/* What is known of each record while the ray tree is put in order. The array is also a stack of
-   records. */
+/* The place of a record in the ray tree, while the tree is put in order. The array of these is also
+   a stack of records. */
 struct branch {
     uint32_t first, count; /* records of its child rays, next to each other */
     uint32_t place;        /* index in the ordered tree */

@@ -12,15 +12,15 @@ struct probe_ray {
     struct gpu_probe_ray traced;
     uint32_t parent;     /* index of the parent, below the ray's own; HIT_NONE: camera ray */
     uint32_t generation; /* 0: the camera ray */
-    /* What the C twin finds. Closest hits: the first hit that the material does not let pass.
-       Shadow rays: the device's blocker where the twin finds it too, else the first hit that
-       blocks. t infinity: nothing was hit, or the ray was not traced. */
+    /* The hit of the float mirror (twin/). Closest hits: the first hit that the material does not
+       let pass. Shadow rays: the device's blocker where the twin finds it too, else the first hit
+       that blocks. t infinity: nothing was hit, or the ray was not traced. */
     struct gpu_hit twin;
     /* Surfaces before that hit which let the ray pass: cut-outs, one-sided surfaces from behind;
        for shadow rays also filters, and surfaces that cast no shadow. */
     uint32_t passed;
     bool equal; /* whether `twin` is the device's answer: ids, every bit of t, u, v */
-    /* What exact arithmetic finds (oracle/rational.h). Not known: the ray was not traced, or too
+    /* The hit of exact arithmetic (oracle/rational.h). Not known: the ray was not traced, or too
        many surfaces let it pass. */
     bool exact_known;
     float exact_t; /* the key, as in oracle/rational.h; infinity: no hit */
@@ -46,9 +46,9 @@ struct probe_report {
     uint32_t ray_count;
     uint32_t dropped;   /* rays without room; `rays` has the front, breadth first */
     uint32_t differing; /* rays with equal == false */
-    /* What dbg(x) recorded in the first sample, and in post(), which gets the mean of all samples:
-       how often each call was reached, and its first DBG_VALUES values, without those of dropped
-       rays; sorted by call, then by ray. */
+    /* Records of dbg(x) in the first sample, and in post(), which gets the mean of all samples: how
+       often each call was reached, and its first DBG_VALUES values, without those of dropped rays;
+       sorted by call, then by ray. */
     uint32_t call_counts[DBG_CALLS];
     struct probe_value *values;
     uint32_t value_count;

@@ -1,5 +1,5 @@
-/* What the CPU finds for the rays of a probed pixel. It does not read textures: where a surface may
-   let a ray pass, the device's answer is taken, and everything else must agree with it. */
+/* Hits of the rays of a probed pixel, found on the CPU. It does not read textures: where a surface
+   may let a ray pass, the device's answer is taken, and everything else must agree with it. */
 #include <math.h>
 #include <string.h>
 

@@ -105,7 +105,7 @@ struct stage_set {
     bool asks;                       /* whether hits go on to the shadow stages */
 };
 
-/* How long each stage of the tile being drawn takes, see stage_times.c. */
+/* Times of the stages of the tile that is being drawn, see stage_times.c. */
 struct stage_times {
     uint32_t tiles; /* drawn so far */
     bool on;        /* the tile is timed */
@@ -114,7 +114,7 @@ struct stage_times {
     double ms[RENDER_STAGE_COUNT];
 };
 
-/* What went through a stage in the tiles of the picture that were timed. */
+/* The items that a stage worked on in the timed tiles of a picture, and the time that they took. */
 struct stage_sample {
     uint64_t items;
     double ms;
@@ -150,7 +150,7 @@ struct lattice {
     uint32_t width, height; /* columns and rows; includes rows above params.first_row */
 };
 
-/* How far a picture is. Adaptive pictures and pictures in steps take several passes. */
+/* The progress of a picture. Adaptive pictures and pictures in steps take several passes. */
 struct progress {
     struct lattice lattice; /* drawn by the pass */
     double start_ms;
@@ -240,7 +240,7 @@ struct renderer {
     struct image distances;        /* as `color` */
     struct image costs[RAY_KIND_COUNT]; /* costs of first samples; empty for a kind without rays */
     double create_ms;
-    /* What the pipelines were made for (up to has_secondary). */
+    /* Properties of the scene that the pipelines were made for (up to has_secondary). */
     bool *worn; /* by material: whether some primitive has it */
     uint32_t node_stack_size, packet_stack_size;
     bool single_identity;

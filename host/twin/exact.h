@@ -11,7 +11,7 @@
 #define EXACT_TINY  7.8886090522101181e-31f /* 2^-100: more than underflow can add */
 #define EXACT_LARGE 1.2676506002282294e+30f
 
-/* What floats can decide. The key is the exact t, rounded to nearest. */
+/* The part of the answer that floats can decide. The key is the exact t, rounded to nearest. */
 struct exact_bounds {
     bool outside; /* surely missed */
     bool inside;  /* surely hit, and t, u, v are valid */

@@ -6,7 +6,8 @@
 
 #include "twin/sphere.h"
 
-/* What floats can decide. Keys are the exact t of the ends of the chord, rounded to nearest. */
+/* The part of the answer that floats can decide. Keys are the exact t of the ends of the chord,
+   rounded to nearest. */
 struct sphere_bounds {
     bool outside;                           /* surely missed */
     bool inside;                            /* surely hit, and the chord's values are valid */
