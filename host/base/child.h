@@ -11,7 +11,7 @@
 /* Exit code of a child whose memory ran out. */
 enum { CHILD_EXIT_MEMORY = 120 };
 
-/* How a child process ended. */
+/* The way in which a child process ended. */
 enum child_end {
     CHILD_DONE,      /* returned; its whole reply was received */
     CHILD_CRASHED,   /* died of a signal */

@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 
-/* Where a name leads. */
+/* The thing that a name leads to. */
 enum reach {
     REACH_FILE,       /* a regular file below one of the folders, with links resolved */
     REACH_MISSING,    /* below one of the folders, but not there or not readable */

@@ -19,8 +19,8 @@ struct image_source {
     size_t size_bytes;
 };
 
-/* Where a picture is written. Errors of `stream` are not checked here: file_write_commit looks at
-   its error flag. */
+/* A file that a picture is written to. Errors of `stream` are not checked here: file_write_commit
+   looks at its error flag. */
 struct image_target {
     const whit_log *log;
     const char *path;

@@ -6,7 +6,7 @@
 
 enum { GLTF_PLACE = 96 };
 
-/* Where something is in the JSON, for errors: "nodes[3]". */
+/* A place in the JSON, for errors: "nodes[3]". */
 struct gltf_place {
     char text[GLTF_PLACE];
 };

@@ -48,8 +48,8 @@ struct import_part {
    this many corners, 9 s for twice as many (AMD EPYC). */
 #define IMPORT_CORNERS_MAX 1024u
 
-/* What the importer left out. `corners`: number of corners of the first face with too many, or 0; a
-   model with such a face has no parts. `face`: index of that face in its mesh. */
+/* Numbers of things that the importer left out. `corners`: number of corners of the first face with
+   too many, or 0; a model with such a face has no parts. `face`: index of that face in its mesh. */
 struct import_counts {
     uint64_t points, lines, bad_faces, face, corners;
     uint32_t skins, animations, lights, cameras; /* of a GLB */

@@ -5,7 +5,7 @@
 #include "load/importer.h"
 #include "load/load.h"
 
-/* How a model is added: see load_model. */
+/* A request to add a model: see load_model. */
 struct model_request {
     const char *path;
     uint32_t parent;

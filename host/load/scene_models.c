@@ -17,7 +17,7 @@ static void set_material(struct scene_mesh *mesh, uint32_t material)
         mesh->materials[t] = material;
 }
 
-/* How an object places a model. */
+/* A model as an object of the scene file places it. */
 struct placement {
     const char *path;
     uint32_t material; /* SCENE_NONE: the model's own */

@@ -11,16 +11,16 @@
 
 #include "load/load.h"
 
-/* Where a value is in the JSON: a chain of keys and indices, on the stacks of the functions that
-   read it. */
+/* The place of a value in the JSON: a chain of keys and indices, on the stacks of the functions
+   that read it. */
 struct place {
     const struct place *parent; /* NULL: the whole file */
     const char *key;            /* NULL: an array's element */
     size_t index;
 };
 
-/* What one object added to the scene, as ranges of indices: nodes below `parent`, and instances,
-   channels, lights and cameras on these. Ends are exclusive. */
+/* The parts of a scene that one object added, as ranges of indices: nodes below `parent`, and
+   instances, channels, lights and cameras on these. Ends are exclusive. */
 struct scene_range {
     uint32_t parent, first_node, node_end, first_instance, instance_end, first_channel, channel_end,
         first_light, light_end, first_camera, camera_end;

@@ -63,7 +63,8 @@ static struct shape measure(const struct scene *scene)
     return shape;
 }
 
-/* What is at the lower end of an axis, as shares of the ground area: the box's face at that end. */
+/* The triangles at the lower end of an axis, as shares of the area of the box's face at that end
+   (the ground). */
 struct ending {
     double flat; /* covered by triangles within SLAB of the end */
     double low;  /* covered by flat triangles within LOW of the end, each side of a solid counted */

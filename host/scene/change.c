@@ -158,7 +158,8 @@ static void compare_cameras(struct words *words, const struct scene_camera *a,
 
 /* ---- Arrays ---- */
 
-/* Which elements of an array differ between the two sides. */
+/* The elements of an array that differ between the two sides: their number, and the indices of the
+   first and the last. */
 struct others {
     uint32_t count, first, last;
     double by; /* the largest distance between an element's two values */

@@ -1,4 +1,4 @@
-/* What a scene gets when its file has no camera, light or environment. */
+/* Defaults for a scene whose file has no camera, light or environment. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@ static const double LIT_ENOUGH = 0.5;
    be in a closed box, and a lamp is added: shadows alone would leave more lit. */
 static const double BOXED = 0.25;
 
-/* What was added to light a scene: whit's own light (`key`), lights made from emissive surfaces
+/* Lights that were added to a scene: whit's own light (`key`), lights made from emissive surfaces
    (`emitters`), whose intensity was scaled (`exposed`). */
 struct light_kinds {
     bool key, emitters, exposed;

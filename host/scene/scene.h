@@ -1,4 +1,4 @@
-/* What is to be drawn: meshes, instances on a node tree, materials, textures, lights, cameras,
+/* The scene to draw: meshes, instances on a node tree, materials, textures, lights, cameras,
    environment and animation. Loaders build it, scene_freeze() checks and completes it, and from
    then on nobody changes it. Lengths are world units, angles radians, colours linear RGB. */
 #ifndef SCENE_SCENE_H
@@ -16,7 +16,7 @@
 
 #define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
 
-/* Where something was defined, for receipts and errors. */
+/* The place where something was defined, for receipts and errors. */
 struct scene_origin {
     char *file;    /* NULL: made by whit */
     uint32_t line; /* 1-based; 0: not known */
@@ -200,9 +200,9 @@ struct scene_camera {
     bool made_by_whit;
 };
 
-/* What rays that hit nothing see. GRADIENT runs from horizon to zenith above and to ground below
-   (+y is up); all three equal are a constant colour. MAP is equirectangular, row 0 up, its middle
-   towards -z. */
+/* The light that arrives along rays that hit nothing. GRADIENT runs from horizon to zenith above
+   and to ground below (+y is up); all three equal are a constant colour. MAP is equirectangular,
+   row 0 up, its middle towards -z. */
 struct scene_environment {
     whit_environment_kind kind;
     float zenith[3], horizon[3], ground[3];
@@ -224,7 +224,7 @@ extern const char *const scene_model_names[],
 
 enum scene_note_level { SCENE_NOTE_INFO, SCENE_NOTE_WARNING };
 
-/* What a loader or scene_freeze noticed, dropped or made up. */
+/* A message about something that a loader or scene_freeze noticed, dropped or made up. */
 struct scene_note {
     enum scene_note_level level;
     char *text;
