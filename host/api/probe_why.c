@@ -71,7 +71,7 @@ static void say_parts(const whit_probe_report *report, struct sentence *to)
 
 /* ---- Which lights reach it ---- */
 
-/* How much of a light reaches the hit of the camera ray, by the shadow rays that start there. */
+/* The light that reaches the hit of the camera ray, by the shadow rays that start there. */
 struct reach {
     uint32_t rays, blocker;
     double share; /* share of the light that passes, mean over the rays */

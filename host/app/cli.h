@@ -1,4 +1,4 @@
-/* What every command of the program shares: options, messages, interrupts, exit codes. */
+/* Code that all commands of the program share: options, messages, interrupts, exit codes. */
 #ifndef APP_CLI_H
 #define APP_CLI_H
 

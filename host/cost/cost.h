@@ -184,8 +184,9 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
 /* Writes the choice as options of `whit render`. */
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);
 
-/* What a row is good for, compared with the usual settings. NONE: neither cheaper nor more right.
-   FREE: cheaper and as right (within 1 %). TRADE: better in one of these, worse in the other. */
+/* The use of a row, compared with the usual settings. NONE: neither cheaper nor more right. FREE:
+   cheaper, and at least as right (within 1 %). TRADE: cheaper but less right, or more right but not
+   cheaper. */
 enum cost_use { COST_USE_TRADE, COST_USE_NONE, COST_USE_FREE };
 enum cost_use cost_use_of(const struct cost_report *report, const struct cost_row *row);
 
@@ -233,8 +234,8 @@ struct cost_crop cost_crop(const struct cost_report *report);
 
 /* ---- Figures that are kept from one run to the next ---- */
 
-/* What kept figures were measured for: scene, device, and all settings (size among them) that
-   decide pixels or time, except those that cost_choose chooses. */
+/* The conditions that kept figures were measured under: scene, device, and all settings (size among
+   them) that decide pixels or time, except those that cost_choose chooses. */
 struct cost_place {
     const struct settings *settings; /* with the limit of time or error */
     whit_scene_info scene;

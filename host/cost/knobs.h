@@ -5,7 +5,7 @@
 
 #include "settings/settings.h"
 
-/* What has to be made anew to change a knob's setting. */
+/* The objects that must be made anew to change a knob's setting. */
 enum knob_level {
     KNOB_VIEW = SETTING_NEEDS_VIEW,
     KNOB_KERNEL = SETTING_NEEDS_KERNEL,
@@ -34,7 +34,7 @@ const struct knob *knob_table(uint32_t *count);
 /* The index of the knob of that name in the table, or WHIT_NONE. */
 uint32_t knob_find(const char *name);
 const char *knob_setting_name(const struct knob *knob, uint32_t setting);
-/* What the knob may change. SETTING_COST: neither ids nor pixels may change by a byte. */
+/* The most that the knob may affect. SETTING_COST: neither ids nor pixels may change by a byte. */
 enum setting_change knob_change(const struct knob *knob);
 const char *knob_change_name(enum setting_change change);
 enum knob_level knob_level(const struct knob *knob);

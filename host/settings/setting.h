@@ -29,7 +29,7 @@ enum setting_kind {
     SETTING_HELP, /* no value: --help and --help-all */
 };
 
-/* What a change of the value may change. */
+/* The most that a change of the value may affect. */
 enum setting_change {
     SETTING_RUN,   /* neither the picture nor how it is made */
     SETTING_COST,  /* only time and memory: ids and pixels keep their bytes */
@@ -39,7 +39,7 @@ enum setting_change {
     SETTING_PAINT, /* what is painted: colours or costs */
 };
 
-/* What must be made anew for another value. */
+/* The objects that must be made anew for another value. */
 enum setting_need {
     SETTING_NEEDS_VIEW,   /* nothing: whit_renderer_set_view is enough */
     SETTING_NEEDS_KERNEL, /* a renderer */

@@ -7,7 +7,7 @@
 #include "settings/setting.h"
 #include "whit/whit_program.h"
 
-/* What is painted: colours, or a heat map of a cost of whit_view. */
+/* The content of the picture: colours, or a heat map of a cost of whit_view. */
 enum settings_paint {
     PAINT_COLOR,
     PAINT_DEPTH, /* this value and the following ones are 1 + whit_view */
@@ -147,7 +147,7 @@ bool settings_same(const struct settings *a, const struct settings *b);
 
 /* ---- Writing ---- */
 
-/* Which rows are written, of those that are not at their default. */
+/* The rows to write, of those that are not at their default. */
 enum settings_words {
     SETTINGS_RECIPE, /* those that decide pixels; some of them also at their default */
     SETTINGS_STATE,  /* for a file of settings: those that decide pixels or time, without those that

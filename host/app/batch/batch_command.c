@@ -14,8 +14,8 @@ struct batch_request {
     bool resume, json;
 };
 
-/* How often the command loaded a scene, built trees and made a renderer for its lines, and how long
-   all of that took. */
+/* Numbers of scenes loaded, trees built and renderers made for the lines of the command, and the
+   total times of these steps. */
 struct batch_made {
     uint32_t scenes, trees, renderers;
     double load_ms, build_ms, device_ms;

@@ -1,4 +1,4 @@
-/* What `whit bvh` measures: builders side by side, on the CPU and on a device. */
+/* The measurements of `whit bvh`: builders side by side, on the CPU and on a device. */
 #ifndef APP_BVH_STUDY_H
 #define APP_BVH_STUDY_H
 

@@ -1,4 +1,4 @@
-/* What a suite expects of a picture: FIELD OP VALUE. */
+/* Expectations of a suite, each about one picture: FIELD OP VALUE. */
 #ifndef APP_CHECK_EXPECT_H
 #define APP_CHECK_EXPECT_H
 

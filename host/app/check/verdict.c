@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "settings/values.h"
 
-/* How many parts a line names; the rest is only counted. */
+/* Most parts that a line names; the rest is only counted. */
 enum { PARTS_NAMED = 4 };
 
 const char *verdict_word(enum check_verdict verdict)

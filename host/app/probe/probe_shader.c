@@ -4,7 +4,7 @@
 
 #include "app/probe/probe_shader.h"
 
-/* What the report lacks when a user's file has taken the place of whit's functions. */
+/* Figures that the report lacks when a user's file has taken the place of whit's functions. */
 static const char own_rays[] = "rays that its functions trace, as by visible() and trace()";
 static const char shape[] =
     "the shape of intersect() in twin and exact: of rays that meet it they say "

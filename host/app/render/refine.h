@@ -9,7 +9,7 @@
 struct render_request;
 struct frames_progress;
 
-/* When refining ends: with --refine one of the two is above 0, else both are 0. */
+/* The limits at which refining ends: with --refine one of the two is above 0, else both are 0. */
 struct refine_goal {
     double error;    /* estimated RMSE, linear */
     double limit_ms; /* limit on the time of drawing; a step that would exceed it is not begun */

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* How many items of a section are listed without --all. */
+/* Most items of a section that are listed without --all. */
 enum { ITEMS_SHOWN = 12 };
 
 static void print_name(uint32_t index, const char *name)

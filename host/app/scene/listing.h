@@ -1,4 +1,4 @@
-/* What `whit scene` lists: as text, as JSON, as triangles. */
+/* The lists of `whit scene`: as text, as JSON, as triangles. */
 #ifndef APP_SCENE_LISTING_H
 #define APP_SCENE_LISTING_H
 
