@@ -4,7 +4,7 @@
 
 #include "device/device.h"
 
-/* What a buffer is used for, or-ed. */
+/* The uses of a buffer, or-ed. */
 enum buffer_use {
     BUFFER_STORAGE = 1,  /* storage buffer descriptor */
     BUFFER_TEXELS = 2,   /* uniform texel buffer view, four uint32 per element */

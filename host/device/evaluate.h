@@ -20,7 +20,7 @@
 
 enum { SPIRV_BOUND_MAX = 1 << 20 };
 
-/* What is known of an id of the input module, while its function is walked through. */
+/* Facts about an id of the input module, while its function is walked through. */
 struct source_id {
     uint32_t at;     /* index of its instruction's first word; 0: none */
     uint32_t to;     /* its id in the output module; 0: none so far */
@@ -39,7 +39,7 @@ struct source_id {
     bool is_set; /* of specialization constants: the caller gave a value */
 };
 
-/* What is known of an id of the output module. */
+/* Facts about an id of the output module. */
 struct result_id {
     uint32_t type;  /* of a known value */
     uint32_t value; /* known value, of bools and 32-bit integers */

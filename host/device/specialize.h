@@ -19,8 +19,8 @@ WHIT_CHECK whit_result spirv_evaluate(const uint32_t *words, size_t word_count,
                                       const uint32_t *spec, uint32_t spec_count, uint32_t **out,
                                       size_t *out_words);
 
-/* What the functions of a module contain. Where calls were inlined, a function that was called
-   twice counts twice. */
+/* Contents of the functions of a module. Where calls were inlined, a function that was called twice
+   counts twice. */
 struct spirv_info {
     uint32_t instructions;
     uint64_t bindings; /* bit i: a function names a variable bound to binding i of set 0 */

@@ -1,4 +1,4 @@
-/* What a user's file says about itself, in lines that begin with //@. */
+/* Annotations: lines of a user's file that begin with //@. */
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>

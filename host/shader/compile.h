@@ -39,7 +39,7 @@ struct shader_request {
     double cpu_s; /* processor time, if shader_limits has none; 0: 5 */
 };
 
-/* Where a loop of the user's text begins. */
+/* The place where a loop of the user's text begins. */
 struct shader_loop {
     uint32_t file; /* index in shader_text.files */
     uint32_t line;
@@ -54,8 +54,9 @@ struct shader_open {
 
 enum { SHADER_OPENS_MAX = 8 }; /* places of further operations are not kept */
 
-/* Which functions of whit's own a user's functions call, and which parts of a surface and its
-   material they read. Where a bit is not set, what it stands for cannot change their results. */
+/* Bits for the functions of whit's own that a user's functions call, and for the parts of a surface
+   and its material that they read. Where a bit is not set, the thing that it stands for cannot
+   change their results. */
 enum {
     SHADER_REACHES_LIGHTS = 1,  /* lights of the scene */
     SHADER_REACHES_SHADOWS = 2, /* shadows: what blocks the way to a point */

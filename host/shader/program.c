@@ -180,7 +180,8 @@ static char *hook_text(const struct shader_stages *stages, const char *declared)
     return text;
 }
 
-/* What a kernel has of the user's text besides its hooks. */
+/* The parts of the user's text that a kernel has besides hooks: no others, the tests, or calls of
+   dbg(). */
 enum kernel_text {
     TEXT_PLAIN,
     TEXT_TESTS,

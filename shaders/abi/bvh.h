@@ -33,7 +33,7 @@ GPU_ASSERT_AT(gpu_bvh_node, count, 28)
 #define BVH_AXIS_MASK  3u
 #define BVH_SECOND_LOW 64u
 
-/* Which of two children is visited first, where both are hit. */
+/* The child that is visited first where a ray hits both of a pair. */
 #define ORDER_DISTANCE 0u /* the one that the ray enters first */
 #define ORDER_SIGN     1u /* the lower one on the pair's axis, for rays that go up along it; else
                              the other */
@@ -179,7 +179,7 @@ GPU_ASSERT_SIZE(gpu_work, 16)
    decide its hit (without SPEC_SETTLES). The rest of its result is ignored. */
 #define STATUS_RAY_DEFERRED 64u
 
-/* What is wrong with an answer for a user's shape. It stands in the upper bits of status_shape;
+/* The error of an answer for a user's shape. It stands in the upper bits of status_shape;
    below it is SHAPE_PIXEL_MASK less the number of the pixel, so that by atomicMax the first pixel
    remains of those with the same reason. */
 #define SHAPE_NOT_A_NUMBER 1u

@@ -1,4 +1,4 @@
-/* What shading reads, and the state of a pixel's ray tree. One buffer, the shading rows, holds
+/* Data that shading reads, and the state of a pixel's ray tree. One buffer, the shading rows, holds
    materials, texture uses, lights and data per triangle; gpu_frame names the first row of each. */
 #ifndef ABI_SHADE_H
 #define ABI_SHADE_H
@@ -125,7 +125,7 @@ GPU_ASSERT_SIZE(gpu_light, 96)
 GPU_ASSERT_AT(gpu_light, cos_inner, 48)
 GPU_ASSERT_AT(gpu_light, edge_u, 64)
 
-/* What all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
+/* Data that all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
    picture plane) and goes along forward + x * right + y * up, with x and y in -1..1. For a panorama
    all three vectors have unit length, x is the longitude in units of pi, and y the latitude in
    units of pi / 2. */
@@ -244,7 +244,7 @@ GPU_ASSERT_SIZE(gpu_chunk, 104)
 
 #define GENERATION_NONE 0xffffffffu
 
-/* Which pixels are drawn: log2 of the step between pixels of a row, in the low bits; log2 of the
+/* The pixels that are drawn: log2 of the step between pixels of a row, in the low bits; log2 of the
    step between rows; x and y of the first pixel. 0: all pixels. */
 #define LATTICE_SHIFT_MASK  15u
 #define LATTICE_ROWS_SHIFT  4u

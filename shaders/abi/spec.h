@@ -5,8 +5,8 @@
 
 #include "base.h"
 
-/* How kernels read trees and textures: through storage buffers, or through uniform texel buffers
-   over the same memory (twice as fast on lavapipe). */
+/* The buffers through which kernels read trees and textures: storage buffers, or uniform texel
+   buffers over the same memory (twice as fast on lavapipe). */
 #define LOAD_STORAGE 0u
 #define LOAD_TEXEL   1u
 
@@ -31,7 +31,7 @@
 #define SPHERES_SOME 1u
 #define SPHERES_ONLY 2u /* no triangle at all */
 
-/* Which properties have textures: bits 1 << SCENE_SLOT_*. Opacity may come from the alpha of a
+/* The properties that have textures: bits 1 << SCENE_SLOT_*. Opacity may come from the alpha of a
    diffuse texture. */
 #define TEXTURES_DIFFUSE        1u
 #define TEXTURES_SPECULAR       2u
@@ -61,12 +61,12 @@
 /* The largest SPEC_PACKET_STACK. */
 #define PACKET_STACK_MAX 32u
 
-/* Which point all rays of a packet share. */
+/* The point that all rays of a packet share. */
 #define BEAM_NONE   0u
 #define BEAM_STARTS 1u /* the point where they start */
 #define BEAM_ENDS   2u /* the light that they end at, or pass by within rounding */
 
-/* What the optical depth of shadow filters depends on, besides the record. */
+/* Inputs of the optical depth of shadow filters, besides the record. */
 #define FILTERS_PLAIN     0u
 #define FILTERS_ABSORB    1u
 #define FILTERS_PATTERNED 2u /* textures or vertex colours, too */
@@ -81,12 +81,12 @@
 #define HOOK_AOV     64u
 #define HOOK_INTERSECT 128u
 
-/* What kernel/hit.comp, the kernel of a user's surface() and shade(), does. */
+/* Parts of the work of kernel/hit.comp, the kernel of a user's surface() and shade(). */
 #define HIT_PART_ALL   0u
 #define HIT_PART_FETCH 1u /* stores what shade() gets of a hit in rows; only whit's code */
 #define HIT_PART_CALL  2u /* calls shade() with these rows; small, so that it compiles fast */
 
-/* What decides hits, see docs/numerics.md. */
+/* The arithmetic that decides hits, see docs/numerics.md. */
 #define NUMERICS_WATERTIGHT 0u
 #define NUMERICS_FAST       1u /* Moeller and Trumbore, plain slabs: leaks */
 #define NUMERICS_EXACT      2u /* as exact arithmetic would */

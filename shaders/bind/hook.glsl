@@ -1,4 +1,4 @@
-// What stages tell hooks, the functions that a user may put in the place of whit's (hook/).
+// The ray that stages tell hooks, the functions that a user may put in the place of whit's (hook/).
 #ifndef BIND_HOOK_GLSL
 #define BIND_HOOK_GLSL
 

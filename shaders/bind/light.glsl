@@ -17,7 +17,7 @@ vec3 fetch_environment(ivec2 at, int size)
     return environment_texels[clamp(at.y, 0, size - 1) * size + clamp(at.x, 0, size - 1)].rgb;
 }
 
-// What a ray along unit `dir` sees when it meets nothing.
+// The radiance of the environment along unit `dir`, for rays that meet nothing.
 vec3 environment(vec3 dir)
 {
     if (SPEC_ENVIRONMENT_MAP != 0u && frame.environment_size != 0u) {

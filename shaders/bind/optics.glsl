@@ -1,4 +1,4 @@
-// What a surface does with light, after textures: the Whitted model.
+// The interaction of a surface with light, after textures: the Whitted model.
 #ifndef BIND_OPTICS_GLSL
 #define BIND_OPTICS_GLSL
 

@@ -26,8 +26,8 @@ ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, 
     return m;
 }
 
-// Which ends of a sphere's chord count: those from t_min on; `only_far`: only the far one; `self`:
-// the ray starts on the sphere, and hits an end only if it goes inwards.
+// The ends of a sphere's chord that count: those from t_min on; `only_far`: only the far one;
+// `self`: the ray starts on the sphere, and hits an end only if it goes inwards.
 struct Ends {
     float t_min;
     bool only_far, self;

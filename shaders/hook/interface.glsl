@@ -1,4 +1,4 @@
-// What functions of a user's file may call besides each other and GLSL's own functions. The bodies
+// Functions that a user's file may call besides its own and those of GLSL. The bodies
 // here never run; in the compiled kernel those of hook/prelude.glsl stand in their place
 // (host/shader/link.c). Lengths are in world units, angles in radians, directions unit vectors of
 // world space; light is radiance in linear RGB.

@@ -231,7 +231,7 @@ void make_catcher(inout Optics o)
     o.metal_rough = false;
 }
 
-// What the material does with light. Also sets met.s to its final normal.
+// The material's interaction with light. Also sets met.s to its final normal.
 Optics look_at(inout Met met)
 {
     Optics o = surface_optics(met.s, met.m, met.ray.dir, met.c.eta);

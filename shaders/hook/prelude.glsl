@@ -1,4 +1,4 @@
-// What the functions of a user's file may call besides each other. Lengths are in world units,
+// Functions that those of a user's file may call besides each other. Lengths are in world units,
 // angles in radians, directions unit vectors of world space; light is radiance in linear RGB.
 //
 // lib/records.glsl has the records. hook/interface.glsl declares for users what they may call.
@@ -9,7 +9,7 @@
 #include "../bind/hook.glsl"
 #include "../bind/lit_surface.glsl"
 
-// What is known of the call. The first three are set before each call of a user's function.
+// The state of a call. The first three are set before each call of a user's function.
 uvec2 hook_pixel;
 Hit hook_hit;            // of the surface
 uvec4 hook_media;        // media around it

@@ -25,7 +25,7 @@ void enter_shape_box(vec3 origin, vec3 dir, out float enter, out float leave, ou
     far_bare = length(0.5 * (lo + hi) - origin) + 2.0 * length(hi - lo);
 }
 
-// What intersect() returned.
+// The answer of intersect().
 struct ShapeAnswer {
     bool met;
     float t;

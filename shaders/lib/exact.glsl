@@ -13,7 +13,7 @@ const float EXACT_UNIT = 1.0 / 16777216.0;
 const float EXACT_TINY = 7.8886090522101181e-31; // 2^-100: more than underflow can add
 const float EXACT_LARGE = 1.2676506002282294e+30;
 
-// What floats can decide. The key is the exact t, rounded to nearest.
+// The part of the answer that floats can decide. The key is the exact t, rounded to nearest.
 struct ExactBounds {
     bool outside; // surely missed
     bool inside;  // surely hit, and t, u, v are valid

@@ -120,7 +120,7 @@ void shear_triangle(RaySetup ray, vec3 ta, vec3 tb, vec3 tc, out vec2 sa, out ve
     edges = vec3(ea, eb, ec);
 }
 
-// Where the ray meets the triangle, by its edge functions.
+// The point where the ray meets the triangle, by its edge functions.
 struct Weights {
     float det, inv_det;
     float t, b, c; // distance along the ray; weights of the second and the third vertex

@@ -7,7 +7,7 @@
 
 const float POLYGON_PI = 3.14159265358979;
 
-// What the edge from a to b adds to the form factor: the angle between a and b, times the cosine
+// The term of the edge from a to b in the form factor: the angle between a and b, times the cosine
 // between n and the normal of their plane (Lambert 1760; Arvo 1995, "Applications of irradiance
 // tensors", section 4).
 float edge_term(vec3 n, vec3 a, vec3 b)

@@ -26,7 +26,7 @@ struct Surface {
                 // coordinates
 };
 
-// What the material does with light at the hit, after textures.
+// The material's interaction with light at the hit, after textures.
 struct Optics {
     vec3 diffuse, ambient, highlight, emission;
     vec3 reflected, refracted; // weights of the two rays

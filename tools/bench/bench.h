@@ -1,4 +1,4 @@
-/* What all benches of whit-bench share. */
+/* Code that all benches of whit-bench share. */
 #ifndef BENCH_BENCH_H
 #define BENCH_BENCH_H
 

@@ -15,8 +15,8 @@ struct batch {
     bool any, coherent; /* any: any-hit rays; coherent: neighbouring rays are coherent */
 };
 
-/* How the hits of both sides differ. Where a ray meets two triangles at an edge, the sides may name
-   different ones. */
+/* Differences between the hits of both sides, as numbers of rays. Where a ray meets two triangles
+   at an edge, the sides may name different ones. */
 struct agreement {
     uint64_t rays, one_alone, other_ids, other_t;
 };

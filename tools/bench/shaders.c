@@ -120,7 +120,7 @@ static whit_renderer_params params_of(struct saves *s, const whit_shader *shader
 
 /* ---- Saves ---- */
 
-/* What the mouse does while a version is compiled: nothing, it moves over the picture, or drags it.
+/* Use of the mouse while a version is compiled: it rests, moves over the picture, or drags it.
    HAND_ERROR: the saved file has an error. */
 enum hand { HAND_NONE, HAND_OVER, HAND_DRAGS, HAND_ERROR };
 
