@@ -1,6 +1,6 @@
 #!/bin/sh
-# docs/batch.md (the third argument) as a user follows it: each of its commands in turn, typed as it stands there, and
-# its Makefile. What needs a cluster is in slurm_test.sh. Long.
+# Runs each command of docs/batch.md (the third argument) in turn, as a user would type it, and its Makefile. Commands
+# that need a cluster are in slurm_test.sh. This test is long.
 . "$(dirname "$0")/common.sh"
 PAGE=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
 needs parallel
@@ -19,7 +19,7 @@ while read -r line; do
     grep -q "^FAILED" said && FAILED=1
 done <commands
 
-# What they have made is what one run makes.
+# The merged pictures are those of one run.
 run render scenes/room.json -o one.exr --size 1024x1024 -q
 check "tiles" cmp one.exr room.exr
 run render scenes/room.json -o one.exr --aa 16 -q

@@ -1,7 +1,7 @@
 #!/bin/sh
 # sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays` and `frame`, with `all` also `start`: rows, verdicts,
-# JSON, the drawing, ray files and hits, peers that are not here, refusals. No figure is judged: they belong to the
-# machine.
+# JSON, the drawing, ray files and hits, peers that are not installed, refusals. No figure is judged, because figures
+# depend on the machine.
 . "$(dirname "$0")/common.sh"
 needs jq
 needs xmllint
@@ -9,11 +9,11 @@ mkdir "$OUT/files" "$OUT/tmp" "$OUT/alone"
 TMPDIR=$OUT/tmp
 export TMPDIR
 
-# holds FILTER: jq's filter holds of the JSON.
+# holds FILTER: jq's filter is true for the JSON.
 holds() {
     jq -e "$1" "$J" >/dev/null
 }
-# verdicts: each row ends in what its figure and its must say, and no other line has a verdict.
+# verdicts: each row ends in the verdict that follows from its figure and its `must`; no other line has a verdict.
 verdicts() {
     jq -r '.tables[0].rows[] | select(.must != null) | if .more_is_better then .figure >= .must
         else .figure <= .must end | if . then "held" else "short" end' "$J" >"$OUT/expected"
@@ -21,7 +21,7 @@ verdicts() {
     sed -n 's/^| .* \([a-z]*\)$/\1/p' "$OUT/stdout" | grep "^held$\|^short$" >"$OUT/ends"
     cmp -s "$OUT/expected" "$OUT/all" && cmp -s "$OUT/expected" "$OUT/ends"
 }
-# What every row has, of both benches.
+# The fields that every row of both benches has.
 row_schema='(.figure | type == "number" or . == null) and (.spread | type == "number") and
     (.unit | type == "string") and (.more_is_better | type == "boolean") and
     if .must == null then .aim == null and .verdict == null
@@ -32,11 +32,11 @@ schema='(.whit | type == "string") and (.device | has("name") and has("driver"))
         (.left_out | all(has("name") and has("why"))) and (.rows | all('$row_schema')))'
 times='has("median") and has("spread") and .runs == 1'
 
-# `all`: every row of `whit bench frame`, with all peers, and what each must reach.
+# `all`: every row of `whit bench frame`, with all peers, and the figure that each must reach.
 if [ "${3:-}" = all ]; then
     needs povray
     needs "$(dirname "$WHIT")/whit-embree"
-    unset WHIT_VALIDATION # of a hundred processes
+    unset WHIT_VALIDATION # the layers would slow down a hundred processes
     J=$OUT/files/all.json
     expect 0 "frame, quick, all" bench frame --quick --runs 1 --scenes "$SCENES" --against "$WHIT" \
         --json "$J"
@@ -87,7 +87,7 @@ check "no files" is_empty "$OUT/files"
 # --- Rays ---
 
 if part 1 2; then
-    # On both sides of 200,000 triangles, which the second goal begins above.
+    # The numbers of triangles lie on both sides of 200,000, above which the second goal applies.
     for steps in 316 317; do
         echo "{\"objects\": [{\"shape\": \"terrain\", \"size\": 9, \"steps\": $steps, \"seed\": 5}]}" \
             >"$OUT/t$steps.json"
@@ -105,7 +105,7 @@ if part 1 2; then
     check "the drawing is SVG" xmllint --noout "$OUT/files/rays.svg"
     check "device and driver" grep -qF "$(jq -r '.device.name + ", " + .device.driver' "$J")" "$OUT/stdout"
 
-    # What both sides read: records of `whit trace`.
+    # Both sides read the same file of rays: records of `whit trace`.
     floats() {
         od -An -v -t f4 -w32 "$1"
     }
@@ -220,7 +220,7 @@ if part 1 2; then
         check "Embree is left out for spheres" grep -q "^- Left out: Embree: .*spheres" "$OUT/stdout"
 fi
 
-# Ctrl+C while a child is at work that would be for long.
+# Ctrl+C while a child process is at work that would take long.
 cat >"$OUT/sleeper" <<'END'
 #!/bin/sh
 [ "$1" = --version ] && echo "whit 0" && exit

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Functions of a user beside all else that pictures have: what works with them, and what is refused by name.
+# Functions of a user together with other options of pictures: the options that work with them, and those that are
+# refused by name.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
@@ -15,7 +16,7 @@ draw() { # OUTPUT SCENE OPTION...
     expect 0 "$scene $*" render "$SCENES/$scene.json" --size 32x24 -o "$output" --shader own.glsl --quiet "$@"
 }
 
-# Draws two pictures with the functions for each row: they differ by at most LIMIT of METRIC.
+# For each row two pictures are drawn with the functions; they differ by at most LIMIT of METRIC.
 while IFS='|' read -r what scene a b metric limit; do
     draw a.pfm $scene $a
     draw b.pfm $scene $b
@@ -30,14 +31,14 @@ draw one.pfm cube --aa 1
 run compare one.pfm b.pfm --metric rmse --tolerance 0.05
 check "adaptive samples are more than one" test $status -eq 1
 
-# Sequences, and frames of them alone.
+# A frame of a sequence is the picture of that frame alone.
 draw "s.#.png" swarm --frames 3-4
 for frame in 3 4; do
     draw one.png swarm --frame $frame
     check "frame $frame of a sequence" cmp one.png s.$frame.png
 done
 
-# More samples until it is good.
+# --refine draws more samples until the error is small enough.
 expect 0 "refined" render "$SCENES/cube.json" --size 32x24 -o r.exr --shader own.glsl --refine 0.05 --stats json
 samples=$(jq .refine.samples stdout)
 check "it took more than one ($samples)" test "$samples" -gt 1

@@ -1,11 +1,12 @@
-# Sourced by tests of pages behind common.sh: a browser without a window. Skips where there is no Chromium.
+# Tests of pages source this file after common.sh: it runs a browser without a window. Skips where there is no Chromium.
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || browser=
 if [ -z "$browser" ]; then
     echo "SKIPPED: no Chromium"
     exit 77
 fi
 
-# look PAGE: leaves $OUT/console, $OUT/requests. The browser's own wishes lead nowhere and do not count.
+# look PAGE: opens the page, and leaves its messages in $OUT/console and its requests in $OUT/requests. Requests of the
+# browser itself find no host and do not count.
 look() {
     timeout 50 "$browser" --headless --no-sandbox --disable-gpu --no-first-run \
         --disable-background-networking --host-resolver-rules='MAP * ~NOTFOUND' \
@@ -19,18 +20,18 @@ look() {
         "$OUT/net.json" >"$OUT/requests"
 }
 
-# dom PAGE: what its script makes of it, into $OUT/dom.
+# dom PAGE: writes the page as its script has made it to $OUT/dom.
 dom() {
     timeout 50 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$OUT/browser" --window-size=1280,3000 \
         --dump-dom "file://$1" >"$OUT/dom" 2>/dev/null
 }
-# count PATTERN: how often it is there.
+# count PATTERN: prints the number of matches in $OUT/dom.
 count() {
     grep -o "$1" "$OUT/dom" | wc -l
 }
 
-# clipped PAGE: what of it does not fit into a window 1280 pixels wide, with all that folds open, into $OUT/clipped; crops
-# are cut on purpose.
+# clipped PAGE: writes the elements that do not fit into a window 1280 pixels wide, with all folds open, to
+# $OUT/clipped. Crops are cut on purpose and do not count.
 clipped() {
     { cat "$1" && cat; } >"$OUT/measured.html" <<'END'
 <script>

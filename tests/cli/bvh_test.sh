@@ -1,4 +1,4 @@
-# `whit bvh`: builders side by side, trees in files, and what it refuses.
+# Checks `whit bvh`: builders side by side, trees in files, and refusals.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 cd "$OUT" || exit 1
@@ -6,7 +6,7 @@ SMALL="--runs 1 --rays 2000"
 BALL=$OUT/ball.json
 printf '{ "objects": [ { "shape": "sphere", "segments": 40, "rings": 20 } ] }\n' >"$BALL"
 
-# has PATTERN: standard output of the last run holds it.
+# has PATTERN: the standard output of the last run matches.
 has() {
     grep -q -- "$1" "$OUT/stdout"
 }
@@ -34,7 +34,7 @@ for kind in primary shadow diffuse; do
     check "rates of $kind rays" test "$(grep -c "^  $kind  *[0-9.]* Mray/s (" stdout)" -eq 5
 done
 
-# A device takes half a second to compile for each row.
+# Few rows, because a device takes half a second to compile for each.
 for option in "--traversal sign --instance-build median" "--load-path texel --instances off"; do
     expect 0 "$option" bvh "$SCENES/many.json" $SMALL --build median,binned:4+opt --threads 2 $option
     check "$option: no hit differs" has "^hits: 0 of [1-9][0-9]* differ$"

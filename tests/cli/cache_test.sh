@@ -1,6 +1,6 @@
 #!/bin/sh
-# What whit keeps from one run to the next: damaged, replaced or in the wrong place it changes no figure
-# and hangs nothing. The third argument is whit by clocks of its own, so that figures are comparable.
+# Files that whit keeps from one run to the next change no figure and hang no run when they are damaged, replaced or in
+# the wrong place. The third argument is whit with clocks of its own, so that figures are comparable.
 . "$(dirname "$0")/common.sh"
 needs jq
 RIGHT=$WHIT
@@ -13,7 +13,7 @@ VICTIM=$OUT/victim
 unset WHIT_VALIDATION # the layers keep a file of their own
 unset MESA_SHADER_CACHE_DIR MESA_SHADER_CACHE_DISABLE MESA_SHADER_CACHE_MAX_SIZE
 
-# price WHAT OPTION...: the figures of `whit cost`, which are the same however they were come by.
+# price WHAT OPTION...: the figures of `whit cost` are the same, whether they were measured or read from the cache.
 price() {
     how=$1
     shift
@@ -84,14 +84,14 @@ check "devices: how large" jq -e --argjson size "$(find "$KEPT" -maxdepth 1 -typ
     jq -s add)" '.cache | .why_not == null and .used_bytes == $size and .limit_bytes == 536870912 and
     .mesa_used_bytes > 0 and .mesa_limit == "128M"' "$OUT/stdout"
 check "others cannot look into it any more" test -z "$(find "$KEPT" -maxdepth 0 -perm /077)"
-# What was found out of a device's floats is read by the next run; damaged, or with the text of another file, it is
-# found out anew.
+# The file about a device's floats is read by the next run. If it is damaged, or has the text of another file, the
+# device is tested again.
 floats=$(echo "$KEPT"/floats-*)
 found='[.devices[] | select(.kind == "cpu") | .floats] == [{own_division: true, own_comparison: true, keeps_denormals: true, rounds_nearest: true}]'
 check "devices: floats" jq -e "$found" "$OUT/stdout"
 cp "$floats" "$OUT/floats"
-# anew WHAT YES|NO: whether devices writes the file again, as it was. The old file stays open meanwhile, so that a new
-# one cannot be given its inode number.
+# anew WHAT YES|NO: whether `whit devices` writes the file again, with the same bytes. The old file stays open
+# meanwhile, so that a new one cannot get its inode number.
 anew() {
     touch -d 2001-01-01 "$floats"
     before=$(stat -c %i "$floats")
@@ -112,9 +112,9 @@ WHIT_CACHE_LIMIT=0 run devices
 check "floats as text" grep -qx "     portable  pictures, division by itself, comparison by itself" "$OUT/stdout"
 check "the same as text" grep -q "^cache  $KEPT: 0.[0-9] of 0 MiB" "$OUT/stdout"
 
-# ---- Mesa's, by driver version and vector width ----
+# ---- Mesa's cache, by driver version and vector width ----
 
-# mesa_folder VARIABLE=VALUE...: what Mesa is told.
+# mesa_folder VARIABLE=VALUE...: prints the folder that whit gives to Mesa.
 mesa_folder() {
     env "$@" "$WHIT" devices --json | jq -r .cache.mesa_folder
 }
@@ -144,10 +144,11 @@ MESA_SHADER_CACHE_DIR=$OUT/mine run devices --json
 check "what the user says stays" jq -e --arg mine "$OUT/mine" \
     '.cache.mesa_folder == $mine and .cache.mesa_limit == null' "$OUT/stdout"
 
-# ---- What is translated by a second device ----
+# ---- Kernels that a second device translates ----
 
-# beside WHAT NUMBER OPTION...: a picture for which so many kernels are; `some`: one or more; `any`: a busy machine may take
-# what is kept for what is not. With optimized code, of which the smallest kernel takes long enough to be told.
+# beside WHAT NUMBER OPTION...: a second device translates NUMBER kernels for the picture; `some`: one or more; `any`:
+# any number, because on a busy machine a kernel from the cache can take as long as one that is translated. Code is
+# optimized, so that even the smallest kernel takes long enough to be told apart.
 beside() {
     how=$1
     wanted=$2
@@ -165,7 +166,7 @@ beside none 0 --no-cache
 
 # ---- No place at all ----
 
-# quiet_without WHAT COMMAND...: whit, by a command that sets the environment, draws and says nothing.
+# quiet_without WHAT COMMAND...: COMMAND sets the environment; in it whit draws a picture and prints nothing.
 quiet_without() {
     how=$1
     shift

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Views of many cameras: each is the picture that the scene's camera of the same words makes.
+# Views of many cameras (--cameras): each is the picture that the scene's own camera of the same words makes.
 . "$(dirname "$0")/common.sh"
 needs jq
 cd "$OUT" || exit 1
