@@ -1,5 +1,5 @@
 #!/bin/sh
-# whit check --base: what of the input makes a picture other, by drawing it as a revision of git has it.
+# whit check --base names the part of the input that changed a picture, by drawing the input of a revision of git.
 . "$(dirname "$0")/common.sh"
 needs git
 cd "$OUT" || exit 1
@@ -64,7 +64,7 @@ cp "$OUT/stdout" "$OUT/said"
 check "the page has what was" test "$(grep -o "\"before\":\"data:image/png" page.html | wc -l)" -eq 7
 check "its causes, and commands" test "$(grep -o '"cause":"[0-9]* pixels other' page.html | wc -l)" -eq 7 -a \
     "$(grep -o '"command":"whit render ' page.html | wc -l)" -eq 8
-# says CASE PATTERN
+# says CASE PATTERN: the verdict of the case is `differs`, with PATTERN in it.
 says() { check "$1: \`$2\`" grep -q "^$1: differs: .*$2" "$OUT/said"; }
 says material 'cause: material "glass", ior from 1.5 to 1.6; and objects, node "tent" moved by 13; input changed, picture same: material "unused"; pixel [0-9]*,[0-9]*: '
 says option 'cause: --depth from 5 to 1; pixel'
@@ -76,7 +76,7 @@ says two 'cause: mesh "two.obj", vertex 3 .*; and material "floor", texture of d
 says new 'HEAD has no such case'
 check "nothing is left" test -z "$(ls "$TMPDIR")" -a "$(git worktree list | wc -l)" -eq 1
 
-# Interrupted, or ended by a signal that nothing can catch: what was made is removed all the same.
+# The tree of the revision is removed even if whit is interrupted, or ended by a signal that no program can catch.
 is_there() { test -e "$(echo "$TMPDIR"/whit-base-*)/tree/suite/looks.whit"; }
 is_gone() { test -z "$(ls "$TMPDIR")" -a "$(git worktree list | wc -l)" -eq 1; }
 for signal in INT KILL; do

@@ -1,9 +1,9 @@
 #!/bin/sh
-# whit's own suite on every device, vector width and number of threads that there is here: prints a row for each, with how
-# many of its cases are other than the golden, which is to be 0 everywhere, and names the rows that are left out.
+# Runs whit's own suite on every device, vector width and number of threads of this machine. Prints a row for each, with
+# the number of cases that differ from the golden (0 is expected everywhere), and names the rows that are left out.
 #     sh check_everywhere_test.sh WHIT SCENES [installed | second [DRIVER.json] | gpu]
-# installed: lavapipe as it is set up here; second: another one (tools/second-driver); gpu: each usable device that is no CPU.
-# None of these: all. Rows that are left out end it with 77, ctest's "skipped", where no other row fails.
+# installed: lavapipe as it is set up here; second: another lavapipe (tools/second-driver); gpu: each usable device that
+# is no CPU; without a word: all. If rows are left out and none fails, the exit code is 77, ctest's "skipped".
 . "$(dirname "$0")/common.sh"
 needs jq
 unset MESA_SHADER_CACHE_DIR # whit's own folders: Mesa's keys do not tell vector widths apart
@@ -12,7 +12,7 @@ what=${3:-all}
 second=${4:-$ROOT/build/second-driver/lvp_icd.json}
 sum=0 drawn=0 out=0
 
-# row NAME [OPTION...]: the suite under what the environment says.
+# row NAME [OPTION...]: runs the suite in the present environment.
 row() {
     name=$1
     shift
@@ -34,7 +34,7 @@ left_out() { # NAME WHY
     out=$((out + 1))
 }
 
-# widths DRIVER [WHY]: all of a lavapipe's rows; WHY: those that are left out.
+# widths DRIVER [WHY]: runs all rows of a lavapipe, or leaves them out for the reason WHY.
 widths() {
     for width in 128 256 512; do
         for threads in 0 1 2 7; do

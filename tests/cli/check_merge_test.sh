@@ -1,29 +1,29 @@
 #!/bin/sh
-# Goldens of whit check under git: what two people accept of different cases merges by itself.
+# Goldens of whit check under git: if two people accept different cases, git merges the goldens without a conflict.
 . "$(dirname "$0")/common.sh"
 needs git
 cd "$OUT" || exit 1
 export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_SYSTEM=/dev/null
 git init -q -b main . && git config user.name t && git config user.email t@t
 
-# scene NAME ANGLE: a scene of that name, another picture for each angle.
+# scene NAME ANGLE: writes a scene of that name, with another picture for each angle.
 scene() {
     echo "{ \"objects\": [ { \"name\": \"$1\", \"shape\": \"box\", \"rotation\": [0, $2, 0] } ] }" >"$1.json"
 }
-# suite NAME...: a suite of these cases. Some of its lines never change, as of a suite that people write.
+# suite NAME...: writes a suite of these cases. Some lines never change, as in a suite that people write.
 suite() {
     for name in "$@"; do
         printf '# %s\n%s %s.json --size 16x12\n\n' "$name" "$name" "$name"
     done >looks.whit
 }
-# accept NAME [REASON]: takes the case into the golden, as it is now.
+# accept NAME [REASON]: accepts the present picture of the case into the golden.
 accept() {
     "$WHIT" check looks.whit --accept "$1" ${2:+--reason "$2"} >accepted 2>&1 || { cat accepted; FAILED=1; }
 }
 commit() {
     git add ./*.json looks.* && git commit -qm "$1"
 }
-# merges WHAT OURS THEIRS: shell functions that change something and accept it.
+# merges WHAT OURS THEIRS: git merges the changes of the two shell functions, which change something and accept it.
 merges() {
     git checkout -q -B ours base && "$2" && commit ours
     git checkout -q -B theirs base && "$3" && commit theirs
@@ -63,11 +63,11 @@ merges "a new one behind one that is other" a_is_other new_behind_a
 merges "the last one, and a new last one" c_is_other new_last
 merges "one that goes beside one that is other" b_goes c_is_other
 
-# Two between the same two, by the driver that git has for it. The suite itself is a text that people write.
+# Two new cases between the same two neighbours merge by git's driver `union`. The suite is merged by people.
 git checkout -q -B ours base
 printf '*.golden merge=union\n' >.gitattributes
 git add .gitattributes && git commit -qm attributes && git branch -f base
-# union WHAT OURS THEIRS: as merges, with a suite that has both.
+# union WHAT OURS THEIRS: as merges, but with a suite that has the cases of both.
 union() {
     git checkout -q -B ours base && "$2" && commit ours
     git checkout -q -B theirs base && "$3" && commit theirs

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The page of whit check, and thumbnails: what is in them, and how large they are. What the page's script
-# makes of it is looked at by Chromium, where there is one.
+# The page of whit check, and thumbnails: their contents and sizes. Where Chromium is installed, it shows the page that
+# the script draws.
 . "$(dirname "$0")/common.sh"
 needs jq
 HERE=$(cd "$(dirname "$0")" && pwd)
@@ -8,7 +8,7 @@ cd "$OUT" || exit 1
 cp "$SCENES/cube.json" .
 printf 'kept cube.json --size 128x96\nlost cube.json --size 64x48\nfine cube.json --size 64x48 --view visits\n' >looks.whit
 
-# report FILE: the JSON that stands in a page.
+# report FILE: prints the JSON of a page.
 report() {
     sed -n 's|.*<script id="report" type="application/json">\(.*\)</script>.*|\1|p' "$1"
 }

@@ -26,7 +26,7 @@ check "JUnit" grep -q 'tests="2" failures="0" errors="0"' junit.xml
 check "a page" grep -q "the reference in double" page.html
 cp looks.reference.golden was
 
-# The other golden, and a report of the other kind.
+# Goldens and reports of the other kind (device or reference) are refused.
 sed 's/ reference golden/ golden/' was >looks.reference.golden
 refuse 2 "a golden of a device" "looks.reference.golden:1: a golden of pictures by the device" \
     check looks.whit --on reference
@@ -53,7 +53,7 @@ check "is refused" grep -q "refused as a golden" stdout
 printf 'large cube.json --size 640x480 --aa 64\n' >large.whit
 expect 5 "a time limit" check large.whit --on reference --time-limit 0.001
 
-# What it cannot draw.
+# Cases that the reference cannot draw.
 cat >beyond.whit <<'END'
 shader cube.json --shader f.glsl
 view cube.json --view depth
@@ -72,7 +72,7 @@ check "by the option" grep -qx "view: cannot be drawn: --view: the reference doe
 check "by the expectation" grep -qx "stack: cannot be drawn: line 9 expects max_stack < 9, of which the reference .*" stdout
 refuse 2 "a device" "on reference uses no device: --device" check looks.whit --on reference --device 0
 
-# Why.
+# --base names the cause of a difference.
 if command -v git >/dev/null; then
     export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_SYSTEM=/dev/null
     printf 'cube cube.json --size 64x48\n' >looks.whit

@@ -1,5 +1,5 @@
 #!/bin/sh
-# whit check --mutate and --power: faults of every class are caught, with their cause, or told.
+# whit check --mutate and --power: faults of every class are caught, with their cause, or are reported as missed.
 . "$(dirname "$0")/common.sh"
 cd "$OUT" || exit 1
 cat >a.json <<'END'
@@ -18,7 +18,7 @@ END
 echo 'a a.json --size 40x30' >looks.whit
 
 expect 0 "faults" check looks.whit --mutate 20 --seed 3
-# row NAME DRAWN: of so many all were caught, and their cause.
+# row NAME DRAWN: all DRAWN faults of the class were caught, and the cause of all was found.
 row() { check "$1: $2 of $2" grep -Eqx "$1 +$2 +$2 +$2" "$OUT/stdout"; }
 sum=0
 for class in vertex ior light "texel row" materials order "two parts"; do
@@ -32,7 +32,7 @@ check "each is one of a class" test "$sum" -eq 20
 expect 0 "power" check looks.whit --power
 check "power: each kind" grep -Eqx "a: vertex [0-9.]*e-0[5-9], ior [0-9.]*e-0[5-9], light [0-9.]*e-0[5-9], texel row 3.9e-03" "$OUT/stdout"
 
-# What the picture cannot show is missed, and no place is found for it.
+# In a picture that shows nothing, no place is found for a fault.
 sed -i 's/"lights": \[.*\],$/"lights": [], "ambient": 0,/; s/"eye": \[0, 1, 4\]/"eye": [0, 1, -90]/; s/"target": \[0, 0.5, 0\]/"target": [0, 0.5, -99]/' a.json
 echo 'a a.json --size 40x30 --light none' >looks.whit
 expect 1 "nothing is seen" check looks.whit --mutate 2

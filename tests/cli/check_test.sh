@@ -1,5 +1,6 @@
 #!/bin/sh
-# whit check: verdicts and exit codes, what is accepted and why, bad suites and goldens. sh TEST WHIT SCENES LEAKY
+# whit check: verdicts and exit codes, accepted cases and their reasons, bad suites and goldens.
+#     sh check_test.sh WHIT SCENES LEAKY
 . "$(dirname "$0")/common.sh"
 needs jq
 LEAKY=$3
@@ -35,7 +36,7 @@ check "each is told" grep -q "bare/looks.whit:2: the scene .cube.json.: " stderr
 sed -i '1s/.*/whit check golden 2, whit 99.9/' looks.golden
 expect 0 "a golden of another whit" check looks.whit
 
-# What is seen decides; what it was made of is told.
+# The picture decides the verdict; a change of the input alone is only reported.
 cp looks.golden before
 sed -i 's/{"name": "/{ "name": "/' cube.json
 printf '\n' >>cube.json
@@ -86,7 +87,7 @@ expect 0 "as it is now" check looks.whit
 expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
 check "what is as it was keeps its reason" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 
-# What is expected.
+# Expectations.
 if part 0 2; then
 cat >hopes.whit <<'END'
 cube cube.json --size 64x48
@@ -154,7 +155,7 @@ printf 'one tri.obj --size 16x12\ntwo tri.obj --size 16x12 --depth 0\n' >models.
 expect 4 "a model without its materials" check models.whit
 check "is drawn with a warning, once" test "$(grep -c "^whit: warning: .*nowhere.mtl" stderr)" -eq 1
 
-# Reports of what ends before its time: what is known, and what is not as such.
+# Reports of a run that ends early have the verdicts so far, and `undrawn` for the other cases.
 printf 'small cube.json --size 16x12\nlarge cube.json --size 4000x3000 --aa 64\nother cube.json\n' >slow.whit
 undrawn() {
     check "JSON: $1" jq -e ".exit_code == $2 and ([.cases[] | .verdict] == $3) and .cases[2].golden == null and
@@ -181,7 +182,7 @@ expect 4 "drawn elsewhere" check slow.whit --on reference --only large --only ot
 sed -i 's/4000x3000 --aa 64/16x12/' cut/r.json
 expect 0 "one run has what another has not" check slow.whit --on reference --accept-from cut
 check "all are accepted" grep -qx "3 cases, 1 ok, 2 accepted" stdout
-# Suites of many cases are drawn from both ends; what is said is said in the order of the suite.
+# Suites of many cases are drawn from both ends; output is in the order of the suite.
 if part 1 2; then
 {
     echo 'leaf-{1,2,3,4,5,6,7,8,9,10,11,12,13,14} cube.json --size 16x12 --leaf {}'

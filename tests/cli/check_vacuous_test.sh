@@ -1,10 +1,10 @@
 #!/bin/sh
-# whit check refuses goldens that could not fail: ten ways to see nothing, each with its reason.
+# whit check refuses goldens that could not fail: ten pictures that show nothing, each refused with its reason.
 . "$(dirname "$0")/common.sh"
 cd "$OUT" || exit 1
 cp "$SCENES/cube.json" .
 
-# scene NAME CAMERA OBJECTS [MORE]: a box at the origin, and what else there is.
+# scene NAME CAMERA OBJECTS [MORE]: writes a scene with a box at the origin, further objects, and further keys of JSON.
 scene() {
     echo "{ \"camera\": $2, \"environment\": \"#102030\", ${4:-}
         \"objects\": [ { \"shape\": \"box\" }$3 ] }" >"$1.json"
@@ -48,7 +48,7 @@ for name in inside dark near; do
 done
 check "the golden has the other one alone" test "$(grep -c '^case' looks.golden)" -eq 1
 
-# What was accepted when it was fine is refused when it is not any more.
+# A case that was accepted with a good picture is refused as soon as its picture shows nothing.
 printf 'cube cube.json --size 64x48\n' >looks.whit
 sed -i 's/"target": \[0, 0, 0\]/"target": [9, 9, 9]/' cube.json
 expect 1 "a golden of nothing" check looks.whit

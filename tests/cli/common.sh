@@ -1,4 +1,4 @@
-# Sourced by the tests of the command line: sh TEST WHIT SCENES. A failing check fails the script.
+# The tests of the command line source this file: sh TEST WHIT SCENES. A failing check fails the script.
 set -u
 WHIT=$1
 SCENES=$2
@@ -11,19 +11,19 @@ CUBE=$SCENES/cube.json
 
 OFFSET=${WHIT_TEST_OFFSET:-0}
 
-# Validation layers make commands half as slow again: of these entries a quarter has them with each commit, others with
-# the next, as with those of programs (layers_turn.c).
+# With validation layers commands take half as long again. So a quarter of the tests of scripts has them at each commit,
+# another quarter at the next, as with tests that are programs (layers_turn.c).
 if [ "${WHIT_VALIDATION:-}" = sync ] && [ $(((${WHIT_TEST_TURN:-0} + OFFSET + OFFSET / 8) % 4)) -ne 0 ]; then
     unset WHIT_VALIDATION
 fi
 
-# part I N: whether the part I of a test runs. Of N parts a short run has one, another one with the next commit; the entry
-# cli_NAME_long has all.
+# part I N: whether part I of a test runs. A short run has one of the N parts, another one with the next commit; the
+# test cli_NAME_long has all.
 part() {
     [ -n "${WHIT_TEST_TIMES:-}${WHIT_TEST_ONLY:-}" ] || [ $((($1 + OFFSET) % $2)) -eq 0 ]
 }
 
-# needs PROGRAM: skips the test, by name, where there is no such program.
+# needs PROGRAM: skips the test and names the program where it is not installed.
 needs() {
     command -v "$1" >/dev/null && return
     echo "SKIPPED: no $1"
@@ -68,17 +68,17 @@ refuse() {
     check "$what: says \`$pattern\`" grep -q "^whit: error: .*$pattern" "$OUT/stderr"
 }
 
-# holds EXPRESSION: of numbers, as awk has them.
+# holds EXPRESSION: awk's expression of numbers is true.
 holds() {
     awk "BEGIN { exit !($1) }"
 }
 
-# about A B [SHARE]: two numbers that differ by less than that share of the first, else a millionth.
+# about A B [SHARE]: two numbers differ by at most SHARE of the first; without SHARE by a millionth.
 about() {
     holds "($1 - $2) ^ 2 <= (${3:-1e-6} * $1) ^ 2"
 }
 
-# wait_for PID COMMAND...: until the command succeeds; fails where the process ends before.
+# wait_for PID COMMAND...: waits until the command succeeds; fails if the process ends before.
 wait_for() {
     awaited=$1
     shift
@@ -97,7 +97,7 @@ shows() {
     check "$what: shows \`$pattern\`" grep -q -e "$pattern" "$OUT/stdout"
 }
 
-# interrupted PID COMMAND...: Ctrl+C once the command succeeds, after which the process ends with 130.
+# interrupted PID COMMAND...: sends Ctrl+C once the command succeeds; the process then ends with exit code 130.
 interrupted() {
     pid=$1
     check "it goes on until $2" wait_for "$@"
@@ -107,13 +107,13 @@ interrupted() {
     check "Ctrl+C: exit code 130 (got $status)" test $status -eq 130
 }
 
-# commands_of PAGE HEAD: whit's, of that section of a page, without what is said beside them: of lines that are indented
-# and of tables.
+# commands_of PAGE HEAD: prints the commands of whit in that section of a page, in indented lines and in tables, without
+# the remarks beside them.
 commands_of() {
     sed -n "/^## $2/,/^## /{s/^    \(whit [^#]*\).*/\1/p;s/^|.*| \`\(whit [^\`]*\)\` |\$/\1/p;}" "$1"
 }
 
-# Nothing but what the test made lies in the folder, hidden files included.
+# is_empty FOLDER: the folder has no file, not even a hidden one.
 is_empty() {
     test -z "$(ls -A "$1")"
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# whit compare: metrics by hand on pictures of two pixels, tolerances, formats, difference pictures.
+# whit compare: metrics computed by hand for pictures of two pixels, tolerances, formats, pictures of differences.
 . "$(dirname "$0")/common.sh"
 needs jq
 VK_DRIVER_FILES=/nonexistent
@@ -20,7 +20,7 @@ printf "Pf\n2 1\n-1\n$ZERO$HALF" >"$OUT/grey.pfm"
 echo iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR42mNgYGDYs2cPAARvAjV7odqHAAAAAElFTkSuQmCC |
     base64 -d >"$OUT/a.png"
 
-# value METRIC: the number on its line of the last output.
+# value METRIC: prints the number in the metric's line of the last output.
 value() {
     awk -v name="$1" '$1 == name { print $2 }' "$OUT/stdout"
 }

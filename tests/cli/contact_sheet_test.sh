@@ -1,10 +1,11 @@
 #!/bin/sh
-# tools/contact_sheet: one tile a scene, a dark one for a scene that fails.
+# tools/contact_sheet draws one tile for each scene, and a dark tile for a scene that fails.
 #     contact_sheet_test.sh WHIT SCENES CONTACT_SHEET PICTURE_CHECK
 . "$(dirname "$0")/common.sh"
 WHIT=$3
 
-# sheet CODE SUM FILE...: leaves with CODE a list that ends in SUM, and a sheet of two tiles.
+# sheet CODE SUM FILE...: contact_sheet exits with CODE, prints a list that ends in SUM, and writes a sheet of two
+# tiles.
 sheet() {
     code=$1 sum=$2
     shift 2
@@ -24,8 +25,8 @@ sheet 0 "2 scenes, 0 failed" "$CUBE" "$OUT/first.png"
 echo '{ "objects": 3 }' >"$OUT/broken.json"
 sheet 1 "2 scenes, 1 failed" "$OUT/broken.json" "$CUBE"
 check "which names it" grep -q 'broken.json:1' "$OUT/stderr"
-# With --check models have to look right: a box does, a glow that is exposed less, and what its file wants to be white
-# or black; a grey box that is lit by too much, or by nothing, does not.
+# With --check models have to look right. A grey box does, and a glow that is exposed less, and a box whose file makes
+# it white or black; a grey box with too much light, or with none, does not.
 box() {
     printf 'newmtl m\n%s\n' "$2" >"$OUT/$1.mtl"
     {
@@ -42,7 +43,7 @@ box grey 'Kd 0.7 0.7 0.7'
 box glow 'Ke 40 40 40'
 box lamp 'Ke 1 1 1'
 box coal 'Kd 0 0 0'
-# A board shows no relief, whichever way it lies.
+# A flat board shows no relief, in whichever direction it faces.
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\n' >"$OUT/board.obj"
 lit bright 60
 lit dark 0

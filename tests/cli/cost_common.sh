@@ -1,10 +1,11 @@
-# Sourced after common.sh by tests of `whit cost`: figures of its CSV.
+# Tests of `whit cost` source this file after common.sh.
 WRONG=$3
 XDG_CACHE_HOME=$OUT/cache
 export XDG_CACHE_HOME
 mkdir "$OUT/cache" "$OUT/files"
 
-# value FILE KNOB SETTING COLUMN. Within a cell a comma has a space behind it, between cells none has.
+# value FILE KNOB SETTING COLUMN: prints a figure of the CSV. A comma within a cell has a space behind it, one between
+# cells has none.
 value() {
     sed 's/, /; /g; s/"//g' "$1" | awk -F, -v knob="$2" -v setting="$3" -v column="$4" '
         NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
