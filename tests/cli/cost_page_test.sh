@@ -1,6 +1,6 @@
 #!/bin/sh
-# The page of `whit cost` in a browser without a window: no message on its console, no request. Skipped
-# where there is no Chromium.
+# Opens the page of `whit cost` in a browser without a window: its console has no message, and it makes no request.
+# Skipped where there is no Chromium.
 . "$(dirname "$0")/common.sh"
 needs jq
 . "$(dirname "$0")/browser.sh"
@@ -31,7 +31,7 @@ for wide in "table { width: 130% }" "svg text { font-size: 99px }"; do
     check "such is seen: $wide" test "$(wc -c <"$OUT/clipped")" -gt 6
 done
 
-# Both are seen where there is something to see: what the page forbids, and what it would fetch.
+# The two checks can fail: a picture from elsewhere is reported as forbidden, and as a request where it is allowed.
 bad='<body><img src="http://127.0.0.1:9/x.png"/>'
 sed "s|<body>|$bad|" "$page" >"$OUT/forbidden.html"
 look "$OUT/forbidden.html"

@@ -1,12 +1,12 @@
 #!/bin/sh
-# What `whit cost` and `whit render` promise, on second runs: time within T in 9 of 10 pictures, in two
-# scenes and at three T each; error below E. Long.
+# Promises of `whit cost` and `whit render`, on second runs: 9 of 10 pictures take at most the time T, in two scenes
+# with three T each; the error is below E. This test is long.
 . "$(dirname "$0")/common.sh"
 XDG_CACHE_HOME=$OUT/cache
 export XDG_CACHE_HOME
 mkdir "$OUT/cache"
 
-# draw SCENE T: draws one picture, notes whether T was kept.
+# draw SCENE T: draws one picture, and notes it in $OUT/kept if it took at most T ms.
 draw() {
     run render "$SCENES/$1.json" -o "$OUT/chosen.png" --size 160x120 --budget-ms "$2"
     took=$(sed -n 's/^whit: note: it took \([0-9.]*\) of.*/\1/p' "$OUT/stderr")
@@ -35,7 +35,7 @@ for scene in $scenes; do
     done
 done
 
-# Against many more samples and bounces than the figures know of.
+# The true picture has many more samples and bounces than the pictures that the figures were measured on.
 for scene in whitted cube; do
     expect 0 "$scene: the truth" render "$SCENES/$scene.json" -o "$OUT/true.pfm" \
         --size 96x72 --aa 64 --depth 32 --bailout 1.52587890625e-5

@@ -1,15 +1,14 @@
 #!/bin/sh
-# `whit cost`: rows, errors, answers, files (Ctrl+C: fault_stop_cost). The third argument is whit over a
-# library in which WHIT_TEST_WRONG is wrong, by clocks of its own: nothing here depends on how fast the
-# machine is. With `all` as the fourth: also which choices are made of figures that are kept, and of a time that
-# slow pictures do not keep.
+# Checks `whit cost`: rows, errors, answers, files (for Ctrl+C see fault_stop_cost). The third argument is a whit with
+# clocks of its own, so that nothing here depends on the speed of the machine, and with the fault that WHIT_TEST_WRONG
+# names. With `all` as the fourth argument also choices by kept figures, and for a time that slow pictures exceed.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
 . "$(dirname "$0")/cost_common.sh"
 RIGHT=$WHIT
 J=$OUT/files/cost.json
-# A ball of glass beside a mirror: fewer rays than in whitted.json, of the same kinds.
+# A ball of glass beside a mirror: the scene has rays of the same kinds as whitted.json, but fewer.
 GLASS=$OUT/glass.json
 cat >"$GLASS" <<'JSON'
 { "camera": { "eye": [0, 1, 4], "target": [0, 0.5, 0] },
@@ -33,7 +32,7 @@ if part 0 2; then
         .rounds >= 7 and $ratio.low <= $ratio.median and $ratio.median <= $ratio.high)' "$J"
 fi
 
-# ---- By clocks that are known ----
+# ---- Known clocks ----
 
 WHIT=$WRONG
 shows "a scene by known clocks" "^usual  " cost "$GLASS" $small --reference-samples 16 \
@@ -47,7 +46,7 @@ check "the page holds the JSON and pictures of its own" jq -e --slurpfile json "
     ($json[0] == del(.page)) and ($page.reference | startswith("data:image/png;base64,iVBOR")) and
     all($page.pictures[0][]; startswith("data:image/png;base64,iVBOR")) and ($page.method | length) > 1 and
     ($page.crop | .x + .width <= 48 and .y + .height <= 36)' "$P"
-# By these clocks nothing but samples takes time.
+# By these clocks only samples take time.
 check "it shows what 4 and 16 times the time bring" jq -e '. as $all |
     [.answers[] | select(.of_usual)] | map(.of_usual) == [0.25, 4, 16] and
     (.[0].found | not) and all(.[1:][]; .found and $all.rows[.row].measured) and
@@ -95,8 +94,8 @@ if part 1 2; then
         numerics exact aimed_other_ids)$(value "$C" numerics exact aimed_misses)" = 00
 fi
 if part 0 2; then
-    # Far from the origin a turned box is other triangles with instances and in one tree, which the scene is
-    # by itself: each is held against its own.
+    # Far from the origin the triangles of a turned box are rounded differently with instances and in one tree (the
+    # default for this scene). Each way is compared with its own reference.
     cat >"$OUT/far.json" <<'JSON'
 { "camera": { "eye": [90, 1, 4], "target": [90, 0.5, 0] },
   "objects": [
@@ -138,7 +137,7 @@ if part 1 2; then
     check "measures anew" grep -q "measuring what settings cost" "$OUT/stderr"
     expect 0 "other trees" render $enough --build median
     check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
-    # Records that are cut, of something else or empty are measured again, and nothing is said of them.
+    # If a record is cut short, empty or of something else, whit measures again without a message about it.
     record=$(ls -t "$OUT"/cache/whit/cost-* | sed -n 2p)
     for damage in "truncate -s 2000" "truncate -s 0" "cp $(ls -t "$OUT"/cache/whit/cost-* | sed -n 1p)"; do
         $damage "$record"
@@ -152,8 +151,8 @@ if part 1 2; then
 fi
 
 if [ "${4:-}" = all ]; then
-    # A sample takes 135 ms, and bounces take nothing: so there are as many of these as there can be, and of samples
-    # six are less than nine tenths of 1000 ms, while seven are more.
+    # A sample takes 135 ms and bounces take nothing. So whit chooses the most bounces, and six samples: six take less
+    # than nine tenths of 1000 ms, seven take more.
     most=" --depth 16 --bailout 0"
     tiny="$GLASS --size 48x36 -o $OUT/chosen.png --budget-ms 1000"
     kept="kept with the scene; --fresh measures anew"
@@ -161,7 +160,7 @@ if [ "${4:-}" = all ]; then
     first=$(chosen)
     check "six of them ($first)" test "$first" = "--aa 6$most"
     check "it was measured" grep -q "measuring what settings cost" "$OUT/stderr"
-    # As slow as it may be now, the choice stays.
+    # The second run makes the same choice, even if it is slower.
     export WHIT_TEST_WRONG=noisy
     expect 0 "the second run" render $tiny
     unset WHIT_TEST_WRONG
@@ -173,7 +172,7 @@ if [ "${4:-}" = all ]; then
     expect 0 "and the first one again" render $tiny
     check "its own" test "$(chosen)" = "$first"
 
-    # By the slowest of ten pictures nothing is predicted to keep 150 ms; the row of the usual settings does.
+    # By the slowest of ten pictures no choice is predicted to take at most 150 ms, but the usual settings do.
     export WHIT_TEST_WRONG=noisy
     expect 0 "--within what only a row of the table keeps" cost "$CUBE" $small --reference-samples 4 \
         --knobs aa,numerics --within 150 --json "$J"
@@ -184,7 +183,7 @@ if [ "${4:-}" = all ]; then
     unset WHIT_TEST_WRONG
 fi
 
-# ---- What is wrong is found, in its row ----
+# ---- A fault shows in its row ----
 
 export WHIT_TEST_WRONG=schlick
 run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
@@ -200,7 +199,7 @@ if part 0 2; then
     unset WHIT_TEST_WRONG
     check "its row says so" grep -q "^build  *median .*NOT THE SAME" "$OUT/stdout"
     check "no other does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
-    # (Trees by medians that are right: render_test.sh.)
+    # (render_test.sh has a right tree by medians.)
     for row in "traversal sign" "traversal basic" "build sweep" "build spatial" "build binned+opt"; do
         set -- $row
         check "$row: no pixel is other" test "$(value "$D" "$1" "$2" pixels_changed)" = 0
@@ -219,7 +218,7 @@ check "10 % more work is found" test "$(value "$D" depth 16 ratio)$(value "$D" d
 check "and in no other row" test "$(value "$D" depth 4 ratio)$(value "$D" depth 4 verdict)" = 10
 WHIT=$RIGHT
 
-# ---- What is refused ----
+# ---- Refusals ----
 
 rm -rf "$OUT/files"
 mkdir "$OUT/files"

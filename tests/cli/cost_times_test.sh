@@ -1,7 +1,7 @@
 #!/bin/sh
-# Times by the clocks of the machine: `whit cost` finds 10 % more work, in its row alone; `whit bench`
-# finds that trees are faster than none. Long. The third argument is whit over a library in which
-# WHIT_TEST_WRONG is wrong.
+# Times by the clocks of the machine: `whit cost` finds 10 % more work, and only in its row; `whit bench` finds that
+# pictures with trees are faster than without. This test is long. The third argument is a whit with the fault that
+# WHIT_TEST_WRONG names.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/cost_common.sh"
@@ -11,7 +11,7 @@ export WHIT_TEST_CLOCK
 C=$OUT/files/right.csv
 D=$OUT/files/slow.csv
 
-# Nothing meets what a convex body reflects: 16 bounces are what 8 are.
+# Rays that a convex body reflects meet nothing, so that 16 bounces take as long as 8.
 sed 's/"specular": 0.3/"reflection": 0.3/' "$CUBE" >"$OUT/mirror.json"
 deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --reference-samples 4 --spend 8"
 expect 0 "as it is" cost $deep --csv "$C"

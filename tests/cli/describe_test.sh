@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the tables of options say elsewhere: completion, manual pages, and the tables of docs/cli.md.
+# Texts made from the tables of options: completion, manual pages, and the tables of docs/cli.md.
 . "$(dirname "$0")/common.sh"
 needs bash
 DOCS=$SCENES/../docs/cli.md
@@ -36,7 +36,7 @@ else
     echo "SKIPPED part: no groff"
 fi
 
-# complete LINE...: the words that bash offers for the last one.
+# complete_words WORD...: prints the words that bash offers for the last one.
 complete_words() {
     bash -c 'whit=$1; shift; set -- "$@"
         . "$0" && COMP_WORDS=("$whit" "$@") && COMP_CWORD=$# && _whit "$whit" && echo "${COMPREPLY[@]}"' \

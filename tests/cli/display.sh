@@ -1,7 +1,6 @@
 #!/bin/sh
-# sh display.sh COMMAND...: runs a command on a display of its own, which nobody sees, and exits as
-# it does. WHIT_TEST_SCREEN: the size of its screen. Without Xvfb it says `SKIPPED`, which CTest
-# reports as such.
+# sh display.sh COMMAND...: runs a command on an invisible display of its own, and exits with the command's exit code.
+# WHIT_TEST_SCREEN is the size of the screen. Without Xvfb it prints `SKIPPED`, which CTest reports.
 if ! command -v Xvfb >/dev/null; then
     echo "SKIPPED: no Xvfb"
     exit 77
@@ -9,7 +8,7 @@ fi
 folder=$(mktemp -d) || exit 1
 mkfifo "$folder/number"
 export WHIT_TEST_SCREEN="${WHIT_TEST_SCREEN:-1280x1024}"
-# The server finds a number that is free, and says it once it listens.
+# The server chooses a free number, and writes it as soon as it listens.
 Xvfb -displayfd 3 -screen 0 "${WHIT_TEST_SCREEN}x24" -nolisten tcp -noreset 3>"$folder/number" \
     2>"$folder/messages" </dev/null >/dev/null &
 server=$!

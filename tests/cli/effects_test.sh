@@ -1,6 +1,6 @@
 #!/bin/sh
-# --effects of `whit render` and `whit scene`: names, prices, promises. The third argument is whit over
-# a library whose pictures change with WHIT_TEST_CHANGED_EFFECT.
+# --effects of `whit render` and `whit scene`: names, prices, promises. The third argument is a whit in whose pictures
+# the effect WHIT_TEST_CHANGED_EFFECT changes a pixel.
 . "$(dirname "$0")/common.sh"
 needs jq
 CHANGED=$3
@@ -30,12 +30,12 @@ expect 0 "--stats" render "$CUBE" -o "$OUT/auto.pfm" --size 48x36 --stats text
 check "the kernel's size" grep -Eq "^  [0-9]+ of [0-9]+ instructions, [0-9]+ in the largest, [0-9]+ of [0-9]+ bindings" \
     "$OUT/stdout"
 
-# Which effects a shader asks for: json_test.sh.
+# json_test.sh checks the effects that a shader asks for.
 echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }' >"$OUT/plain.glsl"
 refuse 2 "--shader without --effects" "for the pictures of --effects" scene "$CUBE" --shader "$OUT/plain.glsl"
 
-# The table, and an effect in it that changes the picture though the scene does not call for it. The
-# layers see its kernels in json_test.sh, which has the same as JSON.
+# The table, with an effect that changes the picture though the scene does not call for it. Validation layers are off:
+# json_test.sh runs the same kernels with them.
 if part 0 2; then
     WHIT=$CHANGED
     unset WHIT_VALIDATION

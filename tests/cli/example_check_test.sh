@@ -1,7 +1,7 @@
 #!/bin/sh
-# A project that has its part checked by an installed whit, by ctest; and the lines of docs/check.md and of the recipe for
-# CI, in which packages are there, and whit is built and installed already, but with `whole`:
-# example_check_test.sh WHIT SCENES CMAKE BUILD [whole]
+# A project whose ctest checks its part by an installed whit; and the lines of docs/check.md and of the recipe for CI.
+# Without `whole`, scripts stand in for the installation of packages and for building and installing whit.
+#     example_check_test.sh WHIT SCENES CMAKE BUILD [whole]
 . "$(dirname "$0")/common.sh"
 needs jq
 CMAKE=$3
@@ -11,7 +11,8 @@ SOURCE=$SCENES/..
 cd "$OUT" || exit 1
 check "it installs" "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix" >stderr 2>&1
 cp -r "$SOURCE/tests/example_check" part
-# with TEXT COMMAND...: it ends with 0, and says TEXT where there is one; without TEXT COMMAND...: with another, and says so too.
+# with TEXT COMMAND...: the command ends with 0, and prints TEXT if that is not empty.
+# without TEXT COMMAND...: the command ends with another exit code, and prints TEXT.
 with() {
     text=$1
     shift
@@ -68,7 +69,8 @@ if [ "${5:-}" = whole ]; then
     export DESTDIR="$OUT/whole"
     usr=$DESTDIR/usr/local opt=$DESTDIR/opt/whit
 fi
-# follow FILE: its lines one by one, each of which has to succeed; packages are all, whit is built and installed once.
+# follow FILE: runs the lines of the file one by one; each succeeds, all packages are installed, and whit is built and
+# installed once.
 follow() {
     rm -f own/packages own/built
     while read -r line; do
@@ -90,9 +92,9 @@ for file in json xml html; do
 done
 check "which is uploaded" grep -q "^        with: {name: looks, path: reports}" "$SOURCE/tests/example_check/check.yml"
 
-# ---- What is other ----
+# ---- Changes ----
 
-# Another part, and another suite: the next build takes them over.
+# The next build uses a part and a suite that have changed.
 echo 'under bracket.stl --size 160x120 --camera 140,-60,30,25,18,-18,0,1,0,30' >>part/looks.whit
 check "the suite is listed anew" with "Configuring done" "$CMAKE" --build build
 sed -i 's/box(5, 18, 5, 25, 22, 30)/box(5, 18, 5, 25, 22, 31)/' part/bracket.awk
@@ -101,7 +103,7 @@ check "a millimetre more, and a case more: all fail" without "0% tests passed, 4
 check "three differ" test "$(grep -c ": differs: colours other, and what pixels hit" stderr)" -eq 3
 check "one is new" grep -q "^under: no golden" stderr
 
-# Words of the function.
+# Arguments of the CMake function.
 sed -i '$s/)$/ PREFIX part- LABELS pictures slow TIMEOUT 77)/' part/CMakeLists.txt
 check "a prefix, labels and a time" with "Configuring done" configure build
 "$CTEST" --test-dir build --show-only=json-v1 >tests.json
@@ -109,7 +111,7 @@ check "are those of each test" jq -e '[.tests[] | [.name, (.properties | map({(.
     | length == 4 and .[0] == ["part-front-watertight", ["pictures", "slow"], 77] and all(.[]; .[1:] == [["pictures", "slow"], 77])' tests.json
 sed -i '$s/ PREFIX.*/)/' part/CMakeLists.txt
 
-# What cannot be listed.
+# A suite that is wrong, or names a scene that does not exist.
 echo 'lost nowhere.stl --sise 9x9' >>part/looks.whit
 check "a suite that is wrong" without "looks.whit:6: .*--sise" configure build
 sed -i 's/ --sise 9x9//' part/looks.whit
