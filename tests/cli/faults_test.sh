@@ -1,6 +1,6 @@
 #!/bin/sh
-# What lacks around the program, and what is sent to it: sh faults_test.sh WHIT SCENES MODELS [long].
-# MODELS is a folder with model.obj and the files that it names. docs/reliability.md lists it all.
+# Shortages around the program, and signals to it: sh faults_test.sh WHIT SCENES MODELS [long].
+# MODELS is a folder with model.obj and the files that it names. docs/reliability.md lists all of these faults.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 MODELS=$(cd "$3" && pwd)
@@ -10,16 +10,17 @@ cd "$OUT/files" || exit 1
 cp "$MODELS"/model.* .
 small="--size 16x16 --quiet"
 
-# skip WHAT: says what could not be tried here.
+# skip WHAT: prints the check that is not possible here.
 skip() {
     echo "skipped $1"
 }
 
-# judge WHAT: an error is one line of whit's, with exit code 2; counts these in $errors.
+# judge WHAT PATTERN: if whit failed, it printed one error with PATTERN, and its exit code is 2; counts errors in
+# $errors.
 judge() {
     case $status in
     0) ;;
-    127) # No program as yet: it could not be loaded itself.
+    127) # The system could not load the program.
         check "$1: that is the system's" grep -q "error while loading shared" "$OUT/stderr" ;;
     *)
         errors=$((errors + 1))
@@ -31,7 +32,7 @@ judge() {
 
 # ---- Few descriptors ----
 
-# with_files MOST COMMAND...: whit has so many descriptors, the three first ones among them.
+# with_files MOST COMMAND...: runs whit with at most MOST file descriptors, including the standard ones.
 with_files() (
     exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-
     ulimit -n "$1"
@@ -48,7 +49,7 @@ for most in 4 5 6 7 8; do
     done
 done
 check "the last has enough" test $status -eq 0
-# One descriptor more may do or not: the driver's files and the model's are opened at the same time.
+# It varies which number is enough, because files of the driver and of the model are opened at the same time.
 check "the first have not" test $errors -ge 1
 with_files 4 scene model.obj
 check "what cannot be opened names the model too" \
@@ -57,14 +58,14 @@ rm -f a.pfm
 
 # ---- Little memory ----
 
-# with_memory KBYTES COMMAND...
+# with_memory KBYTES COMMAND...: runs whit with this limit on its address space.
 with_memory() (
     ulimit -v "$1"
     shift
     exec "$WHIT" "$@"
 ) >"$OUT/stdout" 2>"$OUT/stderr"
 
-# little_memory FROM STEP TO COMMAND...: in MB.
+# little_memory FROM STEP TO COMMAND...: runs whit with limits from FROM to TO MB, STEP MB apart.
 little_memory() {
     at=$1 step=$2 to=$3
     shift 3
@@ -87,7 +88,7 @@ if [ "$LONG" ]; then
     little_memory 30 1 120 scene "$SCENES/swarm.json"
     little_memory 30 2 200 bvh "$SCENES/swarm.json" --no-trace --runs 1
 else
-    # Too little for a driver; a driver that crashes, or some that do.
+    # Limits that are too small for a driver, or with which some drivers crash.
     little_memory 150 120 390 render "$SCENES/cube.json" -o a.pfm $small
     little_memory 40 20 80 scene model.obj
 fi
@@ -96,7 +97,7 @@ rm -f a.pfm
 
 # ---- No space, no permission, no HOME, no /tmp ----
 
-# in_mounts COMMAND: as root of file systems of its own; FOLDER /mnt is there to mount on.
+# in_mounts COMMAND: runs the shell command as root with mounts of its own; it may mount on /mnt.
 in_mounts() {
     unshare -rm sh -c "$1" >"$OUT/stdout" 2>"$OUT/stderr" 9<"$WHIT"
 }
@@ -107,7 +108,7 @@ if in_mounts "mount -t tmpfs -o size=16k tmpfs /mnt"; then
     check "a full disk: exit code 2, the old file and nothing else" test $? -eq 0
     check "a full disk: says so" \
         grep -q "^whit: error: /mnt/t: cannot write: No space left on device" "$OUT/stderr"
-    # The folder stays the current one when another one is mounted over /tmp.
+    # The current folder stays usable when another file system is mounted over /tmp.
     in_mounts "unset TMPDIR MESA_SHADER_CACHE_DIR; mount -t tmpfs -o ro tmpfs /tmp &&
         /proc/self/fd/9 render model.obj -o a.pfm $small"
     check "no /tmp: a picture" test $? -eq 0 -a -s a.pfm
@@ -121,7 +122,7 @@ expect 0 "TMPDIR leads nowhere" scene model.obj
 unset TMPDIR
 rm -f a.pfm
 
-# Root writes everywhere, unless it gives that up.
+# Root may write everywhere, unless it gives up that capability.
 mkdir read-only
 echo old >read-only/old
 echo old >kept
@@ -156,7 +157,7 @@ done
 
 # ---- SIGPIPE ----
 
-# into_nothing COMMAND...: its standard output is a pipe that nobody reads any more.
+# into_nothing COMMAND...: runs whit with a standard output that is a pipe without a reader.
 mkfifo pipe
 into_nothing() {
     exec 5<>pipe 6>pipe 5<&-
@@ -176,15 +177,15 @@ check "SIGPIPE ignored: exit code 2 (got $status)" test $status -eq 2
 check "SIGPIPE ignored: one error" \
     test "$(cat "$OUT/stderr")" = "whit: error: standard output: cannot write: Broken pipe"
 
-# ---- SIGHUP, and two writers: whit waits for rays while it is sent something ----
+# ---- Signals and two writers, while whit waits for rays ----
 
-# begin_trace NUMBER: whit reads rays from a pipe, which is open at descriptor 7 or 8 then.
+# begin_trace NUMBER: starts a whit that reads rays from the pipe raysNUMBER.
 begin_trace() {
     mkfifo "rays$1"
     ulimit -c 0
     "$WHIT" trace "$SCENES/cube.json" --input "rays$1" -o hits --on cpu --quiet 2>"$OUT/stderr" &
 }
-# sent SIGNAL: to whit while it waits; leaves $status.
+# sent SIGNAL: sends the signal to whit while it waits; sets $status to its exit code.
 sent() {
     begin_trace 7
     exec 7>rays7
@@ -202,7 +203,7 @@ for signal in HUP:129 TERM:143 INT:130; do
         test "$(cat "$OUT/stderr")" = "whit: interrupted, nothing was written"
     check "SIG${signal%:*}: the old file" test "$(cat hits)" = old
 done
-# Without a shortage a crash is a crash.
+# Where nothing is short, whit does not report a crash as an error of its own.
 sent SEGV
 check "SIGSEGV: dies of it (got $status)" test $status -eq 139
 check "SIGSEGV: without a word of whit's" test ! -s "$OUT/stderr"

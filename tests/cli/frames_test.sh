@@ -1,6 +1,6 @@
 #!/bin/sh
-# Sequences: every frame is the picture that it is alone, and what is finished stays. The third
-# argument is whit by a clock that moves only while a picture is drawn.
+# Sequences: every frame is the same picture as when it is drawn alone, and finished frames stay. The third argument is
+# a whit whose clock moves only while a picture is drawn.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 TURNED=$3
@@ -48,8 +48,8 @@ check "stats have times of frames and their median" \
     jq -e 'all(.times, .frames.median, .frames.each[]; .build_instances_ms >= 0)' "$OUT/stdout"
 check "rays are summed up" jq -e '.rays.primary == 768' "$OUT/stdout"
 
-# What is cut, and pixels by samples: sums over frames, of weights and bounds the largest, which here are
-# those of the first frame.
+# Numbers of cut rays and of pixels by samples are sums over the frames; of weights and bounds the largest is kept,
+# which here is that of the first frame.
 for option in "--depth 1" "--bailout 0.05"; do
     way=$((way + 1))
     part $way 2 || continue
@@ -91,7 +91,7 @@ refuse 2 "--frames and --frame" "all of these frames or one" render "$SWARM" --f
 refuse 2 "no such folder" "nowhere/r.0.png" render "$SWARM" --frames 0-3 -o nowhere/r.#.png
 check "nothing came of these" sh -c '! ls -A | grep -q "^\.\|^r\."'
 
-# Out of range from frame 1 on.
+# From frame 1 on the position is out of range.
 cat >far.json <<'JSON'
 { "camera": { "eye": [0, 0, 5], "target": [0, 0, 0] },
   "objects": [ { "name": "large", "scale": 1e15, "children": [ { "name": "larger", "scale": 1e15, "children": [
@@ -105,7 +105,7 @@ check "is named" grep -q "far.json: instance 0 .nose.*at 0.0416667 s" "$OUT/stde
 check "how many are there is said" grep -q "1 of 4 frames were written" "$OUT/stderr"
 check "these stay" test "$(ls -A far)" = f.0.png
 
-# By a clock that each of these pictures moves by 0.375 s.
+# Each of these pictures moves the clock by 0.375 s.
 mkdir late
 REAL=$WHIT
 WHIT=$TURNED

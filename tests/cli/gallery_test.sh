@@ -1,6 +1,6 @@
 #!/bin/sh
-# docs/gallery.md and docs/scenes.md: their scenes render and show what they are there for, their pictures are there,
-# and tools/gallery makes each of them.
+# docs/gallery.md and docs/scenes.md: their scenes render and call for their effects, their pictures exist, and
+# tools/gallery makes each of them.
 #     gallery_test.sh WHIT SCENES CONTACT_SHEET
 . "$(dirname "$0")/common.sh"
 needs jq
@@ -12,7 +12,7 @@ SCHEMA=$ROOT/docs/scene.schema.json
 
 # ---- Each picture has a command, and each command a picture ----
 
-# A tree of its own, and a whit that says what it is asked for.
+# A copy of the tree, and a whit that only writes down its arguments.
 mkdir "$OUT/tree" "$OUT/tree/tools" "$OUT/tree/docs" "$OUT/tree/scenes"
 cp "$ROOT/tools/gallery" "$OUT/tree/tools"
 cp "$GALLERY" "$PAGE" "$OUT/tree/docs"
@@ -30,11 +30,11 @@ check "the commands are those that are printed" test -z "$(grep -vxFf "$OUT/aske
 
 # ---- Scenes and their effects ----
 
-# A line for each effect: its name, and the scene of the picture.
+# $OUT/effects has a line for each effect: its name, and the scene of its picture.
 awk '/^## / { effect = "" } match($0, /effect `[a-z-]+`/) { effect = substr($0, RSTART + 8, RLENGTH - 9) }
     /^    whit render/ && effect && /docs\/images/ { print effect, $3 }' "$GALLERY" >"$OUT/effects"
 check "eleven effects or more" test "$(grep -c . "$OUT/effects")" -ge 11
-# described FILE: whit describes it without a warning; the JSON is added to $OUT/described.
+# described FILE: `whit scene` lists the scene; its JSON is added to $OUT/described.
 described() {
     expect 0 "$1" scene "$1" --json
     cat "$OUT/stdout" >>"$OUT/described"
@@ -51,11 +51,11 @@ missing=$(jq -r -s --rawfile names "$OUT/effects" '[., ($names | split("\n") | m
     $scene.file + " " + $name' "$OUT/described")
 check "each calls for the effect that it is there for $missing" test -z "$missing"
 check "none has warnings" jq -e -s "$no_warnings" "$OUT/described"
-# What whit's own suite draws is held there.
+# Scenes that whit's own suite draws are checked there.
 # shellcheck disable=SC2016
 check "the $# others render" sh -c '"$@" >"$0" 2>&1' "$OUT/stderr" "$SHEET" "$@" -o "$OUT/sheet.png" --size 64x48 --aa 1
 
-# The maps are what the commands make.
+# The maps in the repository are those that the commands make.
 mv "$OUT/tree/scenes/gallery"/*.png "$OUT"
 # shellcheck disable=SC2016
 check "tools/gallery makes the maps" sh -c '"$@" >"$0" 2>&1' "$OUT/stderr" \
@@ -64,9 +64,9 @@ for map in lattice studs; do
     expect 0 "$map is as it was" compare "$OUT/$map.png" "$OUT/tree/scenes/gallery/$map.png" \
         --metric largest --tolerance 0.01
 done
-# ---- Pictures are those of the scenes and commands of now ----
+# ---- Pictures are made from the present scenes and commands ----
 
-# Two are made again, whose scenes have textures that are larger than the picture shows them.
+# Two pictures are made again: their textures have more texels than the picture shows.
 mkdir -p "$OUT/tree/docs/images/materials"
 fresh=docs/images/materials
 # shellcheck disable=SC2016
@@ -75,7 +75,7 @@ check "tools/gallery makes pictures" sh -c '"$@" >"$0" 2>&1' "$OUT/stderr" \
 for name in checker bumps; do
     expect 0 "$name is as it was" compare "$fresh/$name.png" "$OUT/tree/$fresh/$name.png" --metric over --tolerance 0.002
 done
-# All say by what they were made. recipe FILE: a line of JSON of that and of what the command for it is now.
+# Each picture has a recipe. recipe FILE PICTURE: prints a line of JSON with the recipe and with the present command.
 recipe() {
     LC_ALL=C tr -c '[:print:]' '\n' <"$1" >"$OUT/text"
     sed -n '/whit:scene_hash$/{n;s/^\([0-9a-f]\{16\}\).*/"\1"/p;}; s/^whit \(render .* -o whit.png\).*/"\1"/p
@@ -114,12 +114,12 @@ check "every shape has a picture, by a camera that looks at it" jq -e -n --slurp
     [$schema[] | .. | .shape? | .const? // empty] | length > 10 and . - $rows == [] and all(.[]; . as $name |
         [$scene[0].cameras[] | select(.name == $name).target[0]] as [$x] |
         any($scene[0].objects[]; .shape == $name and ((.translation[0] // -9) - $x | fabs) < 3))' "$OUT/shapes"
-# A line of JSON for each row: name, material.
+# $OUT/rows has a line of JSON for each row: name, material.
 sed -n 's/^| !\[\([a-z-]*\)\](images\/materials\/\1.png) | `\(.*\)` | .*|$/["\1", \2]/p' "$PAGE" >"$OUT/rows"
 check "materials are as they are in materials.json" jq -e -n --slurpfile scene "$SCENES/gallery/materials.json" \
     '[inputs] | length > 15 and all(.[]; . as [$name, $is] | $scene[0].materials[$name] == $is and
         any($scene[0].cameras[]; .name == $name))' "$OUT/rows"
-# A kind is told by the keys that no other has.
+# A kind of material is recognized by the keys that no other kind has.
 check "every kind of material has a picture" jq -e -n --slurpfile schema "$SCHEMA" \
     '[inputs[1] | keys] as $rows | [$schema[0]["$defs"].material.anyOf[].properties | keys] as $kinds |
     all(range($kinds | length); . as $n | ($kinds[$n] - ($kinds[:$n] + $kinds[$n + 1:] | add)) as $own |

@@ -1,6 +1,6 @@
 #!/bin/sh
-# tools/gpu-report: its folder in a file system that holds nothing else but lavapipe, as on a machine
-# that has a GPU's driver alone.
+# Runs the folder of tools/gpu-report in a file system that has nothing else but lavapipe, like a machine that has only
+# the driver of a GPU.
 . "$(dirname "$0")/common.sh"
 needs jq
 ROOT=$(cd "$(dirname "$0")/../.." && pwd)

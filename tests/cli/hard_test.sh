@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit hard`: the table, its promises, JSON, options. sh TEST WHIT SCENES LEAKY UNIT_TEST
+# Checks `whit hard`: the table, its promises, JSON, options. sh hard_test.sh WHIT SCENES LEAKY UNIT_TEST
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
@@ -15,7 +15,7 @@ check "no promise is broken, is said first" test "$(head -1 "$OUT/stdout")" = "p
 check "the hash is the one that is stored" \
     grep -q "^hash       $HASH .*, met by the device$" "$OUT/stdout"
 check "and in the JSON, met" jq -e ".hash == \"$HASH\" and .hash_met == \"$HASH\"" "$J"
-# sum LEVEL KEY: over all rows of a level
+# sum LEVEL KEY: prints the sum over all rows of a level.
 sum() {
     jq "[.rows[] | select(.numerics == \"$1\") | .$2] | add" "$J"
 }
@@ -46,7 +46,7 @@ check "says so" grep -q "^whit: error: .* rows break a promise" "$OUT/stderr"
 check "and where" grep -q " NO$" "$OUT/stdout"
 check "the table is in the JSON all the same" jq -e 'any(.rows[]; .kept == false)' "$J"
 
-# From the middle of the sphere along an axis: rays in the planes of edges.
+# The camera is in the middle of the sphere and looks along an axis, so that rays lie in the planes of edges.
 V="--view leaks --size 201x151 --camera 0,0,0,1,0,0,0,1,0,90"
 expect 0 "a picture at fast" hard $V --numerics fast -o "$OUT/fast.png" --quiet
 red=$(sed -n 's/.*: fast: \([0-9]*\) pixels wrong.*/\1/p' "$OUT/stdout")

@@ -1,9 +1,9 @@
 #!/bin/sh
-# How program and library were built: hardening_test.sh WHIT SCENES LIBWHIT [sanitized]
+# Program and library are built with the options for hardening: hardening_test.sh WHIT SCENES LIBWHIT [sanitized]
 . "$(dirname "$0")/common.sh"
 needs readelf
 
-# holds WHAT PATTERN OPTION ...: readelf's lines about $file have PATTERN.
+# holds WHAT PATTERN OPTION...: a line that readelf prints about $file matches PATTERN.
 holds() {
     what=$1 pattern=$2
     shift 2

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The installed library, used by a project of its own: sh install_test.sh WHIT SCENES CMAKE BUILD
+# Another project uses the installed library: sh install_test.sh WHIT SCENES CMAKE BUILD
 . "$(dirname "$0")/common.sh"
 CMAKE=$3
 BUILD=$4
@@ -22,11 +22,11 @@ check "find_package(whit) and the example build" quietly build_example
 check "the example renders a picture and traces rays" "$OUT/build/example" "$CUBE" "$OUT/cube.png"
 check "the picture is there" test -s "$OUT/cube.png"
 
-# The shared library: whit_* and no other name, and a program by pkg-config.
+# The shared library exports whit_* and no other name, and a program is built with it by pkg-config.
 library=$(find "$OUT/prefix" -name 'libwhit.so')
 nm -D --defined-only --extern-only "$library" | awk '{ print $3 }' >"$OUT/names"
 check "libwhit.so exports nothing but whit_*" test "$(grep -vc '^whit_' "$OUT/names")" -eq 0
-# declared HEADER...: the functions that these declare.
+# declared HEADER...: prints the functions that the headers declare.
 declared() {
     grep -ohE '\bwhit_[a-z_]+\(' "$@" | tr -d '(' | sort -u
 }
@@ -55,7 +55,7 @@ fi
 check "the installed program runs" bin/whit --version
 check "an installed scene has its map" quietly bin/whit scene share/whit/scenes/gallery/normal-map.json
 
-# What file managers read: each kind of model that it names is known, here or by shared-mime-info.
+# Files for file managers: each MIME type that they name is known, by whit's own list or by shared-mime-info.
 field() {
     sed -n "s/^$2=//p" "$1"
 }
@@ -75,7 +75,8 @@ if [ -s share/applications/whit.desktop ]; then
         check "it is valid" desktop-file-validate share/applications/whit.desktop
 fi
 
-# A thumbnail, as sandboxes make it: no display, no home, no cache, no network where that can be had, and any name.
+# A thumbnail is made as in a sandbox: without display, home and cache, without network where that is possible, and of a
+# file with any name.
 isolate=
 unshare -rn true 2>/dev/null && isolate="unshare -rn"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/a model.obj"

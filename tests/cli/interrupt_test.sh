@@ -1,6 +1,6 @@
 #!/bin/sh
-# Ctrl+C and --time-limit stop a long render within a time, on a machine that does nothing else.
-# Long. fault_stop_* show without a clock that it stops wherever it is, and what it leaves then.
+# Ctrl+C and --time-limit stop a long render within a limit of time, on a machine that does nothing else. This test is
+# long. The tests fault_stop_* need no clock: they stop whit at any place, and check the files that it leaves.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/pictures"
 
@@ -11,7 +11,7 @@ now_ms() {
 # 48 million pixels with 16 samples each: minutes on any machine.
 set -- render "$SCENES/default.json" -o "$OUT/pictures/long.png" --size 8000x6000 --aa 16
 
-# stop_after SECONDS SIGNAL CODE ARGUMENT...
+# stop_after SECONDS SIGNAL CODE ARGUMENT...: sends the signal to whit; it ends with CODE and leaves no file.
 stop_after() {
     seconds=$1 signal=$2 expected=$3
     shift 3

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The promise of docs/cli.md: keys of JSON are added, never renamed or removed. json_keys.txt has those
-# of every document, and grows with them.
+# docs/cli.md promises that keys of JSON are added, never renamed or removed. json_keys.txt lists the keys of every
+# document; a new key is added there.
 . "$(dirname "$0")/common.sh"
 needs jq
 HERE=$(cd "$(dirname "$0")" && pwd)
@@ -8,19 +8,19 @@ KEYS=$HERE/json_keys.txt
 cd "$OUT" || exit 1
 SMALL="--size 16x12 --quiet"
 
-# keys NAME FILE: the paths of its keys, without places in lists, into $OUT/keys.
+# keys NAME FILE: adds the paths of the keys of the file, without indices of lists, to $OUT/found.
 keys() {
     jq -r --arg name "$1" '[paths | map(select(type == "string")) | join(".")] | unique[] |
         select(. != "") | "\($name) \(.)"' "$2" >>"$OUT/found" || FAILED=1
 }
-# made NAME ARGUMENT...: of what whit prints.
+# made NAME ARGUMENT...: adds the keys of the JSON that whit prints.
 made() {
     name=$1
     shift
     expect 0 "$name" "$@"
     keys "$name" "$OUT/stdout"
 }
-# saved NAME ARGUMENT...: of what it writes by --json.
+# saved NAME ARGUMENT...: adds the keys of the file that whit writes with --json.
 saved() {
     name=$1
     shift
@@ -46,7 +46,7 @@ saved() {
     made batch batch lines --stats json --quiet
     made frames render "$SCENES/spin.json" -o p.##.png --frames 0-1 $SMALL --stats json
     made scene scene "$SCENES/default.json" --json
-    # With a shader, what it does not ask for is not compiled, and said so.
+    # Effects that a shader does not ask for are not compiled, and the JSON says so.
     echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }' >plain.glsl
     made effects scene "$CUBE" --effects --json --size 16x12 --quiet --shader plain.glsl
     check "no shadows are asked for" jq -e 'any(.effects[]; .name == "shadows" and .called and (.asked or .compiled | not))' \
@@ -82,7 +82,8 @@ END
     else
         absent="bench"
     fi
-    # The viewer's states: alone, beside another, and their difference; without names of things to click, keys and effects.
+    # States of the viewer: one picture, two side by side, and their difference. Names of clickable items, keys and
+    # effects are left out.
     if "$WHIT" --help | grep -q "^  view " && command -v Xvfb >xvfb; then
         printf '%s\n' still 'click 24 18' still 'state a' 'press I' still 'state b' 'press U' still 'state c' >replay
         sh "$HERE/display.sh" "$WHIT" view "$CUBE" --size 48x36 --aa 4 --shader dbg.glsl --replay replay --quiet \
@@ -93,8 +94,7 @@ END
         absent="$absent state"
     fi
 }
-# Names that are not whit's own: kernels' figures by the driver, effects of a scene. Documents of what is not built have
-# no keys here.
+# The driver chooses the names of its figures of kernels. Documents of parts that are not built have no keys here.
 sort -u found | grep -v '^kernels kernels\.driver\.' >have
 awk -v absent=" $absent " '!/^#/ && index(absent, " " $1 " ") == 0 { at = $2 == ".:" ? "" : substr($2, 1, length($2) - 1) "."
     for (i = 3; i <= NF; ++i) print $1, at $i }' "$KEYS" | sort -u >want

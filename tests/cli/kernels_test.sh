@@ -1,6 +1,6 @@
 #!/bin/sh
-# `whit scene --kernels`: each kernel of a picture, on lavapipe, and where Mesa's driver for AMD is
-# installed also by its compiler, which needs no GPU for that.
+# `whit scene --kernels` lists each kernel of a picture on lavapipe, and, where Mesa's driver for AMD is installed, also
+# with that driver's compiler, which needs no GPU for that.
 . "$(dirname "$0")/common.sh"
 needs jq
 
