@@ -1,13 +1,14 @@
 #!/bin/sh
-# Parts of pictures: tiles and runs of samples, drawn in any order, merge to the bytes of one run. The third
-# argument writes parts that nobody draws. With `all` over five scenes at three levels, and of 32768 x 32768.
+# Parts of pictures (tiles and runs of samples), drawn in any order, merge to the bytes of one run. The third argument
+# is a program that writes parts without drawing. With `all` five scenes at three levels of numerics, and pictures of
+# 32768 x 32768 pixels.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/parts"
 cd "$OUT/parts" || exit 1
 PARTS=$3
 
-# spread N DRAW ARGUMENT...: DRAW I ARGUMENT... for each I, the last first, by three processes.
+# spread N DRAW ARGUMENT...: calls DRAW I ARGUMENT... for each I from N down to 1, in three processes.
 spread() {
     parts=$1 draw=$2
     shift 2
@@ -19,21 +20,21 @@ spread() {
     wait
 }
 
-# draw_tile I EXTENSION N OPTION...: with its hit identities.
+# draw_tile I EXTENSION N OPTION...: draws tile I of N, with its hit identities.
 draw_tile() {
     i=$1 extension=$2 count=$3
     shift 3
     "$WHIT" render "$@" --tile "$i/$count" -o "t$i.$extension" --ids "i$i.exr" -q
 }
 
-# draw_samples I EXTENSION N OPTION...
+# draw_samples I EXTENSION N OPTION...: draws part I of N of the samples.
 draw_samples() {
     i=$1 extension=$2 count=$3
     shift 3
     "$WHIT" render "$@" --samples-part "$i/$count" -o "s$i.$extension" -q
 }
 
-# tiles EXTENSION N WHAT OPTION...: are the picture, and their identities its.
+# tiles EXTENSION N WHAT OPTION...: merged tiles are the picture of one run, and so are their identities.
 tiles() {
     extension=$1 count=$2 what=$3
     shift 3
@@ -47,12 +48,12 @@ tiles() {
     check "$what: so are their identities" cmp one-ids.exr merged-ids.exr
 }
 
-# bound NAME: by its recipe; -1 of what is unknown.
+# bound NAME: prints the bailout_bound of the picture's counters; -1 if it is unknown.
 bound() {
     grep -a -o '"bailout_bound":[-0-9.e]*' "$1.$extension" | cut -d : -f 2 | grep . || echo -1
 }
 
-# samples EXTENSION N WHAT OPTION...
+# samples EXTENSION N WHAT OPTION...: merged runs of samples are the picture of one run.
 samples() {
     extension=$1 count=$2 what=$3
     shift 3
@@ -65,8 +66,7 @@ samples() {
     check "$what: what may be missing for --bailout is no less than in one run" holds "$(bound merged) >= $(bound one)"
 }
 
-# large SIDE TILES EXTENSION MIB: parts of a large picture are merged within so much memory, of which the
-# decoder of a part, a process of its own, has no more than as much again for that part.
+# large SIDE TILES EXTENSION MIB: whit merges the parts of a large picture with at most MIB of memory.
 large() {
     rm -f p*.*
     "$PARTS" "$1" "$2" "$3" || echo "no parts"
@@ -101,7 +101,7 @@ if part 1 2; then
     samples pfm 4 balls "$SCENES/balls.json" --size 60x40 --aa 4
 fi
 
-# Both at once, by three processes, in any order.
+# Tiles and runs of samples together, drawn by three processes in any order.
 both="$SCENES/lens.json --size 60x40 --aa 16"
 expect 0 "one run" render $both -o one.exr -q
 for i in 2 1 3; do
@@ -129,7 +129,7 @@ tiles png 2 "a model" box.obj --size 40x40
 
 large 2048 32 png 32
 
-# What is no whole set is refused, and nothing is written.
+# A set of parts that is not complete is refused, and nothing is written.
 rm -f merged*
 spread 4 draw_tile png 4 "$CUBE" --size 64x64
 refuse 2 "a part that is missing" "1 of 4 parts are missing: tile 3/4" merge t1.png t2.png t4.png -o merged.png

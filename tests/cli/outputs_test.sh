@@ -1,6 +1,6 @@
 #!/bin/sh
-# Outputs that cannot be written: exit code 2, one line that names the file, the old one kept, and
-# nothing left beside it. What runs out of space in the middle too.
+# If an output cannot be written, or the space ends in the middle, whit exits with 2 and one line that names the file,
+# keeps the old file, and leaves no other file.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/files"
@@ -11,8 +11,8 @@ for i in 0 1 2 3 4 5 6 7 8 9; do
     cat "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray" "$OUT/ray"
 done >"$OUT/rays"
 
-# no_place EXTENSION ARGUMENT...: names that are no place for an output, behind the last argument. What opens
-# outputs is the same for all of a command.
+# no_place EXTENSION ARGUMENT...: the last argument is followed by the name of an output where no file can be. One
+# option of each command is enough, because a command opens all of its outputs in the same way.
 no_place() {
     end=$1
     shift
@@ -28,8 +28,8 @@ no_place() {
     check "$option: nothing is left" is_empty .
 }
 
-# one_option EXTENSION ARGUMENT...: with the name of an output behind the last argument. ok.pfm may
-# be written besides.
+# one_option EXTENSION ARGUMENT...: the last argument is followed by the name of an output that cannot be written. whit
+# may also write ok.pfm.
 one_option() {
     end=$1
     shift
@@ -81,7 +81,7 @@ check "says how many there are" grep -q "1 of 2 frames were written" "$OUT/stder
 check "the first is whole" test "$(head -c 2 p.0.pfm)" = PF
 rm -r p.0.pfm p.1.pfm
 
-# Standard output.
+# Standard output that cannot be written.
 if [ -c /dev/full ]; then
     for command in "scene $CUBE" "scene $CUBE --json" "devices --json" "bvh $CUBE --no-trace --runs 1" \
         "render --help" "render $CUBE --size 8x8 -o ok.pfm --stats json" "--version"; do

@@ -1,12 +1,12 @@
 #!/bin/sh
-# --portable: pictures are the same bytes by the device's own operations and as on a GPU, at every level of
-# numerics (exact hits and layers of glass with `all` as the fourth argument), and where functions of users stand in
-# kernels; what has no portable form is refused. sh TEST WHIT SCENES LEAKY [all]
+# --portable: pictures have the same bytes with the device's own operations and with whit's functions in their place, as
+# on a GPU: at every level of numerics (exact hits and layers of glass only with `all`), and with functions of users.
+# Functions without a portable form are refused. sh portable_test.sh WHIT SCENES LEAKY [all]
 . "$(dirname "$0")/common.sh"
 LEAKY=$3
 
-# both NAME SCENE OPTIONS...: twice; the second time without the device's own division, root and comparisons, and with
-# buffers that the host does not reach.
+# both NAME SCENE OPTIONS...: draws the picture twice with the same bytes; the second time without the device's own
+# division, square root and comparisons, and with buffers that the host cannot access.
 both() {
     name=$1
     scene=$2
@@ -25,7 +25,7 @@ if [ "${4:-}" = all ]; then
     both exact "$CUBE" --numerics exact
 fi
 
-# All of GLSL that is left to drivers and has a portable form.
+# All functions of GLSL that Vulkan leaves to drivers and that have a portable form.
 cat >"$OUT/all.glsl" <<'END'
 vec3 shade(Surface s, Optics o, vec3 to_eye)
 {
@@ -56,7 +56,7 @@ for call in 'determinant(mat3(s.p, s.ns, s.p))' 'ldexp(s.p.x, 2)'; do
     check "$name: no picture" test ! -e "$OUT/none.pfm"
 done
 
-# A probe and rays are portable where the picture is.
+# A probe and `whit trace` are as portable as the picture.
 echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return sin(s.p * 9.0); }' >"$OUT/sin.glsl"
 set -- "$CUBE" --size 48x36 -q --shader "$OUT/sin.glsl" --portable on
 expect 0 "a picture of sines" render "$@" -o "$OUT/sin.pfm"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit probe`: what it prints, JSON, exit codes, options. sh TEST WHIT SCENES LEAKY
+# Checks `whit probe`: its text, JSON, exit codes, options. sh probe_test.sh WHIT SCENES LEAKY
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
@@ -30,7 +30,7 @@ expect 0 "the same once more" probe "$GLASS" $S --pixel 32,20 --quiet --json "$J
 check "is the same" cmp -s "$J" "$OUT/first.json"
 probed=$(sed -n 's/^colour *\(.*\) linear.*/\1/p' "$OUT/stdout")
 
-# The picture's own number: row 20 from above is 27 from below; 12 bytes a pixel behind the head.
+# The pixel in the file: row 20 from above is row 27 from below; a pixel has 12 bytes, behind the head.
 expect 0 "the picture" render "$GLASS" $S --quiet -o "$OUT/whitted.pfm"
 head=$(($(wc -c <"$OUT/whitted.pfm") - 64 * 48 * 12))
 picture=$(od -An -tf4 -j $((head + (27 * 64 + 32) * 12)) -N 12 "$OUT/whitted.pfm")
@@ -41,8 +41,8 @@ shows "at exact" "^exact      differs in 0 of [1-9]" probe "$CUBE" $S --pixel 32
 check "to the last bit" grep -q "^primary .* =  *=  *1 1 1" "$OUT/stdout"
 shows "the sky" "^instance   none" probe "$CUBE" $S --pixel 0,0 --quiet
 shows "without bounces" " 0 reflected, 0 refracted, 2 not traced" probe "$GLASS" $S --pixel 32,20 --depth 0 --quiet
-# Why: where the light comes from, which lights reach what is seen there, and what stands before others.
-# why SCENE X,Y SENTENCE [OPTIONS...]: the sentence is a regular expression.
+# The lines `why` name the sources of the light, the lights that reach the hit, and the blockers of others.
+# why SCENE X,Y SENTENCE [OPTIONS...]: SENTENCE is a regular expression.
 why() {
     scene=$SCENES/$1.json pixel=$2 sentence=$3
     shift 3
@@ -66,7 +66,7 @@ check "and where" grep -q "^primary .* at .* nothing " "$OUT/stdout"
 "$LEAKY" probe "$CUBE" $L --numerics fast >"$OUT/stdout" 2>"$OUT/stderr"
 check "which fast promises not: exit code 0" test $? -eq 0
 
-# With a shader that reads no normals they are not compiled into pictures, and seen all the same.
+# With a shader that reads no normals, they are not compiled into pictures, but a probe reports them all the same.
 R="$SCENES/8k.json --size 16x12 --pixel 9,8 --quiet"
 echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng; }' >"$OUT/flat.glsl"
 expect 0 "a smooth surface" probe $R --json "$J"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Pictures as projects: what a recipe says is repeated, and no picture says what it may not.
+# Pictures as projects: whit repeats the recipe of a picture, and ignores or refuses options that no picture may set.
 . "$(dirname "$0")/common.sh"
 EXAMPLES=$(cd "$SCENES/../shaders/examples" && pwd)
 mkdir -p "$OUT/here/scenes" "$OUT/here/my/part" "$OUT/else" && cd "$OUT/here" || exit 1
@@ -75,9 +75,9 @@ refuse 2 "a picture without any" "without .whit:shader." shader extract plain.pn
 refuse 2 "no picture" "" shader extract my/a.glsl
 check "nothing is left beside" test "$(find . -name '.*' ! -name . | wc -l)" -eq 0
 
-# ---- What no picture says ----
+# ---- Options and scenes that no picture may set ----
 
-# forge FROM TO: bad.exr is a.exr with TO in its recipe, made as long by spaces behind it.
+# forge FROM TO: makes bad.exr of a.exr, with TO in the place of FROM in its recipe, padded to the same length.
 forge() {
     check "$2 fits" test ${#2} -le ${#1}
     LC_ALL=C sed "s|$1|$(printf "%-${#1}s" "$2")|" a.exr >bad.exr
@@ -99,7 +99,7 @@ for words in "--environment /etc/passwd" "--environment ../x.hdr" "--size 0x0" -
     refuse 2 "a picture with $words" bad.exr render bad.exr --yes --quiet -o no.png
 done
 mkdir moved && cp a.png moved/
-# Scenes with names as long as scenes/cube.json, or shorter.
+# The names of these scenes are at most as long as scenes/cube.json.
 ln -s ../../else/cube.json scenes/out.json
 cp "$CUBE" ../c.js
 for scene in ../c.js moved/../../c.js /etc/passwd /dev/zero - scenes scenes/out.json scenes/no.json; do

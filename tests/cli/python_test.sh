@@ -1,5 +1,6 @@
 #!/bin/sh
-# whit.py against the headers and the program, pytest_whit.py against a suite: sh python_test.sh WHIT SCENES CC LIBRARY
+# Compares whit.py with the headers and the program, and pytest_whit.py with a suite.
+#     sh python_test.sh WHIT SCENES CC LIBRARY
 . "$(dirname "$0")/common.sh"
 CC=$3
 TESTS=$(cd "$(dirname "$0")/../python" && pwd)
@@ -20,7 +21,7 @@ awk -f "$SCENES/../tests/example_check/bracket.awk" >part.stl </dev/null
 sed -n '/^```python$/,/^```$/p' "$SCENES/../docs/check.md" | grep -v '^```' >doc.py
 check "the lines of the docs" "$PYTHON" doc.py
 
-# Where they are installed, and beside another library.
+# The installed whit.py loads the library of its own prefix.
 mkdir -p prefix/share/whit/python prefix/lib/any && cp "$PYTHONPATH"/*.py prefix/share/whit/python
 ln -s "$WHIT_LIBRARY" prefix/lib/any/libwhit.so.0.2
 found() {
@@ -35,10 +36,10 @@ refused() {
 check "a library of another version is not" refused
 check "which is said" grep -q "^ImportError: .*/whit.py is for libwhit 9.9.0, and .* is [0-9.]*$" stderr
 
-# A suite as tests of pytest.
+# The cases of a suite are tests of pytest.
 cp "$SCENES"/../tests/example_check/looks.* .
 mv part.stl bracket.stl
-# says CODE WHAT PATTERN COMMAND...: the command ends with CODE, and says PATTERN.
+# says CODE WHAT PATTERN COMMAND...: the command ends with CODE, and prints a line with PATTERN.
 says() {
     code=$1 what=$2 pattern=$3
     shift 3

@@ -1,20 +1,20 @@
 #!/bin/sh
-# `whit render --refine`: until the estimate of what is wrong, or a time, is met; the picture is that of
-# as many samples.
+# `whit render --refine` draws until the estimated error or a time is reached; the picture is the same as with that
+# number of samples at once.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
 cd "$OUT" || exit 1
 BALLS="$SCENES/balls.json --size 32x24"
 
-# refined ARGUMENT...: --stats json of a refined picture, r.exr.
+# refined ARGUMENT...: draws the refined picture r.exr; sets $samples and $estimate.
 refined() {
     expect 0 "refined $*" render $BALLS -o r.exr --stats json "$@"
     samples=$(jq '.refine.samples' stdout)
     estimate=$(jq '.refine.rmse_estimate' stdout)
 }
 
-# same_as_samples: r.exr is the picture of that many samples.
+# same_as_samples: r.exr is the picture with $samples samples.
 same_as_samples() {
     cp stdout refined.json
     expect 0 "--aa $samples" render $BALLS -o a.exr --aa "$samples" --stats json "$@"
@@ -40,7 +40,7 @@ check "less error takes more samples ($coarse, $samples)" test "$samples" -gt "$
 same_as_samples
 
 if part 0 2; then
-    # A clock decides only how far it goes; what a millisecond allows is the first sample.
+    # A limit of time decides only the number of samples; 0.001 ms is enough for the first sample alone.
     refined --refine 0.001ms
     check "the first sample is drawn in any case" test "$samples" -eq 1
     check "of one sample nothing is known" test "$estimate" = null
@@ -49,7 +49,7 @@ if part 0 2; then
     check "which tell of rays that were cut" jq -e '.refine.rmse_estimate_of_cuts > 0.01 and
         .refine.rmse_estimate >= .refine.rmse_estimate_of_cuts and .refine.cut_radiance > 0' stdout
 
-    # What more samples do not mend.
+    # Errors that more samples do not reduce.
     refuse 1 "rays that are cut" "rays that --depth and --bailout cut" render $BALLS -o cut.png -q \
         --depth 1 --refine 0.01
     check "the picture is there, of the few samples that told" grep -aq -- "--aa 4 " cut.png

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Pictures: written whole, the same bytes from the same inputs, with their recipe inside.
+# Pictures are written as a whole, have the same bytes for the same inputs, and contain their recipe.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/pictures"
 cd "$OUT/pictures" || exit 1
 
-# The strings of a file that may hold zero bytes.
+# has_text FILE TEXT: the file, which may have zero bytes, has the text.
 has_text() {
     tr -d '\000' <"$1" | grep -aqF "$2"
 }
@@ -22,7 +22,7 @@ if part 0 2; then
         expect 0 "--tile-size $tile" render "$CUBE" -o b.png --size 96x64 --tile-size $tile --quiet
         check "tiles of $tile give the same picture" cmp a.png b.png
     done
-    # `--effects all`: scene_*.
+    # The tests scene_* draw with `--effects all`.
     for option in "--build median" \
         "--build spatial+opt --leaf 1 --traversal sign --instance-build median" "--threads 1" \
         "--load-path texel" "--stats json"; do
@@ -30,7 +30,7 @@ if part 0 2; then
         expect 0 "$option" render "$CUBE" -o b.png --size 96x64 $option --quiet
         check "$option gives the same picture" cmp a.png b.png
     done
-    # Trees out of storage buffers, each access checked by the validation layers: texel buffers in scene_*_validated.
+    # The validation layers check each access to trees in storage buffers; scene_*_validated check texel buffers.
     WHIT_VALIDATION=1 expect 0 "--load-path storage" render "$CUBE" -o b.png --size 96x64 --load-path storage --quiet
     check "--load-path storage gives the same picture" cmp a.png b.png
     expect 0 "other bounces" render "$CUBE" -o b.png --size 96x64 --shadows none --quiet
@@ -85,7 +85,7 @@ check "things have moved" sh -c '! cmp -s a.pfm b.pfm'
 
 expect 0 "--stats json" render "$CUBE" -o b.png --size 96x64 --stats json
 check "as many primary rays as pixels" jq -e '.rays.primary == 6144' "$OUT/stdout"
-# One tile in eight is timed, and the second.
+# The second tile is timed, and then one tile in eight.
 expect 0 "--stats json, several tiles" render "$CUBE" -o b.png --size 96x64 --tile-size 16 --stats json
 check "camera rays have a price" \
     jq -e '.stages[] | select(.name == "camera") | .rays == 6144 and .ms > 0' "$OUT/stdout"
@@ -96,7 +96,7 @@ expect 0 "--stats text" render "$CUBE" -o b.png --size 96x64 --stats text --tile
 check "stats as text" grep -Eq "^  primary +6144" "$OUT/stdout"
 check "prices of stages as text" grep -Eq "^  camera +[0-9.]+ +6144 +[0-9.]+$" "$OUT/stdout"
 
-# The device comes up while the scene loads: whichever fails, one line says so.
+# The device is opened while the scene loads: whichever fails, whit prints one line.
 export WHIT_FAULT=vkCreateDevice:1
 refuse 2 "a device that fails" "vkCreateDevice" render "$CUBE" -o fails.png --size 8x8
 refuse 2 "a scene that fails, and a device" "nowhere.json" render nowhere.json -o fails.png
@@ -129,7 +129,7 @@ if part 1 2; then
             awk -F '|' '$1 != $2 && $2 != " 00000000 00000000 00000000"' | wc -l)" -eq 0
     done
 
-    # So is a grid on the ground, which a cube that glows stands before.
+    # A grid on the ground is drawn over the picture too, but behind the cube, which glows.
     cat >glows.json <<X
 { "camera": { "eye": [1.2, 1.4, 1.6], "target": [0, 0, 0], "fov": 60 }, "environment": "#000000", "ambient": 0,
   "materials": { "m": { "emission": [7, 0, 0] } }, "objects": [ { "shape": "box", "size": 1, "material": "m" } ] }
@@ -147,7 +147,7 @@ X
     check "are none" sh -c '! grep -aq -e "--edges" -e "--grid" costs.png'
 fi
 
-# A file in place of a command.
+# whit FILE, without a command.
 mkdir "$OUT/alone" && cp "$CUBE" "$OUT/alone/some.cube.json"
 alone() {
     (cd "$OUT/alone" && env -u DISPLAY -u WAYLAND_DISPLAY "$WHIT" "$@") >"$OUT/stdout" 2>"$OUT/stderr"

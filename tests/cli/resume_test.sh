@@ -1,6 +1,6 @@
 #!/bin/sh
-# Work that is stopped anywhere goes on to the same bytes, and processes share it. With `all` it is killed at twenty
-# random moments of 50 frames, and at one of each of 8 tiles.
+# Work that is stopped at any moment can be continued to the same bytes, and processes can share it. With `all` whit is
+# killed at twenty random moments of 50 frames, and at one moment of each of 8 tiles.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/work"
@@ -18,13 +18,12 @@ if [ "${3:-}" = all ]; then
 fi
 frames="$SWARM --frames 0-$last --size 96x72 --aa 4"
 
-# files N: at least N pictures are there.
+# files N: at least N pictures exist.
 files() {
     test "$(find . -name 'a.*.png' | wc -l)" -ge "$1"
 }
 
-# killed COMMAND...: whit in the background is killed once the command succeeds, with `all` at any moment of the next
-# fifth of a second.
+# killed COMMAND...: kills the process $pid once the command succeeds; with `all` at a random moment of the next 0.2 s.
 killed() {
     wait_for "$pid" "$@"
     [ -z "$random" ] || sleep "0.$(shuf -i 0-199 -n 1 | awk '{ printf "%03d", $1 }')"
@@ -60,7 +59,7 @@ expect 0 "all is there" render $frames -o a.###.png --ids a.###.exr --resume --s
 check "nothing is drawn" jq -e ".frames.count == 0 and .frames.kept == $((last + 1))" "$OUT/stdout"
 
 if part 0 2; then
-    # Three processes: what one draws no other does.
+    # Each frame is drawn by only one of three processes.
     rm -f a.*
     for i in 1 2 3; do
         "$WHIT" render $frames -o a.###.png --ids a.###.exr --resume --stats json >"$i.json" 2>"$i.err" &
@@ -72,7 +71,7 @@ if part 0 2; then
 fi
 
 if part 1 2; then
-    # The same by lines of one process, and of two at once.
+    # `whit batch` draws the same frames, in one process and in two at once.
     {
         echo "# frames of one scene"
         for i in $(seq 0 $last); do
@@ -100,7 +99,7 @@ if part 1 2; then
 fi
 
 if part 0 2; then
-    # Lines of one scene share it wherever they stand, and those of the same kernels these, whatever is drawn between.
+    # Lines share scenes, trees and kernels wherever they stand in the file.
     cat >mixed <<LINES
 '$CUBE' --size 32x24 -o m1.png
 '$SWARM' --size 32x24 -o m2.png
@@ -122,7 +121,7 @@ LINES
     check "they alone are drawn" jq -e '.written == 3 and .kept == 5 and .rays.primary == 32*24*2 + 24*24' "$OUT/stdout"
 
 fi
-# A tile, in a PFM with its recipe beside it.
+# Tiles in PFM files, whose recipes are in files beside them.
 if part 1 2; then
     expect 0 "one picture" render "$CUBE" --size 64x130 --aa 4 -o one.pfm -q
     for i in $(seq $tiles); do
@@ -138,7 +137,7 @@ if part 1 2; then
     check "is drawn again" sh -c "! grep -q kept '$OUT/stderr' && ! tail -c 1 t1.pfm | grep -q x"
 fi
 
-# Ctrl+C and --time-limit leave what is finished, and say how it goes on.
+# Ctrl+C and --time-limit keep finished frames, and print the command that continues.
 rm -f a.*
 "$WHIT" render $frames --frames 0-5000 -o a.###.png --ids a.###.exr 2>"$OUT/stderr" &
 interrupted $! files 2

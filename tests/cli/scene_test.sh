@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit scene`: what is in it, as text, JSON and triangles.
+# `whit scene` lists the contents of a scene as text, JSON and triangles.
 . "$(dirname "$0")/common.sh"
 needs jq
 mkdir "$OUT/files"
@@ -36,9 +36,10 @@ corners=$(od -An -v -tf4 -w44 "$T" | awk '{ for (i = 1; i <= 9; ++i) print ($i <
 check "every coordinate is half an edge" test "$corners" = 0.5
 rm "$T"
 
-# What would take too much is refused by name before it is asked for. Sanitizers ask for terabytes.
+# An object that would need too much memory is refused by name before the memory is allocated. With sanitizers there is
+# no limit on the address space, because they reserve terabytes.
 SANITIZED=${3-}
-too_much() { # name, what is named, limit, objects
+too_much() { # NAME PATTERN LIMIT OBJECTS
     printf '{"objects":[%s]}' "$4" >"$OUT/files/much.json"
     ([ -n "$SANITIZED" ] || ulimit -v 400000
     "$WHIT" scene "$OUT/files/much.json" --memory-limit "$3") \
@@ -93,7 +94,7 @@ refuse 2 "a folder that is not there" "nowhere: cannot be allowed: No such file"
     scene "$OUT/model/a.obj" --allow-path "$OUT/nowhere"
 refuse 2 "an empty folder name" "--allow-path takes a folder" scene "$CUBE" --allow-path ""
 
-# ---- What lights a model, which way it is up, and what is behind it ----
+# ---- A model's lights, its axis that points up, and its background ----
 
 # A tall slab with a lamp on top.
 cat >"$OUT/slab.gltf" <<'JSON'
@@ -108,7 +109,7 @@ cat >"$OUT/slab.gltf" <<'JSON'
   "buffers": [ { "byteLength": 36, "uri":
     "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgEAAAAAA" } ] }
 JSON
-# lights_are NAMES OPTION...: the scene's lights by kind, `+` behind those that whit made.
+# lights_are NAMES OPTION...: the scene has lights of these kinds, with `+` behind those that whit made.
 lights_are() {
     names=$1
     shift
@@ -120,7 +121,7 @@ lights_are point --light auto
 lights_are point --light file
 lights_are "" --light none
 lights_are directional+ --light key
-# bounds_are Y Z OPTION...: how high and how deep it is.
+# bounds_are Y Z OPTION...: the scene has this extent along y and z.
 bounds_are() {
     high=$1 deep=$2
     shift 2
