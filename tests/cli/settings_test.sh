@@ -1,7 +1,7 @@
 #!/bin/sh
-# Every row of the table of settings, with a value that is not its default, wherever it is to work:
-# settings_test.sh WHIT SCENES ROWS. ROWS prints name, value, commands, change, key, title, key in JSON,
-# and whether files of settings may not say it.
+# Every row of the table of settings takes effect in all of its commands, files and keys, with a value that is not its
+# default: settings_test.sh WHIT SCENES ROWS. The program ROWS prints name, value, commands, change, key, title, key in
+# JSON, and whether files of settings may not have it.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 ROWS=$3
@@ -17,25 +17,25 @@ IN_RUN=0 IN_COST=1 # of enum setting_change
 has() { test $((commands >> $1 & 1)) -eq 1; } # of enum settings_command
 RENDER=0 VIEW=1 PROBE=2 PRICES=3
 
-# has_json FILE: the key with the value, a number or a word.
+# has_json FILE: the JSON has the key $json with the value $value, as a number or a word.
 has_json() {
     jq -e --arg key "$(echo "$json" | tr - _)" --arg value "$value" \
         'if $key == "size" then "\(.width)x\(.height)" == $value
             else has($key) and (.[$key] | tostring) == $value end' "$1" >/dev/null
 }
-# option: --name with its value, which flags have none of.
+# option: prints the option, with its value if it is not a flag.
 option() { test "$value" = - && echo "--$name" || echo "--$name=$value"; }
-# quoted VALUE: as a shell needs it.
+# quoted VALUE: prints the value as a shell needs it.
 quoted() { case $1 in '#'*) echo "'$1'" ;; *) echo "$1" ;; esac; }
 command_of() { grep -a -o 'whit render [^"]* -o whit\.png' "$1"; }
 
-# All rows together, but for those of costs, which are pictures of their own.
+# One picture has all rows together, except those of heat maps, which are in a second picture.
 count=0
 : >all.view
 for pass in colours costs; do
     render= probe= prices=
     while IFS=$TAB read -r name value commands change _ _ _ held; do
-        # What is of a run, not of its pictures, is never written; the device is that of the test.
+        # Settings of a run that are not about its pictures are never written; the device is that of the test.
         if [ "$change" -eq $IN_RUN ] || [ "$name" = device ]; then continue; fi
         of=$(expr "$name" : view >/dev/null && echo costs || echo colours)
         [ $of = $pass ] || [ "$name" = size ] || continue
@@ -80,7 +80,7 @@ while IFS=$TAB read -r name value commands change _ _ json _; do
 done <rows
 
 if part 1 2; then
-    # What is displayed is darker, what is found is not.
+    # With less exposure a PNG is darker, but floats stay.
     expect 0 "light" render "$CUBE" -o light.pfm --size 24x16 --quiet
     expect 0 "light, displayed darker" render "$CUBE" -o dark.pfm --size 24x16 --exposure -1 --quiet
     check "has the same floats" cmp light.pfm dark.pfm
@@ -89,7 +89,7 @@ if part 1 2; then
     render_png dark -1
     expect 0 "the PNG of it" compare usual.png dark.png --metric mean --json dark.json
     check "is darker ($(jq -c .mean dark.json))" jq -e '.mean | type == "array" and all(. < -0.01)' dark.json
-    # Models are exposed by what is seen of them; their floats stay.
+    # The automatic exposure of a model depends on its visible surfaces; floats stay.
     printf 'newmtl glow\nKd 0 0 0\nKe 50 25 5\n' >glow.mtl
     printf 'mtllib glow.mtl\nusemtl glow\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n' >glow.obj
     expect 0 "a model that burns out" render glow.obj -o glow.png --size 24x16
@@ -104,7 +104,7 @@ if part 1 2; then
     check "are those of any exposure" cmp glow.pfm glow0.pfm
     expect 0 "highlights are softer than at the number" compare glow-6.png glow.png --metric mean --json soft.json
     check "darker where they are bright ($(jq -c .mean soft.json))" jq -e '.mean[0] < -0.01 and .mean[2] == 0' soft.json
-    # Whit's own view, beside the file's cameras, whatever their names are.
+    # `--camera auto` is whit's own view, even if a camera of the file has that name.
     sed 's/"camera": {/"camera": {"name": "auto", /' "$CUBE" >named.json
     check "a file names its camera auto" grep -q '"name": "auto"' named.json
     own() { expect 0 "$1" render "$2" -o "$1.pfm" --size 24x16 --quiet ${3:+--camera "$3"}; }

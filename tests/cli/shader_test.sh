@@ -1,8 +1,7 @@
 #!/bin/sh
-# Functions of a user in the place of whit's own: files, errors, sliders, pictures, recipes. What is wrong with texts
-# is in shader_compile and shader_program, what means harm in shader_harm.
-# With a third argument more scenes are drawn, exact hits, and all examples, of which a short run has one, another with
-# the next commit.
+# Functions of a user in the place of whit's own: files, errors, sliders, pictures, recipes. Wrong texts are in
+# shader_compile and shader_program, attacks in shader_harm. With a third argument there are more scenes, exact hits,
+# and all examples; a short run has one example, another one with the next commit.
 . "$(dirname "$0")/common.sh"
 needs jq
 EXAMPLES=$(cd "$SCENES/../shaders/examples" && pwd)
@@ -19,7 +18,7 @@ draw() { # WHAT OUTPUT SCENE OPTION...
 }
 said() { check "$1" grep -qF -- "$2" "$OUT/stderr"; }
 
-# ---- What a pixel is ----
+# ---- dbg() of a pixel ----
 
 if part 0 2; then
     mkdir looks
@@ -49,7 +48,7 @@ END
     said "names the line, and what there is" "looks/struct.glsl:5: dbg(x) takes a float, int, uint, bool or a vector"
 fi
 
-# ---- What a file is ----
+# ---- Files ----
 
 for hook in camera surface shade scatter miss post aov intersect; do # the others are own.glsl, below
     expect 0 "new $hook" shader new $hook
@@ -111,7 +110,7 @@ check "the text of the SPIR-V" sh -c 'spirv-as --target-env vulkan1.2 spirv/post
 check "variants beside whit's own" test "$(jq '[.variants[] | select(.name == "resolve" and
     .base_instructions > 0 and .instructions > .base_instructions)] | length' all.json)" = 1
 
-# ---- Tests in it, and what it expects ----
+# ---- Tests and expectations of a file ----
 
 if part 1 2; then
     cat >tests.glsl <<'END'
@@ -134,7 +133,7 @@ void rays(uint seed)
 END
     expect 0 "tests" shader tests.glsl
     check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
-    # Calls may be given as much as they like; arrays of all tests are counted.
+    # Arguments of calls do not count as variables of a test, but arrays of all tests do.
     many() { # DECLARATION: a hundred tests of ten checks, each with it
         echo 'float both(vec3 a, vec3 b) { return dot(a, b); }'
         seq 100 | sed "s/.*/\/\/@ test\nvoid t&(uint seed)\n{\n    vec3 v = vec3(random(seed), 0.5, 1.0); $1/" |
@@ -146,8 +145,8 @@ END
     many "float a[100]; a[seed % 100u] = 1.0; v.y = a[seed % 100u];" >many.glsl
     expect 2 "a hundred arrays" shader many.glsl
     said "that they are too much" "variables of more than 16 KiB together"
-    # What the linking of a file into whit's kernels has to keep: numbers that are no ids, what global
-    # variables begin with, functions and records that whit has by the same name.
+    # Linking a file into whit's kernels keeps numbers that are not ids, initial values of global variables, and the
+    # file's own functions and records with the same names as whit's.
     cat >linked.glsl <<'END'
 float k = 3.0, twice = 2.0 * k;
 const float table[4] = float[4](1.0, 2.0, 3.0, 4.0);
@@ -219,7 +218,7 @@ END
     draw "a picture that is as expected" still.png cube --shader still.glsl
 fi
 
-# broken NAME LINE REASON, of the text on standard input, which begins in line 1.
+# broken NAME LINE REASON: the text on standard input is refused with this line (from 1) and reason.
 broken() {
     cat >broken.glsl
     expect 2 "$1" shader broken.glsl
@@ -296,7 +295,7 @@ if part 0 2; then
     draw "random" a.pfm cube --shader shaky.glsl
     draw "random again" b.pfm cube --shader shaky.glsl --tile-size 16 --packets on
     check "the same numbers in every run" cmp a.pfm b.pfm
-    # Rays that no material of the scene sends, and in one that has mirrors what is left out by name.
+    # scatter() sends kinds of rays that no material of the scene sends; in a scene with mirrors an effect is left out.
     echo 'void scatter(Surface s, Optics o, inout Rays rays) { }' >sent.glsl
     draw "no rays" none.pfm cube --shader sent.glsl
     for kind in reflected refracted straight; do
@@ -326,9 +325,9 @@ for example in "$EXAMPLES"/*.glsl; do
     check "$name is no usual picture" test "$status" -eq 1
 done
 
-# ---- What must not be ----
+# ---- Refusals at run time ----
 
-# refused NAME CODE REASON, of the function on standard input: no picture, one reason.
+# refused NAME CODE REASON: with the function on standard input there is no picture, and an error with the reason.
 refused() {
     cat >bad.glsl
     rm -f no.png

@@ -1,7 +1,7 @@
 #!/bin/sh
-# tools/slurm/submit (the third argument) on one node of a cluster of its own, which needs no rights and leaves nothing:
-# a job array of 24 parts, of which one is requeued while it draws and another one's node dies, is the picture of one
-# run. Long. Needs Debian's slurm-wlm and munge:
+# tools/slurm/submit (the third argument) on a cluster of one node, which needs no rights and leaves no files: a job
+# array of 24 parts makes the picture of one run, although a part is requeued while it draws, and the node dies during
+# another part. This test is long. It needs Debian's slurm-wlm and munge:
 #     apt-get install --no-install-recommends slurm-wlm munge
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
@@ -86,11 +86,12 @@ jobs=$("$SUBMIT" tile $PARTS merged.exr $options)
 array=${jobs% *}
 check "two jobs" test -n "$array" -a "${jobs#* }" != "$jobs"
 
-# drawing NOT: gives a part that is drawn now, and is not that one.
+# drawing NOT: prints the number of a part other than NOT that is being drawn.
 drawing() {
     find merged.exr.parts -name '*.lock' 2>/dev/null | sed 's|.*/\([0-9]*\)\.exr\.lock|\1|' | grep -v -x "$1" | head -n 1
 }
-# await COMMAND...: for at most ten minutes; Slurm itself waits for two before it starts a part again.
+# await COMMAND...: waits until the command succeeds, at most ten minutes; Slurm waits two minutes before it starts a
+# part again.
 await() {
     until=$(($(date +%s) + 600))
     until "$@" || [ "$(date +%s)" -ge $until ]; do
@@ -108,7 +109,7 @@ waits() {
 }
 await waits
 
-# The node dies: its daemon, and what runs there, at once. The controller sees it when the daemon starts again.
+# The node dies: its daemon and its processes are killed at once. The controller notices when the daemon starts again.
 await draws "$requeued"
 died=$(drawing "$requeued")
 jobs_here=$(scontrol listpids 2>/dev/null | awk 'NR > 1 && $1 > 0 { print $1 }')
@@ -127,19 +128,19 @@ check "the merged picture is that of one run" cmp one.exr merged.exr
 cat merged.exr.parts/merge.log
 check "times are told" grep -q "^$PARTS parts: .* s in all parts together" merged.exr.parts/merge.log
 
-# The same line again keeps all of it.
+# The same command again keeps all parts.
 rm merged.exr
 "$SUBMIT" tile $PARTS merged.exr $options >again.txt
 await ended
 check "again: the same picture" cmp one.exr merged.exr
 check "again: parts are kept" test "$(grep -l "was kept" merged.exr.parts/*.log | wc -l)" -eq $PARTS
 
-# Runs of samples.
+# An array whose parts are runs of samples.
 "$SUBMIT" samples-part 4 samples.exr $options >samples.txt
 await ended
 expect 0 "runs of samples are the picture" compare one.exr samples.exr --metric differing --tolerance 0
 
-# Frames, three a task.
+# An array of frames, three for each task.
 frames="$SCENES/swarm.json --size 96x72"
 expect 0 "frames of one run" render $frames --frames 0-8 -o f.#.png -q
 sbatch --array=0-6:3 --requeue --output=frames.log --wrap "\"\$WHIT\" render $frames -o a.#.png --resume \

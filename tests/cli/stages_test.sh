@@ -1,5 +1,6 @@
 #!/bin/sh
-# The stages of a checkout in place of those that are built in: the same pictures, other ones, errors.
+# --stages draws with the stages of a checkout in place of those that are built in: the same pictures from the same
+# files, other pictures from changed files, and errors.
 . "$(dirname "$0")/common.sh"
 SHADERS=$(cd "$SCENES/../shaders" && pwd)
 mkdir "$OUT/here" && cd "$OUT/here" && cp -r "$SHADERS" st || exit 1
@@ -8,7 +9,7 @@ draw() { # WHAT OUTPUT SCENE OPTION...
     shift 3
     expect 0 "$what" render "$SCENES/$scene.json" --size 48x32 --quiet "$@" -o "$output"
 }
-# Stages are compiled before the scene is known; this one calls for all of them.
+# Stages are compiled before the scene is known; this scene calls for all of them.
 draw "media" a.pfm glass-of-water
 draw "media by the same stages" b.pfm glass-of-water --stages st
 check "the same bytes of media" cmp a.pfm b.pfm
@@ -20,7 +21,7 @@ draw "with functions" a.pfm cube --shader half.glsl
 draw "with functions and the same stages" b.pfm cube --shader half.glsl --stages st
 check "the same bytes, with functions" cmp a.pfm b.pfm
 
-# broken NAME FILE LINE REASON: with what is on standard input as line 3 of the file.
+# broken NAME FILE LINE REASON: with the text on standard input as line 3 of the file, whit refuses it.
 broken() {
     { head -2 "st/$2" && cat && tail -n +3 "$SHADERS/$2"; } >new
     mv new "st/$2"
@@ -43,7 +44,7 @@ refuse 2 "no folder" "none: there is no such folder" render "$CUBE" --stages non
 refuse 2 "a goal" "the reference, which has no --stages" render "$CUBE" --stages st --max-error 1 -o no.png
 check "no picture of any" test ! -e no.png
 
-# A file more, and another picture.
+# A stage may include a new file, which changes the picture.
 echo 'vec3 dimmed(vec3 c) { return 0.5 * c; }' >st/lib/dimmed.glsl
 echo 'vec3 miss(vec3 dir) { return 0.5 * environment(dir); }' >dim.glsl
 sed -i 's|^vec3 miss(|#include "../lib/dimmed.glsl"\n&|; s|return environment(dir)|return dimmed(environment(dir))|' st/hook/miss.glsl

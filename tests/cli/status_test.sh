@@ -1,13 +1,13 @@
 #!/bin/sh
-# What a kernel reports is exit code 1 and one line, and no picture: sh status_test.sh WHIT SCENES
-# SMALL_STACKS. The last is a whit whose stacks are too small, which nothing else makes overflow.
+# An error that a kernel reports gives exit code 1, one line, and no picture: sh status_test.sh WHIT SCENES
+# SMALL_STACKS. SMALL_STACKS is a whit whose stacks are too small: those of the real program never overflow.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 SMALL=$(cd "$(dirname "$3")" && pwd)/$(basename "$3")
 mkdir "$OUT/pictures"
 cd "$OUT/pictures" || exit 1
 
-# distrust WHAT PATTERN ARGUMENT...: the render is refused and leaves the old picture.
+# distrust WHAT PATTERN ARGUMENT...: rendering fails with PATTERN, and the old picture stays.
 distrust() {
     whom=$1
     report=$2
@@ -18,7 +18,7 @@ distrust() {
     check "$whom: nothing else is" test "$(ls -A)" = p.exr
 }
 
-# A mirror of 10^12 in a mirror of 10^12 in a mirror of 10^12, in a sky of 10^12.
+# Two mirrors that multiply light by 10^12 reflect each other in a sky of 10^12, so that radiance overflows.
 cat >"$OUT/mirrors.json" <<END
 { "environment": 1e12, "ambient": 0, "camera": { "eye": [0.01, 0, 0], "target": [1, 0, 0], "fov": 20 },
   "lights": [{ "kind": "directional", "direction": [0, -1, 0], "intensity": 1e-6 }],
@@ -35,7 +35,7 @@ expect 0 "the same mirrors without a second bounce" \
     render "$OUT/mirrors.json" -o p.exr --size 16x16 --depth 1 --quiet
 rm p.exr
 
-# Glass in glass in glass: eight media are what a ray's list holds.
+# Boxes of glass in each other: the list of a ray holds eight media.
 nest() {
     awk -v n="$1" 'BEGIN {
         printf "{ \"environment\": 1, \"camera\": { \"eye\": [0, 0, 20], \"target\": [0, 0, 0] },"
@@ -53,7 +53,8 @@ nest 8 >"$OUT/eight.json"
 expect 0 "eight media" render "$OUT/eight.json" -o p.exr --size 8x8 --depth 20 --quiet
 rm p.exr
 
-# More points of lights than a driver lets a loop have turns (lavapipe 65,535): each light is a dispatch.
+# The lights have more points than the iterations that a driver allows a loop (lavapipe 65,535). It works, because each
+# light has a dispatch of its own.
 awk 'BEGIN {
     printf "{ \"camera\": { \"eye\": [0, 2, 3], \"target\": [0, 0, 0] }, \"lights\": ["
     for (i = 0; i < 1100; ++i)
@@ -63,7 +64,7 @@ expect 0 "many points of lights" \
     render "$OUT/lights.json" -o p.exr --size 8x8 --shadows none --light-samples 64 --quiet
 rm p.exr
 
-# More nodes on the way of a ray than that. From the other end it meets the nearest first.
+# A ray meets more nodes than that number of iterations. In the usual order it visits the nearest first and stops.
 awk 'BEGIN {
     n = 40000
     for (i = 0; i < n; ++i)
@@ -76,7 +77,7 @@ distrust "too many nodes" "a traversal was cut short" \
 expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --shadows none $camera --quiet
 rm p.exr
 
-# The same by `trace`: a ray from z = 65536 the way -z. The twin on the CPU has no such limit.
+# `whit trace` fails in the same way for a ray from z = 65536 along -z. The float mirror on the CPU has no such limit.
 ZERO='\000\000\000\000'
 printf "$ZERO$ZERO\000\000\200\107$ZERO$ZERO$ZERO\000\000\200\277\000\000\200\177" >"$OUT/ray"
 echo old >p.exr

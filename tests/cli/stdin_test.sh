@@ -1,20 +1,19 @@
 #!/bin/sh
-# Scenes and models from standard input: the pixels of the file, whatever it is called; and one clear
-# error for what cannot be read.
+# Scenes and models from standard input give the same pixels as from a file, and one clear error if they cannot be read.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/models" "$OUT/pictures"
 M=$OUT/models
 P=$OUT/pictures/x.pfm
 
-# number BYTES: a little-endian number of 32 bits.
+# number BYTES: prints a number below 65536 as 32 bits, little-endian.
 number() {
     printf "\\$(printf %o $(($1 & 255)))\\$(printf %o $(($1 >> 8 & 255)))\\0\\0"
 }
-# corners: (0,0,0) (1,0,0) (0,1,0), as floats.
+# corners: prints (0,0,0) (1,0,0) (0,1,0) as floats.
 corners() {
     printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0'
 }
-# document BUFFER: a glTF of these corners, padded to words.
+# document BUFFER: prints the JSON of a glTF with these corners, padded to a multiple of 4 bytes.
 document() {
     json="{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36$1}],\"bufferViews\":[{\"buffer\":0,\
 \"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\
@@ -74,7 +73,7 @@ shows "probe" "stdin.obj" probe - --pixel 4,3 --size 8x6 <"$M/a.obj"
     exit "$FAILED"
 ) || FAILED=1
 
-# What it names is nowhere, even where it lies in the working folder.
+# Files that standard input names are not found, even if they are in the working folder.
 cd "$M" || exit 1
 refuse 2 "a buffer of its own" "stdin.gltf: .*away.bin.: what standard input names has no folder; --allow-path" \
     render - -o "$P" <away.gltf
@@ -93,7 +92,7 @@ printf '{ "objects": [ { "model": "-" } ] }' >itself.json
 refuse 2 "itself" "no model" render - -o "$P" <itself.json
 cd "$OUT" || exit 1
 
-# What is none.
+# Standard input that is no scene and no model.
 refuse 2 "nothing" "standard input: there is nothing in it" render - -o "$P" </dev/null
 refuse 2 "no format" "standard input: it begins like no" render - -o "$P" <"$OUT/pipe.png"
 refuse 2 "a damaged scene" "stdin.json:1:" render - -o "$P" <<X

@@ -1,5 +1,5 @@
 #!/bin/sh
-# tools/sweep passes a folder of good and refused files, and fails on each kind of misbehaviour.
+# tools/sweep passes for a folder of good and refused files, and fails for each kind of misbehaviour of whit.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/files"
 cp "$CUBE" "$OUT/files"
@@ -11,7 +11,7 @@ sweep() {
 check "a good and a broken file" sweep 10 "$WHIT"
 check "are counted" grep -q '^2 files: 1 rendered, 1 refused, 0 bad$' "$OUT/stdout"
 
-# fake BODY [SECONDS]: a whit that misbehaves fails the sweep.
+# fake BODY [SECONDS]: a script with this body, in the place of whit, fails the sweep.
 fake() {
     printf '#!/bin/sh\n%s\n' "$1" >"$OUT/whit"
     chmod +x "$OUT/whit"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Names and words of files that steer a terminal, hide or are no UTF-8: whatever whit prints of them,
-# they are seen, and steer nothing. JSON has all of them. No device is started.
+# Names and words of files may have characters that control a terminal, are invisible or are not UTF-8. Wherever whit
+# prints them, they are visible and control nothing; JSON keeps all of them. No device is opened.
 . "$(dirname "$0")/common.sh"
 needs jq
 needs iconv
@@ -8,8 +8,8 @@ VK_DRIVER_FILES=/nonexistent
 VK_ICD_FILENAMES=/nonexistent
 export VK_DRIVER_FILES VK_ICD_FILENAMES
 
-# A title for the window, colours, C1 in UTF-8 and as one byte, text from right to left, no width, a
-# tag, a separator of lines; bytes of no character, half a one, a long slash, a surrogate.
+# The characters: a title of the window, colours, a C1 control in UTF-8 and as one byte, right-to-left text, zero width,
+# a tag, a line separator; bytes that are no character, half a character, an overlong slash, a surrogate.
 GOOD=$(printf 'x\033]0;t\007\033[31m\302\2332J\342\200\256\342\200\213\363\240\201\201\342\200\250\177')
 EVIL=$(printf '%s\233\377\342\202-\300\257-\355\240\200' "$GOOD")
 SHOWN='x\u001b]0;t\u0007\u001b[31m\u009b2J\u202e\u200b\udb40\udc41\u2028\u007f'
@@ -17,7 +17,7 @@ SHOWN_EVIL="$SHOWN"'\x9b\xff\xe2\x82-\xc0\xaf-\xed\xa0\x80'
 mkdir "$OUT/files"
 cd "$OUT/files" || exit 1
 
-# Nothing but printable UTF-8 and ends of lines.
+# is_plain FILE: the file has only printable UTF-8 and line ends.
 is_plain() {
     if LC_ALL=C grep -q "$(printf '[\001-\011\013-\037\177]')" "$1" ||
         LC_ALL=C grep -q "$(printf '\302[\200-\237\255]')" "$1" ||
@@ -35,7 +35,7 @@ done
 printf 'a\303\244\342\202\254b\n' >probe
 check "the check leaves text alone" is_plain probe
 
-# says CODE WHAT TEXT ARGUMENT...: whit exits with CODE, all that it prints is plain, and TEXT in it.
+# says CODE WHAT TEXT ARGUMENT...: whit exits with CODE; its output is plain and has TEXT.
 says() {
     code=$1
     title=$2
@@ -64,7 +64,7 @@ says 0 "a trace" "$SHOWN_EVIL.obj" bvh "$EVIL.obj" --no-trace --runs 1 --threads
 # ---- JSON loses nothing ----
 
 says 0 "the JSON" '' scene --all --json "$EVIL.obj"
-# Putting the bytes back, as docs/cli.md says.
+# The original bytes are restored as docs/cli.md describes.
 jq -j '.materials[].name' "$OUT/stdout" |
     sed 's/%/%%/g; s/\\/\\\\/g; s/\\\\x\([0-9a-f][0-9a-f]\)/\\x\1/g' >format
 check "a name out of JSON is what it was" test "$(env printf "$(cat format)")" = "red-$EVIL"
@@ -120,7 +120,7 @@ says 2 "no folder for it" "$SHOWN_EVIL" render "$CUBE" -o "$EVIL/x.png"
 printf 'PF\n1 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0\0' >"$EVIL.pfm"
 says 0 "pictures" "$SHOWN_EVIL.pfm" compare "$EVIL.pfm" "$EVIL.pfm"
 says 2 "a scene for a picture" "$SHOWN_EVIL.ply" compare "$EVIL.ply" "$EVIL.pfm"
-# As whit writes words to settings that hold what steers.
+# In files of settings whit writes control characters as escapes of the shell.
 if "$WHIT" view --help >/dev/null 2>&1; then
     printf '%s\n' "--build 'a'\$'\\x1b\\x5b'\\0" >x.view
     says 2 "settings" 'x.view:1: --build `a\u001b[0`' view "$CUBE" --state x.view

@@ -1,11 +1,11 @@
 #!/bin/sh
-# The README as it is read: its C program makes a picture, and its functions of one's own are followed word by word; with
-# `tour` each command of its tour ends within 20 s. tour_test.sh WHIT SCENES EXAMPLE [tour]
+# The README is right: its C program makes a picture, and the commands of "Functions of your own" work as they stand
+# there; with `tour` each command of its tour ends within 20 s. tour_test.sh WHIT SCENES EXAMPLE [tour]
 . "$(dirname "$0")/common.sh"
 EXAMPLE=$3
 README=$SCENES/../README.md
 mkdir "$OUT/here" && cd "$OUT/here" && ln -s "$SCENES" scenes || exit 1
-# It ends at once, and leaves to the system what it made.
+# The program frees nothing before it ends, so the leak check is off.
 check "the C program of the README ends well" \
     env "ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0" "$EXAMPLE"
 expect 0 "the picture by the program" render scenes/cube.json -o own.png --quiet
@@ -21,7 +21,7 @@ if part 0 4; then
     check "the section has 20 lines at most" test "$(grep -c . section)" -le 21 # and the next head
     commands_of "$README" "Functions of your own" >commands
     check "it has three commands" test "$(cut -d ' ' -f 2 commands | tr '\n' ' ')" = "shader view render "
-    # What stands there, in a shell; the window does what a replay does that begins with the picture.
+    # Each command runs in a shell as it stands there; the window runs a replay.
     while read -r line; do
         case $line in
         "whit view "*)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# `whit trace`: rays in, hits out, the same on the device, on its twin and without trees.
+# `whit trace` reads rays and writes hits: the same on the device, by the float mirror on the CPU and without trees.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/files"
 R=$OUT/files/rays
@@ -7,7 +7,7 @@ R=$OUT/files/rays
 # Little-endian floats: 0, 1, -1, 4, 0.125 and infinity.
 ZERO='\000\000\000\000' MINUS='\000\000\200\277' FOUR='\000\000\200\100'
 EIGHTH='\000\000\000\076' INF='\000\000\200\177'
-# Down onto the cube's top at y = 0.5; then the same beside it; then a ray that ends above it.
+# The first ray goes down onto the cube's top at y = 0.5, the second one passes beside it, the third one ends above it.
 printf "$EIGHTH$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO$INF" >"$R"
 printf "$FOUR$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO$INF" >>"$R"
 printf "$EIGHTH$FOUR$ZERO$ZERO$ZERO$MINUS$ZERO\000\000\000\100" >>"$R"
@@ -28,7 +28,7 @@ check "the twin equals brute force" cmp "$OUT/files/cpu" "$OUT/files/brute"
 expect 0 "trace --build none" trace "$CUBE" --input "$R" -o "$OUT/files/no-bvh" --build none --quiet
 check "so does the device without trees" cmp "$OUT/files/no-bvh" "$OUT/files/brute"
 
-# More than a ray may test one by one on a device; what needs no trees has no such bound.
+# A device refuses to test this many triangles one by one without trees; `--on brute` on the CPU has no such limit.
 MANY=$SCENES/54k.json
 expect 0 "54,450 triangles without trees" \
     trace "$MANY" --input "$R" -o "$OUT/files/many" --on brute --quiet

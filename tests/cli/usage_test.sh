@@ -1,6 +1,6 @@
 #!/bin/sh
-# Usage errors and bad files: exit code 2, one line that names what is wrong, no file left behind,
-# and no device started.
+# Usage errors and bad files give exit code 2 and one line that names the error; no file is left behind, and no device
+# is opened.
 . "$(dirname "$0")/common.sh"
 VK_DRIVER_FILES=/nonexistent
 VK_ICD_FILENAMES=/nonexistent
@@ -52,8 +52,8 @@ for build in binned: binned:257 binned:7x median:3 sweep:2 spatial: spatial:2 sp
     refuse 2 "--build '$build'" "need\|take numbers\|nothing to improve" render "$CUBE" -o "$P" --build "$build"
 done
 
-# What CHANGELOG.md's table has as gone: an option alone between the commas of the first column is refused with one that
-# the second column names, or as gone where that says `nothing`.
+# Removed options in the table of CHANGELOG.md: each option of the first column is refused with an error that names an
+# option of the second column, or says `is gone` where that column says `nothing`.
 awk -F ' *[|] *' '/^[|] / {
     rest = $3
     named = $3 ~ /^nothing/ ? "is gone" : ""
@@ -113,7 +113,7 @@ refuse 2 "angle of 180 degrees" "between 0 and 180" \
 refuse 2 "trace without rays" "--input FILE is missing" trace "$CUBE" -o "$OUT/pictures/hits"
 refuse 2 "devices with an argument" "too many" devices "$CUBE"
 
-# The same environment stops what does need a device.
+# In the same environment commands that need a device fail.
 refuse 3 "no driver: render" "Vulkan" render "$CUBE" -o "$P"
 refuse 3 "no driver: devices" "Vulkan" devices
 check "no file was left" is_empty "$OUT/pictures"
