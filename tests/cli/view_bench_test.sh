@@ -1,6 +1,6 @@
 #!/bin/sh
-# sh view_bench_test.sh WHIT SCENES [figures]: `whit bench view`, the table and its JSON, on small
-# pictures; no display. `figures`: also that each is one, which a busy machine may not give.
+# sh view_bench_test.sh WHIT SCENES [figures]: `whit bench view`, the table and its JSON, on small pictures; no display.
+# `figures`: each figure is a number, which is not so on a machine that is busy.
 . "$(dirname "$0")/common.sh"
 needs jq
 FIGURES=${3:-}
@@ -17,11 +17,11 @@ for row in "cube, full" "34k, with shadows" "34k, full" "54k, full" "default, fu
     check "and one as JSON" test "$(echo "$rows" | grep -cxF "$row")" -eq 1
 done
 check "how busy the machine is" grep -q "Load average" "$OUT/stdout"
-# holds FILTER: jq's filter holds of the JSON.
+# holds FILTER: jq's filter is true for the JSON.
 holds() {
     jq -e "$1" "$J" >/dev/null
 }
-# every WHAT FILTER: jq's filter holds in each row.
+# every WHAT FILTER: jq's filter is true for each row.
 every() {
     check "$1" holds ".tables[0].rows | all($2)"
 }

@@ -1,31 +1,31 @@
-# Sourced, behind common.sh, by the tests of the viewer: replays, and what they leave.
+# Tests of the viewer source this file after common.sh: it runs replays and checks their states.
 
 needs jq
 
-# Cameras that were remembered are this test's own.
+# Remembered cameras are stored in a folder of this test alone.
 XDG_STATE_HOME=$OUT/state
 export XDG_STATE_HOME
 
-# As in common.sh, but a window that does not end is ended. $INPUT is its standard input.
+# run as in common.sh, but it ends a window that does not end by itself. $INPUT is the standard input of whit.
 INPUT=/dev/null
 run() {
     timeout $((${LIMIT_S:-100} * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" "$@" <"$INPUT" >"$OUT/stdout" 2>"$OUT/stderr"
     status=$?
 }
 
-# read_states: makes $OUT/values of $OUT/states, one line of JSON for each `state NAME`: lines of
-# NAME, field and value with tabs between. A field of an object is `frame.ids`.
+# read_states: $OUT/states has a line of JSON for each `state NAME`. Writes $OUT/values of it, with lines of NAME, field
+# and value, separated by tabs. A field of an object is named as in `frame.ids`.
 read_states() {
     jq -r '.at as $at | paths(type != "object") as $path |
         "\($at)\t\($path | join("."))\t\(getpath($path) | tostring | gsub("[\t\n]"; " "))"' \
         "$OUT/states" >"$OUT/values" || FAILED=1
 }
 
-# steps: the replay of a table, and what it expects, into $OUT/wanted. A row is
+# steps: prints the replay of a table, and writes its expectations to $OUT/wanted. A row is
 #     NAME: EVENT, EVENT xN | FIELD = VALUE | FIELD > NUMBER | FIELD has PART | FIELD as OTHER | FIELD not as OTHER
-# The events come first, each N times, then `still`, and `state NAME`, whose field has this value, or a larger one, or
-# one with that part, or the one that it has in another state, or not that. `NAME!` is without `still`. A row of
-# `| ...` alone goes on with the one before; other lines are events as they are.
+# The events come first, each N times, then `still`, then `state NAME`. In that state the field is VALUE, or a larger
+# number, or contains PART, or is (or is not) as in the state OTHER. `NAME!` leaves out `still`. A line that begins with
+# `|` continues the row before; other lines are events.
 steps() {
     awk -F ' *[|] *' -v wanted="$OUT/wanted" '
         function expect(    i, at) {
@@ -53,8 +53,8 @@ steps() {
         }'
 }
 
-# play WHAT OPTION...: `whit view` with the replay of the table on standard input; its states are as expected.
-# Neither whit nor the validation layers may complain, unless of what matches $EXPECTED.
+# play WHAT OPTION...: runs `whit view` with the replay of the table on standard input; its states are as expected.
+# Neither whit nor the validation layers print messages, except those that match $EXPECTED.
 EXPECTED=
 play() {
     what=$1
@@ -73,7 +73,7 @@ play() {
     as_wanted
 }
 
-# as_wanted: the states in $OUT/values are as the table of the last `steps` says.
+# as_wanted: the states in $OUT/values are as the table of the last `steps` expects.
 as_wanted() {
     while IFS=$(printf '\t') read -r at how field wanted; do
         has=$(value "$at" "$field")
@@ -88,20 +88,20 @@ as_wanted() {
     done <"$OUT/wanted"
 }
 
-# value NAME FIELD: of the first state of this name.
+# value NAME FIELD: prints the field of the first state of this name.
 value() {
     NAME=$1 FIELD=$2 awk -F '\t' '
         $1 == ENVIRON["NAME"] && $2 == ENVIRON["FIELD"] { print $3; found = 1; exit }
         END { if (!found) print "(no " ENVIRON["FIELD"] ")" }' "$OUT/values"
 }
 
-# is NAME FIELD VALUE: the state NAME has it.
+# is NAME FIELD VALUE: the field has this value in the state NAME.
 is() {
     has=$(value "$1" "$2")
     check "at $1: $2 is \`$3\` (\`$has\`)" test "$has" = "$3"
 }
 
-# same FIELD NAME NAME, differs FIELD NAME NAME: of two states, which both have it.
+# same FIELD NAME NAME, differs FIELD NAME NAME: the field is the same, or differs, in two states that both have it.
 same() {
     has=$(value "$2" "$1")
     check "$1 is the same at $2 and $3 ($has)" test "$has" = "$(value "$3" "$1")" -a "$has" != "(no $1)"
@@ -112,7 +112,7 @@ differs() {
         test "$has" != "$other" -a "$has" != "(no $1)" -a "$other" != "(no $1)"
 }
 
-# renders NAME OPTION...: the `whit render` line of the state, with `-o` and others of its own.
+# renders NAME OPTION...: runs the `whit render` line of the state, with these options (`-o` among them) behind it.
 renders() {
     at=$1
     shift
@@ -120,8 +120,7 @@ renders() {
     check "at $at: the line renders (got $status)" test "$status" -eq 0
 }
 
-# apart NAME WIDTH HEIGHT COUNT: at least COUNT panels of the state, all in the window, no two of them
-# over each other.
+# apart NAME WIDTH HEIGHT COUNT: the state has at least COUNT panels; all are in the window, and no two overlap.
 apart() {
     awk -F '\t' -v name="$1" '$1 == name && sub(/^panels\./, "", $2) { print $2 " : " $3 }' \
         "$OUT/values" >"$OUT/panels"

@@ -1,12 +1,12 @@
 #!/bin/sh
-# A beside B, their difference in figures, effects with prices, settings by mouse and in files.
+# The comparison of A and B side by side and in figures, effects with prices, settings by mouse and in files.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
 BALLS=$SCENES/balls.json
 
-# columns FILE.pfm FROM TO: those of a picture of 96 x 64, as text.
+# columns FILE.pfm FROM TO: prints these columns of a picture of 96 x 64 pixels as text.
 columns() {
     tail -c $((96 * 64 * 12)) "$1" | od -An -v -tx4 -w1152 | cut -d ' ' -f "$((3 * $2 + 2))-$((3 * $3 + 4))"
 }
@@ -37,7 +37,7 @@ END
     check "B is on the right" cmp b.right split.right
     check "B is not on the left" test "$(cmp -s b.left split.left; echo $?)" = 1
 
-    # The figures are those of whit compare, of what whit render makes of the two lines.
+    # The figures are those of `whit compare` for the pictures that the two lines of `whit render` make.
     renders start -o rendered-b.pfm
     renders flat -o rendered-a.pfm
     expect 0 "whit compare" compare rendered-a.pfm rendered-b.pfm --json c.json
@@ -74,7 +74,7 @@ END
     check "] doubles it" about "$(value scaled compare.scale)" "(2 * $(value difference compare.scale))"
     check "B turned too" test "$(value turned compare.b.ids)" = "$(value turned frame.ids)"
 
-    # Costs are numbers, not colours; and there is nothing between the two.
+    # Costs are numbers, not colours, so that there is no FLIP of their difference.
     play "costs of A and B" "$SCENES/8k.json" --size 96x64 --view visits <<END
 costs: still, press I, press T x2 | compare.has_flip = false | compare.other_ids = 0 | compare.other_colors > 0
 mixed: press V x3, still, press U | keys.view = stack | compare.known = true
@@ -94,7 +94,7 @@ END
     is off prices.highlights "(no prices.highlights)" # of what was switched alone
 fi
 
-# ---- Settings by mouse: what their keys do ----
+# ---- Settings by mouse, with the same effect as by keys ----
 
 if part 0 2; then
     play "by mouse" "$CUBE" --size 320x400 --ui-scale 0.5 <<END
@@ -105,7 +105,7 @@ menu: choose traversal, still, press Escape | panels.Settings has 129
 panel: press Escape | panels.Settings = (no panels.Settings)
 END
 
-    # What no display shows is not stretched until it looks like a difference.
+    # A difference that is too small for any display is not scaled up until it is visible.
     play "last bits" "$BALLS" --size 320x400 --ui-scale 0.5 --depth 1 <<END
 last: still, press I, press Tab, still, choose portable, still, choose on, still, press Tab, press U
     | words has --portable on | compare.other_ids = 0 | compare.other_colors > 0
@@ -161,14 +161,14 @@ END
 fi
 
 if part 0 2; then
-    # What whit render refuses is not among the words: costs are not those of adaptive samples.
+    # The words have no options that `whit render` refuses together: heat maps of costs with adaptive samples.
     play "adaptive costs" "$CUBE" --size 96x64 --aa adaptive:0.1 <<END
 costs: still, press V | error = | frame.view = depth | words = --size 96x64 --view depth
 colors: press V x5 | words = --size 96x64 --aa adaptive:0.1
 END
 fi
 
-# refused WHAT PATTERN LINE...: a file of settings with these lines.
+# refused WHAT PATTERN LINE...: a file of settings with these lines is refused with PATTERN.
 refused() {
     title=$1
     pattern=$2

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Each example of functions of one's own by the command that docs/shaders.md has for it, word by word but for the size:
-# it draws, and something else than the same command without the example.
+# Runs each example of user functions by its command in docs/shaders.md, with only the size changed: it draws a picture
+# that differs from that of the same command without the example.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/here" && cd "$OUT/here" && ln -s "$SCENES" scenes && ln -s "$SCENES/../shaders" shaders || exit 1
@@ -9,7 +9,7 @@ check "each example has a command" test "$(ls shaders/examples)" = \
     "$(sed 's|.* --shader shaders/examples/\([^ ]*\).*|\1|' commands | sort)"
 printf '%s\n' still 'press F12' >replay
 
-# drawn COMMAND FILE: the file is the one picture that the command makes; a window is told to save its own.
+# drawn COMMAND FILE: the command makes one picture, which is moved to FILE; a window saves its picture by a replay.
 drawn() {
     replay=
     case $1 in "whit view "*) replay="--replay replay" ;; esac

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The viewer and files: scenes that come, go and are mended, pictures and lines that go out, replays.
+# The viewer and files: scenes that are opened, removed and repaired, pictures and lines that are saved, replays.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
@@ -12,7 +12,7 @@ SMALL="--size 96x64"
 # ---- Scenes ----
 
 if part 0 2; then
-    # Without a command there is a window, too.
+    # whit FILE without a command opens a window, too.
     printf 'still\nstate alone\n' >alone.replay
     run "$CUBE" $SMALL --replay alone.replay --quiet
     check "whit FILE is whit view FILE (exit code $status)" test "$status $(jq -r .scene "$OUT/stdout")" = "0 $CUBE"
@@ -55,7 +55,7 @@ END
     EXPECTED=
 fi
 
-# Standard input: read once, watched never, and the scenes beside it are none.
+# A scene from standard input is read once and not watched, and has no other scenes beside it.
 printf -- '--size 96x64\n' >./-
 INPUT=$CUBE
 play "standard input" - $SMALL --remember yes <<END
@@ -70,7 +70,7 @@ INPUT=/dev/null
 rm ./-
 
 if part 1 2; then
-    # A scene that names a file outside of its folder: asked once, read where the answer is yes.
+    # If a scene names a file outside of its folder, the viewer asks once, and reads the file if the answer is yes.
     mkdir model maps
     printf 'mtllib ../maps/a.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl red\nf 1 2 3\n' >model/a.obj
     printf 'newmtl red\nKd 1 0 0\n' >maps/a.mtl
@@ -89,8 +89,8 @@ END
 fi
 
 if part 1 2; then
-    # A picture that is dropped is the sky, before a background too; the panel turns back and forth; a broken one changes
-    # nothing.
+    # A dropped picture becomes the sky, and replaces a background too; the panel switches back and forth; a broken
+    # picture changes nothing.
     run render "$SCENES/whitted.json" --size 32x16 -o sky.exr --quiet
     echo rubbish >bad.hdr
     EXPECTED="bad.hdr: not a PNG, EXR, PFM or HDR picture$"
@@ -108,7 +108,8 @@ END
 fi
 
 if part 0 2; then
-    # Read again: an error with file and line, the old picture stays; then its mend.
+    # A scene is read again when it was written: first with an error, which names file and line while the old picture
+    # stays, then repaired.
     cp "$CUBE" own.json
     sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
     sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
@@ -147,7 +148,7 @@ END
     as_wanted
 fi
 
-# Nothing is shown beside a scene that cannot be read at the start.
+# If the scene cannot be read at the start, the viewer ends with an error.
 printf '{ "asset": { "version": "2.0" }, ' >broken.gltf
 printf 'v 0 0 0\nf 1 2 3\n' >broken.obj
 sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
@@ -159,7 +160,7 @@ refuse 2 "a broken glTF" "broken.gltf:" view broken.gltf --replay still.replay
 refuse 2 "a broken OBJ" "broken.obj: " view broken.obj --frames 3
 DISPLAY='' refuse 3 "no display" "no display .*whit render" view "$CUBE" --frames 3
 
-# Signals end the viewer with their code.
+# A signal ends the viewer with 128 plus its number as the exit code.
 printf 'state ready\nuntil playing\n' >for-ever.replay
 for signal in HUP=129 INT=130 TERM=143; do
     "$WHIT" view "$CUBE" --size 96x64 --replay for-ever.replay >"$OUT/pipe" 2>"$OUT/stderr" &
@@ -172,7 +173,7 @@ for signal in HUP=129 INT=130 TERM=143; do
         "whit: interrupted, each file is whole or as it was"
 done
 
-# ---- Out: the picture, and the line that makes it ----
+# ---- Saved pictures, and the lines that make them ----
 
 if part 1 2; then
     play "pictures" "$SCENES/spin.json" $SMALL --fps 10 <<END
@@ -205,7 +206,7 @@ END
 fi
 
 if part 0 2; then
-    # The words of a start are those of the state: whit view says as whit render does.
+    # The state has the options of the command line, and `whit render` takes the same options.
     play "words" "$SCENES/whitted.json" $SMALL --traversal basic --build median --aa 4 --depth 3 \
         --bailout 0.01 --fresnel schlick --shadows opaque --instances off --numerics fast <<END
 start:
@@ -219,7 +220,7 @@ fi
 
 # ---- Replays ----
 
-bad() { # TEXT: refused, with file and line
+bad() { # TEXT: a replay with this line is refused, with file and line
     printf 'still\n# a comment\n\n%s\n' "$1" >bad.replay
     refuse 2 "\`$1\`" "bad.replay:4: .*no event of a replay" view "$CUBE" --replay bad.replay
 }

@@ -1,12 +1,12 @@
 #!/bin/sh
-# sh view_hand_test.sh WHIT SCENES HAND: the viewer with a window manager and real events: minimised
-# and restored, used by hand, recorded and replayed, closed.
+# sh view_hand_test.sh WHIT SCENES HAND: the viewer with a window manager and real events is minimised and restored,
+# used by hand, recorded and replayed, and closed. The program HAND is the window manager and makes the events.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 HAND=$3
 mkfifo "$OUT/orders" "$OUT/answers" "$OUT/recorded"
 
-# hand [DPI]: starts it, ready for a window; orders go to file descriptor 4.
+# hand [DPI]: starts HAND, and waits until it is ready for a window; it takes orders from file descriptor 4.
 hand() {
     timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$HAND" "$@" <"$OUT/orders" >"$OUT/answers" &
     hand=$!
@@ -14,7 +14,7 @@ hand() {
     read -r ready <&6
     check "the hand is $ready" test "$ready" = ready
 }
-# rest: it tidies up once its window is gone.
+# rest: waits until HAND has ended, once its window is gone.
 rest() {
     exec 4>&-
     wait $hand
@@ -44,7 +44,7 @@ rest
 check "it was the window manager that did it" grep -q "^full$" "$OUT/hand"
 check "and undid it" grep -q "^window$" "$OUT/hand"
 
-# How large text is by the X resource that desktops set, and by the option.
+# The size of text follows the X resource that desktops set, and the option --ui-scale.
 for dpi in 96 144 192; do
     hand $dpi
     play "a screen of $dpi dots an inch" "$CUBE" --size 640x480 <<END
@@ -65,9 +65,9 @@ shown: | ui_scale = 1
 END
 rest
 
-# What somebody does is recorded; the replay ends where he did. Each order waits for what it needs: the
-# first picture, or what was recorded before. The window's title shows what would steer.
-# recorded LINE: until the viewer has taken and recorded this.
+# A recorded session and its replay end in the same state. Each order waits for the first picture or for the record of
+# the orders before. The window's title shows control characters as escapes.
+# recorded LINE: waits until the viewer has handled and recorded this event.
 recorded() {
     while read -r line <&5; do
         echo "$line" >>"$OUT/record"
@@ -111,7 +111,7 @@ for turn in 1 2; do
 done
 check "two replays end in the same words" cmp "$OUT/words.1" "$OUT/words.2"
 check "and hits" cmp "$OUT/ids.1" "$OUT/ids.2"
-# The same by arithmetic: a drag of 20 x 8 pixels and a notch of the wheel.
+# A replay with other moves, but the same drag of 20 x 8 pixels and notch of the wheel, gives the same words.
 cp "$OUT/words.1" "$OUT/hand.words"
 play "by replay alone" "$CUBE" --size 96x64 <<END
 end: still, press T, press K, move 40 30, button left down, move 50 34, move 60 38, button left up, wheel 0 1

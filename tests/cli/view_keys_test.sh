@@ -1,6 +1,5 @@
 #!/bin/sh
-# Keys of the viewer that say how rays are traced and what is painted: by replay, on states and hit
-# identities.
+# Keys of the viewer for tracing rays and for heat maps, by replay: states and hit identities.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
@@ -9,7 +8,7 @@ SMALL="--size 96x64"
 # ---- How rays are traced: another way to the same hits ----
 
 if part 0 2; then
-    # Two boxes of one mesh, which light and materials make no kernel longer for.
+    # Two boxes of one mesh. Light and materials are simple, so that kernels are short and soon compiled.
     cat >"$OUT/boxes.json" <<'JSON'
 { "camera": { "eye": [1.6, 1.3, 2.4], "target": [0, 0, 0], "fov": 45 }, "ambient": 0.12,
   "lights": [ { "kind": "point", "position": [2, 4, 3], "intensity": 24 } ],
@@ -53,7 +52,8 @@ END
     done
 fi
 if part 1 2; then
-    # Where `fast` leaks, the window says on how many pixels: as many as two pictures of `whit render`.
+    # Where `fast` leaks, the window shows the number of pixels that differ: the same as between two pictures of
+    # `whit render`.
     INSIDE="--camera 0,0,0,1,0,0,0,1,0,90 --size 161x121"
     for level in watertight fast; do
         expect 0 "hits of $level" render "$CUBE" -o "$OUT/x.pfm" --ids "$OUT/$level.exr" \
@@ -69,7 +69,7 @@ END
 fi
 
 if part 0 2; then
-    # F frames one of the two; 0 goes over the cameras.
+    # F frames one of the two boxes; 0 switches to the next camera.
     play "framed" "$OUT/boxes.json" $SMALL <<END
 start:
 frame: move 28 32, press F, until probe.number = 1, still | words has ,-0.8,0.2,-0.4,
@@ -79,12 +79,12 @@ again: press 0 | words = --size 96x64
 side: press 2 | toast = from the right
 nothing: move 1 1, press F, until toast = nothing is there to frame | toast = nothing is there to frame
 END
-    # A model in one piece is not framed: the point under the mouse is seen from half as far.
+    # A model in one piece is not framed: the point under the mouse becomes the target, at half the former distance.
     play "nearer" "$CUBE" --size 97x65 --camera 0,0,4,0,0,0,0,1,0,40 <<END
 start:
 near: move 48 32, press F, until probe.number = 1, still | words has --camera 0,0,2.5,0,0,0.5,0,1,0,40
 END
-    # Without trees: the same again, and back.
+    # Without trees the picture is the same, and with trees again.
     play "no trees" "$CUBE" $SMALL <<END
 start:
 off: press G | keys.trees = off | frame.ids as start | frame.pixels as start | change.other_ids = 0
@@ -93,7 +93,7 @@ END
 fi
 
 if part 1 2; then
-    # Where there is too much to test it is refused, and the tree stays.
+    # If there are too many primitives to test each, `no trees` is refused, and the tree stays.
     play "no trees, too much" "$SCENES/54k.json" $SMALL <<END
 placed:
 refused: press G, until keys.trees = on | keys.trees = on | frame.number as placed | frame.pixels as placed

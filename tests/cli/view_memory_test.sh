@@ -1,6 +1,6 @@
 #!/bin/sh
-# sh view_memory_test.sh WHIT SCENES: what thousands of boxes of trees took is given back once they are
-# gone from the window.
+# sh view_memory_test.sh WHIT SCENES: the memory of thousands of drawn boxes of trees is freed once they are gone from
+# the window.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 

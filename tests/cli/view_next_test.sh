@@ -1,13 +1,13 @@
 #!/bin/sh
-# What the user does is in the very next picture; what the figures say of a view (of instances too with `large`
-# as the third argument).
+# The very next picture shows an action of the user. The figures of a view are right (with `large` as the third argument
+# also for a scene with instances).
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 SMALL="--size 96x64 --fps-goal 0.1" # whole pictures also while something moves
 
-# next NAME BEFORE: the picture of the state shows all that was asked for, and none of anything else
-# came between it and that of BEFORE.
+# next NAME BEFORE: the picture of the state has all settings that were asked for, and is the next one after that of
+# BEFORE.
 next() {
     check "at $1: the next picture ($(value "$2" frame.number), $(value "$1" frame.first))" \
         test "$(value "$1" frame.first)" -eq $(($(value "$2" frame.number) + 1))
@@ -44,7 +44,7 @@ fi
 # ---- A drag ----
 
 if part 1 2; then
-    # drag EVENT: with it after each move.
+    # drag EVENT: prints a replay of a drag with EVENT after each move.
     drag() {
         printf 'still\nstate m0\nmove 30 30\nbutton left down\n'
         for n in 1 2 3 4 5 6; do
@@ -67,8 +67,8 @@ if part 1 2; then
         is m$n frame.ids "$(cat "$OUT/moving.$n")"
     done
 
-    # While one picture is on its way, or has just come: the one after it. `wait` lets the first question
-    # reach the engine.
+    # If a picture is being drawn or was just shown, the one after it shows the action. `wait` gives the first request
+    # time to reach the engine.
     play "a picture on its way" "$SCENES/34k.json" $SMALL <<END
 before:
 after: move 30 30, button left down, move 40 32, wait 1, move 50 36
@@ -81,7 +81,7 @@ fi
 # ---- Visits of a ray ----
 
 if part 0 2; then
-    # Over all pixels the mirror on the CPU (twin) counts as many visits as the kernel, in any order of nodes.
+    # Over all pixels the float mirror on the CPU counts as many visits as the kernel, in any order of nodes.
     scenes=34k
     [ "$3" != large ] || scenes="34k swarm"
     for scene in $scenes; do
@@ -107,7 +107,7 @@ if part 1 2; then
     play "visits without trees" "$CUBE" $SMALL <<END
 no_trees: still, press G, press T | keys.trees = off | frame.visits_rays = 1536 | frame.visits = 1
 END
-    # In a larger picture the mirror counts only a part of the pixels.
+    # In a larger picture the float mirror counts only a part of the pixels.
     play "visits of some" "$SCENES/34k.json" --size 120x80 <<END
 twin:
 counted: press V | frame.visits_rays = 9600

@@ -1,12 +1,12 @@
 #!/bin/sh
-# sh view_panels_test.sh WHIT SCENES [large]: panels over the picture. All of what they say
-# is in the window, and none covers another one.
+# sh view_panels_test.sh WHIT SCENES [large]: panels over the picture are in the window with all of their text, and none
+# covers another one.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
 
-# uncut TAG NAME...: nobody has to scroll sideways in the panels of these states.
+# uncut TAG NAME...: in the panels of these states no text is cut on the right.
 uncut() {
     tag=$1
     shift
@@ -16,7 +16,7 @@ uncut() {
     done
 }
 
-# opened WIDTH HEIGHT: replays all that opens panels, in a window of this size, and closes them.
+# opened WIDTH HEIGHT: prints a replay that opens all panels in a window of this size, and closes them.
 opened() {
     cat <<END
 size $1 $2
@@ -41,8 +41,8 @@ press M
 press Shift+T
 END
 }
-# panels SCALE WIDE SIZE...: of windows of these sizes, one after the other, at this scale of text. From
-# the width WIDE on there is room for all.
+# panels SCALE WIDE SIZE...: checks the panels in windows of these sizes at this scale of text. From the width WIDE on
+# there is room for all panels.
 panels() {
     scale=$1
     wide=$2
@@ -63,8 +63,8 @@ panels() {
     done
 }
 
-# Small and large: text of another scale fills smaller windows as it fills larger ones at 1, so that what does not
-# go by the scale is seen at 0.5.
+# At half the scale text fills a window of half the size in the same way. So scales of 0.5 and 2 show any size that does
+# not follow the scale.
 if [ "${3:-}" = large ]; then
     panels 1 640 320x240 640x480 1280x720
     panels 2 1280 640x480 1280x960
@@ -72,7 +72,7 @@ else
     panels 2 1280 640x480
     panels 0.5 320 160x120 320x240 640x360
 
-    # Nothing stands over the pixel that is asked for, wherever it is.
+    # No panel covers the pixel that was clicked, wherever it is.
     for at in "200 300" "300 200" "320 240" "620 30" "30 460"; do
         echo "pixel-${at% *}-${at#* }: click $at | probe.x = ${at% *} | probe.y = ${at#* }"
         echo "closed: press Escape | picked = false"

@@ -1,9 +1,9 @@
 #!/bin/sh
-# The price list of a view: measured beside the window, which goes on.
+# The price list of a view is measured beside the window, which goes on.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 
-# has_item LABEL: the panel has drawn it, and inside of it.
+# has_item LABEL: the panel of prices has drawn the item, inside of its borders.
 has_item() {
     awk -F '\t' -v label="$1" '
         $1 == "priced" && $2 == "panels.Prices" { split($3, panel, " ") }
@@ -25,7 +25,7 @@ END
     apart priced 160 200 1
     check "there are prices ($(value priced price_list.rows))" \
         test "$(value priced price_list.rows)" -ge 8
-    # The strip says of each crop how long it takes and what FLIP sees, or that there is none.
+    # The strip shows the time and FLIP of each crop, or that there is none.
     for title in "1/4 the time" "usual time" "4 x the time" "16 x the time"; do
         check "the strip has a crop of $title" has_item "$title,"
     done
@@ -42,7 +42,7 @@ END
 fi
 
 if part 1 2; then
-    # Effects are priced without being switched, by what their switch changes.
+    # The price of an effect is measured without switching it in the window: it is the change by its switch.
     play "effects" "$CUBE" --size 128x96 --ui-scale 0.25 <<END
 before:
 priced! press X, priced | frame.number as before | words as before

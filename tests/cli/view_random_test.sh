@@ -1,7 +1,7 @@
 #!/bin/sh
-# sh view_random_test.sh WHIT SCENES SECONDS [SEED]: somebody who presses everything. Nothing crashes and
-# nothing is an error. For more than two minutes the clock is the real one, and from the first minute on
-# memory grows by less than 5 %; in fewer seconds pauses take no time, and long ones wait for a picture.
+# sh view_random_test.sh WHIT SCENES SECONDS [SEED]: random events cause no crash and no error. If SECONDS is more than
+# two minutes, the clock is the real one, and from the first minute on memory grows by less than 5 %. Else pauses take
+# no time, and long ones wait for a picture.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 SECONDS_LONG=$3
@@ -9,16 +9,16 @@ SEED=${4:-1}
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
 
-# events SECONDS SEED REAL: a replay; what is not waited for comes as fast as the viewer takes it.
+# events SECONDS SEED REAL: prints a replay; events without a pause come as fast as the viewer takes them.
 events() {
     awk -v end="$1" -v state="$2" -v real="$3" -v scenes="$SCENES" '
         function random(n) { # Lewis, Goodman and Miller 1969; by doubles, exactly
             state = (state * 16807) % 2147483647
             return int(state / 2147483647 * n)
         }
-        # The same at each mark, so that only what the viewer did not give back can differ: the
-        # settings it began with, no panels, B gone (after U there is one in any case), and only
-        # one scene in the sessions that are kept.
+        # The viewer is in the same state at each mark, so that only memory that it did not free can
+        # differ: the settings of the start, no panels, no B (after U there is one in any case), and
+        # only one scene in the sessions that are kept.
         function mark() {
             print "press Escape\npress U\npress I\ndrop start.view"
             print "drop", scenes "/cube.json\nsize 240 160"

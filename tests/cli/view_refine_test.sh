@@ -1,10 +1,10 @@
 #!/bin/sh
-# At rest the window's picture gets better by itself: it is, byte for byte, that of `whit render` with as many samples.
+# At rest the window's picture is refined: it is, byte for byte, that of `whit render` with the same number of samples.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work" && cd "$OUT/work" || exit 1
 SCENES=$(realpath "$SCENES")
-# What ends: the smaller an object is in the picture, the fewer samples change nothing that is seen.
+# With a small object in the picture refining ends soon, because few samples are enough for a picture that stays.
 camera="--camera 1.6,1.3,2.4,0,0,0,0,1,0"
 
 # shellcheck disable=SC2086
@@ -49,7 +49,7 @@ check "with its samples in the recipe" grep -aq -- "whit render .*--aa $samples 
 check "the line of Ctrl+C names them" grep -q -- "--aa $samples -o" <<END
 $(value copied render)
 END
-# As often as four times the samples were shown, no more: 4 16 64 ...
+# A new picture is shown for each fourfold number of samples and not more often: 4 16 64 ...
 rounds=$(awk -v n="$samples" 'BEGIN { while (n > 4) { n /= 4; k++ } print k }')
 check "a picture for each step ($rounds)" \
     test $(($(value better frame.number) - $(value start frame.number))) -eq "$rounds"
@@ -68,7 +68,7 @@ apart: | frame.samples > 4 | compare.known = true | compare.other_colors > 10 | 
 END
 check "B goes as far as A" test "$(value apart compare.b.samples)" -eq "$(value apart frame.samples)"
 
-# So does what a path tracer of the user's makes, whose rays go at random.
+# The picture of a user's path tracer, whose rays are random, is refined in the same way.
 PATHS=$SCENES/../shaders/examples/paths.glsl
 # shellcheck disable=SC2086
 play "paths" "$SCENES/cube.json" --size 24x18 --shader "$PATHS" $camera,90 <<END
@@ -83,7 +83,7 @@ expect 0 "paths of $samples samples" render "$SCENES/cube.json" --size 24x18 --s
     -o paths.png --quiet
 expect 0 "are the window's" compare paths.png whit-0002.png --metric largest --tolerance 0
 
-# Lines are drawn over each step, and are no part of the sum.
+# Lines are drawn over the picture of each step, and do not go into the sum of samples.
 # shellcheck disable=SC2086
 play "lines" "$SCENES/cube.json" --size 48x36 --aa 16 --edges objects --grid on $camera,60 <<END
 start: | frame.samples = 16 | frame.whole = true
@@ -101,7 +101,7 @@ for samples in 16 "$(value better frame.samples)"; do
     expect 0 "are the window's" compare lines.png "whit-000$save.png" --metric largest --tolerance 0
 done
 
-# What is to stay as the settings say does, until the switch is turned in the panel of settings.
+# With --at-rest stay the picture is not refined.
 play "left alone" "$SCENES/cube.json" --size 48x36 --at-rest stay <<END
 start: | frame.samples = 1
 refined
@@ -110,7 +110,7 @@ END
 check "the words of a state name it" test "$(value stays words | grep -c -- "--at-rest stay")" -eq 1
 check "and no line that renders" test "$(value stays render | grep -c -- at-rest)" -eq 0
 
-# With all figures the estimate is a curve over time, below a line and above another.
+# With all figures shown, the estimated errors are drawn as a curve over time.
 # shellcheck disable=SC2086
 play "a curve" "$SCENES/cube.json" --size 320x480 $camera,10 <<END
 plain: press F2 | hud = full | frame.estimates = 0

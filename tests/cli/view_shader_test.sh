@@ -1,5 +1,5 @@
 #!/bin/sh
-# The viewer and a file of functions that is written while it is shown.
+# The viewer follows a file of functions that is saved while its picture is shown.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir -p "$OUT/here/live/part" && cd "$OUT/here" || exit 1
@@ -15,9 +15,10 @@ vec3 post(ivec2 at, vec3 color)
     return tint(stepped ? ceil(color * bands) / bands : color);
 }
 END
-# hash_of FILE: what whit calls it; its kernels need not be made.
+# hash_of FILE: prints the hash that whit gives the file, without making kernels.
 hash_of() { WHIT_TEST_NO_DEVICE=1 "$WHIT" shader "$1" --json 2>/dev/null | jq -r .hash; }
-# tint NAME COLOUR: live/part/tint.glsl as it will be, and what whit calls it.
+# tint NAME COLOUR: writes NAME.new, a version of live/part/tint.glsl, and sets $NAME to the hash of live/a.glsl with
+# it.
 tint() {
     echo "vec3 tint(vec3 c) { return c * vec3($2); }" >"live/part/tint.glsl"
     cp live/part/tint.glsl "$1.new"
@@ -29,15 +30,15 @@ tint violet '1.0, 0.2, 1.0'
 tint red '1.0, 0.2, 0.2'
 tint white '1.0, 1.0, 1.0'
 check "five versions" test "$(printf '%s\n' "$green" "$blue" "$violet" "$red" "$white" | sort -u | wc -l)" -eq 5
-# Lines 2 to 5 have errors, and what it includes: the version that the file had is still shown. Of `here` there are two on
-# a line.
+# Lines 2 to 5 have errors, and so has the included file; the window still shows the version before. Line 3 has two
+# errors about `here`.
 printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z = other;\n    c = far;\n    return c;\n}\n#include "deep.glsl"\n' \
     >broken.new
 printf '\nfloat deep = nowhere;\n\n' >live/part/deep.glsl
 mkfifo "$OUT/pipe"
 NONE=
-# put FILE AT: renames a copy over AT. Of two saves in a row the second must not truncate the file while the window reads
-# the first: an empty file is an error that no state waits for.
+# put FILE AT: renames a copy over AT. Of two saves in a row the second must not truncate the file while the window
+# reads the first: an empty file is an error that no state waits for.
 put() { cp "$1" live/new && mv live/new "$2"; }
 if part 0 2; then
     steps >"$OUT/replay" <<END
@@ -85,7 +86,7 @@ END
     mv "$OUT/read" "$OUT/states"
     read_states
     as_wanted
-    # On a busy machine the whole picture may come before the first step is on the screen.
+    # On a busy machine the whole picture may be drawn before the first step is on the screen.
     case $(value step frame.divisor) in
     1) step="full size, 1 sample" ;;
     *) step="1/$(value step frame.divisor) of the size, 1 sample" ;;
@@ -94,7 +95,7 @@ END
     check "B is the version before" test "$(value beside compare.b.pixels)" = "$(value turned frame.pixels)"
 fi
 
-# follow WHAT OPTION...: `whit view` with $OUT/replay; on_state is called with each state as it comes.
+# follow WHAT OPTION...: runs `whit view` with $OUT/replay, and calls on_state with each state as it comes.
 follow() {
     what=$1
     shift
@@ -130,7 +131,7 @@ END
     check "saved" test -e whit-0001.png -a -e whit-0001.view
     cp "$OUT/values" first
     value first render >line
-    # again STATE: it is as the first one was.
+    # again STATE: identities, pixels and functions of the state are those of the first one.
     again() {
         for field in frame.ids frame.pixels shader.hash; do
             is "$1" $field "$(awk -F '\t' -v field=$field '$2 == field { print $3 }' first)"
@@ -147,7 +148,7 @@ same: press I | compare.mode = split | compare.other_colors = 0 | compare.other_
 other: choose stepped | compare.other_colors > 0 | compare.other_ids = 0 | render has --set stepped=on
 END
     again state
-    # What was asked about is shown, whatever becomes of the picture.
+    # The viewer goes on with the picture's file as it was when the user was asked, even if it is replaced.
     echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr; }' >other.glsl
     expect 0 "another picture" render cube.json --size 8x8 --quiet --shader other.glsl -o other.png
     cp whit-0001.png asked.png
@@ -167,7 +168,7 @@ dropped: drop whit-0001.view | toast has whit-0001.view has --shader | frame.pix
 END
     expect 2 "by a picture, without an answer" view whit-0001.png
     check "says what to do" grep -q 'no terminal to ask at; --yes' "$OUT/stderr"
-    # At a terminal it says what it would load, asks once, and opens that or nothing.
+    # At a terminal whit lists the files that it would load, asks once, and opens these or nothing.
     printf '%s\n' still 'state picture' >"$OUT/replay"
     for answer in n y; do
         command -v script >/dev/null || { echo "SKIPPED what is asked at a terminal: there is no script(1)"; break; }
@@ -192,7 +193,7 @@ END
     done
 fi
 
-# ---- Stages of a checkout, written while they are shown ----
+# ---- Stages of a checkout that are saved while their picture is shown ----
 
 if part 0 2; then
     cp -r "$SCENES/../shaders" st
@@ -215,7 +216,7 @@ END
     follow "stages" cube.json --size 96x64 --stages st
 fi
 
-# ---- What dbg(x) is, of the pixel that was clicked ----
+# ---- Values of dbg(x) in the pixel that was clicked ----
 
 if part 1 2; then
     cat >looks.new <<'END'
@@ -251,7 +252,7 @@ END
     follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
 fi
 
-# ---- The widgets of sliders: each is in the next picture, and nothing is compiled ----
+# ---- Widgets of sliders change the next picture without compiling ----
 
 if part 0 4; then
     cat >live/w.glsl <<'END'
@@ -291,7 +292,7 @@ END
     check "U subtracts the version before" test "$(value subtracted compare.b.pixels)" = "$(value color frame.pixels)"
 fi
 
-# ---- Saves that mean harm: the window lives on, with the last good picture ----
+# ---- After harmful saves the window goes on with the last good picture ----
 
 if part 1 4; then
     post() { printf 'vec3 post(ivec2 at, vec3 color)\n{\n%s\n}\n' "$1"; }
@@ -336,12 +337,12 @@ END
     check "the compiler's two errors are told once each" test "$(grep -c 'error: live/h.glsl' "$OUT/stderr")" -eq 2
 fi
 
-# ---- The compiler's process ends while it compiles: an error as others, and the next save is as ever ----
+# ---- If the compiler's process ends while it compiles, that is an error like others, and the next save works ----
 
 if part 3 4; then
     child_of() { cat /proc/[0-9]*/stat 2>/dev/null | awk -v parent="$1" '$4 == parent { print $1; exit }'; }
     kept() { child_of "$(child_of "$viewer")"; } # by the window, which `timeout` runs; each file is compiled in a child of it
-    # end_compiler SIGNAL: to that child, while it compiles.
+    # end_compiler SIGNAL: sends the signal to that child while it compiles.
     end_compiler() {
         keeper=$(kept) child=
         until [ "$child" ]; do
@@ -385,7 +386,7 @@ END
     check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
 fi
 
-# A file that does not compile at the start is an error at once.
+# If the file does not compile at the start, the viewer ends with an error.
 printf 'vec3 post(ivec2 at, vec3 color) { return color }\n' >live/bad.glsl
 expect 2 "broken at the start" view "$CUBE" --size 96x64 --shader live/bad.glsl --quiet
 check "says where" grep -q 'live/bad.glsl:1:48: ' "$OUT/stderr"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Pictures of what traversals cost: heat maps, raw numbers, the same ones in --stats.
+# --view draws the costs of traversals: heat maps, raw numbers, and the same numbers in --stats.
 . "$(dirname "$0")/common.sh"
 needs jq
 mkdir "$OUT/pictures"
@@ -7,11 +7,11 @@ P=$OUT/pictures
 SCENE=$SCENES/balls.json
 SIZE=96x64
 
-# numbers FILE.pfm: all pixels, one a line (PFM of one channel: three lines of text, then floats).
+# numbers FILE.pfm: prints all pixels, one in a line (a PFM of one channel has three lines of text, then floats).
 numbers() {
     tail -c $((96 * 64 * 4)) "$1" | od -An -v -tf4 -w4
 }
-# figure FIELD: of the costs of camera rays, as --stats tells them.
+# figure FIELD: prints a field of the costs of camera rays from --stats.
 figure() {
     jq ".costs.primary.$1" "$OUT/visits.json"
 }
@@ -41,7 +41,7 @@ visits=$(for name in inner_nodes leaves instances; do figure mean.$name; done |
     awk -v sum="$(sum visits)" '{ v += $1 } END { d = sum / 6144 - v; print (d * d < 1e-8 * v * v) }')
 check "visits are pairs, leaves and instances" test "$visits" = 1
 
-# Kinds of rays.
+# --view-rays chooses the kind of rays.
 for kind in shadow reflected refracted all; do
     expect 0 "--view-rays $kind" render "$SCENE" -o "$P/$kind.pfm" --size $SIZE --view boxes \
         --view-rays $kind --quiet
@@ -71,7 +71,7 @@ expect 0 "another order" render "$SCENE" -o "$P/order.pfm" --size $SIZE --view v
 check "costs something else" test "$(cmp -s "$P/visits.pfm" "$P/order.pfm"; echo $?)" = 1
 expect 0 "one pixel" render "$SCENE" -o "$P/one.png" --size 1x1 --view stack --quiet
 
-# Colours do not change because something is counted.
+# Counting does not change colours.
 expect 0 "colours" render "$SCENE" -o "$P/color.pfm" --size $SIZE --quiet --view color
 expect 0 "colours and counters" render "$SCENE" -o "$P/counted.pfm" --size $SIZE --counters
 check "are the same" cmp "$P/color.pfm" "$P/counted.pfm"

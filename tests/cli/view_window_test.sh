@@ -1,5 +1,5 @@
 #!/bin/sh
-# The viewer's window and what moves in it: cameras, time, sizes, ways to show and to end.
+# The viewer's window: cameras, time, sizes, ways to present pictures and to end.
 # shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
@@ -38,7 +38,7 @@ END
         is $at frame.whole true
         before=$at
     done
-    # Along an axis: the eye differs from the target in that coordinate alone.
+    # along NAME AXIS SIGN: the camera looks along an axis, so that eye and target differ in that coordinate alone.
     along() {
         value "$1" words | sed 's/.*--camera //' | awk -F, -v axis="$2" -v sign="$3" '
             function size(x) { return x < 0 ? -x : x }
@@ -89,7 +89,7 @@ fi
 # ---- Ways to the screen ----
 
 if part 1 2; then
-    # What the window shows, without figures over it, is the picture.
+    # Without figures over it, the window shows exactly the picture.
     for way in vsync no-vsync; do
         option=
         [ "$way" = vsync ] || option=--$way
@@ -125,11 +125,10 @@ press Escape
 wait 60000
 END
 
-# ---- What takes long ----
+# ---- Slow kernels and pictures ----
 
 if part 0 2; then
-    # Another kernel in the making is stopped by Escape, or by taking the switch back: it would go on
-    # until then.
+    # Escape, or switching back, stops the compilation of another kernel, which this whit would never finish.
     patient=$WHIT
     WHIT=$SLOW
     export WHIT_TEST_SLOW=kernel
@@ -148,7 +147,7 @@ END
         same frame.pixels start $at
     done
 
-    # A slow picture says how far it is, and can be left.
+    # The window shows the progress of a slow picture, and the user can switch back before it is done.
     export WHIT_TEST_SLOW=picture
     play "a slow picture" "$CUBE" $SMALL <<END
 start:

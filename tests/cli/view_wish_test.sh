@@ -1,5 +1,5 @@
 #!/bin/sh
-# --budget-ms and --max-error in the window: chosen beside the picture, which stays the user's.
+# --budget-ms and --max-error in the window: settings are chosen while the user goes on with the picture.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
@@ -7,8 +7,8 @@ cd "$OUT/work" || exit 1
 BALLS=$SCENES/balls.json
 SIZE=24x16 # whose many pictures are quickly measured
 
-# wished SCENE EVENT SCENE TEXT OPTION...: EVENT comes while costs of the first scene are being
-# measured; looks at what was chosen for the second.
+# wished SCENE EVENT SCENE TEXT OPTION...: EVENT comes while the costs of the first scene are being measured; then the
+# choice is that for the second scene, and its stage is TEXT.
 wished() {
     scene=$1
     event=$2
@@ -30,7 +30,7 @@ END
     is elsewhere wish.stage "$text"
 }
 
-# chose NAME: the options that are told are those of the window.
+# chose NAME: the options in the text of the choice are the settings of the window.
 chose() {
     text=$(value "$1" wish.text)
     [ "$text" = "what is usual" ] && text=
@@ -39,7 +39,7 @@ chose() {
 }
 
 if part 0 2; then
-    # Another scene is measured anew; what is dropped meanwhile ends what goes on.
+    # A scene that is dropped while another one is measured ends that measurement, and is measured itself.
     wished "$CUBE" "drop $BALLS" "$BALLS" chosen --max-error 0.9
     chose chosen
     error=$(value chosen wish.predicted_error)
@@ -63,7 +63,7 @@ if part 0 2; then
 fi
 
 if part 1 2; then
-    # What takes far longer than was predicted is chosen anew; where nothing is nearer it stays.
+    # If the picture takes far longer than predicted, whit chooses again; the choice stays where no other comes nearer.
     patient=$WHIT
     WHIT=$3
     export WHIT_TEST_SLOW=told
@@ -76,7 +76,7 @@ if part 1 2; then
 fi
 
 if part 1 2; then
-    # The next run chooses by the same figures, and for the same time the same.
+    # The next run chooses by the same kept figures, so that the same time gives the same choice.
     chosen() {
         play "kept, $*" "$CUBE" --size $SIZE --spend 0.1 "$@" <<END
 first: until wish.stage = chosen | wish.stage = chosen
