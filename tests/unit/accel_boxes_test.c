@@ -73,7 +73,7 @@ static void check_covered(const struct world *w, const struct seen *seen, uint32
 TEST(mesh_trees_level_by_level)
 {
     struct world w = placed_spheres(false);
-    assert_int_equal(see(&w, false, 0, UINT32_MAX)->count, 5); /* a root each */
+    assert_int_equal(see(&w, false, 0, UINT32_MAX)->count, 5); /* one root for each instance */
     for (uint32_t level = 0; level < 6; ++level) {
         const struct seen *seen = see(&w, false, level, UINT32_MAX);
         for (uint32_t i = 0; i < seen->count; ++i) {
@@ -96,7 +96,7 @@ TEST(instances_and_one_tree)
     assert_int_equal(root->count, 1);
     check_covered(&w, root, 0);
     check_covered(&w, root, 4);
-    assert_int_equal(see(&w, true, 127, UINT32_MAX)->count, 5); /* a leaf each */
+    assert_int_equal(see(&w, true, 127, UINT32_MAX)->count, 5); /* one leaf for each instance */
     assert_int_equal(see(&flat, true, 2, UINT32_MAX)->count, 0);
     const struct seen *seen = see(&flat, false, 2, UINT32_MAX);
     assert_int_equal(seen->count, 4);

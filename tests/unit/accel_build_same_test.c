@@ -3,8 +3,8 @@
 #include "accel_build_fixture.h"
 #include "unit.h"
 
-/* Scattered triangles, every fourth of them in one place, which only medians can split, with 0 and
-   -0. */
+/* Scattered triangles; every fourth is at one place, which only medians can split. Some coordinates
+   are 0 and -0. */
 static struct soup soup_with_heap(uint32_t count)
 {
     struct soup soup = soup_scattered(count, 0.02f);
@@ -58,8 +58,8 @@ TEST(same_bytes_for_any_thread_count)
         soup_finish(&soups[i]);
 }
 
-/* Planes depend only on the set of triangles. The index decides only between triangles that no
-   plane separates, those with equal centroids on all three axes. */
+/* Splitting planes depend only on the set of triangles. The order decides only between triangles
+   that no plane separates: those with equal centroids on all three axes. */
 TEST(same_tree_for_any_order)
 {
     static const struct bvh_params params[] = {{.builder = WHIT_BUILD_BINNED},

@@ -1,5 +1,5 @@
-/* The arrays of a whole scene: where each mesh is in them, what the records of triangles say, and
-   instances at any pose. */
+/* The arrays of a whole scene: the place of each mesh, the records of triangles, and instances at
+   any pose. */
 #include "accel/pose.h"
 #include "accel/validate.h"
 #include "accel_fixture.h"
@@ -445,7 +445,7 @@ TEST(materials_become_bits)
     }
 }
 
-/* ---- Broken ones ---- */
+/* ---- Broken trees ---- */
 
 TEST(broken_scenes_are_refused)
 {

@@ -69,7 +69,7 @@ TEST(leaves_are_those_of_two)
         struct world world = world_of(scene, (struct accel_params){.flatten = flat != 0});
         struct accel *accel = world.accel;
         assert_int_equal(accel_pose(accel, &world.pose), WHIT_OK);
-        /* The second time only trees of what moved are made again. */
+        /* The second time only the trees of meshes that have moved are made again. */
         for (int again = 0; again < 2; ++again) {
             assert_int_equal(accel_widen(accel), WHIT_OK);
             for (uint32_t i = 0; i < (flat ? 1 : accel->mesh_count); ++i)

@@ -1,6 +1,6 @@
-/* The filter of NUMERICS_EXACT where its floats are worst. Triangles, spheres and rays are climbed
-   towards the largest error that its bound allows for; quotients are off by up to 2.5 units in the
-   last place, as Vulkan allows. What is found is measured in fractions. */
+/* Searches for the largest errors of the float filter of NUMERICS_EXACT, relative to its bounds, by
+   hill climbing over triangles, spheres and rays. Quotients are off by up to 2.5 ulp, as Vulkan
+   allows. The errors that the search finds are measured in fractions. */
 #include "hard_fixture.h"
 
 #include "fraction_fixture.h"
@@ -8,13 +8,14 @@
 
 enum { VERTICES = 3, STEPS_MAX = 5 };
 
-/* `steps`: of the three quotients of a ray, in floats, where 2.5 ulp let them go so far. */
+/* A ray with a triangle or a sphere. `steps`: number of floats by which each of the ray's three
+   quotients is moved, unless that is more than 2.5 ulp. */
 struct subject {
     float at[15]; /* origin, direction, vertices; or centre and radius */
     int steps[3];
 };
 
-/* ---- What the filter says, of a device that divides as badly as it may ---- */
+/* ---- Answers of the filter on a device whose divisions have the largest error allowed ---- */
 
 struct view {
     struct ray_setup ray;
@@ -63,15 +64,15 @@ static void look_at(const struct subject *s, struct view *out)
     out->foot = drop_perpendicular(ray, out->v[0], out->radius);
 }
 
-/* ---- What to climb: in double, which is sure to some 2^-40 of the bounds here ---- */
+/* ---- The errors to maximize, in double, which is accurate to some 2^-40 of the bounds ---- */
 
 enum aim {
-    EDGE_ERROR, /* of an edge function, of its bound */
-    WRONG_SIGN, /* what an edge function comes out as, on the other side of 0, of its bound */
-    T_ERROR,    /* of t, of half the interval of the key */
-    ROOM_ERROR, /* of a sphere's room, of its bound */
-    MISSED_BY,  /* what the room comes out as, on the other side of 0, of its bound */
-    END_ERROR,  /* of the t of an end, of half the interval of its key */
+    EDGE_ERROR, /* error of an edge function, as a share of its bound */
+    WRONG_SIGN, /* size of an edge function with the wrong sign, as a share of its bound */
+    T_ERROR,    /* error of t, as a share of half the interval of the key */
+    ROOM_ERROR, /* error of a sphere's room, as a share of its bound */
+    MISSED_BY,  /* size of the room with the wrong sign, as a share of its bound */
+    END_ERROR,  /* error of the t of an end, as a share of half the interval of its key */
 };
 
 struct truth {
@@ -166,7 +167,7 @@ static float either_sign(float x)
     return either(x, -x);
 }
 
-/* Just above a power of two roundings are largest. */
+/* A random coordinate, often just above a power of two, where roundings are relatively largest. */
 static float coordinate(void)
 {
     uint32_t kind = random_below(&random_state, 3);
@@ -176,8 +177,9 @@ static float coordinate(void)
                        : either_sign(ldexpf(mantissa, (int)random_below(&random_state, 6) - 3));
 }
 
-/* An edge right across a ray along a diagonal of space, as seen from far away for its size. Such
-   quotients are 1, where 2.5 ulp are most, and all errors of both ends may add up. */
+/* A ray along a diagonal of space, with a triangle across it that is far away for its size. The
+   quotients of such a ray are 1, where 2.5 ulp are relatively largest, and the errors of both ends
+   of an edge may add up. */
 static void start_across(struct subject *s)
 {
     int smaller = (int)random_below(&random_state, 6);
@@ -195,7 +197,7 @@ static void start_across(struct subject *s)
     }
 }
 
-/* Through the middle of a sphere along a diagonal of space, or at its edge. */
+/* A ray along a diagonal of space through the middle of a sphere, or at its edge. */
 static void start_at_sphere(struct subject *s)
 {
     int farther = (int)random_below(&random_state, 4);
@@ -221,7 +223,7 @@ static void start_anywhere(struct subject *s)
         s->at[i] = coordinate();
     for (int k = 0; k < 3; ++k)
         s->steps[k] = (int)random_below(&random_state, 2 * STEPS_MAX + 1) - STEPS_MAX;
-    if (random_below(&random_state, 2)) /* at the middle of the triangle */
+    if (random_below(&random_state, 2)) /* the ray goes to the middle of the triangle */
         for (int k = 0; k < 3; ++k)
             s->at[3 + k] = (s->at[6 + k] + s->at[9 + k] + s->at[12 + k]) / 3.0f - s->at[k];
 }
@@ -237,13 +239,13 @@ static void change_number(struct subject *s, int i)
         s->at[i] *= random_below(&random_state, 2) ? 2.0f : 0.5f;
     else if (how == 3)
         s->at[i] = coordinate();
-    else { /* by floats */
+    else { /* moves the number by a few floats */
         uint32_t by = random_below(&random_state, 1u << random_bits(&random_state) % 23) + 1;
         memcpy(&bits, &s->at[i], sizeof bits);
         bits += random_below(&random_state, 2) ? by : 0u - by;
         memcpy(&s->at[i], &bits, sizeof bits);
     }
-    float size = fabsf(s->at[i]); /* within which double is enough */
+    float size = fabsf(s->at[i]); /* from 2^-40 to 16 double is accurate enough */
     if (!(size >= 0x1p-40f && size <= 16.0f))
         s->at[i] = either_sign(1.0f);
 }
@@ -274,10 +276,10 @@ static void climb(struct subject *s, enum aim aim, bool ieee, uint32_t steps)
     }
 }
 
-/* ---- What was found, in fractions ---- */
+/* ---- Errors in fractions ---- */
 
-/* The edge functions of the triangle as it is given, in the filter's own units: of vertices p and q
-   relative to the origin, d.(p x q) / d.z, z being the dominant axis. */
+/* The exact edge functions of the triangle, in the filter's units: d.(p x q) / d.z for vertices p
+   and q relative to the origin, where z is the dominant axis. */
 static void edges_in_fractions(const struct view *view, mpq_t edge[VERTICES])
 {
     mpq_t p[VERTICES][3], d[3], o[3];
@@ -298,7 +300,7 @@ static void edges_in_fractions(const struct view *view, mpq_t edge[VERTICES])
         mpq_clears(p[0][k], p[1][k], p[2][k], d[k], o[k], NULL);
 }
 
-/* The largest error of an edge function, of its bound. */
+/* The largest error of an edge function, as a share of its bound. */
 static double worst_edge(const struct view *view)
 {
     mpq_t edge[VERTICES], computed;
@@ -330,7 +332,7 @@ static bool is_wrong_of_sphere(struct rational *rational, const struct view *vie
            !is_within(met && chord.far_there, chord.far_key, said->far_lo, said->far_hi);
 }
 
-/* Whether the filter is sure of what is not so. */
+/* Whether the filter is certain of a wrong answer. */
 static bool is_wrong(struct rational *rational, const struct view *view)
 {
     const struct exact_bounds *said = &view->bounds;
@@ -345,8 +347,8 @@ enum { CLIMB_STEPS = 20000 };
 struct search {
     const char *name;
     enum aim aim;
-    bool worst, ieee; /* begins where errors may add up; its quotients are rounded well */
-    double at_least;  /* what the search comes to with any seed, or it shows nothing */
+    bool worst, ieee; /* the search begins where errors may add up; quotients are rounded right */
+    double at_least;  /* the search must reach this share with any seed, else it shows nothing */
 };
 
 static const struct search searches[] = {
@@ -363,7 +365,7 @@ static const struct search searches[] = {
     {"ends of any ray", END_ERROR, false, false, 0.15},
 };
 
-/* From there up; to the sign of a number by way of its error. */
+/* Climbs from a random start; towards a wrong sign it first climbs towards a large error. */
 static struct subject climb_for(const struct search *search)
 {
     struct subject s;

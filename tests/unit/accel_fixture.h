@@ -1,5 +1,5 @@
-/* Meshes that builders get wrong, rays that hit them where it is hardest, scenes with their trees,
-   and the answers to hold against each other. */
+/* Meshes that are difficult for builders, rays at their vertices and edges, scenes with their
+   trees, and hits to compare. */
 #ifndef ACCEL_FIXTURE_H
 #define ACCEL_FIXTURE_H
 
@@ -27,7 +27,7 @@ static inline float random_within(float max)
     return max * random_float_signed(&random_state);
 }
 
-/* In a cube around the origin. */
+/* A random point in a cube around the origin. */
 static inline struct vec3 random_point(float max)
 {
     float x = random_within(max), y = random_within(max), z = random_within(max);
@@ -43,10 +43,10 @@ static inline float either(float a, float b)
 
 struct soup {
     const char *name;
-    float *positions;  /* 9 a triangle: vertices are not shared, but may be equal */
-    uint32_t *indices; /* 3 a triangle */
+    float *positions;  /* 9 for each triangle: vertices are not shared, but may be equal */
+    uint32_t *indices; /* 3 for each triangle */
     struct bvh_box *boxes;
-    struct bvh_triangles triangles; /* of the above */
+    struct bvh_triangles triangles; /* points to the arrays above */
     uint32_t count;
 };
 
@@ -90,7 +90,7 @@ static inline void soup_box(struct soup *soup)
                                             soup_vertex(soup, i, 2));
 }
 
-/* Takes the mesh over. */
+/* Takes ownership of the mesh. */
 static inline struct soup soup_of_mesh(const char *name, struct scene_mesh mesh)
 {
     struct soup soup = soup_make(name, mesh.triangle_count);
@@ -124,7 +124,7 @@ static inline struct soup soup_landscape(uint32_t steps)
     return soup;
 }
 
-/* Each within a cube of side `size` of its own, whose middle is in the unit cube. */
+/* Triangles that each lie within a cube of side `size`, whose middle is in the unit cube. */
 static inline struct soup soup_scattered(uint32_t count, float size)
 {
     struct soup soup = soup_make("scattered", count);
@@ -138,7 +138,7 @@ static inline struct soup soup_scattered(uint32_t count, float size)
     return soup;
 }
 
-/* Long thin diagonals through each other. */
+/* Long thin triangles along diagonals, which cross each other. */
 static inline struct soup soup_hair(uint32_t count, float thickness)
 {
     struct soup soup = soup_make("hair", count);
@@ -194,7 +194,7 @@ static inline struct soup soup_rooms(uint32_t quads)
     return soup;
 }
 
-/* Each `ratio` times as large as the one before, in the middle of the exponents. */
+/* Triangles that are each `ratio` times as large as the one before, with exponents around 0. */
 static inline struct soup soup_exponential(uint32_t count, double ratio)
 {
     struct soup soup = soup_make("exponential", count);
@@ -208,7 +208,7 @@ static inline struct soup soup_exponential(uint32_t count, double ratio)
     return soup;
 }
 
-/* Finite bits of any kind up to `limit`. */
+/* Triangles with random finite bits as coordinates, up to `limit`. */
 static inline struct soup soup_garbage(uint32_t count, float limit)
 {
     struct soup soup = soup_make("garbage", count);
@@ -232,7 +232,7 @@ struct world {
     struct scene_pose pose;
 };
 
-/* Trees of a frozen scene, validated. */
+/* Builds the trees of a frozen scene, and validates them. */
 static inline struct accel *accel_of(const struct scene *scene, struct accel_params params)
 {
     struct accel *accel = NULL;
@@ -241,7 +241,7 @@ static inline struct accel *accel_of(const struct scene *scene, struct accel_par
     return accel;
 }
 
-/* Takes the scene over and freezes it. */
+/* Takes ownership of the scene and freezes it. */
 static inline struct world world_of(struct scene *scene, struct accel_params params)
 {
     struct world world = {.scene = scene_ready(scene)};
@@ -258,7 +258,7 @@ static inline void world_finish(struct world *world)
     soup_finish(&world->soup);
 }
 
-/* One material, one instance at the origin. */
+/* A scene with one material and one instance at the origin. */
 static inline struct scene *soup_scene(const struct soup *soup)
 {
     struct scene *scene = scene_begin(&silent, soup->name);
@@ -266,7 +266,7 @@ static inline struct scene *soup_scene(const struct soup *soup)
     return scene;
 }
 
-/* Takes the soup over. */
+/* Takes ownership of the soup. */
 static inline struct world world_of_soup(struct soup soup, struct bvh_params params)
 {
     struct world world = world_of(soup_scene(&soup), (struct accel_params){.mesh = params});
@@ -289,13 +289,14 @@ static inline struct gpu_ray ray_through(struct vec3 origin, struct vec3 target)
     return ray_along(origin, vec3_sub(target, origin));
 }
 
-/* The origin is in a cube around (0, 0, 0), and is drawn after the target. */
+/* A ray to `target` from a random origin in a cube around (0, 0, 0). */
 static inline struct gpu_ray ray_from_cube(float max, struct vec3 target)
 {
     return ray_through(random_point(max), target);
 }
 
-/* From around the bounds: half of them to points inside, half to vertices and points of edges. */
+/* A ray from around the bounds; half of the rays go to points inside of triangles, half to vertices
+   and points of edges. */
 static inline struct gpu_ray soup_ray(const struct soup *soup, const struct bvh_box *bounds,
                                       uint32_t index)
 {
@@ -305,7 +306,7 @@ static inline struct gpu_ray soup_ray(const struct soup *soup, const struct bvh_
     const float *a = soup_vertex(soup, triangle, corner);
     const float *b = soup_vertex(soup, triangle, (corner + 1) % 3);
     float s = random_below(&random_state, 2) ? 0.0f : random_float(&random_state);
-    bool level = index % 8 == 3; /* in the plane of many boxes */
+    bool level = index % 8 == 3; /* the ray is in the plane of many boxes */
     uint32_t axis = random_below(&random_state, 3);
     for (uint32_t k = 0; k < 3; ++k) {
         float size = bounds->hi[k] - bounds->lo[k];
@@ -319,7 +320,7 @@ static inline struct gpu_ray soup_ray(const struct soup *soup, const struct bvh_
     return ray;
 }
 
-/* A point of an instance. */
+/* Transforms a point of an instance to world space. */
 static inline struct vec3 in_world(const struct accel *accel, uint32_t instance, struct vec3 p)
 {
     if (accel->flat || accel->single_identity)

@@ -302,7 +302,7 @@ static struct scene *two_objects(const struct affine *place)
     return scene;
 }
 
-/* Takes the scene over. */
+/* Takes ownership of the scene. */
 static void takes_one_tree(const char *what, struct scene *scene, uint64_t memory_limit,
                            bool expected)
 {
