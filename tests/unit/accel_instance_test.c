@@ -1,4 +1,4 @@
-/* How accurate hits in instances are, compared with the same triangles transformed in double. */
+/* The accuracy of hits in instances, compared with the same triangles transformed in double. */
 #include "accel_fixture.h"
 #include "unit.h"
 

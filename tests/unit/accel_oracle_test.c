@@ -1,5 +1,5 @@
-/* The double-precision oracle: right where the answer is known, the same by tree and by brute
-   force, and its margin explains every difference from the float twin. */
+/* The oracle in double: it is right where the answer is known, gives the same hits by tree and by
+   brute force, and its margin explains every difference from the float mirror. */
 #include "accel_fixture.h"
 
 #include "oracle/oracle.h"
@@ -19,7 +19,7 @@ static struct world sphere_world(void)
     return world_of_soup(soup_sphere(20, 20), (struct bvh_params){0});
 }
 
-/* Turned, stretched, mirrored and pushed off the origin, some on top of each other. */
+/* Instances that are turned, stretched, mirrored and away from the origin, some overlapping. */
 static struct world instances_world(void)
 {
     random_state = 2;
@@ -48,7 +48,7 @@ static struct gpu_ray random_ray(const struct world *world, uint32_t i)
     return ray;
 }
 
-/* Through a vertex, or a point of an edge, of some triangle. */
+/* A ray through a vertex or a point of an edge of some triangle. */
 static struct gpu_ray aimed_ray(const struct world *world, uint32_t i)
 {
     struct vec3 target = point_of_record(world->accel, i % 2);
@@ -62,7 +62,7 @@ static bool same_double(double a, double b)
     return a == b || (isnan(a) && isnan(b));
 }
 
-/* What needs no trees does not read a node. */
+/* The same trees without their nodes: brute force reads none. */
 static struct accel without_nodes(const struct world *world)
 {
     struct accel accel = *world->accel;
@@ -97,15 +97,15 @@ TEST(tree_gives_what_brute_force_gives)
     }
 }
 
-/* ---- The float twin ---- */
+/* ---- The float mirror ---- */
 
 struct tally {
     uint32_t rays, hits, differ, doubtful, off;
-    double worst; /* of t, in its error bounds */
+    double worst; /* largest error of t, as a share of its bound */
 };
 
-/* A different answer must be one that the margin allows; an equal one must have a t within reach.
- */
+/* If the float mirror hits something else, the margin must allow it; else t must be within its
+   error bound. */
 static void compare_with_twin(const struct world *world, const struct gpu_ray *ray,
                               struct tally *tally)
 {
@@ -131,9 +131,9 @@ static void compare_with_twin(const struct world *world, const struct gpu_ray *r
     }
 }
 
-/* The bound is no excuse for everything: random rays are nearly all certain, and aimed ones do
-   reach what it covers. Of spheres those rays are in doubt that graze one or tie with its twin; far
-   off all do. */
+/* The margin does not excuse everything: nearly all random rays are certain, and aimed rays do give
+   other answers within it. With spheres, rays are in doubt that graze one or hit two at one place;
+   from far away all rays graze. */
 static const struct {
     const char *name;
     struct world (*make)(void); /* NULL: scattered spheres of these sizes */
@@ -191,8 +191,8 @@ TEST(margins_explain_the_float_twin)
 
 static const float unit_triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 
-/* Beside the triangle by how little the float test may not know; coordinates this small are exact.
- */
+/* One ray passes the triangle by so little that the float test may be wrong; coordinates this small
+   are exact. */
 TEST(one_triangle_is_known)
 {
     static const struct {
@@ -249,8 +249,9 @@ TEST(ties_go_to_the_smaller_index)
     world_finish(&world);
 }
 
-/* A square across each axis, met along that axis at its middle, its borders and its corners, by
-   rays that lie in faces of its box (NUMERICS B3): 0 and -0, from both sides. */
+/* Rays along each axis, from both sides and with components 0 and -0, hit a square across that axis
+   at its middle, its borders and its corners. They lie in faces of its box (B3 of the catalogue of
+   hard cases). */
 TEST(borders_are_met_along_the_axes)
 {
     uint32_t rays = 0, missed = 0;

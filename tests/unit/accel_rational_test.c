@@ -1,6 +1,6 @@
-/* The rational oracle in whole scenes of triangles and spheres: what it finds by trees and filter,
-   and without, is the least of all points in the order of hits. That these points are right is the
-   matter of hard_triangle_test.c and hard_sphere_test.c. */
+/* The rational oracle in whole scenes of triangles and spheres: with trees and filter, and without,
+   it finds the first of all points in the order of hits. hard_triangle_test.c and
+   hard_sphere_test.c test that these points are right. */
 #include "accel_fixture.h"
 
 #include "coordinate_fixture.h"
@@ -8,13 +8,13 @@
 #include "sphere_fixture.h"
 #include "unit.h"
 
-/* ---- The definition, with nothing left out ---- */
+/* ---- Hits by the definition, from all points ---- */
 
 struct listing {
     const struct gpu_ray *world;
     const struct rational_query *query;
     struct rational_hit best;
-    uint32_t count; /* of ends and points that count */
+    uint32_t count; /* number of points and ends of chords that count as hits */
 };
 
 static bool comes_before(const struct rational_hit *a, const struct rational_hit *b)
@@ -85,7 +85,7 @@ static struct rational_hit list_all(struct rational *rational, const struct acce
 
 /* ---- Scenes ---- */
 
-/* Each triangle three times, one of them turned round. */
+/* Each triangle three times, once with reversed winding. */
 static struct soup soup_thrice(uint32_t count)
 {
     struct soup once = soup_scattered(count, 2.0f), soup = soup_make("thrice", 3 * count);
@@ -101,7 +101,7 @@ static struct soup soup_thrice(uint32_t count)
     return soup;
 }
 
-/* Releases the soup. `placed`: so many instances; 0: as it is. */
+/* Releases the soup. `placed`: number of instances at random places; 0: one without a transform. */
 static struct scene *scene_of(struct soup soup, uint32_t placed, double spread)
 {
     struct scene *scene = scene_begin(&silent, soup.name);
@@ -136,7 +136,7 @@ static struct scene_mesh whole_spheres(uint32_t count)
 enum { ALONE = 40, TWINS = 50 };
 static const double set_apart[12] = {ALONE, 0, 0, 1, TWINS, 0, 0, 1, TWINS, 0, 0, 1};
 
-/* One sphere mesh, where it is, that has those set apart as well. */
+/* A scene of one sphere mesh without a transform, with the spheres set apart added to it. */
 static struct scene *spheres_apart(struct scene_mesh mesh)
 {
     double all[4 * 128];
@@ -150,7 +150,7 @@ static struct scene *spheres_apart(struct scene_mesh mesh)
     return scene;
 }
 
-/* Spheres in instances with even numbers, a torus in the others, and those set apart. */
+/* Instances with even numbers have spheres, the others a torus; the spheres set apart are added. */
 static struct scene *mixed_scene(struct scene_mesh mesh, double spread, bool even_scale)
 {
     struct scene *scene = scene_begin(&silent, "mixed");
@@ -170,8 +170,8 @@ static struct scene *mixed_scene(struct scene_mesh mesh, double spread, bool eve
 
 /* ---- Rays ---- */
 
-/* At a point of a record, from nearby or far away; a quarter of those at scenes of triangles along
-   an axis. */
+/* A ray to a point of a record, from nearby or far away; in scenes of triangles a quarter of the
+   rays is along an axis. */
 static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index, float spread)
 {
     struct vec3 target = point_of_record(accel, index), away = point_of(in_cube);
@@ -183,7 +183,8 @@ static struct gpu_ray aimed_ray(const struct accel *accel, uint32_t index, float
     return ray_through(vec3_add(target, vec3_scale(away, near ? spread : 1e4f * spread)), target);
 }
 
-/* From a whole point in a whole direction: ends tie, lines touch, origins lie on spheres. */
+/* A ray with an origin and a direction of integers: ends of chords tie, lines touch spheres,
+   origins lie on spheres. */
 static struct gpu_ray whole_ray(const struct accel *accel, uint32_t index, float spread)
 {
     struct gpu_ray ray = {.t_max = INFINITY};
@@ -199,8 +200,9 @@ static struct gpu_ray whole_ray(const struct accel *accel, uint32_t index, float
     return ray;
 }
 
-/* Into a sphere of those set apart, from outside and nearer to it than all else, so that it is left
-   next: of the middle of a radius and from at least 1.5 radii. `moved`: how far they all are. */
+/* A ray into a sphere set apart, whose second hit is the far end of the same chord, since all other
+   objects are farther away: it goes to within half a radius of the middle, from at least 1.5 radii
+   away. `moved`: offset of these spheres along x. */
 static struct gpu_ray ray_set_apart(float center, float moved)
 {
     struct vec3 middle = vec3_make(moved + center, 0, 0);
@@ -209,7 +211,7 @@ static struct gpu_ray ray_set_apart(float center, float moved)
                        target);
 }
 
-/* ---- Both beside each other ---- */
+/* ---- Comparisons ---- */
 
 struct tally {
     uint32_t rays, hits, steps, on_edges, ties, again, wrong;
@@ -237,7 +239,8 @@ static struct rational_hit compare(struct rational *rational, const struct accel
     return wanted;
 }
 
-/* All hits one behind the other; what is met from the first one; the ends of the interval at it. */
+/* Compares all hits along the ray in order, hits of rays that start at the first hit, and rays
+   whose interval ends or begins there. */
 static void compare_ray(struct rational *rational, const struct accel *accel, struct gpu_ray ray,
                         struct tally *tally)
 {
@@ -271,8 +274,8 @@ static void compare_ray(struct rational *rational, const struct accel *accel, st
 
 typedef struct gpu_ray (*ray_fn)(const struct accel *accel, uint32_t index, float spread);
 
-/* `apart`: an eighth of the rays meets the sphere that is alone, both ends one behind the other; an
-   eighth the two at one place, whose ends tie. How many hits were on edges. */
+/* `apart`: an eighth of the rays hits both ends of the single sphere, and an eighth the two spheres
+   at one place, whose ends tie. Gives the number of hits on edges. */
 static uint32_t compare_scene(const char *name, struct scene *scene, struct accel_params params,
                               ray_fn make, uint32_t rays, float spread)
 {
@@ -364,9 +367,9 @@ TEST(spheres_are_found_by_trees_and_without)
                       cases_few(rows[i].rays), rows[i].spread);
 }
 
-/* ---- What the filter leaves out ---- */
+/* ---- Primitives that the filter leaves out ---- */
 
-/* The filter is of use: few of random rays' triangles are left, and aimed rays do need integers. */
+/* The filter decides nearly all triangles of random rays, while aimed rays need integers. */
 TEST(integers_are_for_hard_cases)
 {
     struct world world = world_of_soup(soup_sphere(24, 12), (struct bvh_params){0});
@@ -434,7 +437,8 @@ TEST(doubles_leave_out_what_misses)
     world_finish(&world);
 }
 
-/* The least radius with which the line meets a sphere there: by halves of what floats' bits are. */
+/* The least radius with which the line meets a sphere at `center`, by bisection over the bits of
+   floats. */
 static float min_radius(struct rational *rational, struct vec3 origin, struct vec3 dir,
                         struct vec3 center)
 {
@@ -453,14 +457,14 @@ static float min_radius(struct rational *rational, struct vec3 origin, struct ve
     return radius;
 }
 
-/* From up to 2^27 radii away, where doubles cancel, at spheres that a float less of radius would
-   make it miss. */
+/* Rays from up to 2^27 radii away, where doubles cancel, hit spheres that they would miss if the
+   radius were one float smaller. */
 TEST(doubles_leave_out_nothing_that_is_hit)
 {
     enum { RAYS = 10000 };
     struct world world = world_of_ball();
     struct accel *accel = world.accel;
-    for (uint32_t i = 0; i < accel->node_count; ++i) { /* boxes leave out nothing */
+    for (uint32_t i = 0; i < accel->node_count; ++i) { /* so that boxes exclude no ray */
         vec3_store(accel->nodes[i].lo, vec3_make(-FLT_MAX, -FLT_MAX, -FLT_MAX));
         vec3_store(accel->nodes[i].hi, vec3_make(FLT_MAX, FLT_MAX, FLT_MAX));
     }
@@ -477,7 +481,7 @@ TEST(doubles_leave_out_nothing_that_is_hit)
         vec3_store(ray.origin, vec3_scale(point_of(in_cube), far));
         vec3_store(ray.dir, vec3_sub(vec3_add(center, aside), vec3_load(ray.origin)));
         if (vec3_dot(vec3_sub(center, vec3_load(ray.origin)), vec3_load(ray.dir)) < 0.1f)
-            continue; /* perhaps behind */
+            continue; /* the sphere may be behind the origin */
         sphere->v1[0] = min_radius(rational, vec3_load(ray.origin), vec3_load(ray.dir), center);
         ++asked;
         rational_trace(rational, &ray, NULL, &hit);
@@ -508,7 +512,7 @@ TEST(senseless_rays_hit_nothing)
         struct rational_hit hit;
         struct rational_query query = {.brute = i % 2 == 1};
         rational_trace(rational, &rays[i / 2], &query, &hit);
-        if (i / 2 == 6) /* t_max that is no number: none, as in traversal */
+        if (i / 2 == 6) /* a t_max of NaN sets no limit, as in traversal */
             assert_int_not_equal(hit.primitive, HIT_NONE);
         else
             assert_true(hit.primitive == HIT_NONE && hit.t == INFINITY);

@@ -1,4 +1,4 @@
-/* Reports on trees against other ways to the same numbers: by hand, by brute force, by rays. */
+/* Compares reports on trees with the same numbers by hand, by brute force and by rays. */
 #include "accel_fixture.h"
 
 #include "twin/epo.h"
@@ -37,7 +37,7 @@ TEST(a_triangle_is_cut_to_a_box)
     }
 }
 
-/* What is clipped away and what is kept are the whole. */
+/* The areas of the clipped part and of the rest add up to the whole. */
 TEST(pieces_add_up)
 {
     uint64_t seed = 1;
@@ -75,7 +75,7 @@ static void mark(const struct accel *accel, uint32_t node, uint8_t *inside)
     mark(accel, at->first + 1, inside);
 }
 
-/* Every node against every triangle. */
+/* The end-point overlap, computed from all pairs of a node and a triangle. */
 static double brute_overlap(const struct accel *accel, const struct scene_mesh *mesh)
 {
     const struct accel_mesh *m = &accel->meshes[0];
@@ -144,9 +144,10 @@ TEST(overlap_is_that_of_brute_force)
     }
 }
 
-/* Two leaves of one triangle each. The box of the second, [1, 3] x [0, 2], holds of the first,
-   (0, 0) (2, 0) (0, 2), what is right of x = 1: area 1/2; that of the first, [0, 2] x [0, 2], of
-   the second, (1, 2) (3, 0) (3, 2), what is left of x = 2: area 1/2. Both surfaces are 2. */
+/* Two leaves of one triangle each. The box of the second, [1, 3] x [0, 2], contains the part of the
+   first triangle, (0, 0) (2, 0) (0, 2), that is right of x = 1: area 1/2. The box of the first,
+   [0, 2] x [0, 2], contains the part of the second, (1, 2) (3, 0) (3, 2), that is left of x = 2:
+   area 1/2. Each triangle has an area of 2. */
 TEST(overlap_by_hand)
 {
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
@@ -211,7 +212,7 @@ TEST(threads_change_nothing)
 
 /* ---- Visits ---- */
 
-/* Triangles of hardly any area along the diagonals of their boxes: nothing ends a ray. */
+/* Triangles with hardly any area, along the diagonals of their boxes, so that no ray hits one. */
 static struct soup soup_apart(uint32_t side, double size)
 {
     uint32_t count = side * side * side;
@@ -243,7 +244,8 @@ TEST(nothing_hit_is_visited_as_predicted)
     }
 }
 
-/* Behind a hit nothing is opened: a closed sphere costs less than the areas say. */
+/* Nodes behind a hit are not opened, so that rays at a closed sphere open fewer than predicted from
+   areas. */
 TEST(hits_save_visits)
 {
     struct world world = world_of_soup(soup_sphere(80, 80), builds[0]);
@@ -253,7 +255,7 @@ TEST(hits_save_visits)
     world_finish(&world);
 }
 
-/* A mesh counts once however often it is placed, and by the area of its box. */
+/* A mesh counts once, whatever the number of its instances, and by the area of its box. */
 TEST(meshes_are_weighed_by_area)
 {
     struct scene *scene = scene_begin(&silent, "test");

@@ -1,5 +1,5 @@
-/* Spatial splits: where they are made, how triangles are clipped, and hits at the seams. That every
-   tree is right is the matter of accel_build_tree_test.c. */
+/* Spatial splits: the conditions for a split, the clipping of triangles, and hits at the seams.
+   accel_build_tree_test.c tests that every tree is right. */
 #include "accel_build_fixture.h"
 
 #include "bvh/clip.h"
@@ -36,7 +36,8 @@ TEST(clips_are_known)
     }
 }
 
-/* Planes through vertices, and anywhere; slivers down to lines and points, near and far. */
+/* Clips by planes through vertices and at random places, of triangles down to lines and points,
+   near and far from the origin. */
 TEST(clips_hold_what_is_inside)
 {
     random_state = 3;
@@ -73,7 +74,7 @@ TEST(clips_hold_what_is_inside)
                 assert_true(box.lo[k] >= cell.lo[k] && box.lo[k] <= box.hi[k] &&
                             box.hi[k] <= cell.hi[k]);
         } else {
-            /* Only what touches the cell may be lost to rounding. */
+            /* Rounding may lose only a part that just touches the cell. */
             for (int k = 0; k < 3; ++k) {
                 cell.lo[k] = nextafterf(cell.lo[k], INFINITY);
                 cell.hi[k] = nextafterf(cell.hi[k], -INFINITY);
@@ -86,11 +87,11 @@ TEST(clips_hold_what_is_inside)
     assert_true(empty > 300 && empty < 7000);
 }
 
-/* ---- What is split ---- */
+/* ---- Budgets ---- */
 
-/* How many references there are, and how many of them are parts, by budget and by how much must
-   overlap. Without the rule that references which would cost less whole are not split, there were
-   15,679 in the last row. */
+/* The number of references by budget, and by the overlap that a split needs. In the last row there
+   would be 15,679 references without the rule that a reference is not split if it costs less as a
+   whole. */
 TEST(budgets_are_kept_and_used)
 {
     enum { COUNT = 4000 };
@@ -122,7 +123,7 @@ TEST(budgets_are_kept_and_used)
     soup_finish(&soup);
 }
 
-/* Splits are tried only where enough overlaps. */
+/* Splits are tried only where children overlap enough. */
 TEST(overlap_decides)
 {
     static const float alphas[] = {1e-9f, 1e-2f, 0.1f, 1.0f};
@@ -169,8 +170,8 @@ TEST(whole_triangles_stay_whole)
 
 /* ---- Hits ---- */
 
-/* At where edges of triangles pass faces of leaves, from near and far: where a part's box has its
-   corners. Every fourth ray goes nearly along the triangle. */
+/* A ray, from near or far, to a point where an edge of a triangle crosses a face of a leaf: there
+   the box of a part has its corners. Every fourth ray is nearly parallel to the triangle. */
 static struct gpu_ray ray_at_leaf(const struct accel *accel, double distance)
 {
     const struct accel_mesh *mesh = &accel->meshes[0];
@@ -228,7 +229,7 @@ TEST(hits_are_the_same)
     }
 }
 
-/* A leaf that loses a piece of a part: the validator misses it. */
+/* The validator notices a leaf whose box lacks a piece of a part. */
 TEST(lost_parts_are_noticed)
 {
     random_state = 12;

@@ -1,16 +1,16 @@
-/* Spheres met again from their own surface, and in one tree for all instances. That trees find them
-   is the matter of hard_tree_test.c, and where of accel_oracle_test.c. */
+/* Rays that start on a sphere and hit it again, and spheres in one tree for all instances.
+   hard_tree_test.c tests that trees find spheres, and accel_oracle_test.c tests the t of hits. */
 #include "accel_fixture.h"
 #include "sphere_fixture.h"
 #include "unit.h"
 
 struct own {
     uint32_t met, missed, wrong;
-    double worst; /* of t, in bounds */
+    double worst; /* largest error of t, as a share of its bound */
 };
 
-/* Where a ray from (about) the surface of a sphere meets it again, in double: twice the way to the
-   middle of the chord, but for how far the origin is off. */
+/* Computes in double where a ray from about the surface of a sphere hits it again: the far end of
+   its chord. */
 static bool meets_own(const float *sphere, const struct gpu_ray *ray, double *t, double *error,
                       double *cosine)
 {
@@ -26,7 +26,8 @@ static bool meets_own(const float *sphere, const struct gpu_ray *ray, double *t,
     double half = sqrt(fmax(half2, 0.0) / dd), u = 0x1p-24;
     *t = cd / dd + half;
     *cosine = cd / sqrt(dd * cc);
-    /* The perpendicular is off by 8 roundings of the radius; the chord by that over its slope. */
+    /* The error of the perpendicular is 8 roundings of the radius; that of the chord is larger
+       where the chord is short. */
     *error = 8.0 * u * sqrt(rr / dd) * (2.0 + sqrt(rr) / (half * sqrt(dd)));
     return cd > 0.0 && half2 >= 0.0;
 }
@@ -51,11 +52,11 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
     uint32_t status = 0;
     traverse_float(accel, ORDER_DISTANCE, &ray, false, 0, primitive, &hit, NULL, &status);
     bool wanted = meets_own(sphere, &ray, &t, &error, &cosine);
-    /* The sign of a sum of three rounded products. */
+    /* So close to 0 the sign of the cosine, a sum of three rounded products, is not certain. */
     if (fabs(cosine) < 8.0 * 0x1p-24)
         return;
     bool met = hit.primitive == primitive;
-    /* From a little outside rays may pass the sphere that they graze on their way inwards. */
+    /* A ray that starts slightly outside may miss the sphere if it grazes it on its way inwards. */
     bool grazes = cosine > 0.0 && cosine * cosine <= 64.0 * 0x1p-24;
     own->wrong += met != wanted && !grazes;
     own->met += met;

@@ -1,4 +1,4 @@
-/* The C traversal on trees written by hand: deep ones, and what it counts. */
+/* The float mirror's traversal of trees written by hand: deep trees, and its counters. */
 #include "accel_fixture.h"
 
 #include "tree_fixture.h"
@@ -56,7 +56,7 @@ TEST(deep_trees_are_walked)
             /* Order BASIC keeps as much from below: the rest of the chain is first in each pair. */
             bool deep = way % 2 || order == ORDER_BASIC;
             assert_int_equal(cost.stack, deep ? depth : 1);
-            /* What was pushed is opened once it is popped, even behind the hit. */
+            /* A node that was pushed is opened once it is popped, even if it is behind the hit. */
             assert_int_equal(cost.depth, deep || depth == 1 ? depth : 2);
             params.any = true;
             assert_int_not_equal(trace_with(accel, params, &ray, NULL).primitive, HIT_NONE);
@@ -82,7 +82,7 @@ TEST(too_deep_trees_are_reported)
     accel_destroy(accel);
 }
 
-/* What the traversal of a chain must count, worked out by hand. */
+/* The counters of a traversal of a chain have the values that were worked out by hand. */
 TEST(costs_are_those_of_the_chain)
 {
     enum { DEPTH = 10 };

@@ -1,4 +1,4 @@
-/* A validator that refuses every way of breaking a tree. */
+/* The validator refuses every way of breaking a tree. */
 #include "accel_build_fixture.h"
 #include "unit.h"
 

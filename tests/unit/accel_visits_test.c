@@ -1,11 +1,11 @@
-/* How many nodes rays open in the trees of different builders, and in different orders. */
+/* Numbers of nodes that rays open in the trees of different builders, and in different orders. */
 #include "accel_fixture.h"
 #include "unit.h"
 
 enum { RAYS = 4000 };
 
-/* Rays at a soup; without one, random rays inside the box -1..1 that holds what is small. Hits end
-   them. */
+/* Traces closest-hit rays at a soup, or, if it is NULL, random rays in the box -1..1, where the
+   small triangles are. */
 static struct gpu_cost cost_of(const struct scene *scene, const struct soup *soup,
                                struct bvh_params params, uint32_t order)
 {
@@ -51,14 +51,13 @@ TEST(one_giant_costs_little)
     soup_finish(&soup);
 }
 
-/* The order of the source report, no order, opens the most nodes. Spatial splits save some where
-   boxes overlap. */
+/* ORDER_BASIC opens the most nodes. Spatial splits save some where boxes overlap. */
 TEST(orders_and_splits_save_visits)
 {
     random_state = 10;
     const struct {
         struct soup soup;
-        double spatial; /* of what the bins open, at most */
+        double spatial; /* most nodes with spatial splits, as a share of those with binned splits */
     } rows[] = {{soup_terrain(64), 1.02},
                 {soup_sphere(30, 20), 1.02},
                 {soup_rooms(1500), 0.7},

@@ -1,4 +1,4 @@
-/* The smallest kernel with everything: constants, a buffer, pushed words. */
+/* A small kernel with specialization constants, a buffer and push constants. */
 #ifndef AFFINE_FIXTURE_H
 #define AFFINE_FIXTURE_H
 

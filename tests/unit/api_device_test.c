@@ -1,4 +1,4 @@
-/* Devices that a thread opens, through the public header. */
+/* Devices that another thread opens, through the public header. */
 #include <pthread.h>
 
 #include "unit.h"

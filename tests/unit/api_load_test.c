@@ -1,5 +1,5 @@
-/* The library in a program of somebody else: what it does to foreign files is done to its children,
-   and kinds are enumerations with words. */
+/* The library in a host program: foreign files are read in child processes, which leave the host
+   unchanged, and all values of enumerations have words. */
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>
@@ -10,7 +10,7 @@
 #include "whit.h"
 #include "whit_program.h"
 
-/* All that a sandbox or a handler would change of this process. */
+/* The state of this process that a sandbox or a signal handler would change. */
 struct host {
     char confinement[512];
     void (*handlers[NSIG])(int);
@@ -67,7 +67,7 @@ TEST_IN(the_host_is_left_as_it_was, folder_begin, folder_end)
     assert_int_equal(rmdir(folder), 0);
 }
 
-/* Wrapped at link time: what the last child was allowed. */
+/* Wrapped at link time: the limits of the last child. */
 enum child_end __real_child_run(const struct child_limits *limits,
                                 int (*fn)(void *user, void *to, child_write write), void *user,
                                 struct child_reply *reply);

@@ -1,11 +1,11 @@
-/* Error falls with samples and with bounces in every scene of scenes/, or it is said why not: each
-   rise is listed, and its reason is checked. Errors are RMSE against the reference in double. */
+/* In every scene of scenes/ the error falls with more samples and with more bounces; each rise is
+   printed, and must have the one known reason. Errors are RMSE against the reference in double. */
 #include <glob.h>
 #include <math.h>
 
 #include "scene_fixture.h"
 
-/* As `whit cost` has it (host/cost/measure.h). */
+/* The values that `whit cost` uses (host/cost/measure.h). */
 enum { WIDTH = 32, HEIGHT = 24, SAMPLES = 64, DEPTH = 32, LIGHT_SAMPLES = 64 };
 static const double BAILOUT = 0x1p-16;
 
@@ -66,8 +66,8 @@ struct tally {
     int steps, rises, unexplained;
 };
 
-/* The one reason there is: linear light of pixels over white, of which few samples say anything;
-   then what is shown of them does not get worse. */
+/* The one known reason is pixels brighter than white, whose linear light few samples estimate
+   badly; the error of the displayed picture must not rise then. */
 static void compare(struct tally *tally, const char *name, const char *knob, uint32_t setting,
                     const struct error *before, const struct error *after)
 {
@@ -83,7 +83,7 @@ static void compare(struct tally *tally, const char *name, const char *knob, uin
                   after->bright, WIDTH * HEIGHT, is_bright ? "bright pixels" : "UNEXPLAINED");
 }
 
-/* One picture after the other with more of one knob, beside one reference. */
+/* Draws pictures with more and more samples or bounces, and compares them with one reference. */
 static void check_knob(const char *name, bool depth, struct tally *tally)
 {
     static const uint32_t samples[] = {1, 4, 16, SAMPLES}, depths[] = {0, 1, 2, 4, 8, 16};

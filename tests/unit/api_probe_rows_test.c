@@ -1,4 +1,5 @@
-/* Ray trees in rows: what brought most first, shadow rays that ended alike in one row. */
+/* Rows of a ray tree: the ray that brings the most light comes first, and shadow rays that ended
+   alike share a row. */
 #include "unit.h"
 #include "whit.h"
 
@@ -34,7 +35,7 @@ static int make_report(void **state)
     put(9, WHIT_RAY_REFLECTED, 0, WHIT_PROBE_BAILOUT, 0.0f);
     put(10, WHIT_RAY_REFRACTED, 0, WHIT_PROBE_OPAQUE, 0.3f);
     put(11, WHIT_RAY_SHADOW, 10, WHIT_PROBE_REACHED, 1.0f);
-    rays[5].device.instance = 3; /* another blocker than that of 1 and 3 */
+    rays[5].device.instance = 3; /* not the blocker of rays 1 and 3 */
     return 0;
 }
 

@@ -1,5 +1,5 @@
-/* Pictures that get better: they are those of as many samples, and the estimate of what is wrong is
-   held against the reference in double, pixel by pixel. */
+/* Refined pictures equal those with the same number of samples at once, and the estimated error is
+   compared with the reference in double, pixel by pixel. */
 #include <glob.h>
 #include <math.h>
 
@@ -169,19 +169,19 @@ TEST(what_is_not_there_is_refused)
     scene_close();
 }
 
-/* ---- The estimate beside the truth ---- */
+/* ---- The estimate compared with the true error ---- */
 
-/* What the estimate is to be: of the pixels where it or the error is over 1/512, at least the error
-   in so many of 100, and at most so many times it in the median. */
+/* Requirements for the estimate, over the pixels where it or the error exceeds SEEN: it is at least
+   the error in COVERED_MIN % of them, and the median of estimate / error is at most RATIO_MAX. */
 static const double COVERED_MIN = 95.0, RATIO_MAX = 8.0, SEEN = 1.0 / 512.0;
 enum { SAMPLES_FIRST = 16, SAMPLES_LAST = 64, TRUTH_SAMPLES = 256, TRUTH_DEPTH = 255 };
 
-/* Without a bail-out rays do not end: glass before glass calls for twice as many at each bounce. So
-   the truth lets weights below this go. Half of it changes no channel of a pixel by more than 3e-4
-   in any scene but the one below. */
+/* Without a bail-out rays would not end, since glass before glass doubles their number at each
+   bounce. So the true picture cuts rays with a weight below this. Half of the value changes no
+   channel of a pixel by more than 3e-4 in any scene but the one below. */
 static const double TRUTH_BAILOUT = 1e-5;
 
-/* Whose truth takes too long even so, by hours: it is of smaller pictures and larger weights. */
+/* Scenes whose true picture would still take hours: it is smaller, and its bail-out is larger. */
 static const struct {
     const char *name;
     uint32_t sides_by;
@@ -207,7 +207,7 @@ static struct question question_of(const char *name)
     return question;
 }
 
-/* Where the estimate is not what it is to be, at one number of samples or more, and why. */
+/* Scenes whose estimate misses the requirements at some number of samples, with the reason. */
 static const char few_edges[] =
     "most pixels are smooth, and next to edges the estimate tells of more than there is";
 static const char noisy[] = "changes are like noise, and are small by chance in too many pixels";
@@ -236,8 +236,8 @@ static whit_image *truth_of(const struct refining *o, double bailout)
 }
 
 struct judged {
-    int pixels;             /* where estimate or error is over SEEN */
-    double covered, median; /* % of them; of the ratios estimate / error */
+    int pixels;             /* number of pixels where estimate or error exceeds SEEN */
+    double covered, median; /* % of these where estimate >= error; median of estimate / error */
     double rmse;
 };
 
@@ -280,7 +280,7 @@ static bool is_good(const struct judged *judged)
     return judged->covered >= COVERED_MIN && judged->median <= RATIO_MAX;
 }
 
-/* Prints a row for each number of samples; whether all of them are good. */
+/* Prints a row for each number of samples; true if the estimate meets the requirements in all. */
 static bool judge_scene(const char *path, const char *name)
 {
     const struct question question = question_of(name);
@@ -308,7 +308,7 @@ static bool judge_scene(const char *path, const char *name)
     return good;
 }
 
-/* They take turns. */
+/* The scenes of a short run, one at each commit. */
 static const char *const quick_scenes[] = {"balls.json", "many.json", "swarm.json"};
 
 static bool is_wanted(const char *name)
@@ -328,7 +328,7 @@ static const char *why_short(const char *name)
     return NULL;
 }
 
-/* A scene that falls short is in the list, and one that does not is not. */
+/* The scenes that do not meet the requirements are exactly those of the list above. */
 TEST(the_estimate_is_no_less_than_the_error_and_not_much_more)
 {
     glob_t paths;
