@@ -1,4 +1,5 @@
-/* What `whit devices` says of a GPU that Vulkan does not list: machines are folders here. */
+/* Hints of `whit devices` about a GPU that Vulkan does not list, with folders that stand for the
+   system folders of a machine. */
 #include <sys/stat.h>
 
 #include "app/devices/device_hints.h"

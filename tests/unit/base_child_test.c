@@ -109,7 +109,7 @@ TEST(reply_arrives_whole)
     }
 }
 
-/* Until somebody asks for the lock of children, or starts one without it. */
+/* Holds forks until another thread asks for the lock of children, or starts a child without it. */
 static void hold_forks(void *context)
 {
     atomic_bool *holds = context;

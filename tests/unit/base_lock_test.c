@@ -1,4 +1,4 @@
-/* Locks on files have one holder at a time, and never stay behind a process that has ended. */
+/* Locks on files have one holder at a time, and end with the process that holds them. */
 #include "base/lock.h"
 
 #include <signal.h>

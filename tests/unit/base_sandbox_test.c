@@ -68,7 +68,7 @@ static int end(void **state)
     return folder_end(state);
 }
 
-/* --- what is tried -------------------------------------------------------------------------- */
+/* --- trials --------------------------------------------------------------------------------- */
 
 static char room[8];
 static int numbers[2];
@@ -190,7 +190,7 @@ TEST_IN(each_forbidden_thing_is_stopped, begin, end)
     }
 }
 
-/* --- what is allowed ------------------------------------------------------------------------ */
+/* --- allowed calls -------------------------------------------------------------------------- */
 
 static int compare_bytes(const void *a, const void *b)
 {

@@ -1,4 +1,4 @@
-/* Random coordinates, from plain ones to all that floats can be. */
+/* Random coordinates, from ordinary values to any float. */
 #ifndef TESTS_COORDINATE_FIXTURE_H
 #define TESTS_COORDINATE_FIXTURE_H
 

@@ -92,7 +92,7 @@ TEST(texels_equal_storage)
     uint32_t(*rows)[4] = malloc(ROWS * sizeof *rows), (*sums)[4] = malloc(ROWS * sizeof *sums);
     assert_true(rows && sums);
     for (uint32_t i = 0; i < 4 * ROWS; ++i)
-        rows[i / 4][i % 4] = i * 2654435761u; /* every bit pattern counts: NaNs as well */
+        rows[i / 4][i % 4] = i * 2654435761u; /* all bit patterns, also of NaNs */
     struct buffer *in =
         buffer_make(device, ROWS * sizeof *rows, BUFFER_STORAGE | BUFFER_TEXELS, "rows");
     struct buffer *out = buffer_make(device, ROWS * sizeof *sums, BUFFER_STORAGE, "sums");

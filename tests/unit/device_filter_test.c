@@ -1,6 +1,6 @@
-/* The filter of NUMERICS_EXACT on the device, compared with its twin in C. Bounds do not show in
-   hits, so only this test finds a bound that is too small in one of the two. Whether the bounds are
-   right is tested in accel_filter_test.c. */
+/* Compares the float filter of NUMERICS_EXACT on the device with the float mirror. Bounds do not
+   show in hits, so only this test finds a bound that is too small in one of the two.
+   accel_filter_test.c tests that the bounds are right. */
 #include "hard_fixture.h"
 
 #include "device_fixture.h"
@@ -10,7 +10,7 @@
 
 enum { CASES = 40000 };
 
-/* As in device_filter.comp. */
+/* The record of device_filter.comp. */
 struct filter_case {
     float shear[3];
     uint32_t dominant;

@@ -1,4 +1,4 @@
-/* For tests of devices: a device whose messages are collected, and small pipelines. */
+/* A device whose messages are collected, and small pipelines, for tests of devices. */
 #ifndef DEVICE_FIXTURE_H
 #define DEVICE_FIXTURE_H
 
@@ -34,8 +34,7 @@ static inline void device_close(struct device *device, struct messages *told)
     assert_int_equal(told->validation, 0);
 }
 
-/* Params of a kernel with one or two storage buffers as bindings; callers add what else it
-   needs. */
+/* Params of a kernel with one or two storage buffers as bindings; callers add other fields. */
 static inline struct pipeline_params storage_params(const uint32_t *spirv, size_t spirv_bytes,
                                                     uint32_t binding_count, const char *name)
 {

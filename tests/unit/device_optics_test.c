@@ -11,7 +11,7 @@
 #define PI     3.14159265358979323846
 #define DEGREE (PI / 180.0)
 
-/* As in device_optics.comp. */
+/* The record of device_optics.comp. */
 struct optics_case {
     float dir[3], eta;
     float n[3], cos_in;

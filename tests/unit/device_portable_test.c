@@ -1,12 +1,12 @@
-/* shaders/lib/portable.glsl as the device computes it, beside functions of C in double: rounded
-   correctly, or within the bounds of `rows`, and with the special values of C. Edge cases and
-   a few floats at random; with WHIT_TEST_FLOATS=1, all floats of one argument, and 10^9 pairs; with
-   a larger number every so manieth of them.
+/* Compares shaders/lib/portable.glsl on the device with functions of C in double: results are
+   rounded correctly, or are within the bounds of `rows`, and special values are those of C. Tests
+   edge cases and some random floats. WHIT_TEST_FLOATS=N: every N-th of all floats for functions of
+   one argument, and 10^9 / N pairs for functions of two.
 
-   Doubles are judge enough. The quotient or the root of floats, rounded to double and then to
-   float, is rounded correctly: 53 >= 2 * 24 + 2 (Figueroa 1995, "When is double rounding
-   innocuous?"); and 1e-8 ulp of float, by which other functions in double are off, is no matter of
-   the errors measured here. */
+   Double is accurate enough. A quotient or square root of floats that is rounded to double and then
+   to float is rounded correctly: 53 >= 2 * 24 + 2 (Figueroa 1995, "When is double rounding
+   innocuous?"). The other functions have an error of 1e-8 ulp of float in double, which is small
+   compared with the errors measured here. */
 #include <math.h>
 
 #include "device_fixture.h"
@@ -68,7 +68,7 @@ static double relations(double x, double y)
            !(y < x) << 6;
 }
 
-/* The whole number that there is next to it; 0 for NaN. */
+/* x truncated to a whole number, within these limits; 0 for NaN. */
 static double whole(double x, double least, double most)
 {
     return isnan(x) ? 0.0 : trunc(x < least ? least : x > most ? most : x);
@@ -143,13 +143,13 @@ static double error_ulp(float found, double exact)
     return fabs(of - exact) / ldexp(1.0, exponent - 24 < -149 ? -149 : exponent - 24);
 }
 
-/* The library's kernel for one function, with the device's own division and comparisons, where
-   these are right, and without. */
+/* The library's kernel for one function, in two versions: with the device's own division and
+   comparisons, where these are right, and without. */
 struct runner {
     struct device *device;
     struct buffer *in, *out;
     struct kernel_run runs[2];
-    struct portable_params asks; /* nothing but modes: the library has no need of itself */
+    struct portable_params asks; /* only modes, as the library must not call itself */
 };
 
 static void runner_begin(struct runner *r, struct device *device, uint32_t function)
@@ -225,7 +225,7 @@ static double answer_error(const struct row *row, uint32_t answer, double exact)
 struct tally {
     double worst_ulp;
     uint32_t at[2];
-    uint64_t tried, apart; /* apart: the two ways gave different bits */
+    uint64_t tried, apart; /* apart: cases for which the two versions gave different bits */
 };
 
 static void judge(const struct row *row, uint32_t count, struct tally *tally)
@@ -237,7 +237,7 @@ static void judge(const struct row *row, uint32_t count, struct tally *tally)
                       row->function == PORTABLE_ABS;
         bool own = row->function == PORTABLE_SUM || row->function == PORTABLE_PRODUCT;
         if (own && isnan(exact))
-            continue; /* the device's own operation gives whatever NaN it likes */
+            continue; /* the device's own operation may give any NaN */
         double error = copies && isnan(exact) && isnan(as_float(answers[0][i]))
                            ? 0.0
                            : answer_error(row, answers[0][i], exact);
@@ -251,7 +251,7 @@ static void judge(const struct row *row, uint32_t count, struct tally *tally)
     }
 }
 
-/* Edge cases, and pairs of them. */
+/* Tries all edge cases, and all pairs of them. */
 static void try_special(struct runner *r, const struct row *row, struct tally *tally)
 {
     uint32_t bits[SPECIAL_MAX], count = make_special(bits);
@@ -264,7 +264,8 @@ static void try_special(struct runner *r, const struct row *row, struct tally *t
     judge(row, count * count, tally);
 }
 
-/* Half of the second arguments near the first, or where powers are finite. */
+/* Makes random pairs. Half of the second arguments have the exponent of the first, or, for pow, a
+   size at which the power is finite. */
 static void fill_random(const struct row *row, uint32_t count)
 {
     for (uint32_t i = 0; i < count; ++i) {
@@ -296,7 +297,7 @@ static void try_many(struct runner *r, const struct row *row, uint32_t step, str
     }
 }
 
-/* Whether it keeps its bound. */
+/* Whether the function keeps its bound. */
 static bool try_row(struct device *device, const struct row *row, uint32_t step)
 {
     struct runner runner;
@@ -317,7 +318,7 @@ static bool try_row(struct device *device, const struct row *row, uint32_t step)
     return tally.apart == 0 && tally.worst_ulp <= row->bound_ulp;
 }
 
-/* WHIT_TEST_FUNCTION: one of them alone. */
+/* WHIT_TEST_FUNCTION: the name of the only function to test. */
 TEST(functions_are_right_within_their_bounds)
 {
     const char *floats = getenv("WHIT_TEST_FLOATS"), *only = getenv("WHIT_TEST_FUNCTION");

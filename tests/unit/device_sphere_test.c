@@ -1,5 +1,5 @@
-/* Spheres at `exact` on the device, compared with the twin in C, which hard_sphere_test.c compares
-   with fractions. */
+/* Compares spheres at `exact` on the device with the float mirror, which hard_sphere_test.c
+   compares with fractions. */
 #include "hard_sphere_fixture.h"
 
 #include "abi/spec.h"
@@ -11,7 +11,7 @@
 
 enum { OF_KIND = 2000, CASES = OF_KIND * SPHERE_KINDS };
 
-/* As in device_sphere.comp. */
+/* The record of device_sphere.comp. */
 struct sphere_case {
     float origin[3], radius, dir[3], t_min, center[3];
     uint32_t only_far;
