@@ -1,5 +1,5 @@
-/* How near a second surface may be to the one that a ray leaves (S2 of the catalogue of hard
-   cases). Rays start as secondary rays do, moved off the surface by the error bound of their
+/* The least distance of a second surface from the one that a ray leaves (S2 of the catalogue of
+   hard cases). Rays start as secondary rays do, moved off the surface by the error bound of their
    origin, and must still hit the sheet in front of them. */
 #include "hard_fixture.h"
 
@@ -8,12 +8,12 @@
 #include "hard/rays.h"
 #include "unit.h"
 
-/* In units of the last place of the largest coordinate: that is at least r = 2^-24 of it. A point
-   is off by gamma(7) = 7 r of its coordinates on each axis at most, and moved by as much along the
-   normal, whose components add up to 1.74 at most: 2 x 12.2; then by a float on each axis, 1.74;
-   and the corners of the other sheet are rounded by halves of a float, 0.87. In an instance (the
-   carried 2^-20 of hard_rays.c) 16 r more: 27.8, and the ray's own roundings in object space, 4 r
-   for each of its terms: 14. */
+/* Widths in ulps of the largest coordinate; r = 2^-24 of it is at most 1 ulp. The error of a point
+   is at most gamma(7) = 7 r of its coordinates on each axis, and the point is moved by as much
+   along the normal, whose components add up to at most 1.74: 2 x 12.2. It is then moved by one
+   float on each axis: 1.74. Corners of the other sheet are rounded by half a float: 0.87. An
+   instance adds 16 r (the 2^-20 of hard_rays.c): 27.8, and the roundings of the ray in object space
+   add 4 r for each of its terms: 14. */
 enum { SAFE_ULPS = 28, SAFE_ULPS_PLACED = 70, RAYS = 300 };
 
 static const uint32_t widths[] = {1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28, 40, 56, 70, 96};
@@ -85,9 +85,9 @@ struct leaks {
     uint32_t differ[LEVELS]; /* rays for which a level disagrees with exact arithmetic */
 };
 
-/* Counts rays from the small sheet towards the large one that meet nothing of it, by exact
-   arithmetic, and the rays for which a level says something else. Rays do not start in the corner
-   where the gap between the sheets is less than `min` wide. */
+/* Counts rays from the small sheet towards the large one that miss it by exact arithmetic, and rays
+   for which a level disagrees. Rays do not start in the corner where the gap between the sheets is
+   less than `min` wide. */
 static void count_leaks(const struct sheets *sheets, float min, struct leaks *leaks)
 {
     struct rational *rational = rational_create(sheets->hard.accel);
@@ -97,11 +97,11 @@ static void count_leaks(const struct sheets *sheets, float min, struct leaks *le
             hard_ray_make(&sheets->hard, HARD_LEAVING, random_bits(&random_state), i);
         struct vec3 dir = vec3_add(sheets->normal, random_point(0.25f));
         if (shot.primitive > 1 || vec3_dot(vec3_load(shot.ray.dir), sheets->normal) <= 0.0f)
-            continue; /* from the other sheet, or the other way */
+            continue; /* starts on the other sheet, or goes the other way */
         float width =
             SLOPE * vec3_dot(vec3_sub(vec3_load(shot.ray.origin), sheets->edge), sheets->away);
         if (width < min)
-            continue; /* of a corner */
+            continue; /* starts in the corner */
         vec3_store(shot.ray.dir, dir);
         const struct rational_hit own = {.primitive = shot.primitive, .instance = shot.instance};
         const struct rational_query query = {.own = &own};

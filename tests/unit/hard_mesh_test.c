@@ -1,5 +1,5 @@
-/* Closed surfaces: no ray gets out of them, except if the traversal is compiled with a * b + c
-   contracted. And what happens in meshes for which nothing is promised. */
+/* No ray gets out of a closed surface, except if the traversal is compiled with a * b + c
+   contracted. Leaks of meshes for which nothing is promised are counted. */
 #include "hard_fixture.h"
 #include "unit.h"
 
@@ -145,7 +145,7 @@ static struct affine placing(const struct hunt *hunt)
     return affine_from_trs(at, (double[]){0.3, -0.5, 0.2, 0.8}, (double[]){1.0, 1.25, -0.8});
 }
 
-/* ---- Where they are aimed ---- */
+/* ---- Aims of the rays ---- */
 
 static struct gpu_ray from_inside(const struct hunt *hunt, const struct soup *soup, uint32_t i)
 {

@@ -159,7 +159,7 @@ static inline struct subject make_nearly_tangent(void)
     return s;
 }
 
-/* Through the centre; both t are integers with one bit more than a float has. */
+/* A ray through the centre; both t are integers with one bit more than a float has. */
 static inline struct subject make_between(void)
 {
     struct frame f = integer_frame(3);
@@ -189,8 +189,9 @@ static inline struct subject upright(float z, float radius, float aside, float o
     return (struct subject){{aside, 0, origin}, {0, 0, dir}, {0, 0, z}, radius, 0.0f};
 }
 
-/* Ends at z -+ half; between 2^25 and 2^26 floats are 4 apart, and half is 2 more than a multiple
-   of that, or less than that by 2^-302 to 2^-19; from outside or inside, or touched in a middle. */
+/* The t of both ends of the chord are z -+ half. From 2^25 to 2^26 floats are 4 apart, and half is
+   2 more than a multiple of 4, or less than that by 2^-302 to 2^-19. The ray starts outside or
+   inside, or touches the sphere in the middle between two floats. */
 static inline struct subject make_tie(void)
 {
     static const struct {
@@ -207,14 +208,14 @@ static inline struct subject make_tie(void)
                    shapes[shape].origin, ldexpf(1.0f, scale));
 }
 
-/* Hits at t = i 2^-150 and (i + 2048) 2^-150. */
+/* A ray with hits at t = i 2^-150 and (i + 2048) 2^-150. */
 static inline struct subject make_denormal_tie(void)
 {
     float at = (float)(1024 + random_below(&random_state, 10000));
     return upright(ldexpf(at, -100), 0x1p-90f, 0.0f, 0.0f, 0x1p50f);
 }
 
-/* Small and far away: the keys of both hits are neighbouring floats, or equal. */
+/* A sphere so small and far away that the keys of both hits are neighbouring floats, or equal. */
 static inline struct subject make_small(void)
 {
     struct subject s = {.origin = point_of(in_cube), .center = point_of(in_cube)};

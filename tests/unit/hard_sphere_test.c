@@ -1,12 +1,12 @@
-/* Compares spheres with fractions: which ends of the chord the rational oracle and numerics `exact`
-   find, between which floats t lies, and what the filter decides. */
+/* Compares spheres with fractions: the ends of the chord that the rational oracle and numerics
+   `exact` find, the floats between which t lies, and the decisions of the filter. */
 #include "hard_sphere_fixture.h"
 
 #include "fraction_fixture.h"
 #include "twin/ff_sphere.h"
 #include "unit.h"
 
-/* ---- The truth, in fractions ---- */
+/* ---- Fractions ---- */
 
 struct truth {
     mpq_t p, s, q; /* the t of both ends: p t^2 - 2 s t + q = 0 */
@@ -121,7 +121,7 @@ static bool counts(const struct truth *truth, float t_min, bool far)
            (t_min == 0.0f || is_above(truth, nextafterf(t_min, 0.0f), far));
 }
 
-/* ---- Both beside each other ---- */
+/* ---- Comparisons ---- */
 
 struct tally {
     uint32_t rays, met, exits, wrong, sure, wrong_pairs, inside, outside, bad_bounds;
@@ -182,7 +182,7 @@ static void check_candidate(const struct subject *s, const struct truth *truth, 
 static bool is_bounded(const struct truth *truth, float lo, float hi, bool far)
 {
     if (!is_ahead(truth, far))
-        return true; /* nothing is said of keys below 0 */
+        return true; /* keys below 0 are not judged */
     return (lo <= 0.0f || isinf(lo) || is_above(truth, nextafterf(lo, 0.0f), far)) &&
            (hi == INFINITY || (hi >= 0.0f && !is_above(truth, hi, far)));
 }
@@ -258,7 +258,7 @@ TEST(spheres_are_met_as_fractions_say)
     rational_destroy(rational);
 }
 
-/* ---- Answers known beforehand ---- */
+/* ---- Known answers ---- */
 
 struct known {
     struct subject subject;

@@ -238,9 +238,9 @@ static inline struct subject make_without_area(void)
     return s;
 }
 
-/* What has no point that is met is of integers, so that nothing of it is lost by rounding. The
-   shear of the watertight test is rounded all the same, so that it may take a triangle that is seen
-   edge-on for one that is not; scenes hold none without area. */
+/* Kinds of triangles that no ray hits have integer coordinates, so that no point is moved by
+   rounding. The shear of the watertight test is rounded all the same, so that it may hit a triangle
+   that is seen edge-on; scenes have no triangle without area. */
 enum {
     FLOATS = 1, /* sizes are within what `watertight` promises */
     EDGES = 2,  /* some rays go exactly through edges and vertices */
@@ -250,9 +250,9 @@ enum {
 
 static const struct triangle_kind {
     const char *name;
-    float (*coordinate)(void); /* of scattered ones */
+    float (*coordinate)(void); /* for scattered triangles */
     struct subject (*make)(void);
-    double met_min;            /* share of rays; 0: none at all */
+    double met_min;            /* least share of rays that hit; 0: no ray may hit */
     double sure_min, sure_max; /* share that pairs of floats decide */
     int what;
 } triangle_kinds[] = {

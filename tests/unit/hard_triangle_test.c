@@ -123,7 +123,7 @@ static bool is_in_doubt(const struct gpu_ray *ray, const struct vec3 v[3])
 }
 
 struct truth {
-    bool met; /* from the origin on */
+    bool met; /* the ray hits at t >= 0 */
     float key;
 };
 
@@ -376,7 +376,7 @@ static struct gpu_ray make_edge_apart(bool towards, struct vec3 v[3])
     for (int i = 0; i < 2; ++i) {
         float beside = 1.05f + random_float(&random_state),
               along = 4.0f * random_float(&random_state) - 2.0f;
-        if (towards) { /* to where the corner o is, from beyond the edge opposite to it */
+        if (towards) { /* the ray goes to the corner o, from beyond the opposite edge */
             float share = 0.2f + 0.6f * random_float(&random_state),
                   away = i ? 1.1f : 1.1f + random_float(&random_state);
             beside = share * away;
@@ -394,12 +394,12 @@ static struct gpu_ray make_edge_apart(bool towards, struct vec3 v[3])
     return ray;
 }
 
-/* T10: github.com/RenderKit/embree, issue 423: of a triangle and an edge of the same mesh, far
-   apart, Embree says that they meet, or not, by whether the processor fuses products and sums. The
-   report's numbers are not at hand; these are of its kind. Seen edge-on, a triangle may have edge
-   functions that are roundings all, wherever on its plane the ray is: `watertight` does not promise
-   that such a ray misses (docs/numerics.md), but that it is in doubt, and that the triangle's box
-   is met. */
+/* T10: github.com/RenderKit/embree, issue 423: Embree reports that a triangle and an edge of the
+   same mesh, far apart, meet, or not, depending on whether the processor fuses products and sums.
+   The numbers of the report are not available; these are similar. If a triangle is seen edge-on,
+   all of its edge functions may be rounding errors, wherever in its plane the ray is. So
+   `watertight` does not promise that such a ray misses (docs/numerics.md), but only that it is in
+   doubt and meets the triangle's box. */
 TEST(edges_apart_do_not_meet)
 {
     enum { RAYS = 100000 };

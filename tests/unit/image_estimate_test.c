@@ -56,7 +56,7 @@ TEST(pixels_around_count_and_so_does_what_was_cut)
     double middle = 1.5 * sqrt(0.9 * (1.3 / 9.0)), corner = 1.5 * sqrt(0.4 * (1.3 / 4.0));
     assert_near((double)out.pixels[WIDTH + 1], middle);
     assert_near((double)out.pixels[0], corner);
-    assert_near((double)out.pixels[1], 0.0); /* it has not changed itself */
+    assert_near((double)out.pixels[1], 0.0); /* this pixel itself has not changed */
     assert_near((double)out.pixels[19], 1.5);
     assert_near(of_cuts, sqrt(1.5 * 1.5 / COUNT));
     assert_near(whole, sqrt((1.5 * 1.5 + middle * middle + corner * corner) / COUNT));

@@ -1,6 +1,6 @@
-/* Compares FLIP with a second implementation here, in doubles and without separable filters; with
-   figures of a third one in Python; with a published figure of a fourth; and with distances by hand
-   for pictures of one colour. */
+/* Compares FLIP with a second implementation in this file, in double and without separable filters;
+   with figures of a program in Python; with a published figure of OpenImageIO; and, for pictures of
+   one colour, with distances computed by hand. */
 #include "image_fixture.h"
 
 #include <math.h>
@@ -315,7 +315,7 @@ TEST(one_colour_is_as_by_hand)
             max = fmax(max, fabs(flip_of_colors(colors[i], colors[j]) - expected));
         }
     }
-    /* Filters for features leave 1e-7 of what is flat, of which the root is taken. */
+    /* Filters for features give 1e-7 for flat pictures; FLIP takes the root of that. */
     print_message("%d pairs: off by %.2g at most\n", COUNT * COUNT, max);
     assert_true(max < 1e-4);
     /* L* of black and white are 0 and 100, without colour: only the largest distance comes in. */

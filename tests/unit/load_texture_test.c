@@ -18,7 +18,7 @@ whit_result __wrap_picture_read(const whit_log *log, const struct foreign_params
 {
     whit_result result =
         __real_picture_read(log, params, pixels_max, data, size_bytes, out, reason);
-    /* What is only looked at has sides. */
+    /* A call that only reads the header gives no picture, but sets its sides. */
     decoded += result == WHIT_OK || out->width == 0;
     return result;
 }

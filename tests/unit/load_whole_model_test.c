@@ -1,5 +1,5 @@
 /* FBX, COLLADA, 3MF and OFF: units, up axis, nodes, materials and textures are imported; notes name
-   what is not. */
+   the things that are not. */
 #include <math.h>
 
 #include "../random.h"
@@ -408,7 +408,7 @@ TEST_IN(units_of_3mf, fixture_begin, fixture_end)
     assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[2], 0, 1e-6);
 }
 
-/* --- what is not read ----------------------------------------------------------------------- */
+/* --- parts that are not read ---------------------------------------------------------------- */
 
 TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
 {
