@@ -25,7 +25,7 @@ static inline void set_sky(struct scene *scene, float zenith, float horizon, flo
     set_rgb(scene->environment.ground, ground, ground, ground);
 }
 
-/* ---- Materials that do one thing alone ---- */
+/* ---- Materials with a single property ---- */
 
 static inline struct scene_material matte(float r, float g, float b)
 {

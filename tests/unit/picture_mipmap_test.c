@@ -174,7 +174,7 @@ TEST(slots_are_averaged_as_what_they_are)
     assert_int_equal(mipmap_kind_of(&m, SCENE_SLOT_OPACITY), MIPMAP_NONE);
 }
 
-/* ---- Which level ---- */
+/* ---- The level for a pixel ---- */
 
 TEST(level_is_half_the_logarithm)
 {

@@ -1,5 +1,5 @@
-/* The stream of random numbers that all fixtures of a program share. A test that draws from it sets
-   its seed first. */
+/* The sequence of random numbers that all fixtures of a program share. A test that uses it sets its
+   seed first. */
 #ifndef TESTS_RANDOM_FIXTURE_H
 #define TESTS_RANDOM_FIXTURE_H
 

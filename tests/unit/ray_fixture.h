@@ -1,4 +1,4 @@
-/* Rays at the hardest points of a scene, and comparison of their hits with the twin in C. */
+/* Rays at the hardest points of a scene, and comparison of their hits with the float mirror. */
 #ifndef TESTS_RAY_FIXTURE_H
 #define TESTS_RAY_FIXTURE_H
 
@@ -82,11 +82,11 @@ static inline void aim_at_bounds(const struct fixture *f, struct gpu_ray *rays, 
     scene_pose_finish(&pose);
 }
 
-/* ---- Device and twin ---- */
+/* ---- Device and float mirror ---- */
 
-/* Counts the device's hits, and its costs where they are counted, that differ in some bit from
-   those of the float mirror (twin). Two answers of an any-hit query differ where only one of them
-   is a hit. The twin's costs are added to *sum. */
+/* Numbers of the device's hits, and of its costs where they are counted, that differ in some bit
+   from those of the float mirror. Two answers of an any-hit query differ where only one of them is
+   a hit. The costs of the float mirror are added to *sum. */
 struct unlike {
     uint32_t hits, costs;
 };
@@ -129,8 +129,9 @@ static inline uint32_t count_met(const struct gpu_hit *hits, uint32_t count)
     return met;
 }
 
-/* Checks that the device's closest hits, which are left in `hits`, equal the twin's, that any-hit
-   finds a hit exactly where closest-hit does, and that costs of both equal the twin's. */
+/* Checks that the device's closest hits, which are left in `hits`, equal those of the float mirror,
+   that any-hit finds a hit exactly where closest-hit does, and that costs of both equal those of
+   the float mirror. */
 static inline void check_rays(const struct fixture *f, const char *label,
                               const struct gpu_ray *rays, uint32_t count, struct gpu_hit *hits)
 {

@@ -207,9 +207,9 @@ TEST(every_effect_agrees_with_the_device)
     print_message("  %u of %u pixels over 1e-3, largest %.2g; for whole stops %u, largest %.2g\n",
                   d.over, SIDE * SIDE, d.largest, stops.over, stops.largest);
     assert_true(d.over * 500 <= SIDE * SIDE); /* 0.2 %, for edges */
-    /* Rounding to 1/64 stops changes at most 0.6 % of the light per filter, with up to four on the
-       way. It must be more than the device's error, or this would not show whether the reference
-       rounds. */
+    /* Rounding to 1/64 stops changes the light by at most 0.6 % per filter, with up to four on the
+       way. The change must be larger than the device's error, else it would not show whether the
+       reference rounds. */
     assert_true(stops.largest > d.largest && stops.largest < 4 * 0.006);
     image_finish(&device);
     picture_finish(&whole);
@@ -218,8 +218,9 @@ TEST(every_effect_agrees_with_the_device)
 }
 
 /* Two smooth bodies of one shape that touch everywhere. The inner one has the higher priority and
-   is rotated, so that the instance hit first is not the visible one. Beside it the same with a true
-   sphere and a mesh. Lit from the side, so that shadow rays graze the surfaces. */
+   is rotated, so that the instance hit first is not the visible one. Beside them a sphere and a
+   mesh touch in the same way. The light comes from the side, so that shadow rays graze the
+   surfaces. */
 static struct scene *touching_smooth_bodies(void)
 {
     struct scene *scene = dark_scene((double[]){0, 1.5, 5}, (double[]){0, 0, 0});

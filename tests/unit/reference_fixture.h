@@ -22,7 +22,7 @@ static inline struct picture reference_picture(struct accel *accel,
     return picture;
 }
 
-/* One sample's ray tree. */
+/* The ray tree of one sample. */
 struct rays {
     struct reference_ray *all; /* free() */
     uint32_t count;

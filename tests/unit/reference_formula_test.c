@@ -1,5 +1,4 @@
-/* Compares the reference with formulas: its rays within 1e-12, its pictures within the rounding to
-   float. */
+/* Compares the reference with formulas: rays within 1e-12, pictures within rounding to float. */
 #include "media_fixture.h"
 #include "reference_fixture.h"
 #include "scene/pose.h"
@@ -98,7 +97,7 @@ static void check_glass(double angle, double ior, bool schlick)
     assert_close(reflected->dir[0], rays.all[0].dir[0], 1e-12);
     assert_close(reflected->dir[2], -rays.all[0].dir[2], 1e-12);
     assert_close(rays.all[0].t, 4.0 / cos_in, 1e-12 * rays.all[0].t);
-    /* Through the other side of the slab, parallel to where it came from. */
+    /* The ray that leaves the slab on the other side, parallel to the camera ray. */
     const struct reference_ray *out =
         find_ray(&rays, REFERENCE_REFRACTED, (uint32_t)(refracted - rays.all));
     assert_close(out->dir[0], rays.all[0].dir[0], 1e-12);
@@ -117,7 +116,7 @@ TEST(glass_follows_fresnel_and_snell)
         check_glass(angles[i / 6], iors[i / 2 % 3], i % 2);
 }
 
-/* From inside of glass of index 1.5, just below and beyond the critical angle of 41.8 degrees. */
+/* Rays inside of glass of index 1.5, just below and beyond the critical angle of 41.8 degrees. */
 TEST(light_is_reflected_whole_from_inside)
 {
     for (int beyond = 0; beyond < 2; ++beyond) {

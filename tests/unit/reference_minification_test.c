@@ -1,4 +1,4 @@
-/* Textures that are shown smaller than they are, by the device and by the reference in double. */
+/* Textures with several texels in a pixel (minification), by the device and by the reference. */
 #include "picture/mipmap.h"
 #include "picture_fixture.h"
 #include "reference_fixture.h"
@@ -19,7 +19,7 @@ static uint32_t add_noise(struct scene *scene, uint32_t width, uint32_t height, 
     return texture;
 }
 
-/* So many times across one unit of uv. */
+/* Uses a texture that is repeated `times` times across one unit of uv. */
 static void use_often(struct scene_material *m, enum scene_slot slot, uint32_t texture, float times,
                       enum scene_wrap wrap)
 {
@@ -31,8 +31,8 @@ static void use_often(struct scene_material *m, enum scene_slot slot, uint32_t t
     use->wrap_u = use->wrap_v = wrap;
 }
 
-/* Maps of all kinds and sizes: on a floor to the horizon, on a true sphere, a box that blends, a
-   wall of metal; seen through glass and in a mirror too. */
+/* Textures of all kinds and sizes: on a floor to the horizon, a sphere, a box that blends and a
+   wall of metal; seen also through glass and in a mirror. */
 static struct scene *far_textures(void)
 {
     struct scene *scene = dark_scene((double[]){0.5, 1.2, 6}, (double[]){0, 0.7, 0});
@@ -70,7 +70,7 @@ static struct scene *far_textures(void)
     return scene;
 }
 
-/* ---- Against the reference ---- */
+/* ---- Comparison with the reference ---- */
 
 static double share_over(const struct image *a, const struct image *b, double limit)
 {
@@ -152,9 +152,9 @@ TEST_BY_TURNS(a_tree_in_the_world_agrees_too, 1, 2)
     check("one tree", &flat, NULL, 1);
 }
 
-/* ---- What it is for ---- */
+/* ---- The use of mipmaps ---- */
 
-/* Squares of 1 to the horizon. */
+/* A checkered floor to the horizon, with squares of size 1. */
 static struct scene *checkers(double height)
 {
     const uint8_t rgba[16] = {230, 220, 200, 255, 20,  30,  60,  255,
@@ -194,7 +194,7 @@ TEST_BY_TURNS(one_sample_is_nearer_to_the_truth, 0, 2)
     print_message("  RMSE %.3g without, %.3g with; 64 samples without %.2g, 256 with %.2g\n",
                   before, after, left, last);
     assert_true(after < 0.8 * before);
-    assert_true(last < 0.5 * left); /* what blurs one sample does not blur many */
+    assert_true(last < 0.5 * left); /* with many samples mipmaps do not blur */
     image_finish(&truth);
     image_finish(&plain);
     image_finish(&smooth);
@@ -223,7 +223,7 @@ TEST_BY_TURNS(magnified_textures_keep_their_bytes, 1, 2)
     fixture_close(&f);
 }
 
-/* The viewer adds up pictures of parts of a pixel's samples: that of four is the sum of its parts.
+/* The viewer adds up pictures of parts of the samples: the picture of four is the sum of its parts.
  */
 TEST(parts_of_samples_add_up)
 {
@@ -242,7 +242,7 @@ TEST(parts_of_samples_add_up)
     fixture_close(&f);
 }
 
-/* ---- What it leaves alone ---- */
+/* ---- Cases without smaller levels ---- */
 
 static struct gpu_spec spec_of(struct fixture *f, whit_minification minification)
 {
@@ -264,7 +264,7 @@ TEST(scenes_without_textures_have_the_same_kernels)
     }
 }
 
-/* Masks are asked by traversal, which knows no pixel. */
+/* Masks have only level 0, because traversal reads them and does not know the pixel. */
 TEST(masks_have_no_levels)
 {
     struct scene *scene = dark_scene((double[]){0, 3, 0}, (double[]){0, 0, 0});

@@ -1,5 +1,5 @@
-/* The reference in double beside the pictures of the device, of the scenes of scenes/. Pixels that
-   differ must be at edges, where floats may tell another side. */
+/* Compares the device with the reference in double, for the scenes of scenes/. Pixels that differ
+   must be at edges, where rounding may decide the other way. */
 #include <glob.h>
 
 #include "load/load.h"
@@ -8,11 +8,11 @@
 
 enum { WIDTH = 64, HEIGHT = 48 };
 
-/* How the device's picture of a scene differs from the reference. */
+/* The difference of the device's picture of a scene from the reference. */
 struct difference {
     uint32_t over;      /* pixels further than 1e-3 apart in some channel */
-    uint32_t other_ids; /* whose first hit is another primitive */
-    uint32_t edges;     /* of those over: see is_at_edge */
+    uint32_t other_ids; /* pixels whose first hit is another primitive */
+    uint32_t edges;     /* pixels of `over` that are at edges: see is_at_edge */
     double largest;
 };
 
@@ -35,8 +35,8 @@ static void pixel_color(const struct reference *reference, uint32_t x, uint32_t 
     free(rays.all);
 }
 
-/* References whose camera stands some roundings of floats aside: what the device's rays may be off
-   by when they start. Mirrors and glass make more of it. */
+/* References whose camera is moved aside by some roundings of floats: so large is the error with
+   which rays of the device may start. Mirrors and glass magnify it. */
 enum { MOVES = 6 };
 
 struct moved {
@@ -61,8 +61,9 @@ static struct moved move_camera(struct accel *accel, const struct reference_para
     return moved;
 }
 
-/* The reference itself changes by as much, or a quarter of it, for so little: the pixel looks at an
-   edge, in itself or in a mirror, a lens or the outline of a shadow. */
+/* Whether the reference itself changes by at least a quarter of the difference if the camera moves
+   so little: then the pixel shows an edge, directly or in a mirror or a lens, or the outline of a
+   shadow. */
 static bool is_at_edge(const struct moved *moved, uint32_t x, uint32_t y, const float *reference,
                        double difference)
 {
@@ -113,7 +114,8 @@ static struct difference compare_scene(struct scene *scene, const char *name)
     return d;
 }
 
-/* Most of the time goes into compiling a kernel for each: these call for the most effects. */
+/* The scenes of a short run: those that call for the most effects. Most of the time is spent in
+   compiling a kernel for each scene. */
 static const char *const quick_scenes[] = {"balls.json", "default.json", "glass-of-water.json",
                                            "many.json", "room.json"};
 
