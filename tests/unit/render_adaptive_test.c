@@ -1,5 +1,5 @@
 /* Adaptive anti-aliasing: every pixel is that of the picture of 4, 16 or 64 samples, bit for bit,
-   by the rule that docs/effects.md states. The rule is written down here once more, plainly. */
+   by the rule of docs/effects.md. This file has a second, simple implementation of the rule. */
 #include "render/adaptive_samples.h"
 #include "render_scenes.h"
 #include "unit.h"
@@ -28,8 +28,8 @@ static bool differs(const float *pixels, int x, int y, float contrast)
     return false;
 }
 
-/* Rays other than those of the camera: at least those of 4 samples; at most those of each level
-   that has pixels, for all pixels. */
+/* The expected picture. `min`, `max`: limits of the numbers of other rays than camera rays: at
+   least those of 4 samples; at most those of each level that has pixels, for all pixels. */
 struct expected {
     float pixels[PIXELS][4];
     uint64_t by_samples[4], primary;
@@ -48,7 +48,7 @@ static void check_between(uint64_t min, uint64_t rays, uint64_t max)
     assert_true(min <= rays && rays <= max);
 }
 
-/* From the pictures of 4, 16 and 64 samples. */
+/* Makes the expected picture from those of 4, 16 and 64 samples. */
 static void expect(const struct picture plain[3], float contrast, struct expected *e)
 {
     uint32_t level_of[PIXELS] = {0};
@@ -88,7 +88,8 @@ static void check(struct fixture *f, const struct picture *first, const struct e
     picture_finish(&p);
 }
 
-/* Pictures of 4, 16 and 64 samples, then adaptive ones in tiles and bands of several sizes. */
+/* Draws pictures of 4, 16 and 64 samples, and compares them with adaptive ones in tiles and bands
+   of several sizes. */
 static void check_scene(struct scene *scene, const struct accel_params *accel,
                         const whit_camera *camera, const double *contrasts, int contrast_count)
 {
@@ -186,7 +187,7 @@ TEST(progress_goes_on_to_the_end)
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_int_equal(backwards, 0);
     assert_true(last_done > 0.999 && last_done < 1.001);
-    /* Cancelled in the pass of 16; then the whole picture after all. */
+    /* The picture is cancelled in the pass of 16 samples, and then drawn as a whole. */
     uint32_t stop_at = 4 * 3 + 20;
     params.cancel = &stop_now;
     params.progress_user = &stop_at;

@@ -1,5 +1,5 @@
-/* One renderer that is set to one time after another: each picture is, byte for byte, that of a
-   renderer that was made for this time. */
+/* A renderer is set to several times in turn: each picture is, byte for byte, that of a renderer
+   that was made for this time. */
 #include "accel/pose.h"
 #include "ray_fixture.h"
 #include "render_scenes.h"
@@ -15,8 +15,8 @@ static struct scene *spin(void)
     return file_scene("spin");
 }
 
-/* A glass ball that turns inside out on its way, a lamp of triangles, a lamp that is a point, and
-   the camera, all on nodes that move. */
+/* A glass ball whose scale becomes negative, a lamp of triangles, a point light, and the camera,
+   all on nodes that move. */
 static struct scene *everything_moves(void)
 {
     static const float times[] = {0, 1, 2};
@@ -106,7 +106,7 @@ static struct picture take_anew(const struct fixture *f, bool flatten, double ti
 
 enum { TIMES = 3, STEPS = 6 };
 
-/* There and back again; each time but the last ones differs from its neighbours. */
+/* Sets the renderer to the times in several orders. The pictures of neighbouring times differ. */
 static void check_any_order(const char *name, struct scene *scene, const double times_s[TIMES],
                             const struct accel_params *params)
 {
@@ -209,7 +209,7 @@ TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
     fixture_close(&f);
 }
 
-/* Rays that are traced in batches meet the scene at the time that pictures show. */
+/* Batches of rays are traced in the scene at the time of the pictures. */
 TEST(traced_rays_follow)
 {
     struct fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);

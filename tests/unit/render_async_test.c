@@ -176,8 +176,8 @@ TEST(all_effects_need_no_thread)
     fixture_close(&f);
 }
 
-/* Other scenes, other times, passes that were destroyed, cancelled pictures: each while the thread
-   is at work, or when it has just finished its pipeline. */
+/* Other scenes, other times, destroyed passes and cancelled pictures come while the thread is at
+   work, or when it has just finished its pipeline. */
 TEST(anything_may_come_in_between)
 {
     bool cancel = false;
@@ -185,8 +185,8 @@ TEST(anything_may_come_in_between)
         beside_params((whit_camera)CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40));
     params.cancel = &cancel;
     struct fixture f = fixture_open(terrain_scene(), NULL, &params);
-    /* Destroyed without a picture: before the thread begins, while it is at work, when it has
-     * ended. */
+    /* The renderer is destroyed without a picture: before the thread begins, while it is at work,
+       and when it has ended. */
     for (int i = 0; i < 3; ++i) {
         if (i >= 1)
             let_thread_begin();

@@ -1,4 +1,4 @@
-/* The distance found between the surfaces of bodies of media: never more than the true one. */
+/* The distance found between the surfaces of bodies of media is never more than the true one. */
 #include <math.h>
 
 #include "../cases.h"
@@ -129,7 +129,7 @@ static double apart(const double a[3], const double b[3])
     return sqrt(d2);
 }
 
-/* Against the distance between a ball and the nearest of many points of a triangle. */
+/* Compares with the distance between a ball and the nearest of many points of a triangle. */
 TEST(no_distance_is_too_large)
 {
     enum { STEPS = 24 };

@@ -8,12 +8,12 @@
 
 enum { RAYS = 500 };
 
-/* As deep a stack as with trees, for the same kernels. */
+/* The stack is as deep as with trees, so that the kernels are the same. */
 static const struct accel_params no_trees = {.mesh = {.builder = WHIT_BUILD_NONE},
                                              .update = ACCEL_REFIT};
 
-/* Compares hits and costs with those of the C twin, and hits with those of `trees`, which are the
-   same scene's. */
+/* Compares hits and costs with those of the float mirror, and hits with those of `trees`, which are
+   of the same scene. */
 static void check_hits(struct fixture *f, const struct accel *trees)
 {
     const uint32_t in_mesh = f->scene->meshes[0].triangle_count;
@@ -75,8 +75,9 @@ TEST(rays_equal_those_of_trees)
     }
 }
 
-/* Triangles one behind the other, tested by every ray that meets their one box. Each is an instance
-   of one triangle (`apart`), or all are one mesh. The nearest may be anywhere in their order. */
+/* Triangles one behind the other; every ray that meets their only box tests all of them. Each is an
+   instance of one triangle (`apart`), or all are one mesh. The nearest may be anywhere in their
+   order. */
 static struct scene *stack_scene(uint32_t count, bool apart)
 {
     struct scene *scene = scene_begin(&fixture_log, "stack");
@@ -97,8 +98,8 @@ static struct scene *stack_scene(uint32_t count, bool apart)
     return scene;
 }
 
-/* Traces 16 rays, each of which takes hits only from its own place in the stack on, and the last of
-   which misses all of it. Compares the hits with the twin's. */
+/* Traces 16 rays whose t_min are at different places in the stack; the last ray misses all of it.
+   Compares the hits with those of the float mirror. */
 static whit_result trace_stack(const struct fixture *f, uint32_t count)
 {
     struct gpu_ray rays[16];
@@ -135,8 +136,8 @@ static void check_refused(struct scene *scene, const char *why)
     scene_destroy(scene);
 }
 
-/* The largest number of triangles, or of instances, for which the turns of loops suffice that a
-   driver grants: the last of them is drawn too, and one more is refused. */
+/* The largest number of triangles, or of instances, for which the loop iterations that a driver
+   allows are enough: the last one is drawn too, and one more is refused. */
 TEST(max_are_drawn_and_more_are_refused)
 {
     const struct {
@@ -173,8 +174,8 @@ static void check_picture(struct scene *scene, struct scene *again,
     picture_finish(&without);
 }
 
-/* The scenes: two lights, four instances, mirror and glass; cut-outs, blending and thin glass;
-   media that touch; balls, and shadows through filters; emitters. */
+/* The scenes have two lights, four instances, mirror and glass; cut-outs, blending and thin glass;
+   media that touch; spheres, and shadows through filters; flat emitters. */
 TEST(pictures_equal_those_of_trees)
 {
     static const char *const names[] = {"layers", "glass-of-water", "whitted", "room"};
@@ -190,7 +191,7 @@ TEST(pictures_equal_those_of_trees)
         check_picture(file_scene(names[i]), file_scene(names[i]), &params);
 }
 
-/* The shadow rays to all points of an area light share the turns of loops that a driver grants:
+/* The shadow rays to all points of an area light share the loop iterations that a driver allows:
    too many points are refused, and the kernel itself notices too. */
 TEST(many_shadows_are_refused)
 {

@@ -61,8 +61,8 @@ static struct image lens_picture(double z, float lens_radius, uint32_t samples, 
     return color_of(scene, NULL, &params);
 }
 
-/* What is bright: its centre of gravity, and its mean square and largest distance from the middle,
-   in pixels from there. */
+/* The bright pixels: their centre of gravity, relative to the middle of the picture, and their mean
+   square and largest distance from it, in pixels. */
 struct patch {
     double center[2], mean2, farthest;
 };
@@ -86,9 +86,10 @@ static struct patch measure(const struct image *image)
     return patch;
 }
 
-/* Balls behind, before and in the focus: in a plane at distance 1 a point is blurred to a circle
-   with the radius lens * |1 / z - 1 / focus|. The mean square distance from the middle of an evenly
-   bright disk is half its radius squared; for 64 points of the lens it is within 2 % of that. */
+/* Balls behind the focus, in front of it and in it. In a plane at distance 1 a point is blurred to
+   a circle of radius lens * |1 / z - 1 / focus|. The mean square distance from the middle of an
+   evenly bright disk is half of its squared radius; with 64 points of the lens it is within 2 % of
+   that. */
 TEST(blur_has_its_size)
 {
     const double pixel = 2.0 * tan(0.3) / 75.0, ball = 1.5; /* radius of the ball, in pixels */
@@ -116,8 +117,8 @@ TEST(one_sample_is_a_pinhole)
     image_finish(&hole);
 }
 
-/* All rays of a sample's pixel meet in one point of the focus plane, whatever the lens point; and
-   the lens points fill the disk evenly, around its middle. */
+/* All rays of one place of a pixel meet in one point of the focus plane, whatever the point of the
+   lens; the points of the lens fill its disk evenly. */
 TEST(lens_rays_meet_in_focus)
 {
     struct gpu_frame frame = {.eye = {1, 2, 3},
@@ -152,8 +153,8 @@ TEST(lens_rays_meet_in_focus)
             sum[0] += aside[0], sum[1] += aside[1];
             square += r2;
         }
-        assert_true(hypot(sum[0], sum[1]) < 0.5 * 0.5); /* half the radius, of all together */
-        assert_true(fabs(square / count - 0.5) <= 0.6 / count); /* half for the whole disk */
+        assert_true(hypot(sum[0], sum[1]) < 0.5 * 0.5); /* the sum is below half of the radius */
+        assert_true(fabs(square / count - 0.5) <= 0.6 / count); /* 0.5 for the whole disk */
     }
 }
 
@@ -221,7 +222,7 @@ TEST(markers_are_where_they_should)
     }
 }
 
-/* From the middle of a box each face takes a sixth of the sphere. */
+/* Seen from the middle of a box each face covers a sixth of the sphere. */
 TEST(panorama_sees_all_around)
 {
     struct scene *scene = panorama_scene((double[]){0, 0, 0}, (double[]){1, 2, 3});
@@ -254,7 +255,7 @@ TEST(view_along_up_has_a_picture)
     struct scene *scene = dark_scene((double[]){0, 5, 0}, (double[]){0, 0, 0});
     add_object(scene, mesh_plane(1), matte(1, 1, 1), 0, 0, 0);
     scene_put_sun(scene, 0, -1, 0, 1.0f);
-    scene->cameras[0].up[1] = 1.0; /* as it came from a file: along the view */
+    scene->cameras[0].up[1] = 1.0; /* parallel to the view, as a file may have it */
     scene->cameras[0].up[2] = 0.0;
     whit_renderer_params params = picture_params;
     const whit_camera views[] = {{.name = NULL},

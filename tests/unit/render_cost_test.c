@@ -1,4 +1,4 @@
-/* What the kernels count against what the C traversal counts, and traversals of every order. */
+/* Compares the counters of kernels with those of the float mirror, in traversals of every order. */
 #include "ray_fixture.h"
 #include "render_scenes.h"
 #include "tree_fixture.h"
@@ -15,7 +15,7 @@ static struct fixture open_counting(struct scene *scene, uint32_t order)
     return fixture_open(scene, NULL, &params);
 }
 
-/* Asserts that the device and C agree on every hit and every cost. Gives the sum over all rays. */
+/* Asserts that device and float mirror agree on all hits and costs. Gives the sum of costs. */
 static whit_cost check_costs(const struct fixture *f, bool any)
 {
     struct gpu_ray rays[RAYS];
@@ -62,7 +62,8 @@ TEST(instances_cost_the_same)
     check_scene(ring_scene, true);
 }
 
-/* The margins of boxes change which boxes are visited, on the device as in C, but change no hit. */
+/* The margins of boxes change the boxes that are visited, on the device as in the float mirror, but
+   no hit. */
 TEST_BY_TURNS(clipped_trees_cost_the_same, 0, 2)
 {
     struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
@@ -155,7 +156,7 @@ static whit_result trace_caterpillar(uint32_t depth, uint32_t stated,
     return result;
 }
 
-/* With the short stack of lavapipe and without it. */
+/* Deep trees are traversed with the short stack of lavapipe, and without it. */
 TEST_BY_TURNS(deep_trees_are_walked, 0, 2)
 {
     const uint32_t depths[] = {31, 32, 33, 63, 64, 65, 128, 200};
@@ -259,7 +260,7 @@ static const struct gpu_cost *costs_of(const struct counted *counted, uint32_t k
     return (const struct gpu_cost *)counted->costs[kind].words;
 }
 
-/* Every camera ray costs what the C traversal of the same ray costs. */
+/* The costs of every camera ray are those of the same ray in the float mirror. */
 static void check_primary(const struct fixture *f, const struct counted *counted, uint32_t kind)
 {
     const struct gpu_cost *costs = costs_of(counted, RAY_PRIMARY);
@@ -298,7 +299,7 @@ static void check_sums(const struct counted *counted)
     assert_true(stats->costs[RAY_REFRACTED].rays == stats->rays_refracted);
 }
 
-/* A width that is no multiple of 8, tiles smaller than the picture. */
+/* The width is no multiple of 8, and tiles are smaller than the picture. */
 TEST(pictures_cost_the_same)
 {
     for (uint32_t order = 0; order < ORDERS; ++order) {
@@ -333,9 +334,9 @@ static struct scene *seen_by(struct scene *scene, const struct scene_camera *cam
     return scene;
 }
 
-/* From so far away that the last bit of a camera ray is a tenth of a triangle wide. The panorama,
-   which cannot zoom in, looks at a terrain whose triangles are smaller by as much. The first of
-   several samples is not in the middle of pixel and lens. */
+/* The camera is so far away that the last bit of a camera ray is a tenth of a triangle wide. The
+   panorama, which cannot zoom in, looks at a terrain with triangles that are smaller by the same
+   factor. The first of several samples is not in the middle of pixel and lens. */
 TEST(camera_rays_are_those_of_c)
 {
     static const struct scene_camera cameras[] = {

@@ -1,5 +1,5 @@
-/* Where floats cannot decide a ray's hit at `exact`, the ray waits for a dispatch of its own. It
-   finds there what a kernel finds that decides on the spot, as the kernels that count do. */
+/* At `exact`, a ray whose hit floats do not decide is deferred to a second dispatch. Its hit is the
+   same as with a kernel that decides at once, as kernels with counters do. */
 #include "ray_fixture.h"
 
 #include "render_scenes.h"
@@ -69,8 +69,8 @@ static void check_picture(const char *name, struct scene *scene, whit_camera cam
     fixture_close(&f);
 }
 
-/* The view is from straight above a corner of the ground's grid, so that the rays of whole rows and
-   columns of pixels run along edges. */
+/* The camera is straight above a corner of the ground's grid, so that the rays of whole rows and
+   columns of pixels meet edges. */
 TEST(pictures_are_those_of_looks_in_place)
 {
     check_picture("ground", glass_scene_of(20, 12),
