@@ -245,7 +245,7 @@ TEST(the_driver_draws_the_same)
     picture_finish(&b);
 }
 
-/* Which effect alone is added to the plain scene. */
+/* The only effect that is added to the plain scene. */
 static enum scene_effect alone;
 
 static struct scene_material alone_material(struct scene *scene)
@@ -509,7 +509,7 @@ TEST(plain_scenes_bind_little)
     fixture_close(&f);
 }
 
-/* ---- Who traces what ---- */
+/* ---- Rays of each pixel ---- */
 
 static void add_pane(struct scene *scene, struct scene_material m, double width, double height,
                      double x, double y, double z)
@@ -561,8 +561,8 @@ static void check_who_refracts(whit_classes classes)
     fixture_close(&f);
 }
 
-/* One kernel for all materials must leave alone what is no glass; a kernel for each class must have
-   what its materials call for. */
+/* One kernel for all materials must send no rays into materials other than glass; a kernel for each
+   class must have the effects of its materials. */
 TEST_BY_TURNS(only_pixels_that_see_glass_refract, 0, 2)
 {
     check_who_refracts(WHIT_CLASSES_ONE);

@@ -1,4 +1,4 @@
-/* No surface adds light, no light is lost but that of rays that were cut, and those are counted. */
+/* No surface adds light, and only light of rays that were cut is lost; those rays are counted. */
 #include "media_fixture.h"
 #include "render_scenes.h"
 #include "unit.h"

@@ -24,8 +24,8 @@ static void fixture_message(void *user, whit_log_level level, const char *messag
 
 static const whit_log fixture_log = {.fn = fixture_message, .level = WHIT_LOG_WARNING};
 
-/* The one device of all checks of a program: layers and driver take longer to start than most
-   pictures take to draw. Checks that want the same kernel share its pipeline. */
+/* The device that all checks of a program share, because layers and driver take longer to start
+   than most pictures take to draw. Checks with the same kernel share its pipeline. */
 static struct device *fixture_shared;
 
 /* Ends a program in which `failed` checks failed. If there were none, the device is destroyed, and
@@ -56,7 +56,7 @@ static inline void fixture_validate(void)
     assert_int_equal(said, 0);
 }
 
-/* Everything between a scene and its hits. */
+/* A scene with its trees, renderer and device. */
 struct fixture {
     struct scene *scene;
     struct accel *accel;

@@ -1,4 +1,4 @@
-/* The grid on the ground: where its lines are, and how far rays go to them. */
+/* The grid on the ground: the places of its lines, and the distances of rays to them. */
 #include <math.h>
 
 #include "picture/grid.h"
@@ -46,7 +46,7 @@ TEST(lines_are_a_pixel_wide_and_a_step_apart)
     assert_float_equal(mean(), 2 * 4.0 / SIDE, 0.02);
 }
 
-/* Just below the bottom of the scene, so that a floor there hides it. */
+/* The grid is just below the bottom of the scene, so that a floor there hides it. */
 TEST(rays_end_on_the_ground)
 {
     look_down(0.5, 0.5, 0.8);

@@ -1,4 +1,4 @@
-/* Lights: flat emitters against integrals, cones, ranges, shadows of each. */
+/* Lights: flat emitters compared with integrals, cones, ranges, and shadows of each kind. */
 #include <float.h>
 
 #include "picture_fixture.h"
@@ -98,8 +98,8 @@ TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
     }
 }
 
-/* Seen from the middle of the floor a plate hides exactly half of the emitter. With n points on the
-   emitter, each stands for 1 / n of its light. */
+/* Seen from the middle of the floor, a plate hides exactly half of the emitter. With n points on
+   the emitter, each stands for 1 / n of its light. */
 TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
 {
     static const uint32_t samples[] = {4, 16, 64};
@@ -216,8 +216,8 @@ TEST_BY_TURNS(ranges_end_lights, 0, 4)
     image_finish(&image);
 }
 
-/* Without lights, with lights in the surface itself, without power, with far too much of it: there
-   is a picture, and all its values are finite. */
+/* Without lights, with lights in the surface itself, without power or with far too much power, all
+   values of the picture are finite. */
 TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 4)
 {
     for (int i = 0; i < 6; ++i) {
@@ -309,9 +309,9 @@ static struct scene *rings_under(struct scene_light light, double moved, float s
     return scene;
 }
 
-/* S4 and S5 of the catalogue of hard cases, for lights: 10^-6 above a surface, 10^4 sizes away and
-   farther, in a plane or a corner of what stands there, near to coordinates that are large.
-   Packets, whose boxes are told from the light, meet what the rays meet alone. */
+/* S4 and S5 of the catalogue of hard cases, for lights: 10^-6 above a surface, 10^4 sizes of the
+   scene and farther away, in a plane or a corner of an object, at large coordinates. Packets, which
+   test boxes from the light, hit the same as single rays. */
 TEST(packets_to_a_light_shade_as_rays_do)
 {
     static const struct {

@@ -25,8 +25,8 @@ static struct scene *layer_scene(const struct layer *layers, int count)
     return scene;
 }
 
-/* Up to three media; the interfaces that are to be seen are at z[i], with index n[i] in front of
-   each and air at the end. */
+/* Up to three media; the visible interfaces are at z[i], with index n[i] in front of each, and air
+   behind the last one. */
 struct stack {
     const char *name;
     struct layer layers[3];
@@ -34,8 +34,8 @@ struct stack {
     double z[6], n[6];
 };
 
-/* The way from z = 5 to z = -4: how far sideways, relative to the slope's length, and what share of
-   the light arrives. */
+/* The way of a ray from z = 5 to z = -4: its distance sideways, and the share of the light that
+   arrives. `slope`: that of the ray at the start. */
 static void pass_layers(const struct stack *s, double slope, double *aside, double *share)
 {
     double sine = slope / sqrt(1.0 + slope * slope), at = 5.0;
@@ -233,21 +233,22 @@ TEST_BY_TURNS(camera_knows_its_media, 0, 4)
         add_object(scene, mesh_box(1, 1, 1), clear_glass(1.3f, 1), 4, 0, 0);
         check_eye(scene, high ? (uint32_t[]){inner, outer} : (uint32_t[]){outer, inner}, 2);
     }
-    /* In a sphere and a thin box, which has no inside. */
+    /* The camera is in a sphere and in a thin box, which has no inside. */
     scene = dark_scene(inside, away);
     struct scene_material thin = clear_glass(1.5f, 0);
     thin.thin_walled = true;
     add_object(scene, mesh_box(4, 4, 4), thin, 0, 0, 0);
     uint32_t round = add_object(scene, ball(1.0), clear_glass(1.5f, 0), 0, 0, 0);
     check_eye(scene, &round, 1);
-    /* Below a sheet that ends nowhere: no majority says inside, and nothing breaks. */
+    /* Below a sheet without a border no majority of rays says that the camera is inside; nothing
+       breaks. */
     scene = dark_scene(inside, away);
     add_object(scene, mesh_plane(8), clear_glass(1.33f, 0), 0, 1, 0);
     check_eye(scene, NULL, 0);
 }
 
-/* Looking up from water: within the critical angle the sky, beyond it what the surface reflects,
-   here the dark below. One bounce. */
+/* Seen from below water, the sky is within the critical angle; beyond it the surface reflects the
+   dark ground below. One bounce. */
 TEST_BY_TURNS(snells_window_is_where_it_should_be, 1, 4)
 {
     struct scene *scene = dark_scene((double[]){0, -1, 0}, (double[]){0, 0, 0});
@@ -315,9 +316,9 @@ static struct scene_mesh octahedron_mesh(void)
     return mesh;
 }
 
-/* Bodies that do not bend, seen so that whole rows of pixels look exactly at edges and vertices,
-   where rays meet several triangles at once, and leave by others. Each is entered and left once:
-   light is lost along the way inside, and nowhere else. */
+/* Bodies with index 1 are placed so that whole rows of pixels look exactly at edges and vertices,
+   where rays meet several triangles at once. Each body is entered and left once, so that light is
+   lost only along the way inside. */
 TEST_BY_TURNS(edges_are_crossed_once, 2, 4)
 {
     enum { SIDE = 33 };
@@ -397,7 +398,7 @@ static uint32_t count_over(const struct image *a, const struct image *b, double 
     return over;
 }
 
-/* Three ways to model it make one picture. */
+/* Three ways to model a liquid in a glass give one picture. */
 TEST_BY_TURNS(liquid_in_a_glass, 3, 4)
 {
     enum { NONE = 0, SOME = LIQUID_PIXELS / 64, MANY = LIQUID_PIXELS / 8, ALL = LIQUID_PIXELS };
@@ -406,9 +407,9 @@ TEST_BY_TURNS(liquid_in_a_glass, 3, 4)
         double overlap;
         uint32_t glass_priority;
         double contact, ior, tolerance;
-        uint32_t min, max; /* pixels over that */
+        uint32_t min, max; /* limits of the number of pixels that differ by more than `tolerance` */
     } ways[] = {
-        /* Priority says where the surface is, so that the pictures are one but for roundings. */
+        /* The priority decides where the surface is, so that pictures are equal within rounding. */
         {"overlap of 0.05", 0.05, 1, 0, 1.33, 1e-3, NONE, NONE},
         {"touching, last entered", 0, 0, 0, 1.33, 1e-3, NONE, NONE},
         {"gap of 1e-5, contact 1e-4", -1e-5, 1, 1e-4, 1.33, 1e-3, NONE, NONE},
@@ -416,8 +417,7 @@ TEST_BY_TURNS(liquid_in_a_glass, 3, 4)
            another pixel. */
         {"overlap of 1e-3, last entered", 1e-3, 0, 0, 1.33, 1e-2, NONE, SOME},
         {"gap of 1e-3, contact 4e-3", -1e-3, 1, 4e-3, 1.33, 1e-2, NONE, SOME},
-        /* A layer of air reflects all that comes at a flat angle: nearly as if there were no
-           liquid. */
+        /* A layer of air reflects all light at flat angles, nearly as if there were no liquid. */
         {"gap of 1e-5, no contact", -1e-5, 1, 0, 1.33, 1e-2, MANY + 1, ALL},
         {"no liquid", -0.2, 1, 0, 1.0, 1e-2, MANY + 1, ALL},
     };

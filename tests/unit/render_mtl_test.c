@@ -1,5 +1,5 @@
-/* Each class of MTL material, from the file to the pixel, against the format's formulas. Every
-   material is on a strip of its own. */
+/* Compares the pixels of each class of MTL material with the formulas of the format. Every material
+   is on a strip of its own. */
 #include "folder_fixture.h"
 #include "load/model.h"
 #include "picture_fixture.h"
@@ -19,7 +19,7 @@ static const double sun[3] = {0.9, 1.0, 0.8}, air[3] = {0.4, 0.3, 0.2};
 static const double ka[3] = {0.3, 0.2, 0.1}, kd[3] = {0.3, 0.35, 0.4}, ks[3] = {0.25, 0.5, 0},
                     tf[3] = {0.5, 1, 0.25};
 #define COMMON           "Ka 0.3 0.2 0.1\nKd 0.3 0.35 0.4\nKs 0.25 0.5 0\nNs 4\nNi 1.5\nTf 0.5 1 0.25\n"
-/* Shares: of codes 188 as sRGB, 51 and 128 as numbers. */
+/* Values of the texels: code 188 as sRGB, codes 51 and 128 as numbers. */
 #define PICTURE_COLOR    0.50288646
 #define PICTURE_SPECULAR (51.0 / 255.0)
 #define PICTURE_EXPONENT (128.0 / 255.0)
@@ -27,30 +27,30 @@ static const double ka[3] = {0.3, 0.2, 0.1}, kd[3] = {0.3, 0.35, 0.4}, ks[3] = {
 
 struct strip {
     const char *name, *text;
-    double ambient, diffuse; /* shares of these that are seen */
+    double ambient, diffuse; /* shares of ambient and diffuse light that are visible */
     double exponent;         /* of the highlight; 0: no highlight */
-    double mirrored;         /* Ks times this of what is reflected */
-    double fresnel;          /* of what is reflected, beside Ks */
-    double straight;         /* of what is behind, straight on */
-    double refracted;        /* Tf times this of what is behind, bent */
-    double less_ks;          /* the last times 1 - this Ks */
+    double mirrored;         /* weight of reflected light, times Ks */
+    double fresnel;          /* weight of reflected light without Ks */
+    double straight;         /* weight of light that passes straight on */
+    double refracted;        /* weight of refracted light, times Tf */
+    double less_ks;          /* `refracted` is multiplied by 1 - less_ks Ks */
     double plain, emitted;
 };
 
-/* In the order of the members. */
+/* Values are in the order of the members of `struct strip`. */
 static const struct strip strips[] = {
     {"0", "illum 0", 0, 0, 0, 0, 0, 0, 0, 0, 1, 0},
     {"1", "illum 1", 1, 1, 0, 0, 0, 0, 0, 0, 0, 0},
     {"2", "illum 2", 1, 1, 4, 0, 0, 0, 0, 0, 0, 0},
     {"3", "illum 3", 1, 1, 4, 1, 0, 0, 0, 0, 0, 0},
     {"4", "illum 4\nd 0.25", 0.25, 0.25, 4, 1, 0, 0.75, 0, 0, 0, 0},
-    /* (1 - 0.5)^5 of what is missing to 1 */
+    /* Schlick: Ks + (1 - Ks) (1 - 0.5)^5 */
     {"5", "illum 5", 1, 1, 4, 1 - 0.03125, 0.03125, 0, 0, 0, 0, 0},
     {"6", "illum 6", 1, 1, 4, 1, 0, 0, 1, 1, 0, 0},
     {"7", "illum 7", 1, 1, 4, 0, FRESNEL_60, 0, 1 - FRESNEL_60, 0, 0, 0},
     {"8", "illum 8", 1, 1, 4, 0, 0, 0, 0, 0, 0, 0},
     {"9", "illum 9\nTr 0.25", 0.75, 0.75, -4, 0, 0, 0.25, 0, 0, 0, 0},
-    /* No shadow falls here: the catcher is not to be seen. */
+    /* No shadow falls here, so that the catcher is invisible. */
     {"10", "illum 10", 0, 0, 0, 0, 0, 1, 0, 0, 0, 0},
     {"map_Kd", "illum 1\nmap_Kd color.png", PICTURE_COLOR, PICTURE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0},
     {"map_Ks", "illum 3\nmap_Ks fifth.png", 1, 1, 4, PICTURE_SPECULAR, 0, 0, 0, 0, 0, 0},
@@ -180,7 +180,7 @@ TEST(classes_mean_what_the_format_says)
     image_finish(&image);
 }
 
-/* The knob, whatever is compiled in. */
+/* --fresnel schlick works with every set of compiled effects. */
 TEST(schlick_takes_the_place_of_fresnel)
 {
     whit_renderer_params params = strip_params;

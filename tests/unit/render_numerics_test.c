@@ -1,5 +1,5 @@
-/* The numeric levels on the device: all agree with the C twin bit for bit, `exact` agrees with
-   rational arithmetic, and `fast` alone lets rays through where they should hit. */
+/* The levels of numerics on the device: all agree with the float mirror bit for bit, `exact` agrees
+   with rational arithmetic, and only `fast` lets rays through where they should hit. */
 #include "../cases.h"
 #include "ray_fixture.h"
 #include "unit.h"
@@ -76,7 +76,7 @@ TEST(split_triangles)
                             .mesh = {.builder = WHIT_BUILD_SPATIAL, .spatial_alpha = 1e-9f}});
 }
 
-/* Keys that tie: the same triangle many times, in one mesh and in instances at one place. */
+/* The same triangle many times, in one mesh and in instances at one place, so that hits tie. */
 TEST(ties)
 {
     if (!unit_turn(0, 2))
@@ -88,8 +88,8 @@ TEST(ties)
     check_levels(scene, NULL);
 }
 
-/* Balls that stick out of terrain: hits of spheres and of triangles, which are decided in two ways,
-   have to be put in order. aim_rays aims at triangles alone. */
+/* Spheres that stick out of terrain: hits of spheres and of triangles, which are decided in two
+   ways, must be in the right order. aim_rays aims only at triangles. */
 TEST(spheres)
 {
     if (!unit_turn(1, 2))
@@ -130,7 +130,7 @@ TEST(only_fast_leaks)
         leaks[level] = RAYS - count_met(hits, RAYS);
         print_message("  %s: %u of %u rays leak\n", names[level], leaks[level], RAYS);
     }
-    assert_true(leaks[NUMERICS_FAST] > 0); /* or the rays are not hard */
+    assert_true(leaks[NUMERICS_FAST] > 0); /* else the rays are not hard enough */
     assert_int_equal(leaks[NUMERICS_WATERTIGHT], 0);
     assert_int_equal(leaks[NUMERICS_EXACT], 0);
     fixture_close(&f);
@@ -174,8 +174,8 @@ TEST(pictures_agree)
     fixture_close(&f);
 }
 
-/* Without trees every box is that of everything: neither the exact decisions in integers nor the
-   rays that wait for them are changed by that. */
+/* Without trees every box is that of the whole scene, which changes neither exact decisions by
+   integers nor deferred rays. */
 TEST(trees_do_not_matter)
 {
     const struct accel_params none = {.mesh = {.builder = WHIT_BUILD_NONE}};

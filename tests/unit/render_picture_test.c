@@ -69,7 +69,7 @@ TEST_BY_TURNS(texture_of_transmission_decides, 1, 4)
     image_finish(&clear);
 }
 
-/* What the eye sees of a smooth black box under a white sky, which is only the sky's reflection. */
+/* The radiance of a smooth black box under a white sky, which only reflects the sky. */
 static float mirrored(float level, float tint, enum scene_slot slot, int texel)
 {
     struct scene *scene = dark_scene((double[]){0, 0, 5}, (double[]){0, 0, 0});
@@ -198,9 +198,8 @@ TEST_BY_TURNS(packets_are_chosen_where_they_pay, 3, 4)
     }
 }
 
-/* More loop turns than lavapipe grants: an error, never a silently wrong picture. Here a shadow ray
-   passes all panes of a stack, the last thing that it meets, through each kind of tree and of walk.
- */
+/* If a loop needs more iterations than lavapipe allows, that is an error, never a silently wrong
+   picture. A shadow ray passes all panes of a stack, with each kind of tree and traversal. */
 TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
 {
     for (int i = 0; i < 4; ++i) {
@@ -219,9 +218,9 @@ TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
     }
 }
 
-/* The clock of this program stands still but where the test turns it (-Wl,--wrap=clock_ms). */
+/* The clock of this program moves only where the test sets it (-Wl,--wrap=clock_ms). */
 static double now_ms;
-static bool *cancelled_by_clock; /* when somebody looks at it */
+static bool *cancelled_by_clock; /* set to true at the next reading of the clock; NULL: none */
 double __wrap_clock_ms(void);
 
 double __wrap_clock_ms(void)
@@ -248,8 +247,8 @@ TEST_BY_TURNS(many_lights_are_drawn, 1, 4)
     picture_finish(&picture);
 }
 
-/* All in one tile: a cancellation in its first submission waits for a few lights, but not for all
-   of very many. */
+/* In a single tile a cancellation during the first submission waits for a few lights, but not for
+   all of many. */
 TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
 {
     bool cancel = false;
@@ -273,7 +272,7 @@ TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
 
 struct glass_picture {
     struct picture picture;
-    struct image refracted; /* what refracted rays cost, where that is counted */
+    struct image refracted; /* costs of refracted rays, if they are counted */
     bool was_full;
 };
 
@@ -298,8 +297,8 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
     return glass_picture;
 }
 
-/* What a tile that was timed has shaded, by its materials. Two tiles of two rows of blocks: the
-   second is timed. */
+/* Checks the shares of materials in the hits of timed tiles. The picture has two tiles of two rows
+   of blocks, of which the second is timed. */
 static void check_shares(const struct accel_params *accel)
 {
     enum { WIDTH = 64, HEIGHT = 32 };

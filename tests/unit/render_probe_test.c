@@ -1,5 +1,5 @@
-/* Probed pixels: their rays are those of the picture, all of them, with its colour; the CPU agrees
-   with every one; and nothing of it is left in other kernels. */
+/* The rays of probed pixels are all rays of the picture, and add up to its colour; the CPU agrees
+   with every ray; kernels of pictures have no code for probes. */
 #include "../cases.h"
 #include "device/pipeline.h"
 #include "picture_fixture.h"
@@ -10,9 +10,9 @@
 
 enum { SIDE = 8 };
 
-/* ---- What holds for every probed pixel ---- */
+/* ---- Checks of every probed pixel ---- */
 
-/* What probes of all pixels of a picture add up to. */
+/* Sums over the probes of all pixels of a picture. */
 struct sums {
     uint64_t kinds[RAY_KIND_COUNT], cut_depth, cut_bailout;
     uint64_t ends[PROBE_BLOCKED + 1];
@@ -110,9 +110,9 @@ static void assert_ray(const struct probe_ray *rays, uint32_t i)
                     (ray->traced.end == PROBE_REACHED || ray->traced.added[k] == 0.0f));
 }
 
-/* Asserts that what the rays of one sample add up to is its colour. Each ray adds its own light and
-   what it is brought by the rays that are refracted, go straight on and are reflected. The sum is
-   the same bit for bit but behind shadow catchers, which take their share of all of it at once. */
+/* Asserts that the rays of one sample add up to its colour. Each ray adds its own light and that of
+   the rays that are refracted, go straight on and are reflected. The sum has the same bits, except
+   behind shadow catchers, which take their share of all of it at once. */
 static void assert_sum_is_color(const struct probe_report *report)
 {
     uint32_t count = report->ray_count;
@@ -153,7 +153,7 @@ static void assert_report(const struct probe_report *report)
 
 /* ---- A picture, pixel by pixel ---- */
 
-/* At most `max` rays, 0: all. */
+/* Probes a pixel; records at most `max` rays, 0: all. */
 static struct probe_report probe(const struct fixture *f, uint32_t x, uint32_t y, uint32_t max)
 {
     struct probe_report report;
@@ -218,8 +218,8 @@ static void assert_all_kinds(const struct sums *sums)
     assert_true(sums->exact > sums->rays / 2 && sums->exact_equal > 0);
 }
 
-/* surfaces_let_rays_pass checks the same with `exact` alone, whose kernels take the driver longest:
-   what passes at other levels is in scenes_of_all_kinds. */
+/* surfaces_let_rays_pass checks the same only at `exact`, whose kernels take longest to compile;
+   scenes_of_all_kinds has surfaces that let rays pass at other levels. */
 TEST(rays_are_those_of_the_picture)
 {
     if (!unit_turn(0, 2))
@@ -232,8 +232,8 @@ TEST(rays_are_those_of_the_picture)
 
 /* ---- Surfaces that let rays pass ---- */
 
-/* Behind each other: what textures cut out, what blends, a pane that is not seen from behind, a
-   shadow catcher, a ball and a block of glass and a mirror, under a lamp and a flat emitter. */
+/* Objects behind each other: a cut-out by a texture, a blended box, a one-sided pane, a shadow
+   catcher, a ball and a block of glass, and a mirror, under a lamp and a flat emitter. */
 static struct scene *sieve_scene(void)
 {
     struct scene *scene = dark_scene((double[]){0, 1.5, 7}, (double[]){0, 0.8, 0});

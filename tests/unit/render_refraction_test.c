@@ -1,4 +1,4 @@
-/* Where refracted rays go and what they carry, against formulas in double. */
+/* Compares the directions and the weights of refracted rays with formulas in double. */
 #include "media_fixture.h"
 #include "unit.h"
 
@@ -47,8 +47,9 @@ TEST(slab_keeps_directions)
 
 /* ---- A ball lens ---- */
 
-/* Through a ball of radius 1 at the origin, to the plane z = -wall. False where the ray misses or
-   is beyond 0.7 of the radius: there what the ball reflects reaches the wall too. */
+/* Follows a ray through a ball of radius 1 at the origin to the plane z = -wall. False if the ray
+   misses, or passes beyond 0.7 of the radius, where light that the ball reflects reaches the wall
+   too. */
 static bool pass_ball(const double slope[2], double n, double wall, double at[2])
 {
     double d[3] = {slope[0], slope[1], -1}, o[3] = {0, 0, 5}, p[3];
@@ -120,8 +121,9 @@ TEST(ball_bends_rays_to_its_focus)
 
 /* ---- Many bounces ---- */
 
-/* Between two mirrors, up and out. The mirrors are turned so that rays leave the last one nearly
-   straight up, where the sky shows how long their direction is, and then by `turn` about that. */
+/* A ray bounces upwards between two mirrors and leaves them. They are turned so that the ray leaves
+   the last one nearly straight up, where the sky shows the length of its direction, and then by
+   `turn` about that. */
 static void leave_mirrors(double turn)
 {
     /* Before the turns the normals are along x; 65 times the ray's x changes its sign. */
@@ -179,7 +181,7 @@ TEST(beer_from_nothing_to_infinity)
         struct image image = color_of(scene, NULL, &params);
         const float *color = image.pixels;
         assert_true(color[0] == 1.0f);
-        /* What is not finite is mended to 0 when the scene is frozen. */
+        /* scene_freeze replaces values that are not finite by 0. */
         double expected = isfinite(absorptions[i]) ? exp(-(double)absorptions[i]) : 1.0;
         print_message("  %g: %.9g\n", (double)absorptions[i], (double)color[1]);
         /* exp: 3 + 2 |x| ulp (Vulkan, precision of SPIR-V instructions); below FLT_MIN: 0 */
@@ -222,8 +224,8 @@ TEST(endless_media_are_dark)
 
 /* ---- Both ways ---- */
 
-/* From air into glass and back along the same path the same share arrives: whit carries radiance
-   over the square of the index. */
+/* The same share of light arrives from air into glass and back along the same path, because whit
+   divides radiance by the square of the index. */
 TEST(paths_are_reversible)
 {
     const double slopes[] = {0.1, 0.7, 2.0, 5.0};

@@ -1,5 +1,5 @@
-/* One renderer that is given one view after another: each picture is that of a renderer made for
-   it, byte for byte. */
+/* A renderer draws several views in turn: each picture is, byte for byte, that of a renderer made
+   for it. */
 #include "render/renderer.h"
 #include "render_scenes.h"
 #include "unit.h"
@@ -33,7 +33,7 @@ static void check_same(const struct fixture *f, const char *name,
 {
     struct fixture fresh = {.device = f->device, .accel = f->accel};
     whit_renderer_params own = *params;
-    own.packets = WHIT_PACKETS_OFF; /* else a matter of the size that the renderer was made with */
+    own.packets = WHIT_PACKETS_OFF; /* else it would depend on the size that it was made with */
     struct picture picture = render_picture(f);
     fixture_renew(&fresh, &own);
     struct picture expected = render_picture(&fresh);

@@ -12,7 +12,7 @@ enum { WIDTH = 20, HEIGHT = 18, FLOATS = WIDTH * HEIGHT * 4, SAMPLES = 16 };
 static struct fixture f;
 static float parts[SAMPLES][FLOATS], whole[FLOATS];
 
-/* A mirror and a ball under a lamp of some size, seen through a lens: all that samples move. */
+/* A mirror and a ball under an area light, seen through a lens: samples differ in all of these. */
 static int open_scene(void **state)
 {
     (void)state;
@@ -64,7 +64,7 @@ static void draw_parts(uint32_t each)
         draw(i * each, each, i % 2 ? 16 : 0, parts[i]);
 }
 
-/* The mean of `count` pictures, by the definition: that of each half, halved. */
+/* The mean of `count` pictures by its definition: half of the sum of the means of both halves. */
 static float mean_of(uint32_t first, uint32_t count, int at)
 {
     if (count == 1)

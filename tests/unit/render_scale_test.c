@@ -1,5 +1,5 @@
-/* No length is built in: a scene that is larger or smaller by a power of two, where floats round as
-   before, gives the same picture. */
+/* No length is built in: a scene that is scaled by a power of two, with which floats round in the
+   same way, gives the same picture. */
 #include "media_fixture.h"
 #include "unit.h"
 
