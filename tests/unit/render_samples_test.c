@@ -1,5 +1,5 @@
-/* Samples of pictures: their sum is pairwise by index, so that sets of them merge to the bytes of
- * the whole. */
+/* The sum of samples is pairwise by index, so that parts of the samples merge to the bytes of the
+   whole picture. */
 #include <math.h>
 
 #include "device/buffer.h"

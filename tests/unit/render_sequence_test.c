@@ -1,4 +1,4 @@
-/* The sequence that samples follow: where its points lie, and what pairs of them have in common. */
+/* The sequence of sample points: its distribution, alone and in pairs of dimensions. */
 #include <math.h>
 
 #include "picture/sequence.h"
@@ -6,14 +6,14 @@
 
 enum { LEVELS = 6, POINTS = 1 << (2 * LEVELS) };
 
-/* Which of 2^bits equal parts a coordinate is in. */
+/* The index of the part, of 2^bits equal parts, that a coordinate is in. */
 static uint32_t part_of(uint32_t place, uint32_t bits)
 {
     return bits ? place >> (32 - bits) : 0;
 }
 
-/* Whether in each box of 2^i columns and 2^(2 level - i) rows there is one of 4^level points from
-   `first` on, for every i. */
+/* Whether, for every i, each box of a grid with 2^i columns and 2^(2 level - i) rows has exactly
+   one of the 4^level points from `first` on. */
 static bool fills_all_boxes(uint32_t first, uint32_t level)
 {
     static bool taken[POINTS];
@@ -45,8 +45,7 @@ TEST(blocks_fill_all_boxes)
     assert_false(fills_all_boxes(2, 1)); /* these are not one block */
 }
 
-/* The mean of the first 4, 16, ... points is near the middle, and the nearer the more points it is
-   of. */
+/* The mean of the first 4, 16, ... points is near the middle; more points are nearer. */
 TEST(points_lean_to_no_side)
 {
     uint64_t sum[2] = {0, 0};

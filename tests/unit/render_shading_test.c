@@ -1,5 +1,5 @@
-/* Normals and texture coordinates as files have them: missing, without length, not finite, turned
-   about, huge. All with every effect compiled, since nothing may be left to luck there. */
+/* Normals and texture coordinates as files have them: missing, of length 0, not finite, reversed,
+   huge. Kernels have every effect, so that no code is left out that might fail. */
 #include "picture_fixture.h"
 #include "unit.h"
 
@@ -13,7 +13,7 @@ static uint32_t add_texel(struct scene *scene, uint8_t r, uint8_t g, uint8_t b)
     return scene_put_texture(scene, 1, 1, (uint8_t[4]){r, g, b, 255});
 }
 
-/* All channels of all pixels are `expected`. */
+/* Asserts that all channels of all pixels are `expected`. */
 static void assert_even(struct scene *scene, double expected, double relative)
 {
     struct image image = color_of(scene, NULL, &all_params);
@@ -23,7 +23,7 @@ static void assert_even(struct scene *scene, double expected, double relative)
     image_finish(&image);
 }
 
-/* No pixel is other than a number between 0 and `max`. */
+/* Asserts that all pixels are numbers from 0 to `max`. */
 static void assert_sane(struct scene *scene, double max)
 {
     struct image image = color_of(scene, NULL, &all_params);
@@ -72,7 +72,7 @@ TEST_BY_TURNS(unusable_normals_are_those_of_the_faces, 0, 2)
     assert_even(sunny(from_above(), flat, white()), COS_SUN, 1e-6);
 }
 
-/* A longer normal counts no more than the others where normals are interpolated. */
+/* The length of a normal gives it no more weight where normals are interpolated. */
 TEST_BY_TURNS(lengths_of_normals_do_not_matter, 1, 2)
 {
     static const float lengths[] = {1e-30f, 1e30f, 3.0f, 0.01f};
@@ -93,8 +93,7 @@ TEST_BY_TURNS(lengths_of_normals_do_not_matter, 1, 2)
     image_finish(&images[1]);
 }
 
-/* With normals to the other side, or corners in the other order, or both: the side that faces the
-   eye is shaded. */
+/* With reversed normals, reversed winding, or both, the side that faces the eye is shaded. */
 TEST_BY_TURNS(turned_normals_shade_the_same, 0, 2)
 {
     for (int i = 0; i < 4; ++i) {
@@ -110,7 +109,7 @@ TEST_BY_TURNS(turned_normals_shade_the_same, 0, 2)
     }
 }
 
-/* A shading normal that faces away from the eye gives way to the face's own. */
+/* A shading normal that faces away from the eye is replaced by that of the face. */
 TEST_BY_TURNS(averted_normals_give_way, 1, 2)
 {
     struct scene_mesh mesh = mesh_plane(40);
@@ -120,7 +119,7 @@ TEST_BY_TURNS(averted_normals_give_way, 1, 2)
     add_object(scene, mesh, white(), 0, 0, 0);
     scene_put_sun(scene, 0, -1, 0, 1.0f);
     assert_even(scene, 1.0, 1e-6);
-    /* Mirrors, glass and highlights under such normals: finite, and no more than there is. */
+    /* With such normals mirrors, glass and highlights give finite light, and not too much. */
     for (int kind = 0; kind < 3; ++kind) {
         struct scene_mesh again = mesh_plane(40);
         struct scene_material m = matte(0.5f, 0.5f, 0.5f);
@@ -166,7 +165,7 @@ static double linear_of(uint8_t srgb)
     return pow((srgb / 255.0 + 0.055) / 1.055, 2.4);
 }
 
-/* The texture is of one colour: whatever its coordinates, that is what is seen. */
+/* A texture of one colour gives that colour with any coordinates. */
 TEST(coordinates_may_be_anything)
 {
     static const float uvs[][4][2] = {
@@ -187,8 +186,8 @@ TEST(coordinates_may_be_anything)
     assert_sane(textured_floor(NULL, true), linear * 1.000001);
 }
 
-/* By set 0 a texture's first texel is met, by set 1 its second one; two textures, each by its own.
- */
+/* Set 0 leads to a texture's first texel, set 1 to its second; each of two textures uses its own
+   set. */
 TEST(each_texture_has_its_coordinates)
 {
     static const uint8_t diffuse[2] = {200, 90}, emission[2] = {60, 140};

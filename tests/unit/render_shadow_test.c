@@ -1,5 +1,4 @@
-/* Shadows: through textured and absorbing filters, on smooth meshes, and on surfaces that show
-   nothing else. */
+/* Shadows through textured and absorbing filters, on smooth meshes, and on shadow catchers. */
 #include "picture_fixture.h"
 #include "unit.h"
 
@@ -8,7 +7,7 @@ static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
  */
 static const double half_a_step = 0.5 / 64.0 * 0.69314718056;
 
-/* The sun comes at 45 degrees, so that the pane is out of sight where its shadow is in it. */
+/* The sun is at 45 degrees, so that the camera sees the shadow of the pane, but not the pane. */
 static struct scene *pane_scene(bool blends)
 {
     struct scene *scene = floor_scene(eye_height);
@@ -66,17 +65,17 @@ TEST_BY_TURNS(textures_pattern_shadows, 0, 4)
 
 static const float sigma[3] = {0.3f, 0.7f, 1.5f};
 
-/* A block of glass that does not bend, `height` high, its middle at `y`, over the floor or around
-   it; a light above it, or in it. */
+/* A block of glass with index 1, `height` high, with its middle at `y`, above the floor or around
+   it, and a light above it or in it. */
 struct block {
     const char *name;
     double height, y;
     const whit_camera *camera;
-    double sun[3], lamp; /* direction of the one, height of the other; that which is not 0 */
+    double sun[3], lamp; /* direction of a sun, height of a lamp; the one that is not 0 is used */
     float strength;
-    double light;  /* that reaches the floor where nothing absorbs */
+    double light;  /* light that reaches the floor without absorption */
     double length; /* of the light's way through the glass */
-    double seen;   /* of the eye's */
+    double seen;   /* length of the camera ray's way through the glass */
 };
 
 static struct scene *block_scene(const struct block *block)
@@ -94,7 +93,8 @@ static struct scene *block_scene(const struct block *block)
     return scene;
 }
 
-/* exp(-sigma length) is left; each end of the light's way inside is rounded to 1/64 stop. */
+/* The share exp(-sigma length) of the light arrives, within 1/64 stop for rounding at each end of
+   the way through the glass. */
 TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
 {
     /* The first is under the block. */
@@ -161,7 +161,7 @@ static struct image ball_picture(uint32_t segments, bool without)
     return color_of(ball_scene(segments), NULL, &params);
 }
 
-/* Within 0.85 of the ball's radius: outlines differ anyway. */
+/* The error within 0.85 of the ball's radius, as outlines differ in any case. */
 static double ball_error(const struct image *a, const struct image *b)
 {
     double sum = 0.0, radius = 60.0 / tan(0.3) / sqrt(24.0) * 0.85;
@@ -270,8 +270,8 @@ TEST_BY_TURNS(closed_rooms_stay_dark, 1, 4)
 
 /* ---- Catchers ---- */
 
-/* A catcher before an even background; a box and a red pane over it, that the sun throws into view.
- */
+/* A shadow catcher in front of an even background. A box and a red pane above it are out of view;
+   the sun casts their shadows into view. */
 static struct scene *catcher_scene(bool lit)
 {
     struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
@@ -284,7 +284,7 @@ static struct scene *catcher_scene(bool lit)
     set_rgb(pane.transmission, 1.0f, 0.25f, 0.25f);
     pane.thin_walled = true;
     add_object(scene, mesh_plane(40), m, 0, 0, 0);
-    add_object(scene, mesh_plane(30), m, 0, 7, 0); /* one above casts none */
+    add_object(scene, mesh_plane(30), m, 0, 7, 0); /* a catcher above casts no shadow */
     add_object(scene, mesh_box(1, 0.1, 4), pane, -4.5, 5, 0);
     add_object(scene, mesh_box(1, 0.1, 4), material_plain("box"), -6, 5, 0);
     if (lit)
@@ -306,7 +306,7 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
             const float *p = &image.pixels[4 * x];
             clear += p[0] == 0.5f && p[1] == 0.25f && p[2] == 0.75f;
             dark += p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;
-            /* Two faces of the pane: a sixteenth. */
+            /* The two faces of the pane let a sixteenth pass. */
             red += p[0] == 0.5f && p[1] == 0.25f / 16.0f && p[2] == 0.75f / 16.0f;
         }
         print_message("  clear %u, dark %u, red %u\n", clear, dark, red);
@@ -319,9 +319,9 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
     image_finish(&dark);
 }
 
-/* ---- Walks that are cut short ---- */
+/* ---- Traversals that are cut short ---- */
 
-/* Sheets upon sheets under `m`, 1e-4 apart, from `y` on upwards. */
+/* Horizontal triangles above each other, 1e-4 apart, from `y` upwards. */
 static struct scene_mesh sheets(uint32_t count, float y)
 {
     float(*corners)[9] = array_alloc(count, sizeof *corners);
@@ -335,9 +335,8 @@ static struct scene_mesh sheets(uint32_t count, float y)
     return mesh;
 }
 
-/* More sheets than lavapipe grants turns of loops, each of which has to be looked at and lets the
-   ray through: an error, and no picture of what was met so far. On the way of the eye, or of the
-   light alone. */
+/* A ray that passes more sheets than lavapipe allows loop iterations gives an error and no picture.
+   The sheets are on the way of camera rays, or only of shadow rays. */
 TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
 {
     for (int lit = 0; lit < 2; ++lit) {
@@ -387,7 +386,7 @@ static struct scene_mesh sheets_mesh(double offset, uint32_t ulps)
     return mesh;
 }
 
-/* How many of the floor's pixels the sun reaches through the sheet above. */
+/* The number of pixels of the floor that the sun reaches past the sheet above. */
 static uint32_t lit_pixels(double offset, uint32_t ulps)
 {
     static const double n[3] = {0.6, -0.48, 0.64};
@@ -412,8 +411,9 @@ static uint32_t lit_pixels(double offset, uint32_t ulps)
     return lit;
 }
 
-/* S2 of the catalogue of hard cases. From 28 ulp on no light gets between, by the sum of the bounds
-   in hard_gap_test.c, which looks for the narrowest gap; at 1 ulp, and below the floor, it does. */
+/* S2 of the catalogue of hard cases. With a gap of 28 ulp or more no light gets below the sheet, by
+   the sum of the bounds in hard_gap_test.c, which searches for the narrowest gap. With 1 ulp, or a
+   sheet below the floor, the floor is lit. */
 TEST(narrow_gaps_stay_dark)
 {
     static const double offsets[] = {0.0, 1e3, 1e5};

@@ -1,5 +1,5 @@
-/* Spheres on the device: hits of their C twin, pictures of triangles as fine as a pixel can tell,
-   and one-sided surfaces. */
+/* Spheres on the device: hits equal those of the float mirror, pictures equal those of meshes that
+   are finer than a pixel, and surfaces may be one-sided. */
 #include "picture_fixture.h"
 #include "ray_fixture.h"
 #include "sphere_fixture.h"
@@ -41,7 +41,7 @@ TEST(spheres_equal_twin)
     check_twin(scene, NULL, "instances");
 }
 
-/* Triangles in clipped trees among them. */
+/* The scene also has triangles in trees with clipped boxes. */
 TEST_BY_TURNS(mixed_scene_equals_twin, 0, 2)
 {
     random_state = 12;
@@ -77,7 +77,7 @@ static uint32_t add_checker(struct scene *scene)
 
 enum look { LOOK_TEXTURE, LOOK_MASK, LOOK_BUMP, LOOK_GLASS, LOOK_COUNT };
 
-/* `fine`: of triangles; else as such. */
+/* A scene of balls: of fine triangles (`fine`), or as sphere primitives. */
 static struct scene *ball_scene(enum look look, bool fine, bool stretched)
 {
     const double eye[3] = {0.4, 0.8, 3.6}, target[3] = {0, 0, 0};
@@ -112,8 +112,8 @@ static struct scene *ball_scene(enum look look, bool fine, bool stretched)
     return scene;
 }
 
-/* How flat a surface is met decides the level of a texture, and at the rim triangles tell that in
- * steps. */
+/* No smaller levels of textures: the angle of a surface decides the level, and at the rim that of
+   triangles changes in steps. */
 static const whit_renderer_params small = {
     .width = 64, .height = 48, .depth = 5, .minification = WHIT_MINIFICATION_NONE};
 
@@ -170,9 +170,8 @@ TEST_BY_TURNS(glass_filters_light_twice, 0, 2)
 
 enum { ONE_SIDED_BEHIND = 1, ONE_SIDED_MIRRORED = 2, ONE_SIDED_FLAT = 4 };
 
-/* Looking down on a red leaf, from its front or from behind, over a white floor under a sun that is
-   above both. Gives what is seen in the middle, and of the floor beside the leaf where its shadow
-   would fall. */
+/* Looks down on a red leaf, at its front or its back, over a white floor under a sun above both.
+   Gives the colours in the middle, and on the floor where the shadow of the leaf would fall. */
 static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float *shadow)
 {
     struct scene *scene = floor_scene(4);
@@ -183,7 +182,7 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
     struct affine placed = affine_from_trs(up, how & ONE_SIDED_BEHIND ? over : straight,
                                            how & ONE_SIDED_MIRRORED ? mirror : one);
     scene_put(scene, mesh_plane(1.0), &(struct put){.material = &leaf, .matrix = &placed});
-    scene_put_sun(scene, 0.6, -1, 0, 1.0f); /* the shadow is 0.6 aside */
+    scene_put_sun(scene, 0.6, -1, 0, 1.0f); /* moves the shadow 0.6 to the side */
     const struct accel_params flat = {.flatten = true};
     whit_renderer_params params = picture_params;
     params.all_effects = all;
@@ -213,7 +212,7 @@ TEST_BY_TURNS(one_sided_leaves_are_not_seen_from_behind, 1, 2)
     assert_true(seen[0] > 0.5f && seen[1] == 0.0f);
 }
 
-/* The near side is its outside; through it one would see the far one. */
+/* From outside a one-sided ball shows its near side; from inside it is invisible. */
 TEST(one_sided_balls_hide_their_inside)
 {
     for (int inside = 0; inside < 2; ++inside) {

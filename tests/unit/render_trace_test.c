@@ -1,4 +1,5 @@
-/* The ray batch kernel against its C twin, bit for bit, and both against every triangle in turn. */
+/* Compares the kernel of ray batches with the float mirror, bit for bit, and both with brute force
+   over all triangles. */
 #include "../cases.h"
 #include "ray_fixture.h"
 #include "scene/pose.h"
@@ -6,7 +7,7 @@
 
 #define RAYS cases_of(32000)
 
-/* A ray is blocked up to t_max just when its closest hit is that near; a third of the rays end
+/* Any-hit finds a hit up to t_max exactly if the closest hit is that near; a third of the rays end
    exactly there, or one float before. */
 static void check_any_against_closest(struct fixture *f, const char *label)
 {
@@ -75,7 +76,7 @@ static struct scene_mesh far_sphere(void)
     return mesh;
 }
 
-/* Every tenth triangle repeats its neighbour: ties. */
+/* Every tenth triangle repeats its neighbour, so that hits tie. */
 static struct scene_mesh soup(void)
 {
     enum { TRIANGLES = 500 };
@@ -118,7 +119,7 @@ TEST(instances_equal_twin)
 {
     struct scene *scene = forty_rings();
     scene_put_again(scene, 0, NULL);
-    scene_put_again(scene, 0, NULL); /* the same place twice: ties between instances */
+    scene_put_again(scene, 0, NULL); /* an instance at the same place, so that hits tie */
     check_scene(scene, "42 instances");
 }
 
@@ -140,9 +141,9 @@ static struct scene *integer_ring(void)
     return scene_of(mesh);
 }
 
-/* Runs of 64 rays from one point, about the same way: towards the scene, or along an axis, so
-   that signs differ and components are 0. Every seventh goes all ways, every eleventh starts all
-   over the place, and of every fifth one ray has another interval. */
+/* Runs of 64 rays from one point in about the same direction: towards the scene, or along an axis,
+   so that signs differ and components are 0. Every seventh run has all directions, every eleventh
+   has different origins, and in every fifth one ray has another interval. */
 static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t count)
 {
     struct scene_pose pose;
@@ -208,7 +209,7 @@ TEST(packets_equal_twin)
     check_packets(forty_rings(), &flat, "one tree of 40 instances");
 }
 
-/* Along an axis at multiples of a half: from far away; every fifth from a vertex. */
+/* A ray along an axis at multiples of a half, from far away; every fifth ray is from a vertex. */
 static struct gpu_ray ray_along_axis(const struct scene *scene, uint32_t i, uint64_t *state)
 {
     const struct scene_mesh *mesh = &scene->meshes[0];
@@ -291,7 +292,7 @@ static void check_degenerate_rays(uint32_t numerics)
         {{0, 0, 0}, 0, {0, 0, 1}, 0},
         {{0, 0, 0}, 0, {0, 0, 1}, -1},
         {{0, 0, 0}, INFINITY, {0, 0, 1}, INFINITY},
-        {{0, 0, 0}, 0, {0, 0, 1}, NAN}, /* it bounds nothing */
+        {{0, 0, 0}, 0, {0, 0, 1}, NAN}, /* a t_max of NaN is no limit */
     };
     enum { COUNT = sizeof rays / sizeof *rays };
     struct gpu_hit hits[COUNT];
@@ -319,8 +320,8 @@ TEST(empty_scene_misses)
     fixture_close(&f);
 }
 
-/* Slivers along one diagonal, layer on layer: a ray beside the diagonal meets every box and no
-   triangle. That is more loop turns than lavapipe grants; the kernel must say so. */
+/* Layers of slivers along one diagonal: a ray beside the diagonal meets every box and no triangle.
+   That takes more loop iterations than lavapipe allows, and the kernel must report it. */
 TEST(cut_traversals_are_reported)
 {
     enum { COUNT = 70000 };
@@ -341,7 +342,7 @@ TEST(cut_traversals_are_reported)
     traverse_float(f.accel, ORDER_DISTANCE, &rays[0], false, HIT_NONE, HIT_NONE, &twin, &counts,
                    &status);
     assert_int_equal(twin.primitive, HIT_NONE);
-    assert_int_equal(counts.triangles, COUNT); /* the case is as hard as it should be */
+    assert_int_equal(counts.triangles, COUNT); /* the ray does test every triangle */
     whit_result result = renderer_trace(f.renderer, rays, 8, false, hits, NULL);
     print_message("  %u pairs and %u triangles for one ray: %s\n", counts.inner_nodes,
                   counts.triangles, whit_result_name(result));

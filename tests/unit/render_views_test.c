@@ -9,7 +9,7 @@
 
 enum { MANY = 23, THRONG = 40 };
 
-/* Around the scene; every view of another kind in `mixed` ones. */
+/* Places cameras around the scene; with `mixed` each is of another kind. */
 static void place_cameras(whit_camera *cameras, int count, bool mixed)
 {
     for (int i = 0; i < count; ++i) {
@@ -25,7 +25,7 @@ static void place_cameras(whit_camera *cameras, int count, bool mixed)
     }
 }
 
-/* A view of the stack, as an image that borrows its pixels. */
+/* One view of a picture of several views, as an image that borrows its pixels. */
 static struct image view_of(const struct image *all, uint32_t view, uint32_t height)
 {
     struct image image = *all;
@@ -36,7 +36,7 @@ static struct image view_of(const struct image *all, uint32_t view, uint32_t hei
     return image;
 }
 
-/* Asserts that a view of distances has what the C twin finds for each camera ray. */
+/* Asserts that a view of distances has those of the float mirror for each camera ray. */
 static void check_distances(const struct fixture *f, const whit_camera *camera,
                             const struct image *view)
 {
@@ -45,7 +45,7 @@ static void check_distances(const struct fixture *f, const whit_camera *camera,
                                            .numerics = (uint32_t)r->params.numerics,
                                            .skip_instance = HIT_NONE,
                                            .skip_primitive = HIT_NONE};
-    bool exact = r->params.numerics == WHIT_NUMERICS_EXACT; /* of t, shading has what floats give */
+    bool exact = r->params.numerics == WHIT_NUMERICS_EXACT; /* shading uses the t of floats */
     size_t count = (size_t)view->width * view->height;
     struct gpu_ray *rays = malloc(count * sizeof *rays);
     assert_non_null(rays);
@@ -63,7 +63,7 @@ static void check_distances(const struct fixture *f, const whit_camera *camera,
     free(rays);
 }
 
-/* `single` draws the pictures that the views have to be. */
+/* Compares the views with the pictures of their cameras, which `single` draws. */
 static void check_views(const struct fixture *f, const struct fixture *single,
                         const whit_camera *cameras, uint32_t count)
 {
@@ -93,8 +93,7 @@ static void check_views(const struct fixture *f, const struct fixture *single,
     image_finish(&distances);
 }
 
-/* The buffers hold only 24 rows, so that pictures are drawn in bands, whose ends are within views.
- */
+/* The buffers hold only 24 rows, so that pictures are drawn in bands that end within views. */
 static void check_bands(const struct fixture *f, const struct fixture *single,
                         const whit_camera *cameras, uint32_t count)
 {
@@ -123,8 +122,8 @@ static void check_scene(const char *name, const whit_renderer_params *params, bo
     fixture_close(&f);
 }
 
-/* Sizes are no multiples of blocks, and tiles hold several views and parts of them. The other
-   levels take turns. */
+/* Sizes are no multiples of blocks, and tiles have several views and parts of views. The other
+   levels of numerics take turns. */
 TEST(views_are_the_pictures_of_their_cameras)
 {
     check_scene("whitted",
@@ -162,8 +161,8 @@ TEST_BY_TURNS(views_of_all_kinds_of_cameras_and_lenses, 0, 2)
                 true, MANY);
 }
 
-/* Many views together have so many rays that packets and more kernels pay, which they do not for
-   one view. */
+/* Many views together have so many rays that packets and more kernels pay; for one view they do
+   not. */
 TEST_BY_TURNS(many_views_have_the_kernels_of_a_large_picture, 1, 2)
 {
     const whit_renderer_params small = {.width = 64, .height = 64, .depth = 2};
@@ -181,8 +180,8 @@ TEST_BY_TURNS(many_views_have_the_kernels_of_a_large_picture, 1, 2)
     fixture_close(&f);
 }
 
-/* From afar the glass and its hollow may be met at one place, but for rounding: then they are
-   walked for all views, and the last one is near. */
+/* From far away the glass and its hollow may be hit at one place within rounding. Then touching
+   surfaces are searched for in all views, also in the last one, which is near. */
 TEST_BY_TURNS(media_touch_where_they_do_for_one_view, 0, 2)
 {
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 4};
@@ -198,7 +197,7 @@ TEST_BY_TURNS(media_touch_where_they_do_for_one_view, 0, 2)
     fixture_close(&f);
 }
 
-/* Pictures of one camera and of several in turn: nothing that is left of one shows in the next. */
+/* Pictures of one camera and of several take turns, and do not change each other. */
 TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
 {
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 2};
