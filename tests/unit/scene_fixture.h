@@ -1,5 +1,4 @@
-/* A device that keeps its kernels, and a scene with its trees, by the functions of the public
-   header. */
+/* A device that keeps its kernels, and a scene with its trees, through the public header. */
 #ifndef SCENE_FIXTURE_H
 #define SCENE_FIXTURE_H
 

@@ -1,4 +1,4 @@
-/* What scene_freeze drops, mends and refuses, and what it adds. */
+/* scene_freeze drops or repairs invalid parts of a scene, refuses some, and adds missing ones. */
 #include <math.h>
 
 #include "../scenes.h"
@@ -129,8 +129,7 @@ TEST(attributes_are_mended)
     scene_destroy(scene);
 }
 
-/* Tells whether freezing keeps a triangle's normals of length |side|, the last of which leans to
-   one side: its x is `lean`. */
+/* Whether freezing keeps a triangle's normals of length |side|; the last one has x = `lean`. */
 static bool keeps_normals(float side, float lean)
 {
     const float p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -304,8 +303,8 @@ TEST(flat_lamps_become_rectangles)
     scene_destroy(scene);
 }
 
-/* Two triangles that form no parallelogram each become a light; in a mirrored node too they light
-   what is above. */
+/* Two triangles that form no parallelogram each become a light; they shine upwards also in a
+   mirrored node. */
 TEST(single_triangles_become_lights)
 {
     struct scene *scene = panel_scene(10.0f, 1);

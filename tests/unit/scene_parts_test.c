@@ -1,5 +1,5 @@
-/* Parts of scenes: their names and hashes, differences told in words, scenes made of the parts of
-   two, and faults put into them. */
+/* Parts of scenes: their names and hashes, differences in words, scenes made of the parts of two
+   others, and faults put into them. */
 #include <glob.h>
 
 #include "../scenes.h"
@@ -36,10 +36,10 @@ struct wish {
     uint8_t texel;
     float vertex;
     double moved;
-    bool stone;       /* the box wears another material */
+    bool stone;       /* the box has another material */
     bool more, other; /* an object in front of all; balls in place of a ball */
     float key;
-    bool hidden; /* the wood is a mask, and more than is told of */
+    bool hidden; /* the wood is a mask, with more changes than the words list */
 };
 
 static struct scene *small_scene(const struct wish *wish)
@@ -79,7 +79,7 @@ static struct scene *small_scene(const struct wish *wish)
 
 static const struct wish usual = {.ior = 1.5f, .sun = 1.0f, .texel = 50, .key = 1.0f};
 
-/* Which parts of `after` are other than those of `before`: "mesh box, material glass". */
+/* The parts of `after` that differ from those of `before`: "mesh box, material glass". */
 static const char *others(const struct loaded *before, const struct loaded *after)
 {
     static char text[512];
@@ -104,7 +104,7 @@ static const char *change(const struct loaded *before, const struct loaded *afte
     return text;
 }
 
-/* One change alters the hash of one part, and the words say it. */
+/* Checks that a change alters only the hash of its part, and that the words describe it. */
 static void check_change(struct wish wish, const char *parts, whit_part_kind kind, const char *name,
                          const char *words)
 {
@@ -117,8 +117,8 @@ static void check_change(struct wish wish, const char *parts, whit_part_kind kin
     drop(&after);
 }
 
-/* Each plain value of a record is in its hash, or a picture of another scene would be taken for one
-   of this. `record` ends as it was. */
+/* Checks that each plain value of a record is in its hash; else a picture of another scene might be
+   taken for one of this scene. `record` is as before in the end. */
 static void check_fields(whit_part_kind kind, const void *whole, void *record,
                          const struct scene_field *field)
 {
@@ -127,7 +127,7 @@ static void check_fields(whit_part_kind kind, const void *whole, void *record,
     for (; field->name; ++field) {
         bool stated =
             kind == WHIT_PART_LIGHT && field->offset == offsetof(struct scene_light, stated);
-        if (stated) /* `color` is, which is made of it */
+        if (stated) /* the hash has `color`, which is derived from it */
             continue;
         for (uint32_t i = 0; i < field->count; ++i) {
             char *at = (char *)record + field->offset + i * sizes[field->form];
@@ -229,8 +229,8 @@ static void check_hash(struct scene *made, uint64_t hash)
     scene_destroy(made);
 }
 
-/* Takes one of the two changes in `both` back: the scene left has the hash of one with only the
-   `other` change. */
+/* Undoes one of the two changes in `both`: the scene then has the hash of one with only the `other`
+   change. */
 static void check_back(struct wish both, struct wish other, whit_part_kind kind, const char *name)
 {
     struct loaded before, after;
@@ -294,8 +294,8 @@ static struct scene *load(const char *path)
     return scene;
 }
 
-/* What whit derives, emitters and exposure among it, is derived again to the last bit: over all
-   scenes, each beside the one before. */
+/* Values that whit derives, such as emitters and exposure, are derived again with the same bits,
+   for all scenes, each mixed with the one before. */
 TEST(scenes_of_all_or_no_parts_are_those_they_are_of)
 {
     glob_t files;
@@ -372,7 +372,7 @@ TEST(names_are_unique)
                          &loaded.parts.items[i]);
     }
     assert_null(scene_parts_find(&loaded.parts, WHIT_PART_MESH, "b"));
-    assert_null(scene_parts_find(&loaded.parts, WHIT_PART_LIGHT, "a")); /* whit's own is no part */
+    assert_null(scene_parts_find(&loaded.parts, WHIT_PART_LIGHT, "a")); /* a light by whit */
     drop(&loaded);
 }
 

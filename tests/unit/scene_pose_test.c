@@ -125,7 +125,7 @@ TEST(rotation_between_equal_keys)
     scene_destroy(scene);
 }
 
-/* Finite, and with an inverse; the scene is looked at at nine of its times before it is taken. */
+/* Transforms must be finite and have an inverse; scene_freeze tests nine times of a scene. */
 TEST(what_floats_cannot_place_is_refused)
 {
     const float times[] = {0, 2}, near[] = {0, 0, 0, 4e29f, 0, 0}, far[] = {0, 0, 0, 4e30f, 0, 0};
@@ -158,7 +158,7 @@ TEST(lights_cameras_and_bounds_follow_their_nodes)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 0, 4, 0};
     struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
-    scene->frozen = false; /* add to it after all */
+    scene->frozen = false; /* so that the test can change the scene */
     scene_add_light(scene, (struct scene_light){.kind = WHIT_LIGHT_POINT,
                                                 .node = 1,
                                                 .position = {1, 0, 0},

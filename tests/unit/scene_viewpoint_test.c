@@ -1,5 +1,4 @@
-/* The camera that whit makes where a file has none, and how bright it makes the lights of
-   models. */
+/* The camera that whit makes for a file without one, and the intensity of the lights of models. */
 #include <math.h>
 
 #include "../scenes.h"
@@ -127,7 +126,7 @@ TEST(open_boxes_are_seen_through_their_opening)
     }
 }
 
-/* A mirrored copy of an inward box shows its inside still. */
+/* A mirrored copy of a box that faces inwards still shows its inside. */
 TEST(mirrors_do_not_turn_surfaces)
 {
     const float half[3] = {1, 1, 1};
@@ -163,7 +162,7 @@ TEST(rooms_are_seen_from_inside)
             assert_int_equal(scene->lights[i].kind, WHIT_LIGHT_POINT);
             assert_true(fabs(scene->lights[i].position[0]) < 6.0);
         }
-        /* Ahead, half way to the wall on the left and to the ceiling. */
+        /* The lamp is in front of the camera, half-way to the left wall and to the ceiling. */
         const double *lamp = scene->lights[0].position;
         assert_true((lamp[0] - camera->eye[0]) * forward[0] > 1.0);
         assert_true(fabs(lamp[1] - 0.5 * (camera->eye[1] + 2.0)) < 0.02);
@@ -205,8 +204,7 @@ TEST(boards_show_their_pictures)
     scene_destroy(scene);
 }
 
-/* What flies away later is in the picture from the start. */
-/* A ball beside the middle of a floor, `wide` times as wide as it. */
+/* A ball beside the middle of a floor, which is `wide` times as wide as the ball. */
 static struct scene *ball_on_floor(double wide)
 {
     struct scene *scene = empty_scene();
@@ -234,6 +232,7 @@ TEST(small_parts_with_nearly_all_triangles_fill_the_picture)
     scene_destroy(scene);
 }
 
+/* The picture has room for an object that flies away later. */
 TEST(animations_stay_in_the_picture)
 {
     struct scene *scene = empty_scene();
@@ -381,7 +380,8 @@ TEST(a_model_that_burns_out_is_exposed_less)
     }
 }
 
-/* Metal shows what is around it, unless its picture says that it is none. */
+/* Metal reflects its surroundings, so that its own colour does not count, unless its texture says
+   that it is no metal. */
 TEST(metal_is_not_taken_for_its_colour)
 {
     static const uint8_t texels[2][4] = {{0, 0, 255, 255}, {0, 0, 0, 255}};
@@ -422,7 +422,7 @@ TEST(light_that_does_not_arrive_burns_nothing_out)
     scene_destroy(scene);
 }
 
-/* ---- Lights that light nothing of what is seen ---- */
+/* ---- Lights that light nothing in view ---- */
 
 static uint32_t lights_by_whit(const struct scene *scene, whit_light_kind kind)
 {
@@ -432,7 +432,7 @@ static uint32_t lights_by_whit(const struct scene *scene, whit_light_kind kind)
     return count;
 }
 
-/* A block with a glowing plate on the side that nobody sees: headlights. */
+/* A block with a glowing plate, in front of it or on the far side, out of the camera's view. */
 static struct scene *block_with_lamp(bool is_model, bool in_front)
 {
     struct scene *scene = empty_scene();
@@ -461,7 +461,7 @@ TEST(lamps_that_nobody_sees_get_help)
     assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
     scene_destroy(scene);
 
-    /* Whit's own scene files mean what they say. */
+    /* In whit's own scene files lights are not changed. */
     scene = block_with_lamp(false, false);
     assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
     scene_destroy(scene);
@@ -492,7 +492,7 @@ TEST(surfaces_brighter_by_light_than_by_emission_get_help)
     scene_destroy(scene);
 }
 
-/* A wall, of which a spot lights a circle of `radius` in a picture of 5.1 by 6.8. */
+/* A wall with a circle of light of this radius, in a view of 5.1 by 6.8 units. */
 static struct scene *wall_with_spot(double radius)
 {
     struct scene *scene = empty_scene();

@@ -1,5 +1,6 @@
-/* Every row of the table of settings. With an argument: prints another value of each, for the test
-   of the command line: name, value, commands, change, key, title, key in JSON; tabs between. */
+/* Tests every row of the table of settings. With an argument it prints, for
+   tests/cli/settings_test.sh, a line for each row, with another value than the default: name,
+   value, commands, change, key, title, key in JSON, separated by tabs. */
 #include "settings/settings.h"
 #include "unit.h"
 
@@ -130,7 +131,7 @@ TEST(defaults_are_named_as_they_are)
     assert_int_equal(fractions, 1); /* --bailout */
 }
 
-/* Comparing two settings that differ in one row says what the table says that this row needs. */
+/* If two settings differ in one row, the objects that the row names are made anew. */
 TEST(needs_are_kept)
 {
     char text[SETTING_VALUE_BYTES];
