@@ -1,5 +1,5 @@
-/* Values that functions of a shader give for the camera's hits and that are kept beside the colour:
-   they are means over samples, and change nothing else. */
+/* Aovs: values that functions of a shader give for hits of camera rays, kept beside the colour.
+   They are means over samples, and change nothing else. */
 #include <math.h>
 
 #include "hooks_fixture.h"
@@ -93,7 +93,7 @@ static bool is_miss(const struct drawn *drawn, uint32_t pixel)
     return whit_image_words(drawn->ids)[2 * pixel] == UINT32_MAX;
 }
 
-/* Steps with something of the whole picture, by the pixel that stands for each square. */
+/* Compares steps with the whole picture: each value is that of one pixel of its square. */
 struct steps {
     const float *whole;
     uint32_t seen, wrong;
@@ -203,7 +203,7 @@ TEST_BY_TURNS(tiles_leave_them_as_they_are, 1, 2)
     drop(&whole);
 }
 
-/* Where a pixel has as many samples as in a picture of that many, it has that picture's values. */
+/* A pixel of an adaptive picture has the values of a picture with the same number of samples. */
 TEST_BY_TURNS(adaptive_samples_have_those_of_their_number, 0, 2)
 {
     whit_renderer_params params = usual(4);
@@ -223,8 +223,8 @@ TEST_BY_TURNS(adaptive_samples_have_those_of_their_number, 0, 2)
         same += colors && values;
     }
     assert_true(flat > PIXELS / 4 && flat < PIXELS);
-    assert_true(hits > 0 && anew == hits); /* other samples, other random numbers */
-    assert_true(same * 100 > flat * 99);   /* colours may be the same by chance */
+    assert_true(hits > 0 && anew == hits); /* more samples have other random numbers */
+    assert_true(same * 100 > flat * 99);   /* some colours are equal by chance */
     drop(&adaptive);
     drop(&four);
 }
@@ -256,7 +256,7 @@ TEST_BY_TURNS(refined_pictures_have_those_of_all_samples, 1, 2)
     drop(&four);
 }
 
-/* What surface() gives comes from another kernel, number by number. */
+/* Each number of the surface that surface() returns comes from another kernel. */
 static const char changes[] =
     "void surface(inout Surface s)\n{\n"
     "    s.ns = vec3(0.6, 0.0, 0.8);\n    s.u = 0.25;\n    s.v = 0.5;\n"
@@ -264,7 +264,7 @@ static const char changes[] =
     "//@ aov colors\nvec4 colors(Surface s) { return vec4(s.color, s.color_alpha); }\n"
     "//@ aov coordinates\nvec4 coordinates(Surface s) { return vec4(s.u, s.v, 0.0, 0.0); }\n"
     "//@ aov normals\nvec4 normals(Surface s)\n{\n    vec3 n = vec3(0.6, 0.0, 0.8);\n"
-    "    bool averted = dot(n, ray_dir()) > -1e-4;\n" /* gives way to that of the triangle */
+    "    bool averted = dot(n, ray_dir()) > -1e-4;\n" /* replaced by the triangle's normal */
     "    return vec4(averted || length(s.ns - n) < 1e-5, averted, 0.0, 1.0);\n}\n";
 
 TEST(values_are_of_the_surface_as_it_is_changed)
@@ -301,7 +301,7 @@ static double render_ms(const whit_renderer *renderer)
     return stats.render_ms;
 }
 
-/* Draws a picture, and takes from the user's functions the first value alone. */
+/* Draws a picture, and reads its colours, its ids and its first aov. */
 static void draw_again(whit_renderer *renderer, struct drawn *drawn)
 {
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
@@ -310,8 +310,8 @@ static void draw_again(whit_renderer *renderer, struct drawn *drawn)
     drawn->aovs[0] = image_of(renderer, WHIT_AOV_SHADER);
 }
 
-/* The file's picture in the place of the one before. Whether it was drawn anew: a picture whose
-   colours are those of the last one has its times too. */
+/* Draws with another version of the shader in the same renderer. Gives whether colours were drawn
+   anew: a picture that reuses them has the times of the last one. */
 static bool draw_in_place(whit_renderer *renderer, const whit_renderer_params *params,
                           struct drawn *drawn)
 {
@@ -329,7 +329,7 @@ static void assert_same_picture(const struct drawn *in_place, const struct drawn
                         PIXELS * 2 * sizeof(uint32_t));
 }
 
-/* What its functions give. */
+/* The functions of each version of the shader. `anew`: its colours must be drawn anew. */
 static const struct version {
     const char *value, *shade, *post;
     bool anew;
@@ -339,14 +339,14 @@ static const struct version {
     {"vec4(length(s.p), s.u, s.v, 1.0)", "s.ns", "c.bgr * 0.5", false},
     {"vec4(length(s.p), s.u, s.v, 1.0)", "s.ns", "c.brg", false},
     {"vec4(length(s.p), s.u, s.v, 1.0)", "s.ng", "c.brg", true},
-    /* Rays of functions are among those of the picture. */
+    /* The picture counts rays of functions, so that it is drawn anew. */
     {"trace(s.p + s.ng, s.ng, met, t) ? vec4(t) : vec4(1.0)", "s.ng", "c.brg", true},
     {"vec4(s.ng, 0.5)", "s.ng", "c.brg", true},
     {"vec4(s.ng, 0.25)", "s.ng", "c.brg", false},
 };
 enum { VERSIONS = sizeof versions / sizeof *versions };
 
-/* `posts`: with post() and a shape. */
+/* `posts`: the file also has post() and a shape. */
 static whit_shader *load_version(size_t i, bool posts)
 {
     static const char shape[] =
@@ -367,7 +367,7 @@ static whit_shader *load_version(size_t i, bool posts)
     return version;
 }
 
-/* Where only post() and the values beside the colour are others, colours are not drawn anew. */
+/* If only post() and aovs have changed, colours are not drawn anew. */
 static void draw_versions(whit_renderer_params params, bool posts)
 {
     whit_shader *before = load_version(0, posts);
@@ -407,7 +407,7 @@ TEST(other_values_of_many_samples_in_tiles_leave_the_colours)
     draw_versions(params, true);
 }
 
-/* The values in steps; of the colours, which are there, all at once. */
+/* Steps show the new values of an aov; colours, which are kept, come all at once. */
 TEST(steps_show_other_values)
 {
     whit_shader *versions_of[2] = {load_version(0, true), load_version(1, true)};

@@ -1,4 +1,4 @@
-/* Only what a user's shading function asks for is compiled and traced. */
+/* Only effects and rays that a user's shading function asks for are compiled and traced. */
 #include "../cases.h"
 #include "hooks_fixture.h"
 
@@ -85,7 +85,7 @@ TEST(what_is_not_asked_for_is_not_compiled)
     }
 }
 
-/* All that a shade() is told, in one sum. */
+/* A shade() that sums up all inputs that it may have. */
 #define TOLD                                                                                       \
     "vec3 shade(Surface s, Optics o, vec3 to_eye)\n{\n"                                            \
     "    vec3 sum = s.p + s.error * 1e6 + s.ng + s.ns + s.e1 + s.e2 + s.footprint + s.color;\n"    \
@@ -118,8 +118,7 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     whit_renderer_get_stats(renderer, &stats);
     whit_renderer_get_stats(other, &stats_usual);
     assert_int_equal(stats.rays_reflected, stats_usual.rays_reflected);
-    /* In two parts the kernel has other instructions in sum, for its second beginning and end; as
-       one kernel it has the same. */
+    /* A kernel in two parts has more instructions, for the second beginning and end. */
     assert_int_equal(stats.kernel_instructions == stats_usual.kernel_instructions,
                      !params->few_pixels);
     whit_image_destroy(a);
@@ -127,7 +126,8 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     whit_renderer_destroy(other);
 }
 
-/* In both kinds, after versions of each, and where a tile has more hits than there are rows for. */
+/* A kernel in one part and one in two parts draw the same, also after other versions, and in tiles
+   with more hits than there are rows. */
 TEST(a_kernel_in_parts_draws_the_same)
 {
     whit_shader *first = load(TOLD "    return sum;\n}\n");
@@ -151,7 +151,7 @@ TEST(a_kernel_in_parts_draws_the_same)
     params.width = params.height = 256; /* 65,536 pixels, 32,768 items */
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     is_as(renderer, &params, first);
-    params.few_pixels = false; /* it reads nothing of textures: one kernel either way */
+    params.few_pixels = false; /* the shader reads no textures, so that it is one kernel anyway */
     params.shader = flat;
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     is_as(renderer, &params, flat);
@@ -161,7 +161,7 @@ TEST(a_kernel_in_parts_draws_the_same)
     whit_shader_destroy(flat);
 }
 
-/* What is met nowhere is asked in a kernel of its own, of camera rays as of reflected ones. */
+/* miss() is called in a kernel of its own, for camera rays and for reflected rays. */
 TEST(misses_know_their_ray)
 {
     uint64_t compiled;
@@ -182,7 +182,7 @@ TEST(misses_know_their_ray)
     whit_shader_destroy(shader);
 }
 
-/* What buffers and kernels follow from is the same in another version of a shader. */
+/* Another version of a shader has the same properties that buffers and kernels depend on. */
 TEST(another_version_has_the_same_values_and_asks_for_the_same)
 {
 #define SHADE     "vec3 shade(Surface s, Optics o, vec3 to_eye) { return "
@@ -217,7 +217,7 @@ static void count_call(void *user, double done)
     ++*(uint32_t *)user;
 }
 
-/* The picture that a renderer makes in the place of the last one; whether it traced rays for it. */
+/* Draws a picture with the same renderer. Gives whether it traced rays. */
 static bool draw_in_place(whit_renderer *renderer, const uint32_t *calls, whit_image **out)
 {
     uint32_t before = *calls;
@@ -231,8 +231,7 @@ static void assert_same(const whit_image *a, const whit_image *b)
     assert_memory_equal(whit_image_floats(a), whit_image_floats(b), PIXELS * 4 * sizeof(float));
 }
 
-/* A version in the place of the one before draws what a renderer of its own draws, and its sliders
-   are its own. */
+/* Each version in the same renderer draws the picture of a new renderer, with its own sliders. */
 static void draw_versions(const char *const *versions, const bool *traces, size_t count)
 {
     uint32_t calls = 0, kernels;
@@ -277,7 +276,7 @@ TEST(a_version_in_place_draws_the_same)
     draw_versions(versions, traces, sizeof versions / sizeof *versions);
 }
 
-/* Where nothing but what post() does is another no ray is traced for it. */
+/* If only the body of post() has changed, no ray is traced. */
 TEST_BY_TURNS(another_post_needs_no_rays, 0, 2)
 {
     static const char *const versions[] = {
@@ -290,7 +289,7 @@ TEST_BY_TURNS(another_post_needs_no_rays, 0, 2)
     draw_versions(versions, traces, sizeof versions / sizeof *versions);
 }
 
-/* Nor is one where the file has other functions too, whose ids in SPIR-V move with post(). */
+/* The same with other functions in the file, whose ids in SPIR-V change with post(). */
 TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
 {
     static const char *const versions[] = {
@@ -303,7 +302,7 @@ TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
     draw_versions(versions, traces, sizeof versions / sizeof *versions);
 }
 
-/* The rays of the last picture serve the same view alone, and only who asks for that. */
+/* The rays of the last picture are reused only for the same view, and only with reuse_rays. */
 TEST_BY_TURNS(rays_are_taken_again_for_the_same_view, 0, 2)
 {
     uint32_t calls = 0;
@@ -351,7 +350,7 @@ static void count_until_stop(void *user, double done)
     stopping.stop = ++stopping.calls >= CALLS_BEFORE_STOP && stops && done < 1.0;
 }
 
-/* Whether a post() of `samples` samples has to trace rays behind a picture that was cancelled. */
+/* Whether another post() must trace rays after a picture of `samples` samples was cancelled. */
 static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders[2],
                                     whit_image **out)
 {
@@ -380,8 +379,8 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
     return traces;
 }
 
-/* A picture of one sample writes what stands there in the same view, so that the rest of it stays
-   of use where it is cancelled; sums of several samples are not whole then. */
+/* A cancelled picture of one sample has overwritten pixels with the same values, so that the kept
+   picture is still valid; sums of several samples are incomplete then. */
 TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
 {
     whit_shader *const shaders[2] = {load(POST("c")), load(POST("c.bgr"))};
@@ -399,8 +398,8 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
     whit_shader_destroy(shaders[1]);
 }
 
-/* The picture without the shader, to which figures are compared, has the lights although the shader
-   does not ask for them. */
+/* The picture without the shader, with which expectations compare, has shadow rays although the
+   shader asks for none. */
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
     whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
@@ -414,10 +413,10 @@ TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
     whit_shader_destroy(shader);
 }
 
-/* Rays of one picture that functions have traced; *hits: pixels that hit something. */
+/* The number of rays that functions traced for a picture; *hits: number of pixels with a hit. */
 static uint64_t traced_by_functions(const char *content, whit_numerics numerics, uint64_t *hits)
 {
-    enum { ODD_WIDTH = 51, ODD_HEIGHT = 37 }; /* of no tile */
+    enum { ODD_WIDTH = 51, ODD_HEIGHT = 37 }; /* no multiples of a tile's sides */
     whit_shader *shader = load(content);
     whit_renderer_params params = params_sized(ODD_WIDTH, ODD_HEIGHT, shader);
     whit_stats stats;
@@ -455,8 +454,8 @@ TEST(rays_of_functions_are_counted)
         {"vec3 miss(vec3 dir) { " TRACE "ray_origin(), -dir, met, t); return vec3(some ? t : 0.0); "
          "}\n",
          0, 1},
-        /* Camera rays are not kept: the stage that shades makes them again, as does what settles at
-           `exact` which primitive they hit. */
+        /* Camera rays are not kept: camera() is called again by the stage that shades, and at
+           `exact` by the kernel that decides deferred rays. */
         {"void camera(vec2 at, inout vec3 origin, inout vec3 dir) { " TRACE
          "origin, dir, met, t); if (some) origin += 0.001 * t * dir; }\n",
          2, 1},

@@ -1,5 +1,5 @@
-/* Kernels with texts of users: what is compiled is what the build compiles, errors name the user's
-   file and line, and whatever the text is, the compiler is there for the next one. */
+/* Kernels with texts of users: the compiler makes the same code as the build, errors name the
+   user's file and line, and after any text the compiler works for the next one. */
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@
 #endif
 #endif
 #ifndef HAS_ASAN
-#define HAS_ASAN 0 /* which has no limit on memory */
+#define HAS_ASAN 0 /* under ASan there is no limit on memory */
 #endif
 
 #define FINE "float f(float x, int n) { return x + 1.0; }\n"
@@ -87,8 +87,8 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
     }
 }
 
-/* How many of the first `functions` of a module's functions have the operation, of GLSL.std.450
-   where `number` is below 100. *ends: how many functions there are in all. */
+/* The number of uses of an operation in the first `functions` functions of a module. `number`: that
+   of the operation, in GLSL.std.450 if it is below 100. *ends: number of all functions. */
 static uint32_t count_in(const uint32_t *words, size_t count, uint32_t functions, uint32_t number,
                          uint32_t *ends)
 {
@@ -103,8 +103,8 @@ static uint32_t count_in(const uint32_t *words, size_t count, uint32_t functions
     return found;
 }
 
-/* For devices whose own comparisons are wrong, functions replace all that GLSL has; `number` is
-   the operation's in SPIR-V. */
+/* For devices whose own comparisons are wrong, functions replace all comparisons of GLSL. `number`
+   is that of the operation in SPIR-V. */
 TEST_IN(comparisons_are_left_to_devices_that_are_right, compiler_begin, compiler_end)
 {
     static const struct {
@@ -196,7 +196,7 @@ TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
     const char *define = strstr(text, "\n#define HOOK_A\n#define HOOK_B 7\n#line 4 ");
     assert_true(extension && define && extension < define);
     assert_true(define < strstr(text, "layout(local_size_x = 1) in;\n"));
-    /* What stands under a condition is no reason to leave it out below. */
+    /* A file that is included under a condition is included again further below. */
     const char *first = strstr(text, "#ifndef LIB_TURN_GLSL");
     assert_true(first && strstr(first + 1, "#ifndef LIB_TURN_GLSL"));
     free(text);
@@ -270,8 +270,8 @@ static void copy_line(const char *text, uint32_t line, char *out, size_t bytes)
     snprintf(out, bytes, "%.*s", (int)strcspn(text, "\n"), text);
 }
 
-/* Where the token that the reason quotes stands on the line; 0: it quotes none, or the token stands
-   there more than once. Takes the line apart, as a reader would. */
+/* The column of the token that the reason quotes, found by splitting the line; 0: the reason quotes
+   none, or the token is on the line more than once. */
 static uint32_t column_of(const struct shader_error *error, const char *text)
 {
     char line[256], token[64];
@@ -375,7 +375,7 @@ TEST_IN(a_line_has_one_error_and_a_text_has_many, compiler_begin, compiler_end)
     assert_int_equal(errors.items[31].line, 33);
 }
 
-/* Where the token that is quoted stands once on its line, from 1. */
+/* Errors have the column, from 1, of a quoted token that is once on its line. */
 TEST_IN(errors_name_the_column, compiler_begin, compiler_end)
 {
     struct shader_code code;
@@ -507,7 +507,7 @@ TEST(one_process_is_kept_and_none_is_left)
     shader_code_free(&code);
     assert_int_equal(children(), 1);
     assert_true(only_child() != first);
-    /* One that stops is given up. */
+    /* A process that hangs is given up. */
     shader_compiler_destroy(compiler);
     assert_int_equal(children(), 0);
 }
@@ -568,7 +568,7 @@ TEST(no_process_outlives_its_parent)
         if (file)
             fclose(file);
         if (how == 'Z' || how == 0)
-            return; /* whoever takes orphans has not looked yet */
+            return; /* the process that adopts orphans has not reaped it yet */
         usleep(10000);
     }
     assert_int_not_equal(kill(kept, 0), 0);

@@ -4,7 +4,7 @@
 
 enum { WIDTH = 64, HEIGHT = 48, X = 20, Y = 30, FLOOR_X = 5, FLOOR_Y = 40 };
 
-/* Line 1 to begin with. */
+/* The text begins with line 1. */
 static const char content[] =
     "void camera(vec2 at, inout vec3 origin, inout vec3 dir) {\n"
     "    whit_camera(at, origin, dir); dbg(pixel()); }\n"
@@ -21,7 +21,7 @@ static const char content[] =
 
 static whit_shader *shader, *plain;
 
-/* `blank`: without the name dbg. */
+/* `blank`: replaces each name dbg by blanks. */
 static void load(bool blank, whit_shader **out)
 {
     char text[sizeof content];
@@ -210,7 +210,7 @@ TEST(a_picture_has_nothing_of_it)
         assert_int_equal(kernels[0][i].instructions, kernels[1][i].instructions);
 }
 
-/* The probe draws it by kernels that record. */
+/* A probe draws the pixel with kernels that record, and has the same values. */
 TEST(a_value_that_is_recorded_is_the_value)
 {
     whit_renderer *renderer = make(plain, 4);

@@ -86,7 +86,7 @@ static inline bool is_remark(const char *line)
     return false;
 }
 
-/* The text of a module without remarks, its ids numbered in the order of the text; free() it. */
+/* The text of a module without comments, with ids numbered in the order of the text; free() it. */
 static inline char *disassemble(const uint32_t *words, size_t bytes)
 {
     spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_2);

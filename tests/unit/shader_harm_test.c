@@ -1,6 +1,5 @@
-/* Files that are meant to do harm, loaded as the program loads them. Each is reported, or drawn
-   where that is what is promised, and the next good file is compiled and drawn as before. The time
-   of each is printed, but not tested. */
+/* Harmful files, loaded as by the program. Each is reported, or drawn if that is promised, and the
+   next good file is compiled and drawn as before. The time of each is printed, but not tested. */
 #include <sys/stat.h>
 
 #include "base/clock.h"
@@ -95,7 +94,7 @@ static void all_are_reported(void)
     assert_int_equal(reported, tried);
 }
 
-/* ---- What is refused before it is drawn ---- */
+/* ---- Files that are refused before drawing ---- */
 
 /* Asserts that the folder's a.glsl is refused, at this place and for this reason. */
 static void refuse(const char *name, const char *place, const char *reason)
@@ -214,9 +213,9 @@ TEST_IN(a_macro_bomb_is_refused, begin, end)
     all_are_reported();
 }
 
-/* ---- What is drawn ---- */
+/* ---- Files that are drawn ---- */
 
-/* One file, whose slider chooses what it does: its kernels are made once. */
+/* Loads a file whose slider chooses the case, so that its kernels are made only once. */
 static whit_shader *load(const char *content)
 {
     whit_shader *shader = NULL;

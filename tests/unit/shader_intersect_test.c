@@ -1,5 +1,4 @@
-/* A shape of the user's is in the scene as its meshes are, and an answer that is not a shape's is
- * told. */
+/* A user's shape is drawn as a mesh is, and invalid answers of intersect() are reported. */
 #include <math.h>
 
 #include "hooks_fixture.h"
@@ -19,7 +18,7 @@ static const char room[] =
 static const char real_ball[] = "{\"shape\":\"ball\",\"radius\":0.7,"
                                 "\"translation\":[0.2,0.75,0],\"material\":\"gold\"},\n";
 
-/* The same ball as a function. */
+/* The same ball by intersect(). */
 #define BOX "//@ box -0.5 0.05 -0.7  0.9 1.45 0.7  0.000001 gold\n"
 #define INTERSECT                                                                                  \
     "bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal)\n{\n"
@@ -49,7 +48,7 @@ struct picture {
     uint32_t ids[PIXELS * 2];
 };
 
-/* Draws the room with `part` in it. WHIT_OK, or what the renderer says. */
+/* Draws the room with `part` in it. Gives the result of the renderer. */
 static whit_result draw(const char *part, const whit_shader *shader, whit_numerics numerics,
                         struct picture *out)
 {
@@ -74,8 +73,8 @@ static whit_result draw(const char *part, const whit_shader *shader, whit_numeri
     return result;
 }
 
-/* Colours, shadows, mirror images and what is hidden are those of a real ball. But for its rim, a
-   pixel of which may be seen by one and not by the other, where rays pass within rounding. */
+/* Colours, shadows, mirror images and hidden parts are those of a real ball, except pixels at the
+   rim, where rays hit only one of the two by rounding. */
 static void compare(const struct picture *shape, const struct picture *real)
 {
     uint32_t on_shape = 0, apart = 0;
@@ -106,8 +105,8 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
     whit_shader_destroy(shader);
 }
 
-/* A probe's twin and exact arithmetic, which know nothing of the shape, agree that the way to it is
-   free, and on all rays behind it. */
+/* In a probe the float mirror and exact arithmetic, which do not know the shape, agree that nothing
+   is in front of it, and agree on all rays behind it. */
 TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
 {
     whit_shader *shader;
@@ -125,7 +124,7 @@ TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
     scene_close();
 }
 
-/* What the user's other functions trace meets the shape, and its loops have their own fuel. */
+/* Rays that the user's other functions trace hit the shape, and its loops have their own fuel. */
 TEST_BY_TURNS(functions_that_trace_meet_the_shape, 1, 2)
 {
     static const char shade[] =
@@ -160,7 +159,7 @@ TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
     whit_shader_destroy(shader);
 }
 
-/* `part` is in the message. */
+/* Asserts that drawing gives `wanted`, with `part` in the message. */
 static void expect_error(const char *content, whit_result wanted, const char *part)
 {
     whit_shader *shader = NULL;
@@ -179,7 +178,7 @@ TEST_BY_TURNS(answers_that_are_no_shape_s_are_told, 1, 2)
     static const struct {
         const char *content, *part;
     } cases[] = {
-        /* Beside a loop without end, both are told. */
+        /* Both this and a loop without an end are reported. */
         {"//@ box -0.5 0.05 -0.7  0.9 0.8 0.7  0.000001 gold\n" INTERSECT MEET GIVE
          "vec3 shade(Surface s, Optics o, vec3 to_eye) { float t = 1.0; while (t > 0.0) t += 1.0; "
          "return vec3(t); }\n",

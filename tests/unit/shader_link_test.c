@@ -1,9 +1,9 @@
-/* Functions of users in whit's own kernels: what comes out is a module that drivers take, whatever
-   the file has, and it holds the user's functions in the place of whit's. */
+/* Linking functions of users into whit's kernels gives valid modules, in which the user's functions
+   are in the place of whit's. */
 #include "shader/program.h"
 #include "shader_fixture.h"
 
-/* NULL: it is refused, with `errors`. */
+/* Makes a shader; NULL: it is refused, with the reasons in `errors`. */
 static whit_shader *make(const char *content)
 {
     const struct shader_text_source source = {"a.glsl", content, strlen(content)};
@@ -96,7 +96,7 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
     }
 }
 
-/* Functions that nothing calls are not part of a kernel, whit's and the user's. */
+/* Functions of whit's or of the user that nothing calls are not part of a kernel. */
 TEST_IN(kernels_have_what_is_called_alone, compiler_begin, compiler_end)
 {
     whit_shader *plain = make("vec3 post(ivec2 at, vec3 c) { return c; }\n");

@@ -30,7 +30,7 @@ static char *packed(void)
     return text;
 }
 
-/* As packed text with the right number behind it. */
+/* Makes a packed text of these files, with a valid hash at its end. */
 static const char *sealed(const char *names[], const char *texts[], uint32_t count)
 {
     static char text[1 << 16];
@@ -45,7 +45,8 @@ static const char *sealed(const char *names[], const char *texts[], uint32_t cou
     return text;
 }
 
-/* One error that says why, or none; what is given back is whole. */
+/* Whether a packed text can be read; checks that there is one error if not, and that all files are
+   complete if it can. */
 static bool reads(const char *text)
 {
     struct shader_pack pack;
@@ -146,8 +147,8 @@ TEST(damage_is_one_error)
     }
 }
 
-/* The same with bytes put in, taken out and changed: whatever is told, it is whole and below its
-   folder. */
+/* Packed texts with inserted, removed and changed bytes: files that are read are complete, and
+   their names do not lead out of the folder. */
 TEST(no_mutation_crashes)
 {
     static const char *const pieces[] = {"\\",       "\\x", "\\file ", "\n\\file ../x\n",
@@ -175,7 +176,7 @@ TEST(no_mutation_crashes)
         }
         good += reads(text);
     }
-    assert_true(good < 20); /* edits that undo each other */
+    assert_true(good < 20); /* some edits undo each other */
 }
 
 TEST(there_are_limits)

@@ -1,5 +1,5 @@
-/* What is changed in functions of users and what is refused, and that the rest stays: every module
-   here is valid SPIR-V. */
+/* The passes over functions of users: fuel for loops, bounds of indices, and refusals. All other
+   code stays, and every module is valid SPIR-V. */
 #include "shader_fixture.h"
 
 /* ---- Fuel ---- */
@@ -135,7 +135,7 @@ TEST_IN(loops_in_included_files_have_their_place, compiler_begin, compiler_end)
 
 static const struct {
     const char *content;
-    uint32_t clamps; /* that are needed */
+    uint32_t clamps; /* number of indices that need a limit */
 } indexing[] = {
     {"float f(float x, int n) {\n float a[8]; a[2] = x; return a[n]; }\n", 1},
     {"float f(float x, int n) {\n float a[8]; a[n] = x; a[7] = x; return a[7]; }\n", 1},
@@ -246,7 +246,7 @@ TEST_IN(what_users_may_not_do_is_refused, compiler_begin, compiler_end)
                 fail_msg("%s\n%s", refused[i].content, messages.text);
         }
     }
-    /* A table is one, however often it is looked into. */
+    /* A constant table is in the module once, however often it is indexed. */
     struct shader_code code = must_compile(
         "const mat4 t[128] = mat4[128](\n"
 #define ROW  "mat4(1),mat4(2),mat4(3),mat4(4)"

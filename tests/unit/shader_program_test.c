@@ -1,4 +1,4 @@
-/* What a file of hooks says of itself, and the values of its sliders. */
+/* Annotations of a user's file, and the values of its sliders. */
 #include "base/color.h"
 #include "shader/annotations.h"
 #include "shader/sliders.h"

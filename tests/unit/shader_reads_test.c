@@ -1,11 +1,11 @@
-/* What no function of the user's reads of a surface and its material is not compiled, and the
-   picture is the same as with it. */
+/* Parts of a surface and its material that no function of the user reads are not compiled, and the
+   picture is the same as with them. */
 #include "../cases.h"
 #include "hooks_fixture.h"
 
 enum { WIDTH = 48, HEIGHT = 36, NAMES_BYTES = 256 };
 
-/* Bits of the effects that `names` holds, with blanks between them. */
+/* Bits of the effects in `names`, which are separated by blanks. */
 static uint64_t effects(const char *names)
 {
     char text[NAMES_BYTES], *rest;
@@ -40,7 +40,7 @@ static whit_renderer_params params_of(const whit_shader *shader, const char *rem
 #define LAMPS  "/gallery/emissive.json"
 #define LOOKS  "textures vertex-colors highlights smooth-normals normal-maps metal-rough emission"
 
-/* `read`: those of LOOKS that are compiled. */
+/* `read`: the effects of LOOKS that are compiled. */
 static const struct {
     const char *scene, *removed, *content, *read;
 } cases[] = {
@@ -144,7 +144,7 @@ static uint32_t instructions_of(const whit_renderer_params *params)
     return instructions;
 }
 
-/* Rays that go on read textures and others in kernels of their own. */
+/* Textures and other parts that only reflected and refracted rays need are in other kernels. */
 TEST(the_kernel_of_functions_has_what_they_read)
 {
     static const char *const contents[] = {
@@ -180,7 +180,7 @@ TEST(the_kernel_of_functions_has_what_they_read)
     scene_close();
 }
 
-/* What a save may read is there in a renderer that keeps it, and one that does not is made anew. */
+/* A renderer with keep_unread takes a version that reads more; another one must be made anew. */
 TEST(another_version_may_read_more)
 {
     whit_shader *flat, *smooth;

@@ -1,5 +1,5 @@
-/* Functions of users on the device: loops end, indices stay within, and kernels with them are
-   evaluated as whit's own are. */
+/* Functions of users on the device: loops end, indices stay within bounds, and kernels with them
+   are evaluated as whit's own are. */
 #include "device_fixture.h"
 #include "shader_fixture.h"
 
@@ -7,8 +7,8 @@ struct answer {
     uint32_t value, loop;
 };
 
-/* f(x, n) for each case. Buffers may be longer than what is asked for, and invocations that share a
-   loop with what is in there wait for it: the first case fills them up. */
+/* Runs f(x, n) for each case. The first case fills the rest of the buffer, because an invocation
+   with other data there would let those that share its loop wait. */
 static void run(const struct shader_code *code, uint32_t count, const int32_t cases[][2],
                 struct answer *answers)
 {
@@ -24,7 +24,7 @@ static void run(const struct shader_code *code, uint32_t count, const int32_t ca
     device_close(device, &told);
 }
 
-/* The kernel has fuel for 1000 rounds. */
+/* The kernel has fuel for 1000 iterations. */
 TEST_IN(loops_end, compiler_begin, compiler_end)
 {
     static const struct {
@@ -85,7 +85,7 @@ TEST_IN(indices_mean_the_last_element, compiler_begin, compiler_end)
     }
 }
 
-/* Ways out of loops and switches that are no ends of theirs. */
+/* Returns from within loops and switches. */
 static const struct {
     const char *content;
     uint32_t values[5]; /* with x = 10, n = 0 to 4 */
@@ -151,7 +151,7 @@ TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
     }
 }
 
-/* Each call sets them anew, and so does each call in a loop. */
+/* Each call sets variables to zero, also each call in a loop. */
 TEST_IN(variables_begin_as_zero, compiler_begin, compiler_end)
 {
     static const char *const contents[] = {

@@ -1,5 +1,5 @@
-/* The text of a user's functions: what is read with it, what is refused and where, and which
-   functions it has. */
+/* The text of a user's functions: included files, refusals with their lines, and the functions that
+   it defines. */
 #include <sys/stat.h>
 
 #include "folder_fixture.h"
@@ -28,7 +28,8 @@ static whit_result read_first(void)
     return shader_text_read(&warnings_log, in_folder("a.glsl"), &text, &errors);
 }
 
-/* The one error, at a line of a file of the folder, says this; so does the log. */
+/* Asserts that there is one error with this reason, at this line of a file of the folder, and that
+   the log has it too. */
 static void assert_refused(const char *file, uint32_t line, const char *reason)
 {
     char message[1200];
@@ -174,7 +175,7 @@ TEST_IN(the_first_file_is_refused_as_any, begin, end)
     }
     put_text("real.glsl", FUNCTION);
     assert_int_equal(symlink("real.glsl", in_folder("a.glsl")), 0);
-    assert_int_equal(read_first(), WHIT_OK); /* what the user names may be a link */
+    assert_int_equal(read_first(), WHIT_OK); /* the file that the user names may be a link */
     shader_text_free(&text);
     assert_int_equal(shader_text_read(NULL, in_folder("none"), &text, NULL), WHIT_ERROR_INPUT);
 }

@@ -43,8 +43,8 @@ static inline struct scene *sphere_scene(const whit_log *log, struct scene_mesh 
     return scene;
 }
 
-/* A quarter each: anywhere; at a sphere; past it within a millionth of its radius; from inside.
-   Their origins are up to `away` radii from that sphere. */
+/* A ray; a quarter each goes anywhere, to a sphere, past it within a millionth of its radius, or
+   starts inside of it. Origins are up to `away` radii from that sphere. */
 static inline struct gpu_ray ray_at_spheres(const struct scene_mesh *mesh, uint32_t index,
                                             double away)
 {

@@ -1,4 +1,4 @@
-/* stb_image_write, which warns: an encoder that is not of the library under test. */
+/* stb_image_write, with its warnings off: an encoder that is not part of the library under test. */
 #ifndef STB_WRITE_FIXTURE_H
 #define STB_WRITE_FIXTURE_H
 
