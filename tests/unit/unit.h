@@ -40,11 +40,11 @@
 void unit_add(const char *name, CMUnitTestFunction check, CMFixtureFunction begin,
               CMFixtureFunction end);
 
-/* Whether it is a check's turn, by cases_turn. Always true where WHIT_TEST_ONLY names checks. */
+/* Whether it is a check's turn, by cases_turn. Always true if WHIT_TEST_ONLY names checks. */
 bool unit_turn(size_t index, size_t every);
 
-/* Runs `begin`, all checks and `end`; both functions may be NULL. Gives how many checks failed, or
-   what the function of unit_at_end makes of that. */
+/* Runs `begin`, all checks and `end`; both functions may be NULL. Gives the number of checks that
+   failed, or the value that the function of unit_at_end returns. */
 int unit_run(CMFixtureFunction begin, CMFixtureFunction end);
 
 /* Once all checks have run, unit_run() calls `end` with the number of those that failed, and gives

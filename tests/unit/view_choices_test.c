@@ -1,4 +1,4 @@
-/* In what two settings of the viewer differ, in words. */
+/* Differences of two settings of the viewer, in words. */
 #include "unit.h"
 #include "view/choices.h"
 

@@ -56,8 +56,8 @@ static void close_engine(struct engine *engine, struct engine_frame *frame)
     assert_int_equal(engine_destroy(engine), 0);
 }
 
-/* The device is lost at the n-th submission of each device: while the engine is opened, later, or
-   not at all. `once`: the devices after the first are sound. */
+/* Lets each device be lost at its n-th submission: while the engine is opened, later, or not at
+   all. `once`: only the first device is lost. */
 static bool lose_at(unsigned n, bool once, bool *gave_up)
 {
     struct engine *engine;
@@ -124,7 +124,7 @@ TEST(large_trees_are_drawn_in_packets)
 
 /* ---- At rest ---- */
 
-/* Every 8th, 4th and 2nd pixel are shown before all of them, but where that is quick. */
+/* Every 8th, 4th and 2nd pixel are shown before the whole picture, unless that is quick. */
 TEST(a_picture_comes_in_steps)
 {
     struct engine_frame frame;
@@ -199,7 +199,7 @@ TEST(whoever_moves_on_does_not_wait_for_refining)
 /* ---- Memory ---- */
 
 static pthread_t window_thread;
-static atomic_uint fail_at, asked_for; /* the block that is not given; 0: all are */
+static atomic_uint fail_at, asked_for; /* fail_at: number of the allocation that fails; 0: none */
 
 void *__real_malloc(size_t bytes);
 void *__wrap_malloc(size_t bytes);
@@ -268,9 +268,9 @@ TEST(memory_that_runs_out_is_said)
     }
 }
 
-/* ---- One who moves on ---- */
+/* ---- Moving cameras ---- */
 
-/* Somebody who turns the camera faster than pictures come gets pictures all the same. */
+/* Pictures are shown even if the camera turns faster than they are drawn. */
 TEST(no_look_is_cut_short)
 {
     struct engine_frame frame;
@@ -280,8 +280,7 @@ TEST(no_look_is_cut_short)
     settings.picture.height = 108;
     struct engine *engine = engine_of(&(struct engine_params){.budget_ms = 1e4}, &settings, &frame);
     double picture_ms = frame.draw_ms, start_ms = clock_ms();
-    while (shown <
-           3) { /* from the first question on none gets a picture where looks are cut short */
+    while (shown < 3) { /* if new questions cancelled pictures, none would be shown */
         snprintf(settings.camera, sizeof settings.camera, "%g,2,6,0,1,0,0,1,0,40",
                  0.001 * (double)++asked);
         engine_ask(engine, &settings, true);
@@ -298,7 +297,7 @@ TEST(no_look_is_cut_short)
     close_engine(engine, &frame);
 }
 
-/* While another tree is made the picture stays as it is: no rougher one comes between. */
+/* While another tree is made the picture stays as it is, and no coarser one is shown. */
 TEST(a_switch_keeps_the_picture)
 {
     struct engine_frame frame;

@@ -1,4 +1,4 @@
-/* A file of functions that is saved while the engine shows it: what is said of the change. */
+/* The report on a change of a file of functions that is saved while the engine shows it. */
 #include "base/clock.h"
 #include "folder_fixture.h"
 #include "view/shaders.h"
@@ -88,7 +88,7 @@ TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
     frame = (struct engine_frame){.number = before.number};
     ask("vec3 post(ivec2 at, vec3 color) { return at.x == 40 ? vec3(0.5) : color; }\n");
     take_all(false);
-    assert_false(status_now().reload.over); /* nobody asked for it */
+    assert_false(status_now().reload.over); /* measuring was not asked for */
     take_all(true);
     const struct engine_reload reload = status_now().reload;
     assert_int_equal(reload.number, 1);

@@ -1,5 +1,5 @@
-/* A window's pictures: as they are and stretched, windows that change, and every checked Vulkan
-   call of it made to fail in turn. */
+/* The pictures of a window, unscaled and stretched, windows that change, and every checked Vulkan
+   call, made to fail in turn. */
 #include "device/swapchain.h"
 #include "device_fixture.h"
 #include "unit.h"
@@ -9,7 +9,7 @@
 
 enum { WIDTH = 64, HEIGHT = 48, OUT_OF_DATE = -1000001004, SUBOPTIMAL = 1000001003 };
 
-/* All that the viewer does with a window, once. */
+/* The objects of a viewer's window, with which each operation is done once. */
 struct shop {
     struct window *window;
     struct device *device;
@@ -18,7 +18,7 @@ struct shop {
     struct messages messages;
 };
 
-/* With the font of this system, which is there: fonts-dejavu-core is among the packages. */
+/* Opens the ui with a font of this system; the package fonts-dejavu-core is required. */
 static whit_result open_ui(struct shop *shop)
 {
     uint8_t *font;
@@ -61,7 +61,7 @@ static void shop_close(struct shop *shop)
     assert_int_equal(shop->messages.validation, 0);
 }
 
-/* A picture whose every pixel is its own place. */
+/* Sets a picture in which the colour of each pixel tells its place. */
 static whit_result set_picture(struct shop *shop)
 {
     uint8_t rgba[WIDTH * HEIGHT * 4];
@@ -103,8 +103,8 @@ static whit_result check_picture(struct shop *shop)
     return WHIT_OK;
 }
 
-/* Two columns, black and white, over the whole window: each is what a quarter of it shows, and
-   between them it becomes lighter from pixel to pixel. */
+/* A picture of two columns, dark and bright, is stretched over the window: each colour fills a
+   quarter at its side, and between them pixels become brighter step by step. */
 static whit_result check_stretched(struct shop *shop)
 {
     const uint8_t columns[] = {0, 0, 0, 255, 200, 150, 250, 255};

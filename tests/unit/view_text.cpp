@@ -1,4 +1,4 @@
-// What a frame of Dear ImGui says, without a window or a device.
+// The text of a frame of Dear ImGui, without a window or a device.
 #include <cstdio>
 
 #include <imgui.h>

@@ -1,4 +1,4 @@
-/* Everything of the window that can say a name shows it. */
+/* All functions of ui.h that draw names escape control characters in them. */
 #include "unit.h"
 #include "view/ui.h"
 
