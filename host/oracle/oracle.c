@@ -106,7 +106,7 @@ static struct probe probe_world(const struct gpu_ray *ray, double growth)
 }
 
 /* The ray in an instance's object space, by the instance's float matrix, so that it differs from
-   the float twin's only by rounding. */
+   that of the float mirror only by rounding. */
 static struct probe probe_local(const struct probe *world, const struct gpu_instance *in)
 {
     const float *rows[3] = {in->inverse0, in->inverse1, in->inverse2};

@@ -1,4 +1,4 @@
-/* Rays in the form that the float twin and the shaders use. */
+/* Rays in the form that the float mirror and the shaders use. */
 #ifndef TWIN_RAY_H
 #define TWIN_RAY_H
 
@@ -23,8 +23,8 @@ static inline struct vec3 accel_rotate_rows(const float *r0, const float *r1, co
                      (r2[0] * p.x + r2[1] * p.y) + r2[2] * p.z);
 }
 
-/* The ray in an instance's object space, in floats. It has the roundings of the float twin and the
-   shaders, which count as part of the ray: every answer, also an exact one, is about this ray. */
+/* The ray in an instance's object space, in floats. It has the roundings of the float mirror and
+   the shaders, which are part of the ray: every answer, also an exact one, is about this ray. */
 static inline struct gpu_ray accel_local_ray(const struct gpu_instance *instance,
                                              const struct gpu_ray *ray)
 {

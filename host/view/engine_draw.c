@@ -206,7 +206,7 @@ static whit_result read_boxes(const struct engine_task *task, struct engine_fram
    picture. */
 enum { VISITS_MOVING = 512, VISITS_WHOLE = 4096 };
 
-/* Gives the visits that the kernel counted, or else the C twin. */
+/* Gives the visits that the kernel counted, or else the float mirror. */
 static whit_result count_visits(const struct engine_task *task, struct engine_frame *frame)
 {
     const whit_stats *stats = &frame->stats;

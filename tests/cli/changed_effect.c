@@ -1,6 +1,6 @@
-/* Linked into whit in the place of whit_renderer_image (--wrap): a library whose pictures change
-   with an effect that the scene does not call for. WHIT_TEST_CHANGED_EFFECT names it; every kernel
-   that has it draws the first pixel brighter. */
+/* Linked into whit in the place of whit_renderer_image (--wrap): pictures change with an effect
+   that the scene does not call for. WHIT_TEST_CHANGED_EFFECT names the effect; with every kernel
+   that has it the first pixel is brighter. */
 #include <stdlib.h>
 #include <string.h>
 

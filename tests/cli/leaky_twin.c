@@ -1,6 +1,6 @@
-/* A traversal on the CPU that loses a ray now and then: `whit hard` has to find out. And a device
-   whose kernels that are not portable lose one: `whit check` asks it for portable ones. With
-   WHIT_TEST_REFUSED no kernel can be made portable: who asks for one is told. */
+/* The traversal of the float mirror loses a ray now and then, which `whit hard` must find. Kernels
+   that are not portable lose a ray too, so that `whit check` must ask for portable ones. With
+   WHIT_TEST_REFUSED no kernel can be made portable, and asking for one is an error. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

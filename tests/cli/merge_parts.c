@@ -1,5 +1,5 @@
-/* Parts of a picture that nobody draws, for `whit merge`: merge_parts SIDE TILES EXTENSION writes
-   TILES files pN.EXTENSION of SIDE x SIDE pixels together, into the working folder. */
+/* merge_parts SIDE TILES EXTENSION: writes parts of a picture for `whit merge` without drawing:
+   TILES files pN.EXTENSION, SIDE x SIDE pixels together, into the working folder. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,10 +1,10 @@
-/* A hand and a window manager for the viewer's tests, on a display of their own: minimises and
-   restores windows when they ask for it, makes them as large as the screen, and does what it reads,
-   one line each, to the one window that there is:
+/* A user and a window manager for the viewer's tests, on a display of their own: it minimises and
+   restores windows when they ask for it, makes them as large as the screen, and does the orders on
+   standard input, one a line, to the only window:
        title TEXT | key NAME | move X Y | button N down|up | close
    `title` waits until the window's title begins with TEXT. Events are sent to the window as an X
-   server would send them. Ends with its window. `view_hand DPI` first says to all programs how fine
-   the screen is, as desktops do. */
+   server would send them. The program ends with its window. `view_hand DPI` first sets the
+   resolution of the screen for all programs, as desktops do. */
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ static void set_state(Window of, long state)
     set_property(of, "WM_STATE", atom("WM_STATE"), 32, data, 2);
 }
 
-/* What it can do, by the Extended Window Manager Hints. */
+/* Announces the abilities of this window manager by the Extended Window Manager Hints. */
 static void say_abilities(void)
 {
     Window root = DefaultRootWindow(display);
@@ -55,7 +55,7 @@ static void say_dpi(const char *dpi)
     set_property(DefaultRootWindow(display), "RESOURCE_MANAGER", XA_STRING, 8, text, length);
 }
 
-/* GLFW aborts where a manager that is gone still seems to be there. */
+/* Removes the announcements: GLFW aborts if a window manager that has ended still seems to run. */
 static void leave(void)
 {
     static const char *const said[] = {"_NET_SUPPORTING_WM_CHECK", "_NET_SUPPORTED",
@@ -66,7 +66,7 @@ static void leave(void)
     exit(0);
 }
 
-/* Full screen, or what it was before. */
+/* Makes the window as large as the screen, or as it was before. */
 static void fill_screen(Window of, bool full)
 {
     static XWindowAttributes before;
@@ -198,7 +198,7 @@ static bool obey(const char *line)
     return true;
 }
 
-/* Windows go while events are on their way to them. */
+/* Ignores errors: a window may end while events are on their way to it. */
 static int ignore(Display *of, XErrorEvent *event)
 {
     (void)of;
@@ -206,7 +206,7 @@ static int ignore(Display *of, XErrorEvent *event)
     return 0;
 }
 
-/* Without a buffer that would hide lines from poll. */
+/* Reads a line without a buffer, which would hide further lines from poll. */
 static bool read_line(char *line, size_t bytes)
 {
     size_t length = 0;

@@ -1,5 +1,5 @@
 /* Replaces some calls of whit (--wrap), so that work that takes long without trees takes as long as
-   a test wants, on any machine. WHIT_TEST_SLOW names the work:
+   a test needs, on any machine. WHIT_TEST_SLOW names the work:
    kernel    a kernel without trees is never done: it waits until nobody wants it any more
    picture   so does a picture of more than 1024 pixels, behind its first part
    told      pictures are said to have taken 1e7 ms */
@@ -23,8 +23,8 @@ whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
 void __real_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out);
 void __wrap_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out);
 
-static whit_renderer_params asked; /* of the renderer without trees */
-static uint64_t pixels;            /* that a window asked of it; 0: none as yet */
+static whit_renderer_params asked; /* params of the renderer without trees */
+static uint64_t pixels;            /* number of pixels that a window asked it for; 0: none yet */
 
 static const char *slow(void)
 {

@@ -63,7 +63,7 @@ TEST(what_brought_most_comes_first)
     check_rows(expected, 10);
 }
 
-/* A difference between device, twin and exact arithmetic is never folded away. */
+/* A ray for which device, float mirror and exact arithmetic differ has a row of its own. */
 TEST(what_differs_stands_alone)
 {
     static const struct wanted expected[] = {{0, 1},  {2, 1}, {4, 1}, {1, 2}, {5, 1}, {10, 1},

@@ -160,8 +160,8 @@ TEST(all_shaders_are_embedded_as_they_are)
         fclose(file);
         free(text);
     }
-    /* And hook, miss, shape, hit, aov, post and test.comp, for files of users, and portable.comp.
-     */
+    /* The other 8: hook, miss, shape, hit, aov, post and test.comp, for files of users, and
+       portable.comp. */
     assert_int_equal(count, KERNEL_COUNT + 8);
     FILE *list =
         popen("cd " WHIT_SCENES_DIR "/../shaders && ls */*.comp */*.glsl */*.h | wc -l", "r");
