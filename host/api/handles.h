@@ -53,6 +53,9 @@ struct whit_renderer {
 /* WHIT_ERROR_USAGE, logged, for a renderer that was made without a device. */
 WHIT_CHECK whit_result api_need_device(const whit_renderer *renderer);
 
+/* Sets mrays_per_s from the numbers of rays and render_ms. */
+void api_set_rate(whit_stats *stats);
+
 struct whit_image {
     struct image image;
     atomic_uint sharers; /* owners besides the first one, see whit_image_share */

@@ -82,8 +82,7 @@ void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats
                           .weight_cut_depth = -1.0,
                           .weight_cut_bailout = -1.0,
                           .bailout_bound = -1.0};
-    if (from->render_ms > 0.0)
-        stats->mrays_per_s = (double)whit_stats_rays(stats) / from->render_ms * 1e-3;
+    api_set_rate(stats);
 }
 
 static void to_floats(const double from[3], float to[3])

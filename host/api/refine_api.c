@@ -26,8 +26,10 @@ struct whit_refine {
     whit_stats stats;
 };
 
-/* A bail-out larger than the weight of any ray, so that camera rays send none on. */
-static const double BAILOUT_ALL = 1e30;
+/* A bail-out larger than the weight of any ray that a material sends on, so that camera rays send
+   none. It is no larger, because a bail-out also ends shadow rays: with this one those that add at
+   most BAILOUT_ALL * BAILOUT_SHADOW_SHARE, a thousandth, of their light. */
+static const double BAILOUT_ALL = 16.0;
 
 whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_params *params,
                                whit_refine **out)
@@ -204,6 +206,8 @@ static void take_radiance(whit_refine *refine, const struct part *part)
     refine->stats.render_ms += part->stats.render_ms;
     if (refine->stats.render_device_ms >= 0.0 && part->stats.render_device_ms >= 0.0)
         refine->stats.render_device_ms += part->stats.render_device_ms;
+    refine->stats.rays_of_estimate = whit_stats_rays(&part->stats);
+    api_set_rate(&refine->stats);
 }
 
 static bool is_last(const whit_refine *refine)

@@ -13,6 +13,12 @@ static void add_stage(const whit_stage *from, whit_stage *to)
     to->ms = measured ? to->ms + from->ms : -1.0;
 }
 
+void api_set_rate(whit_stats *stats)
+{
+    double rays = (double)(whit_stats_rays(stats) + stats->rays_of_estimate);
+    stats->mrays_per_s = stats->render_ms > 0.0 ? rays / stats->render_ms * 1e-3 : 0.0;
+}
+
 void whit_stats_add(const whit_stats *from, whit_stats *to)
 {
     to->render_ms += from->render_ms;
@@ -23,6 +29,7 @@ void whit_stats_add(const whit_stats *from, whit_stats *to)
     to->rays_reflected += from->rays_reflected;
     to->rays_refracted += from->rays_refracted;
     to->rays_by_functions += from->rays_by_functions;
+    to->rays_of_estimate += from->rays_of_estimate;
     to->rays_cut_depth += from->rays_cut_depth;
     to->rays_cut_bailout += from->rays_cut_bailout;
     to->weight_cut_depth = fmax(to->weight_cut_depth, from->weight_cut_depth);
@@ -40,6 +47,5 @@ void whit_stats_add(const whit_stats *from, whit_stats *to)
         cost_merge(&to->costs[kind], &from->costs[kind]);
     for (int i = 0; i < WHIT_STAGES; ++i)
         add_stage(&from->stages[i], &to->stages[i]);
-    to->mrays_per_s =
-        to->render_ms > 0.0 ? (double)whit_stats_rays(to) / to->render_ms * 1e-3 : 0.0;
+    api_set_rate(to);
 }

@@ -66,7 +66,7 @@ static void draw_figures(const struct view *view)
         snprintf(fps, sizeof fps, "%.1f fps", view->rate.fps);
     ui_text("%9s  render %.2f ms", fps, ms);
     ui_text_beside(UI_COLOR_TEXT, " %.2f Mray/s",
-                   ms > 0.0 ? (double)whit_stats_rays(s) / ms * 1e-3 : 0.0);
+                   ms > 0.0 ? (double)(whit_stats_rays(s) + s->rays_of_estimate) / ms * 1e-3 : 0.0);
     if (frame->scene->info.time_end_s > 0.0)
         ui_text("%s at %.2f of %.2f s", view->clock.playing ? "plays" : "stands",
                 frame->settings.picture.time_s, frame->scene->info.time_end_s);
@@ -167,6 +167,8 @@ static void draw_more(const struct view *view)
             (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
     if (s->rays_by_functions)
         ui_text("%llu by functions of the shader", (unsigned long long)s->rays_by_functions);
+    if (s->rays_of_estimate)
+        ui_text("%llu for the estimate of the error", (unsigned long long)s->rays_of_estimate);
     ui_text("cut: %llu by depth, %llu by bail-out", (unsigned long long)s->rays_cut_depth,
             (unsigned long long)s->rays_cut_bailout);
     draw_stages(frame);

@@ -8,9 +8,10 @@
 extern "C" {
 #endif
 
-/* A picture of 1, 2, 4, 8 ... samples a pixel. No ray is traced twice: each step draws as many
-   samples as there are. After n samples it is, byte for byte, the picture that a renderer draws
-   with `n` as its number of samples. */
+/* A picture of 1, 2, 4, 8 ... samples a pixel. Each step draws as many samples as there are, so
+   that no ray of the picture is traced twice; only the estimate of its error may need the camera
+   rays of the first sample, and the shadow rays of what they hit, once more. After n samples it is,
+   byte for byte, the picture that a renderer draws with `n` as its number of samples. */
 typedef struct whit_refine whit_refine;
 
 typedef struct whit_refine_info {
@@ -63,8 +64,8 @@ WHIT_CHECK whit_result whit_refine_aov(const whit_refine *refine, uint32_t index
    `cut_radiance`. It is no bound: it knows nothing of light that no sample has met.
    WHIT_ERROR_USAGE where no error is known yet. */
 WHIT_CHECK whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out);
-/* Statistics of all steps together: rays are those of the picture, times are the sums of all
-   steps. */
+/* Statistics of all steps together: rays are those of the picture, and `rays_of_estimate` those of
+   the step that draws what the estimate needs. Times are the sums of all steps. */
 void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats);
 
 #ifdef __cplusplus

@@ -308,7 +308,10 @@ typedef struct whit_stats {
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
     uint64_t rays_by_functions; /* rays of all kinds that functions of params.shader traced
                                    themselves */
-    double mrays_per_s;         /* millions of rays per second: all rays divided by render_ms */
+    uint64_t rays_of_estimate;  /* traced only for whit_refine_info.cut_radiance: no rays of the
+                                   picture, but their time is a part of render_ms */
+    double mrays_per_s;         /* millions of rays per second: all rays, those of the estimate
+                                   included, divided by render_ms */
     uint64_t device_bytes;
     /* Rays that were not traced because of params.depth and of params.bailout, and the largest sum
        of their weights in one pixel. */
@@ -333,7 +336,7 @@ typedef struct whit_stats {
     uint32_t share_count;
 } whit_stats;
 
-/* All rays of a picture. */
+/* All rays of a picture, without those of an estimate. */
 static inline uint64_t whit_stats_rays(const whit_stats *stats)
 {
     return stats->rays_primary + stats->rays_shadow + stats->rays_reflected +

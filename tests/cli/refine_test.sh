@@ -30,6 +30,7 @@ check "stats have the samples" jq -es '.[0].picture.aa == .[1].picture.aa' refin
 check "and the same rays" jq -es '(.[0].rays | [.primary, .shadow, .reflected, .refracted,
     .cut_by_depth.rays, .cut_by_bailout.rays]) == (.[1].rays | [.primary, .shadow, .reflected,
     .refracted, .cut_by_depth.rays, .cut_by_bailout.rays])' refined.json stdout
+check "those of the estimate have a figure of their own" jq -e '.refine.estimate_rays > 32 * 24' refined.json
 check "and the same weights" jq -es '.[0].rays.cut_by_depth.weight_of_a_pixel as $a |
     .[1].rays.cut_by_depth.weight_of_a_pixel as $b | $a > 0 and ($a - $b | fabs) < 1e-5 * $a' \
     refined.json stdout
@@ -69,6 +70,7 @@ if part 1 2; then
     check "says nothing" test ! -s stderr
     expect 0 "--stats text" render $BALLS -o r.png --refine 0.05 --stats text
     check "tells of it" grep -q "$coarse samples a pixel, an RMSE of" stdout
+    check "and of its rays" grep -q "[0-9] rays more, for this estimate alone" stdout
 fi
 
 for value in x "" 0 -1 nan inf 1e7 5s ms 1msx 0ms 1e10ms; do

@@ -54,6 +54,14 @@ static whit_refine_info refine_to(const struct refining *o, uint32_t samples)
     return info;
 }
 
+/* Rays of the last part that the renderer drew. */
+static uint64_t rays_of(const whit_renderer *renderer)
+{
+    whit_stats stats;
+    whit_renderer_get_stats(renderer, &stats);
+    return whit_stats_rays(&stats);
+}
+
 static whit_image *picture_of(const struct refining *o)
 {
     whit_image *image = NULL;
@@ -67,15 +75,18 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
     scene_open(WHIT_SCENES_DIR "/balls.json");
     struct refining o = begin(&few);
     whit_refine_info info = step(&o);
+    uint64_t rays = rays_of(o.renderer); /* of all steps */
     assert_int_equal(info.samples, 1);
     assert_true(info.error < 0.0);
     info = step(&o); /* of rays that were cut */
+    rays += rays_of(o.renderer);
     assert_int_equal(info.samples, 1);
     assert_true(info.cut_radiance > 0.0);
     for (uint32_t samples = 2; samples <= 8; samples *= 2) {
         whit_renderer_params params = o.params;
         whit_stats stats, drawn_stats;
         info = step(&o);
+        rays += rays_of(o.renderer);
         assert_int_equal(info.samples, samples);
         assert_true(info.error > info.error_of_cuts && info.error_of_cuts > 0.0 && !info.last);
         whit_image *refined = picture_of(&o);
@@ -102,6 +113,8 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
         assert_int_equal(stats.rays_shadow, drawn_stats.rays_shadow);
         assert_int_equal(stats.rays_primary, drawn_stats.rays_primary);
         assert_int_equal(stats.rays_cut_depth, drawn_stats.rays_cut_depth);
+        assert_true(stats.rays_of_estimate >= PIXELS);
+        assert_int_equal(rays, whit_stats_rays(&drawn_stats) + stats.rays_of_estimate);
         assert_memory_equal(stats.pixels_by_samples, drawn_stats.pixels_by_samples,
                             sizeof stats.pixels_by_samples);
         whit_image_destroy(refined);
@@ -109,6 +122,37 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
         whit_image_destroy(cuts);
         whit_renderer_destroy(renderer);
     }
+    end(&o);
+    scene_close();
+}
+
+/* What surfaces get without the rays that they send on is a picture without bounces, which has the
+   weights of these rays as cut by depth. */
+TEST(cut_rays_are_assumed_to_bring_what_others_bring_beside_the_light_of_lights)
+{
+    whit_renderer_params params = params_of(3, 0.05);
+    double brought = 0.0, weights = 0.0;
+    scene_open(WHIT_SCENES_DIR "/balls.json");
+    struct refining o = begin(&params);
+    step(&o);
+    whit_image *whole = picture_of(&o);
+    whit_refine_info info = step(&o);
+    params.depth = 0;
+    whit_renderer *renderer = renderer_of(&params);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    whit_image *own = image_of(renderer, WHIT_AOV_COLOR);
+    whit_image *cuts = image_of(renderer, WHIT_AOV_CUTS);
+    for (int i = 0; i < PIXELS; ++i) {
+        const float *a = whit_image_floats(whole) + 4 * i, *b = whit_image_floats(own) + 4 * i;
+        brought += fmax(fmax((double)a[0] - (double)b[0], (double)a[1] - (double)b[1]),
+                        fmax((double)a[2] - (double)b[2], 0.0));
+        weights += (double)whit_image_floats(cuts)[2 * i];
+    }
+    assert_true(fabs(info.cut_radiance - brought / weights) < 0.01 * info.cut_radiance);
+    whit_image_destroy(whole);
+    whit_image_destroy(own);
+    whit_image_destroy(cuts);
+    whit_renderer_destroy(renderer);
     end(&o);
     scene_close();
 }

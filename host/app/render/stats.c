@@ -168,8 +168,9 @@ static json_t *pixels_document(const struct figures *figures)
     return pixels;
 }
 
-static json_t *refined_document(const struct refined *refined)
+static json_t *refined_document(const struct figures *figures)
 {
+    const struct refined *refined = figures->refined;
     json_t *object = document_object();
     document_count(object, "samples", refined->samples);
     if (refined->error >= 0.0)
@@ -181,6 +182,7 @@ static json_t *refined_document(const struct refined *refined)
     else
         document_put(object, "rmse_estimate_of_cuts", json_null());
     document_number(object, "cut_radiance", refined->cut_radiance);
+    document_count(object, "estimate_rays", figures->render->rays_of_estimate);
     document_flag(object, "reached", refined->reached);
     return object;
 }
@@ -248,7 +250,7 @@ static int print_json(const struct job *job, const struct render_request *reques
         document_put(root, "costs", costs_document(figures->render));
     document_put(root, "tree", tree_document(&figures->tree));
     if (figures->refined)
-        document_put(root, "refine", refined_document(figures->refined));
+        document_put(root, "refine", refined_document(figures));
     if (figures->sequence)
         document_put(root, "frames", frames_document(job, figures->sequence));
     if (part_is_given(&request->part))
@@ -357,13 +359,17 @@ static void print_samples(const struct figures *figures)
            (unsigned long long)pixels[2], (unsigned long long)pixels[3]);
 }
 
-static void print_refined(const struct refined *refined)
+static void print_refined(const struct figures *figures)
 {
+    const struct refined *refined = figures->refined;
     printf("refined\n  %u samples a pixel", refined->samples);
     if (refined->error >= 0.0)
         printf(", an RMSE of %.3g may be left, %.3g of it of rays that were cut", refined->error,
                refined->error_of_cuts);
     putchar('\n');
+    if (figures->render->rays_of_estimate)
+        printf("  %llu rays more, for this estimate alone\n",
+               (unsigned long long)figures->render->rays_of_estimate);
 }
 
 static void print_kernel(const struct figures *figures)
@@ -423,7 +429,7 @@ static int print_text(const struct job *job, const struct render_request *reques
     if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         print_samples(figures);
     if (figures->refined)
-        print_refined(figures->refined);
+        print_refined(figures);
     print_kernel(figures);
     if (job->settings.paint != PAINT_COLOR || request->counters)
         costs_print(figures->render);
