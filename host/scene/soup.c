@@ -8,7 +8,7 @@
 #include "scene/pose.h"
 
 #define TRIANGLES_MAX 400000u
-#define MOMENTS       9 /* times of an animation at which the view is to show everything */
+#define MOMENTS       17 /* times of an animation at which the view is to show everything */
 #define BINS          1024
 #define TAIL          0.025 /* share of triangles that a core leaves out at either end of an axis */
 #define PART          0.25  /* largest size of a part, in diagonals of the scene */
@@ -40,7 +40,8 @@ static void add_triangles(struct soup *soup, const struct scene *scene,
     }
 }
 
-/* Three triangles that touch all eight corners: only good for fitting a picture around them. */
+/* Three triangles that touch all eight corners of a mesh's box: only good for fitting a picture
+   around them. */
 static void add_box(struct soup *soup, const struct scene_mesh *mesh, const struct affine *matrix)
 {
     for (uint32_t i = 0; i < 9; ++i) {
@@ -50,6 +51,13 @@ static void add_box(struct soup *soup, const struct scene_mesh *mesh, const stru
         put_corner(soup, matrix, p, soup->corners + 9 * (size_t)soup->fit_count + 3 * i);
     }
     soup->fit_count += 3;
+}
+
+static void add_instances(const struct scene *scene, const struct scene_pose *pose,
+                          struct soup *soup)
+{
+    for (uint32_t i = 0; i < scene->instance_count; ++i)
+        add_triangles(soup, scene, &scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
 }
 
 static void add_boxes(const struct scene *scene, const struct scene_pose *pose, struct soup *soup)
@@ -281,7 +289,8 @@ whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, 
         spheres |= scene->meshes[scene->instances[i].mesh].sphere_count > 0;
     }
     soup->whole = total <= TRIANGLES_MAX && !spheres;
-    uint64_t room = (soup->whole ? total : 0) + 3ull * moments.count * scene->instance_count;
+    uint32_t exact = !soup->whole ? 0 : total * moments.count <= TRIANGLES_MAX ? moments.count : 1;
+    uint64_t room = total * exact + 3ull * moments.count * scene->instance_count;
     soup->corners = array_alloc((size_t)room, 9 * sizeof *soup->corners);
     soup->pictured = array_alloc((size_t)room, sizeof *soup->pictured);
     if (!soup->corners || !soup->pictured) {
@@ -289,10 +298,11 @@ whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, 
         moments_finish(&moments);
         return WHIT_ERROR_MEMORY;
     }
-    for (uint32_t i = 0; soup->whole && i < scene->instance_count; ++i)
-        add_triangles(soup, scene, &scene->meshes[scene->instances[i].mesh], &pose->instances[i]);
+    for (uint32_t i = 0; i < exact; ++i)
+        add_instances(scene, &moments.poses[i], soup);
     soup->fit_count = soup->count;
-    for (uint32_t i = soup->whole ? 1 : 0; i < moments.count; ++i)
+    soup->count = soup->whole ? (uint32_t)total : 0;
+    for (uint32_t i = exact; i < moments.count; ++i)
         add_boxes(scene, &moments.poses[i], soup);
     moments_finish(&moments);
     find_outline(soup);

@@ -11,7 +11,7 @@ struct soup {
     float *corners;    /* 9 per triangle */
     uint8_t *pictured; /* 1 per triangle: whether its material has a diffuse texture */
     uint32_t count;
-    uint32_t fit_count; /* triangles that the view has to show: may be more than `count`, by boxes
+    uint32_t fit_count; /* triangles that the view has to show: may be more than `count`, by those
                            of moving instances at later times, or fewer, by soup_narrow */
     bool whole;         /* has all triangles; false: only boxes around instances, for the fit */
     double centre[3], radius, half[3];
@@ -20,8 +20,9 @@ struct soup {
     uint32_t outline_count;
 };
 
-/* Collects the triangles of `scene` at `pose`, and boxes around its instances at later times of its
-   animation. With very many triangles, or with spheres, only boxes. WHIT_ERROR_MEMORY. */
+/* Collects the triangles of `scene` at `pose`, and those at later times of its animation: with many
+   triangles boxes around its instances in their place. With very many triangles, or with spheres,
+   only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_init(const struct scene *scene, const struct scene_pose *pose,
                                  struct soup *soup);
 /* The same triangles in the space of the small part of the scene that nearly all of them are in,

@@ -249,6 +249,26 @@ TEST(animations_stay_in_the_picture)
     scene_destroy(scene);
 }
 
+/* A triangle turns once around its corner of 90 degrees. Corners of the box around it would go 1.4
+   times as far as its own. */
+TEST(animations_fill_the_picture)
+{
+    static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    struct scene *scene = empty_scene();
+    struct scene_mesh mesh = mesh_zeroed(3, 1);
+    memcpy(mesh.positions, corners, sizeof corners);
+    memcpy(mesh.indices, (uint32_t[]){0, 1, 2}, 3 * sizeof *mesh.indices);
+    uint32_t turns = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+    scene_put(scene, mesh, &(struct put){.node = &turns});
+    scene_put_channel(scene, turns, SCENE_PATH_ROTATION, 3, (float[]){0, 1, 2},
+                      (float[]){0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1});
+    double forward[3], slope[2];
+    const struct scene_camera *camera = camera_of(scene, forward);
+    assert_true(reach(camera, forward, (const float[]){0, 1, 0}, slope) > 0.0);
+    assert_true(slope[1] > 0.85 && slope[1] < 0.95);
+    scene_destroy(scene);
+}
+
 /* A floor under a lamp that glows with `emission`, both stated in `file`. */
 static struct scene *lamp_scene(float emission, const char *file)
 {
