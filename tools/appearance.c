@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double SHARE_MAX = 0.1, RELIEF_MIN = 2.0;
+static const double COVERED_MIN = 0.05, SHARE_MAX = 0.1, RELIEF_MIN = 2.0;
 /* A model counts as a flat board, which shows no relief, if it stays this close to a plane, as a
    share of the longest side of its box. */
 static const double FLAT = 0.1;
@@ -123,6 +123,42 @@ static whit_result draw_wishes(const struct appearance_shader *shader,
     return result;
 }
 
+/* ---- Framing ---- */
+
+/* Whether whit itself chose to see the model from outside. From within a room, and by a camera of
+   the file, a picture may well be full. */
+static bool is_framed_by_whit(const whit_scene *scene)
+{
+    whit_camera_info camera;
+    whit_scene_info info;
+    bool inside = true;
+    whit_scene_get_camera(scene, 0, &camera);
+    whit_scene_get_info(scene, &info);
+    for (int i = 0; i < 3; ++i)
+        inside &= info.objects_lo[i] < camera.eye[i] && camera.eye[i] < info.objects_hi[i];
+    return camera.made_by_whit && !inside;
+}
+
+static void measure_framing(const whit_scene *scene, const whit_image *ids, struct appearance *out)
+{
+    whit_image_info info;
+    size_t seen = 0;
+    bool left = false, right = false, top = false, bottom = false;
+    whit_image_get_info(ids, &info);
+    size_t count = (size_t)info.width * info.height;
+    for (size_t i = 0; i < count; ++i) {
+        if (whit_image_words(ids)[2 * i + 1] == WHIT_NONE)
+            continue;
+        ++seen;
+        left |= i % info.width == 0;
+        right |= i % info.width == info.width - 1;
+        top |= i < info.width;
+        bottom |= i >= count - info.width;
+    }
+    out->covered = (double)seen / (double)count;
+    out->cropped = left && right && top && bottom && is_framed_by_whit(scene);
+}
+
 /* ---- Burnt and black ---- */
 
 static whit_result read_ids(whit_renderer *renderer, const whit_image *color, whit_image **ids)
@@ -186,6 +222,8 @@ static whit_result measure_lost(const struct appearance_shader *shader,
         result = draw_wishes(shader, of, &glow, &furnace);
     if (result == WHIT_OK)
         count_lost(of, ids, shown, &glow, &furnace, out);
+    if (result == WHIT_OK)
+        measure_framing(of->scene, ids, out);
     wished_finish(&glow);
     wished_finish(&furnace);
     free(shown);
@@ -380,6 +418,6 @@ whit_result appearance_measure(const struct appearance_shader *shader,
 
 bool appearance_is_right(const struct appearance *a)
 {
-    return a->burnt <= SHARE_MAX && a->black <= SHARE_MAX &&
-           (a->is_flat || a->relief >= RELIEF_MIN);
+    return a->covered >= COVERED_MIN && !a->cropped && a->burnt <= SHARE_MAX &&
+           a->black <= SHARE_MAX && (a->is_flat || a->relief >= RELIEF_MIN);
 }

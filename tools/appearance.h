@@ -18,12 +18,14 @@ void appearance_shader_finish(struct appearance_shader *shader);
 
 /* Figures over the pixels that show a surface. */
 struct appearance {
-    double burnt;  /* share with a channel displayed as 255, without surfaces that are to be white
-                      because they emit exactly 1 */
-    double black;  /* share displayed as 0 in all channels, without surfaces that would be black
-                      under light of 1 too */
-    double relief; /* in clay: mean luminance of the brightest tenth over the darkest fifth */
-    bool is_flat;  /* no relief was measured: no surface is seen, or the model is a board */
+    double covered; /* share of all pixels that show a surface */
+    bool cropped;   /* a surface is seen at all four borders, by whit's own camera from outside */
+    double burnt;   /* share with a channel displayed as 255, without surfaces that are to be white
+                       because they emit exactly 1 */
+    double black;   /* share displayed as 0 in all channels, without surfaces that would be black
+                       under light of 1 too */
+    double relief;  /* in clay: mean luminance of the brightest tenth over the darkest fifth */
+    bool is_flat;   /* no relief was measured: no surface is seen, or the model is a board */
 };
 
 /* `renderer` has drawn `scene` with the trees `accel`, and `color` is its picture. In clay every
@@ -39,7 +41,8 @@ struct appearance_of {
 };
 WHIT_CHECK whit_result appearance_measure(const struct appearance_shader *shader,
                                           const struct appearance_of *of, struct appearance *out);
-/* At most a tenth burnt or black, and relief of 2 at least. */
+/* Not cropped and at least a twentieth of the picture, at most a tenth of it burnt or black, and
+   relief of 2 at least. */
 bool appearance_is_right(const struct appearance *appearance);
 
 #endif

@@ -213,8 +213,9 @@ static bool say_appearance(const struct appearance *a)
     if (!a->is_flat)
         snprintf(relief, sizeof relief, "%.2f", a->relief);
     bool right = appearance_is_right(a);
-    printf("%6.1f %% burnt %6.1f %% black %8s relief  %s  ", 100.0 * a->burnt, 100.0 * a->black,
-           relief, right ? "right" : "WRONG");
+    printf("%6.1f %% covered%s %6.1f %% burnt %6.1f %% black %8s relief  %s  ", 100.0 * a->covered,
+           a->cropped ? ", cropped" : "", 100.0 * a->burnt, 100.0 * a->black, relief,
+           right ? "right" : "WRONG");
     return right;
 }
 

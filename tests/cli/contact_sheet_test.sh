@@ -43,6 +43,8 @@ box grey 'Kd 0.7 0.7 0.7'
 box glow 'Ke 40 40 40'
 box lamp 'Ke 1 1 1'
 box coal 'Kd 0 0 0'
+# Nor does one that the file's camera sees from far away.
+printf '{ "objects": [{ "shape": "box" }], "camera": { "eye": [0, 4, 40], "target": [0, 0, 0] } }' >"$OUT/far.json"
 # A flat board shows no relief, in whichever direction it faces.
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\n' >"$OUT/board.obj"
 lit bright 60
@@ -54,6 +56,8 @@ check "a lamp is not burnt, coal is not black" test "$(grep -c ' 0.0 % burnt *0.
 sheet 1 "2 scenes, 2 failed" "$OUT/bright.json" "$OUT/dark.json" --check yes
 check "a grey box burns" grep -Eq '(100|[5-9][0-9])\.. % burnt .* WRONG .*bright.json$' "$OUT/stdout"
 check "a grey box in the dark is black" grep -q '100.0 % black .* WRONG .*dark.json$' "$OUT/stdout"
+sheet 1 "2 scenes, 1 failed" "$OUT/far.json" "$OUT/grey.obj" --check yes
+check "a box far away is too small" grep -Eq ' [0-4]\.[0-9] % covered .* WRONG .*far.json$' "$OUT/stdout"
 sheet 0 "2 scenes, 0 failed" "$OUT/board.obj" "$OUT/grey.obj" --check yes
 check "the board is flat" grep -q ' flat relief .*board.obj$' "$OUT/stdout"
 expect 2 "no output" "$OUT/scenes"
