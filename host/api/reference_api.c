@@ -10,7 +10,7 @@ struct whit_reference {
     whit_renderer_params params; /* strings in it may be gone, and are not read */
     const struct accel *accel;   /* borrowed */
     whit_log log;
-    struct reference_stats stats; /* of the picture rendered last */
+    whit_stats stats; /* of the picture rendered last */
 };
 
 whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params *params,
@@ -70,18 +70,9 @@ whit_result whit_reference_render(whit_reference *reference, whit_image **color,
 
 void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats)
 {
-    const struct reference_stats *from = &reference->stats;
-    *stats = (whit_stats){.render_ms = from->render_ms,
-                          .render_device_ms = -1.0,
-                          .rays_primary = from->rays[RAY_PRIMARY],
-                          .rays_shadow = from->rays[RAY_SHADOW],
-                          .rays_reflected = from->rays[RAY_REFLECTED],
-                          .rays_refracted = from->rays[RAY_REFRACTED],
-                          .rays_cut_depth = from->cut_depth,
-                          .rays_cut_bailout = from->cut_bailout,
-                          .weight_cut_depth = -1.0,
-                          .weight_cut_bailout = -1.0,
-                          .bailout_bound = -1.0};
+    *stats = reference->stats;
+    stats->render_device_ms = stats->bailout_bound = -1.0;
+    stats->weight_cut_depth = stats->weight_cut_bailout = -1.0;
     api_set_rate(stats);
 }
 

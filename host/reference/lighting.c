@@ -127,7 +127,7 @@ static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at
     }
     struct shadow shadow = hit_shadow(reference, &ray);
     struct dvec3 share = shadow.blocked ? d3_all(0.0) : share_of(reference, at, &ray, &shadow);
-    ++tracer->stats.rays[RAY_SHADOW];
+    ++tracer->rays[RAY_SHADOW];
     if (tracer->records)
         record_shadow(tracer, at, &ray, &shadow, share, light, point);
     return share;

@@ -179,7 +179,6 @@ static void draw_pixel(const struct job *job, struct tracer *tracer, uint32_t x,
     out[1] = (float)sum.y;
     out[2] = (float)sum.z;
     out[3] = 1.0f;
-    tracer->stats.non_finite += !d3_is_finite(sum);
 }
 
 static void draw_row(void *user, uint32_t index)
@@ -195,13 +194,14 @@ static void draw_row(void *user, uint32_t index)
     job->rows[index] = tracer;
 }
 
-static void add_stats(const struct reference_stats *from, struct reference_stats *to)
+static void add_rays(const struct tracer *from, whit_stats *to)
 {
-    for (uint32_t i = 0; i < RAY_KIND_COUNT; ++i)
-        to->rays[i] += from->rays[i];
-    to->cut_depth += from->cut_depth;
-    to->cut_bailout += from->cut_bailout;
-    to->non_finite += from->non_finite;
+    to->rays_primary += from->rays[RAY_PRIMARY];
+    to->rays_shadow += from->rays[RAY_SHADOW];
+    to->rays_reflected += from->rays[RAY_REFLECTED];
+    to->rays_refracted += from->rays[RAY_REFRACTED];
+    to->rays_cut_depth += from->cut_depth;
+    to->rays_cut_bailout += from->cut_bailout;
 }
 
 static whit_result tracer_result(const struct reference *r, const struct tracer *tracer)
@@ -219,7 +219,7 @@ static whit_result tracer_result(const struct reference *r, const struct tracer 
 
 /* Draws all rows, band by band; between bands the caller's thread reports progress. */
 static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_ms,
-                              struct reference_stats *stats)
+                              whit_stats *stats)
 {
     const struct reference *r = job->reference;
     const whit_renderer_params *params = &r->params.picture;
@@ -230,7 +230,7 @@ static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_
         threads_for(r->params.thread_count, rows, draw_row, job);
         for (uint32_t i = 0; result == WHIT_OK && i < rows; ++i) {
             result = tracer_result(r, &job->rows[i]);
-            add_stats(&job->rows[i].stats, stats);
+            add_rays(&job->rows[i], stats);
         }
         if (result == WHIT_OK && stopped(r))
             result = WHIT_ERROR_CANCELLED;
@@ -244,16 +244,14 @@ static whit_result draw_bands(struct job *job, uint32_t band_rows, double start_
 }
 
 whit_result reference_render(const struct reference *r, struct image *color, struct image *ids,
-                             struct reference_stats *stats)
+                             whit_stats *stats)
 {
     const whit_renderer_params *params = &r->params.picture;
-    struct reference_stats ignored;
     double start_ms = clock_ms();
     uint32_t threads = r->params.thread_count ? r->params.thread_count : threads_available();
     uint32_t band_rows =
         threads > BAND_ROWS / BAND_ROWS_OF_THREAD ? threads * BAND_ROWS_OF_THREAD : BAND_ROWS;
-    stats = stats ? stats : &ignored;
-    *stats = (struct reference_stats){0};
+    *stats = (whit_stats){0};
     *color = (struct image){0};
     if (ids)
         *ids = (struct image){0};

@@ -53,20 +53,12 @@ WHIT_CHECK whit_result reference_create(const whit_log *log, struct accel *accel
                                         struct reference **out);
 void reference_destroy(struct reference *reference);
 
-/* Counts over the whole picture. */
-struct reference_stats {
-    uint64_t rays[RAY_KIND_COUNT];   /* rays traced, by RAY_* */
-    uint64_t cut_depth, cut_bailout; /* rays not traced, by reason */
-    uint64_t non_finite;             /* pixels */
-    double render_ms;
-};
-
 /* Renders linear RGBA floats (alpha 1), rounded once from double, and into `ids` (may be NULL)
-   instance and primitive of each pixel's first sample. WHIT_ERROR_CANCELLED, WHIT_ERROR_TIME_LIMIT,
-   WHIT_ERROR_MEMORY; WHIT_ERROR_STATUS, logged, where a ray was in more media than kernels can
-   keep. */
+   instance and primitive of each pixel's first sample. *stats: the time, and the numbers of rays
+   traced and cut. WHIT_ERROR_CANCELLED, WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_MEMORY;
+   WHIT_ERROR_STATUS, logged, where a ray was in more media than kernels can keep. */
 WHIT_CHECK whit_result reference_render(const struct reference *reference, struct image *color,
-                                        struct image *ids, struct reference_stats *stats);
+                                        struct image *ids, whit_stats *stats);
 
 /* ---- The ray tree of a pixel ---- */
 

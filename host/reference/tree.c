@@ -88,13 +88,13 @@ static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
         return false;
     bool small = largest < tracer->reference->bailout;
     if (deep || small) {
-        tracer->stats.cut_depth += deep;
-        tracer->stats.cut_bailout += !deep;
+        tracer->cut_depth += deep;
+        tracer->cut_bailout += !deep;
         record_ray(tracer, ray, deep ? WHIT_PROBE_DEPTH : WHIT_PROBE_BAILOUT);
         return true;
     }
     if (ray->kind < RAY_KIND_COUNT)
-        ++tracer->stats.rays[ray->kind];
+        ++tracer->rays[ray->kind];
     if (!ARRAY_PUSH(tracer->stack, tracer->stack_count, tracer->stack_capacity, *ray))
         tracer->lacks_memory = true;
     return true;
@@ -253,7 +253,7 @@ struct dvec3 tree_trace(struct tracer *tracer, uint32_t x, uint32_t y, struct hi
     tracer->x = x;
     tracer->y = y;
     tracer->stack_count = 0;
-    ++tracer->stats.rays[RAY_PRIMARY];
+    ++tracer->rays[RAY_PRIMARY];
     *first = hit_closest(tracer->reference, &ray);
     sum = follow(tracer, &ray, first);
     while (tracer->stack_count > 0 && !tracer->lacks_memory) {

@@ -63,11 +63,6 @@ static inline bool d3_is_zero(struct dvec3 a)
     return a.x == 0.0 && a.y == 0.0 && a.z == 0.0;
 }
 
-static inline bool d3_is_finite(struct dvec3 a)
-{
-    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
-}
-
 /* The unit vector of a; `otherwise` where its length is 0 or not finite. */
 static inline struct dvec3 d3_unit_or(struct dvec3 a, struct dvec3 otherwise)
 {

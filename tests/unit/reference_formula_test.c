@@ -38,7 +38,8 @@ static void close_reference(struct drawn *d)
 static struct image draw(const struct drawn *d)
 {
     struct image image = {0};
-    assert_int_equal(reference_render(d->reference, &image, NULL, NULL), WHIT_OK);
+    whit_stats stats;
+    assert_int_equal(reference_render(d->reference, &image, NULL, &stats), WHIT_OK);
     return image;
 }
 
