@@ -12,7 +12,7 @@ struct whit_shader_compiler {
     struct shader_compiler *compiler;
     struct shader_errors errors; /* of the file compiled last */
     whit_shader_error shown[SHADER_ERROR_MAX];
-    struct shader_limits limits;
+    whit_shader_limits limits;
     whit_log log;
 };
 
@@ -21,16 +21,10 @@ whit_result whit_shader_compiler_create(const whit_shader_limits *limits, const 
 {
     *out = NULL;
     whit_shader_compiler *compiler = calloc(1, sizeof *compiler);
-    const whit_shader_limits none = {0};
-    limits = limits ? limits : &none;
-    const struct shader_limits inner = {.cpu_s = limits->cpu_s,
-                                        .memory_bytes = limits->memory_bytes,
-                                        .require_sandbox = limits->require_sandbox,
-                                        .cancel = limits->cancel};
     if (compiler) {
         compiler->log = log_or_silence(log);
-        compiler->limits = inner;
-        compiler->compiler = shader_compiler_create(&compiler->log, &inner);
+        compiler->limits = limits ? *limits : (whit_shader_limits){0};
+        compiler->compiler = shader_compiler_create(&compiler->log, &compiler->limits, 0.0);
     }
     if (!compiler || !compiler->compiler) {
         const whit_log silent = log_or_silence(log);
@@ -84,7 +78,7 @@ static bool is_picture(const char *path)
 static whit_result read_picture(whit_shader_compiler *compiler, const char *path,
                                 struct shader_text *text)
 {
-    const struct shader_limits *limits = &compiler->limits;
+    const whit_shader_limits *limits = &compiler->limits;
     const struct foreign_params foreign = {.require_sandbox = limits->require_sandbox,
                                            .cancel = limits->cancel};
     whit_text *texts;

@@ -21,7 +21,8 @@ enum { REPLY_BYTES = 64 << 20, WHO_BYTES = 256 };
 
 struct shader_compiler {
     whit_log log;
-    struct shader_limits limits;
+    whit_shader_limits limits;
+    double clock_s;
     struct keep *keep; /* NULL: each request has a process of its own */
     uint32_t restarts; /* how often `keep` had to be started again */
     bool warned;       /* a warning has told that there is no sandbox */
@@ -51,7 +52,7 @@ static int answer(const void *request, size_t bytes, void *to, child_write write
 static const struct keep_work work = {glslang_warm, answer};
 
 struct shader_compiler *shader_compiler_create(const whit_log *log,
-                                               const struct shader_limits *limits)
+                                               const whit_shader_limits *limits, double clock_s)
 {
     struct shader_compiler *compiler = calloc(1, sizeof *compiler);
     if (!compiler) {
@@ -61,6 +62,7 @@ struct shader_compiler *shader_compiler_create(const whit_log *log,
     compiler->log = log_or_silence(log);
     if (limits)
         compiler->limits = *limits;
+    compiler->clock_s = clock_s > 0.0 ? clock_s : 20.0;
     compiler->keep = keep_start(&work);
     return compiler;
 }
@@ -73,14 +75,15 @@ void shader_compiler_destroy(struct shader_compiler *compiler)
     free(compiler);
 }
 
-static struct child_limits child_limits_of(const struct shader_limits *limits,
+static struct child_limits child_limits_of(const struct shader_compiler *compiler,
                                            const struct shader_request *request)
 {
+    const whit_shader_limits *limits = &compiler->limits;
     double usual_s = request->cpu_s > 0.0 ? request->cpu_s : 5.0;
     return (struct child_limits){
         .who = "compiler",
         .cpu_s = limits->cpu_s > 0.0 ? limits->cpu_s : usual_s,
-        .clock_s = limits->clock_s > 0.0 ? limits->clock_s : 20.0,
+        .clock_s = compiler->clock_s,
         .memory_bytes = limits->memory_bytes ? limits->memory_bytes : UINT64_C(1) << 30,
         .reply_bytes = REPLY_BYTES,
         .require_sandbox = limits->require_sandbox,
@@ -445,7 +448,7 @@ whit_result shader_compile(struct shader_compiler *compiler, const struct shader
     *code = (struct shader_code){0};
     const struct place place = {&compiler->log, text && text->file_count ? text : NULL, request,
                                 errors};
-    struct child_limits limits = child_limits_of(&compiler->limits, request);
+    struct child_limits limits = child_limits_of(compiler, request);
     size_t bytes;
     uint8_t *question = make_question(&place, &bytes);
     if (!question)

@@ -10,15 +10,7 @@
 #include "base/child.h"
 #include "shader/stages.h"
 #include "shader/text.h"
-
-/* Limits for one request. A zeroed struct means the defaults. */
-struct shader_limits {
-    double cpu_s;                /* processor time, seconds; 0: shader_request.cpu_s */
-    double clock_s;              /* wall time, seconds; 0: 20 */
-    uint64_t memory_bytes;       /* 0: 1 GiB */
-    bool require_sandbox;        /* no sandbox is an error, not a warning */
-    const volatile bool *cancel; /* polled while a request is under way; may be NULL */
-};
+#include "whit/whit_shader.h"
 
 struct shader_request {
     const char *kernel; /* path of an embedded file below shaders/, as "kernel/shade.comp" */
@@ -36,7 +28,7 @@ struct shader_request {
        `names`. NULL: `kernel` is complete. */
     const uint32_t *base;
     size_t base_bytes;
-    double cpu_s; /* processor time, if shader_limits has none; 0: 5 */
+    double cpu_s; /* processor time, if whit_shader_limits has none; 0: 5 */
 };
 
 /* The place where a loop of the user's text begins. */
@@ -87,9 +79,10 @@ struct shader_compiler;
 /* Forks the process that is kept. The fork shares the caller's memory, copied page by page when one
    of them writes: best called before scenes are loaded. It ends with the caller. If it cannot be
    started, each request is compiled in a process of its own, slower. NULL: no memory. `log` is
-   kept. Used by one thread at a time. */
+   kept. `limits`, which may be NULL, and `clock_s`, elapsed time (0: 20), are those of one request.
+   Used by one thread at a time. */
 struct shader_compiler *shader_compiler_create(const whit_log *log,
-                                               const struct shader_limits *limits);
+                                               const whit_shader_limits *limits, double clock_s);
 void shader_compiler_destroy(struct shader_compiler *compiler); /* NULL is fine */
 
 /* Compiles a kernel with the user's text in place of hook/user.glsl, which stays if `text` is NULL

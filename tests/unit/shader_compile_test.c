@@ -492,7 +492,7 @@ static pid_t only_child(void)
 TEST(one_process_is_kept_and_none_is_left)
 {
     assert_int_equal(children(), 0);
-    compiler_open(NULL);
+    compiler_open(NULL, 0.0);
     assert_int_equal(children(), 1);
     pid_t first = only_child();
     for (int i = 0; i < 3; ++i) {
@@ -517,18 +517,19 @@ TEST(limits_are_kept)
     volatile bool cancel = true;
     char *long_text = repeat("float f(float x, int n) { return x", " + sin(x)\n", 60000, "; }");
     const struct {
-        struct shader_limits limits;
+        whit_shader_limits limits;
+        double clock_s;
         whit_result result;
         const char *reason;
     } cases[] = {
-        {{.memory_bytes = 8 << 20}, WHIT_ERROR_INPUT, "memory"},
-        {{.cpu_s = 0.01}, WHIT_ERROR_INPUT, "not compiled within 0.01 s"},
-        {{.clock_s = 0.01}, WHIT_ERROR_INPUT, "0.01 s by the clock"},
-        {{.cancel = &cancel}, WHIT_ERROR_CANCELLED, "cancelled"},
+        {{.memory_bytes = 8 << 20}, 0.0, WHIT_ERROR_INPUT, "memory"},
+        {{.cpu_s = 0.01}, 0.0, WHIT_ERROR_INPUT, "not compiled within 0.01 s"},
+        {{.cancel = NULL}, 0.01, WHIT_ERROR_INPUT, "0.01 s by the clock"},
+        {{.cancel = &cancel}, 0.0, WHIT_ERROR_CANCELLED, "cancelled"},
     };
     for (size_t i = HAS_ASAN; i < sizeof cases / sizeof *cases; ++i) {
         struct shader_code code;
-        compiler_open(&cases[i].limits);
+        compiler_open(&cases[i].limits, cases[i].clock_s);
         assert_int_equal(compile_files(long_text, NULL, false, &code), cases[i].result);
         if (!strstr(messages.text, cases[i].reason))
             fail_msg("\"%s\" is not in \"%s\"", cases[i].reason, messages.text);
@@ -546,7 +547,7 @@ TEST(no_process_outlives_its_parent)
     assert_int_equal(pipe(ends), 0);
     pid_t parent = fork();
     if (parent == 0) {
-        struct shader_compiler *own = shader_compiler_create(NULL, NULL);
+        struct shader_compiler *own = shader_compiler_create(NULL, NULL, 0.0);
         kept = own ? only_child() : 0;
         ssize_t written = write(ends[1], &kept, sizeof kept);
         _exit(written == sizeof kept ? 0 : 1);

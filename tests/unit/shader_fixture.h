@@ -33,9 +33,9 @@ static const char test_kernel[] =
 static struct shader_compiler *compiler;
 static struct shader_errors errors;
 
-static inline void compiler_open(const struct shader_limits *limits)
+static inline void compiler_open(const whit_shader_limits *limits, double clock_s)
 {
-    compiler = shader_compiler_create(&warnings_log, limits);
+    compiler = shader_compiler_create(&warnings_log, limits, clock_s);
     assert_non_null(compiler);
 }
 
@@ -43,7 +43,7 @@ static inline int compiler_begin(void **state)
 {
     (void)state;
     messages = (struct messages){0};
-    compiler_open(NULL);
+    compiler_open(NULL, 0.0);
     return 0;
 }
 
