@@ -57,12 +57,12 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
 {
     struct accel *accel = creation->accel;
     const struct scene_mesh *mesh = &accel->scene->meshes[index];
-    struct bvh_params params = accel->params.mesh;
-    params.thread_count = thread_count;
+    whit_accel_params params = accel->params;
+    params.threads = thread_count;
     uint32_t count = scene_mesh_primitives(mesh);
     whit_result result = WHIT_ERROR_MEMORY;
     struct bvh_box *boxes = array_alloc(count, sizeof *boxes);
-    bool split = params.builder == WHIT_BUILD_SPATIAL;
+    bool split = params.build == WHIT_BUILD_SPATIAL;
     uint8_t *whole = split ? array_alloc(count, 1) : NULL;
     if (!boxes || (split && !whole)) {
         log_error(&accel->log, "%s: mesh %s: out of memory for its tree", accel->scene->name,
@@ -74,8 +74,7 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
     if (split)
         material_bits_whole(accel->scene, creation->materials, mesh, whole);
     const struct bvh_triangles triangles = {mesh->positions, mesh->indices, whole};
-    params.triangles = &triangles;
-    result = bvh_build(&accel->log, boxes, count, &params, &creation->trees[index]);
+    result = bvh_build(&accel->log, boxes, count, &triangles, &params, &creation->trees[index]);
 done:
     free(whole);
     free(boxes);
@@ -93,7 +92,7 @@ static void build_small(void *context, uint32_t index)
 static whit_result meshes_build(struct creation *creation)
 {
     struct accel *accel = creation->accel;
-    uint32_t threads = accel->params.mesh.thread_count;
+    uint32_t threads = accel->params.threads;
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         if (scene_mesh_primitives(&accel->scene->meshes[i]) < MESH_LARGE)
             creation->small[creation->small_count++] = i;
@@ -181,7 +180,7 @@ static whit_result meshes_write(struct creation *creation)
     accel->triangles = array_alloc_aligned(accel->record_count, sizeof *accel->triangles);
     if (!accel->nodes || !accel->triangles)
         return WHIT_ERROR_MEMORY;
-    threads_for(accel->params.mesh.thread_count, creation->span_count, write_span, creation);
+    threads_for(accel->params.threads, creation->span_count, write_span, creation);
     for (uint32_t i = 0; i < accel->mesh_count; ++i) {
         struct accel_mesh *mesh = &accel->meshes[i];
         if (mesh->node_count > 0)
@@ -258,7 +257,7 @@ static whit_result bare_check(struct accel *accel)
         uint32_t count = scene_mesh_primitives(&scene->meshes[scene->instances[i].mesh]);
         iterations += count + 2 * ((uint64_t)count / BVH_LEAF_MAX + 1) + 3;
     }
-    if (accel->params.flatten)
+    if (accel->params.instances == WHIT_INSTANCES_OFF)
         iterations = primitives + 2 * (primitives / BVH_LEAF_MAX + 1);
     accel->iterations = (uint32_t)iterations;
     if (primitives <= ACCEL_BARE_MAX && iterations <= ACCEL_ITERATIONS_MAX)
@@ -282,7 +281,7 @@ static whit_result pose_at_start(struct accel *accel)
 }
 
 whit_result accel_create(const whit_log *log, const struct scene *scene,
-                         const struct accel_params *params, struct accel **out)
+                         const whit_accel_params *params, struct accel **out)
 {
     double begin_ms = clock_ms();
     *out = NULL;
@@ -293,19 +292,19 @@ whit_result accel_create(const whit_log *log, const struct scene *scene,
     }
     accel->scene = scene;
     accel->log = log_or_silence(log);
-    accel->params = params ? *params : (struct accel_params){0};
-    accel->params.instances.leaf_limit = 1;
-    accel->no_trees = accel->params.mesh.builder == WHIT_BUILD_NONE;
+    accel->params = params ? *params : (whit_accel_params){0};
+    accel->no_trees = accel->params.build == WHIT_BUILD_NONE;
     struct creation creation = {.accel = accel};
     whit_result result = WHIT_OK;
     if (accel->no_trees) {
-        accel->params.mesh.leaf_limit = BVH_LEAF_MAX;
-        accel->params.instances.builder = WHIT_BUILD_NONE;
+        accel->params.leaf_limit = BVH_LEAF_MAX;
+        accel->params.instance_build = WHIT_BUILD_NONE;
         result = bare_check(accel);
     }
     if (result == WHIT_OK)
-        result = accel->params.flatten ? no_memory(accel, accel_flat_create(accel))
-                                       : creation_run(&creation);
+        result = accel->params.instances == WHIT_INSTANCES_OFF
+                     ? no_memory(accel, accel_flat_create(accel))
+                     : creation_run(&creation);
     creation_finish(&creation);
     accel->build_ms = clock_ms() - begin_ms;
     if (result == WHIT_OK)

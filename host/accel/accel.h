@@ -21,19 +21,9 @@ struct accel_mesh {
     struct bvh_box box;
 };
 
-enum accel_update { ACCEL_REBUILD, ACCEL_REFIT };
-
 /* With WHIT_BUILD_NONE: the most primitives over all instances, and the most loop iterations of one
    ray. lavapipe grants a subgroup 65,535. */
 enum { ACCEL_BARE_MAX = 40000, ACCEL_ITERATIONS_MAX = 65000 };
-
-struct accel_params {
-    struct bvh_params mesh, instances; /* instances.leaf_limit is always 1 */
-    /* Whether accel_pose builds a new tree over instances, or gives the present one new boxes. */
-    enum accel_update update;
-    bool validate;
-    bool flatten; /* one tree for the whole scene, in world space */
-};
 
 /* The same trees with up to eight children per node, for kernels in which each lane tests one
    child. Node i is nodes[8 i] to nodes[8 i + 7]; `first` of an inner child is the number of its
@@ -51,7 +41,7 @@ struct accel_bvh8 {
 struct accel {
     const struct scene *scene; /* borrowed */
     whit_log log;
-    struct accel_params params;
+    whit_accel_params params;
     struct gpu_bvh_node *nodes;
     struct gpu_triangle *triangles;
     struct gpu_instance *instances; /* in the order of the scene */
@@ -76,9 +66,10 @@ struct accel {
     struct accel_flat *world;    /* with `flat`: what is kept from build to build */
 };
 
-/* Builds the mesh trees and poses the instances at time 0. `scene` is frozen and outlives *out. */
+/* Builds the mesh trees and poses the instances at time 0. `scene` is frozen and outlives *out.
+   WHIT_INSTANCES_AUTO is taken as WHIT_INSTANCES_ON: the caller asks accel_flat_suits. */
 WHIT_CHECK whit_result accel_create(const whit_log *log, const struct scene *scene,
-                                    const struct accel_params *params, struct accel **out);
+                                    const whit_accel_params *params, struct accel **out);
 void accel_destroy(struct accel *accel);
 uint64_t accel_bytes(const struct accel *accel);
 

@@ -276,10 +276,10 @@ static whit_result world_build(struct flattening *f)
 {
     struct accel *accel = f->accel;
     struct accel_flat *flat = accel->world;
-    uint32_t threads = accel->params.mesh.thread_count;
+    uint32_t threads = accel->params.threads;
     uint32_t count = flat->first_triangle[accel->instance_count];
     uint32_t vertices = flat->first_vertex[accel->instance_count];
-    bool split = accel->params.mesh.builder == WHIT_BUILD_SPATIAL;
+    bool split = accel->params.build == WHIT_BUILD_SPATIAL;
     whit_result result = refuse_spheres(f);
     if (result != WHIT_OK)
         return result;
@@ -296,9 +296,7 @@ static whit_result world_build(struct flattening *f)
         return result;
     threads_for(threads, flat->span_count, place_triangles, f);
     const struct bvh_triangles triangles = {f->positions, f->indices, f->whole};
-    struct bvh_params params = accel->params.mesh;
-    params.triangles = &triangles;
-    return bvh_build(&accel->log, f->boxes, count, &params, &f->tree);
+    return bvh_build(&accel->log, f->boxes, count, &triangles, &accel->params, &f->tree);
 }
 
 static void write_records(void *user, uint32_t index)
@@ -333,7 +331,7 @@ static whit_result world_write(struct flattening *f)
     f->triangles = array_alloc_aligned(count, sizeof *f->triangles);
     if (!f->triangles)
         return no_memory(f->accel);
-    threads_for(f->accel->params.mesh.thread_count, (count + SPAN - 1) / SPAN, write_records, f);
+    threads_for(f->accel->params.threads, (count + SPAN - 1) / SPAN, write_records, f);
     return WHIT_OK;
 }
 

@@ -191,7 +191,7 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
     struct filling filling = {accel, pose, posing,
                               accel->flat ? accel_flat_meshes(accel->world) : accel->meshes};
     uint32_t chunks = chunk_count(accel->instance_count);
-    threads_for(accel->params.instances.thread_count, chunks, fill_chunk, &filling);
+    threads_for(accel->params.threads, chunks, fill_chunk, &filling);
     for (uint32_t c = 0; c < chunks; ++c) {
         uint32_t i = posing->bad[c];
         if (i == UINT32_MAX)
@@ -221,9 +221,10 @@ static void tree_place(struct accel *accel, const struct bvh *tree, const uint32
 
 static whit_result tree_build(struct accel *accel, const struct accel_posing *posing)
 {
+    const whit_accel_params params = {
+        .build = accel->params.instance_build, .leaf_limit = 1, .threads = accel->params.threads};
     struct bvh tree;
-    whit_result result =
-        bvh_build(&accel->log, posing->boxes, posing->count, &accel->params.instances, &tree);
+    whit_result result = bvh_build(&accel->log, posing->boxes, posing->count, NULL, &params, &tree);
     if (result == WHIT_OK)
         tree_place(accel, &tree, posing->indices);
     bvh_finish(&tree);
@@ -278,8 +279,8 @@ static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
 static whit_result pose_instances(struct accel *accel, const struct scene_pose *pose)
 {
     struct accel_posing *posing = accel->posing;
-    bool keep = rank_instances(accel, posing) && posing->has_tree &&
-                accel->params.update == ACCEL_REFIT && !accel->no_trees;
+    bool keep = rank_instances(accel, posing) && posing->has_tree && accel->params.instance_refit &&
+                !accel->no_trees;
     whit_result result = instances_fill(accel, pose, posing);
     if (result == WHIT_OK && !keep)
         result = tree_build(accel, posing);

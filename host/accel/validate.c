@@ -464,7 +464,7 @@ static struct view view_over(const struct accel_mesh *m, const struct mesh_user 
         .slot_count = m->record_count,
         .primitive_count = m->triangle_count,
         .split = m->record_count > m->triangle_count,
-        .leaf_limit = accel->params.mesh.leaf_limit ? accel->params.mesh.leaf_limit : 4,
+        .leaf_limit = accel->params.leaf_limit ? accel->params.leaf_limit : 4,
         .primitive = user->mesh ? mesh_primitive : flat_primitive,
         .box = mesh_primitive_box,
         .user = user,

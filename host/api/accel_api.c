@@ -58,24 +58,10 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
     }
     accel->params = *params;
     accel->log = scene->log;
-    const struct accel_params inner = {
-        .mesh =
-            {
-                .builder = params->build,
-                .bins = params->bins,
-                .leaf_limit = params->leaf_limit,
-                .thread_count = params->threads,
-                .optimize = params->optimize,
-                .spatial_alpha = params->spatial_alpha,
-                .spatial_budget = params->spatial_budget,
-            },
-        .instances = {.builder = params->instance_build,
-                      .leaf_limit = 1,
-                      .thread_count = params->threads},
-        .update = params->instance_refit ? ACCEL_REFIT : ACCEL_REBUILD,
-        .flatten = api_one_tree(scene, params->instances),
-        .validate = params->validate || ALWAYS_VALIDATE,
-    };
+    whit_accel_params inner = *params;
+    inner.instances =
+        api_one_tree(scene, params->instances) ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON;
+    inner.validate |= ALWAYS_VALIDATE;
     result = accel_create(&scene->log, scene->scene, &inner, &accel->accel);
     if (result != WHIT_OK) {
         whit_accel_destroy(accel);

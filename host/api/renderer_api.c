@@ -374,7 +374,7 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
         log_error(&renderer->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    threads_for(renderer->accel->params.mesh.thread_count, (uint32_t)batches, trace_batch, trace);
+    threads_for(renderer->accel->params.threads, (uint32_t)batches, trace_batch, trace);
     uint32_t status = 0;
     whit_cost sum = {0};
     for (uint64_t i = 0; i < batches; ++i) {

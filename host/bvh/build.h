@@ -13,14 +13,15 @@
 
 /* The builders, called by bvh_build with at least one box. `resolved` has no 0 that stands for a
    default, except `bins` of WHIT_BUILD_BINNED, where 0 lets the number follow the size of the node.
-   They fill in *out, but for what build_complete computes; on failure the caller frees what is in
+   They fill in *out, but for what bvh_complete computes; on failure the caller frees what is in
    it. */
 whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const struct bvh_params *resolved, struct bvh *out);
+                          const whit_accel_params *resolved, struct bvh *out);
 whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                        const struct bvh_params *resolved, struct bvh *out);
+                        const whit_accel_params *resolved, struct bvh *out);
 whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const struct bvh_params *resolved, struct bvh *out);
+                          const struct bvh_triangles *triangles, const whit_accel_params *resolved,
+                          struct bvh *out);
 
 /* Bits of `flags` of a record. */
 #define SPATIAL_WHOLE 1u /* must not be split */
@@ -80,7 +81,7 @@ struct build_output {
 /* The functions that each builder has of its own. Several threads call them at once, for ranges
    that do not overlap. `scratch` is 64-byte aligned and holds 64 * (range->count - 1) bytes. */
 struct builder {
-    const struct bvh_params *params;
+    const whit_accel_params *params;
     struct build_record *records;
     void *context; /* the builder's own data */
     /* Chooses a split and makes it. thread_count is above 1 only where `threaded` is set: then the
@@ -192,12 +193,12 @@ static inline f4 build_areas(const struct build_box box[3], f4 scale)
     return f4_half_areas(d[0], d[1], d[2]);
 }
 
-/* Whether a leaf is allowed, and costs no more than a split of this cost. */
-static inline bool build_leaf_pays(const struct bvh_params *params, uint32_t count, float area,
+/* Whether a leaf is allowed, and costs no more than a pair of nodes and a split of this cost. To
+   test a pair costs as much as to test a primitive. */
+static inline bool build_leaf_pays(const whit_accel_params *params, uint32_t count, float area,
                                    float split_cost)
 {
-    return count <= params->leaf_limit &&
-           area * (float)count <= area * params->traversal_cost + split_cost;
+    return count <= params->leaf_limit && area * (float)count <= area + split_cost;
 }
 
 static inline uint32_t build_widest_axis(const float extent[3])

@@ -22,29 +22,26 @@ static bool builder_known(whit_build builder)
 }
 
 /* Replaces every 0 by its default. */
-static void params_resolve(const struct bvh_params *in, struct bvh_params *out)
+static void params_resolve(const whit_accel_params *in, whit_accel_params *out)
 {
-    *out = in ? *in : (struct bvh_params){0};
-    if (out->bins == 0 && out->builder != WHIT_BUILD_BINNED)
+    *out = in ? *in : (whit_accel_params){0};
+    if (out->bins == 0 && out->build != WHIT_BUILD_BINNED)
         out->bins = 16;
     out->leaf_limit = out->leaf_limit ? out->leaf_limit : 4;
-    out->thread_count = out->thread_count ? out->thread_count : threads_available();
-    out->traversal_cost = out->traversal_cost != 0.0f ? out->traversal_cost : 1.0f;
+    out->threads = out->threads ? out->threads : threads_available();
     out->spatial_alpha = out->spatial_alpha != 0.0f ? out->spatial_alpha : 1e-5f;
     out->spatial_budget = out->spatial_budget != 0.0f ? out->spatial_budget : 0.5f;
     if (out->spatial_budget < 0.0f)
         out->spatial_budget = 0.0f;
 }
 
-static whit_result params_check(const whit_log *log, const struct bvh_params *params)
+static whit_result params_check(const whit_log *log, const whit_accel_params *params)
 {
     whit_result result = WHIT_ERROR_USAGE;
-    if (!builder_known(params->builder))
-        log_error(log, "tree: no builder has the number %d", (int)params->builder);
+    if (!builder_known(params->build))
+        log_error(log, "tree: no builder has the number %d", (int)params->build);
     else if (params->bins == 1 || params->bins > 256 || params->leaf_limit > BVH_LEAF_MAX)
         log_error(log, "tree: bins must be 2 to 256, leaves at most %u", BVH_LEAF_MAX);
-    else if (!(params->traversal_cost > 0.0f && params->traversal_cost <= FLT_MAX))
-        log_error(log, "tree: the cost of a node must be above 0");
     else if (!(params->spatial_alpha >= 0.0f && params->spatial_budget <= FLT_MAX))
         log_error(log, "tree: overlap and budget of spatial splits must be numbers from 0");
     else
@@ -53,9 +50,10 @@ static whit_result params_check(const whit_log *log, const struct bvh_params *pa
 }
 
 static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                         const struct bvh_params *params, struct bvh *out)
+                         const struct bvh_triangles *triangles, const whit_accel_params *params,
+                         struct bvh *out)
 {
-    switch (params->builder) {
+    switch (params->build) {
     case WHIT_BUILD_NONE:
     case WHIT_BUILD_BINNED:
     case WHIT_BUILD_MEDIAN:
@@ -63,17 +61,18 @@ static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint3
     case WHIT_BUILD_SWEEP:
         return sweep_build(log, boxes, count, params, out);
     case WHIT_BUILD_SPATIAL:
-        return spatial_build(log, boxes, count, params, out);
+        return spatial_build(log, boxes, count, triangles, params, out);
     }
     return WHIT_ERROR_USAGE; /* not reached: params_check has refused all others */
 }
 
 whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                      const struct bvh_params *params, struct bvh *out)
+                      const struct bvh_triangles *triangles, const whit_accel_params *params,
+                      struct bvh *out)
 {
     double begin_ms = clock_ms();
     *out = (struct bvh){.primitive_count = count, .reference_count = count};
-    struct bvh_params resolved;
+    whit_accel_params resolved;
     params_resolve(params, &resolved);
     whit_result result = params_check(log, &resolved);
     if (result != WHIT_OK || count == 0)
@@ -83,11 +82,11 @@ whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t
                   BVH_FIRST_MASK / 2);
         return WHIT_ERROR_INPUT;
     }
-    result = build(log, boxes, count, &resolved, out);
+    result = build(log, boxes, count, triangles, &resolved, out);
     if (result == WHIT_OK)
-        build_complete(out, (double)resolved.traversal_cost, resolved.thread_count);
+        bvh_complete(out, resolved.threads);
     if (result == WHIT_OK && resolved.optimize)
-        result = bvh_optimize(log, resolved.thread_count, (double)resolved.traversal_cost, out);
+        result = bvh_optimize(log, resolved.threads, out);
     out->build_ms = clock_ms() - begin_ms;
     if (result != WHIT_OK)
         bvh_finish(out);

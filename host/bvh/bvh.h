@@ -20,21 +20,6 @@ struct bvh_triangles {
     const uint8_t *whole;    /* 1: must stay in one leaf; NULL: none must */
 };
 
-struct bvh_params {
-    whit_build builder;  /* WHIT_BUILD_SPATIAL needs `triangles`, WHIT_BUILD_NONE keeps the order of
-                            the input, in full leaves */
-    uint32_t bins;       /* WHIT_BUILD_BINNED: 2..256; 0: up to 32, fewer for fewer primitives */
-    uint32_t leaf_limit; /* 1..BVH_LEAF_MAX; 0: 4 */
-    uint32_t thread_count;                 /* 0: one a core; the tree is the same for any count */
-    float traversal_cost;                  /* of one node pair relative to one primitive; 0: 1 */
-    bool optimize;                         /* improve the finished tree by reinsertion */
-    const struct bvh_triangles *triangles; /* WHIT_BUILD_SPATIAL */
-    float spatial_alpha;  /* overlap, relative to the root's area, from which spatial splits are
-                             tried (Stich et al. 2009, 4.5); 0: 1e-5 */
-    float spatial_budget; /* references beyond one per triangle, as a share of the triangles; 0:
-                             0.5; < 0: none */
-};
-
 /* nodes[0] is the root, nodes[1] is unused. `order` lists the primitives leaf by leaf. */
 struct bvh {
     struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
@@ -50,9 +35,12 @@ struct bvh {
     double build_ms;
 };
 
-/* Boxes must be finite with lo <= hi. Deterministic. */
+/* Boxes must be finite with lo <= hi. `triangles`: for WHIT_BUILD_SPATIAL, else NULL.
+   WHIT_BUILD_NONE keeps the order of the input, in full leaves. `params` (NULL: the defaults) is
+   for one tree: instances and validate are not read. Deterministic. */
 WHIT_CHECK whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                                 const struct bvh_params *params, struct bvh *out);
+                                 const struct bvh_triangles *triangles,
+                                 const whit_accel_params *params, struct bvh *out);
 void bvh_finish(struct bvh *bvh);
 
 static inline uint32_t bvh_count(const struct gpu_bvh_node *node)

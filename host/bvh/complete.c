@@ -95,18 +95,12 @@ static struct tally nodes_complete(struct bvh *bvh, uint32_t thread_count)
     return sum;
 }
 
-void build_complete(struct bvh *bvh, double traversal_cost, uint32_t thread_count)
+void bvh_complete(struct bvh *bvh, uint32_t thread_count)
 {
     struct tally tally = nodes_complete(bvh, thread_count);
     double root = bvh->node_count > 0 ? bvh_half_area(&bvh->nodes[0]) : 0.0;
-    bvh->sah_cost =
-        root > 0.0 ? (tally.area_inner * traversal_cost + tally.area_leaves) / root : 0.0;
+    bvh->sah_cost = root > 0.0 ? (tally.area_inner + tally.area_leaves) / root : 0.0;
     bvh->leaf_count = tally.leaf_count;
     bvh->leaf_largest = tally.leaf_largest;
     bvh->depth = bvh->node_count > 0 ? subtree_depth(bvh->nodes, 0) : 0;
-}
-
-void bvh_complete(struct bvh *bvh, double traversal_cost)
-{
-    build_complete(bvh, traversal_cost, 1);
 }

@@ -299,8 +299,7 @@ static void emit(const struct optimizer *o, struct bvh *bvh, uint32_t *order)
     }
 }
 
-whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, double traversal_cost,
-                         struct bvh *bvh)
+whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, struct bvh *bvh)
 {
     double begin_ms = clock_ms();
     if (bvh->node_count <= 4)
@@ -326,7 +325,7 @@ whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, double trav
         uint32_t *old = bvh->order;
         bvh->order = order;
         order = old;
-        bvh_complete(bvh, traversal_cost);
+        bvh_complete(bvh, 1);
     }
     optimizer_finish(&o);
     free(order);

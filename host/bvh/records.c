@@ -139,21 +139,21 @@ static void grow_small(const struct builder *builder, const struct build_output 
 }
 
 whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const struct bvh_params *resolved, struct bvh *out)
+                          const whit_accel_params *resolved, struct bvh *out)
 {
     struct builder builder = {.params = resolved, .halve = split_median};
     struct build_bounds bounds;
     whit_result result =
-        records_make(log, boxes, count, 0, resolved->thread_count, &builder.records, &bounds);
+        records_make(log, boxes, count, 0, resolved->threads, &builder.records, &bounds);
     if (result != WHIT_OK)
         return result;
-    if (resolved->builder == WHIT_BUILD_BINNED) {
+    if (resolved->build == WHIT_BUILD_BINNED) {
         builder.split = split_binned;
         builder.threaded = true;
         builder.small = grow_small;
         builder.small_count = resolved->bins ? SMALL_OF_BINS : BUILD_SMALL;
     }
-    if (resolved->builder == WHIT_BUILD_NONE)
+    if (resolved->build == WHIT_BUILD_NONE)
         builder.halve = halve_nothing;
     result = topdown_grow(log, &builder, &bounds, count, 0, out);
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)

@@ -22,6 +22,7 @@ static double extent_area(struct build_box box)
 /* ---- Splits ---- */
 
 struct spatial {
+    const struct bvh_triangles *triangles;
     double overlap_min; /* half area of the overlap of both halves, above which spatial splits are
                            tried */
 };
@@ -44,7 +45,8 @@ static bool spatial_worthwhile(const struct builder *builder, const struct build
 static enum build_choice split(const struct builder *builder, const struct build_range *range,
                                uint32_t thread_count, void *scratch, struct build_halves *halves)
 {
-    const struct bvh_params *params = builder->params;
+    const whit_accel_params *params = builder->params;
+    const struct bvh_triangles *triangles = ((const struct spatial *)builder->context)->triangles;
     struct build_record *own = builder->records + range->first;
     f4 scale = build_scale(range->bounds.box);
     struct object_plane object;
@@ -53,12 +55,11 @@ static enum build_choice split(const struct builder *builder, const struct build
     (void)scratch;
     object_find(own, range, scale, &object);
     bool spatial = spatial_worthwhile(builder, range, &object) &&
-                   spatial_find(own, range, params->triangles, scale, &plane) &&
-                   plane.cost < object.cost;
+                   spatial_find(own, range, triangles, scale, &plane) && plane.cost < object.cost;
     if (build_leaf_pays(params, range->count, build_area(range->bounds.box, scale),
                         spatial ? plane.cost : object.cost))
         return BUILD_LEAF;
-    if (spatial && spatial_apply(own, range, &plane, params->triangles, halves))
+    if (spatial && spatial_apply(own, range, &plane, triangles, halves))
         return BUILD_SPLIT;
     if (!(object.cost < INFINITY))
         return BUILD_NONE;
@@ -126,20 +127,21 @@ static uint32_t budget(uint32_t count, float share)
 }
 
 whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const struct bvh_params *resolved, struct bvh *out)
+                          const struct bvh_triangles *triangles, const whit_accel_params *resolved,
+                          struct bvh *out)
 {
-    if (!resolved->triangles) {
+    if (!triangles) {
         log_error(log, "tree over %u boxes: spatial splits need the triangles in them", count);
         return WHIT_ERROR_USAGE;
     }
-    struct spatial spatial;
+    struct spatial spatial = {.triangles = triangles};
     struct builder builder = {
         .params = resolved, .context = &spatial, .split = split, .halve = split_median};
     struct build_bounds bounds;
-    const uint8_t *whole = resolved->triangles->whole;
+    const uint8_t *whole = triangles->whole;
     uint32_t spare = budget(count, resolved->spatial_budget);
     whit_result result =
-        records_make(log, boxes, count, spare, resolved->thread_count, &builder.records, &bounds);
+        records_make(log, boxes, count, spare, resolved->threads, &builder.records, &bounds);
     if (result != WHIT_OK)
         return result;
     for (uint32_t i = 0; whole && i < count; ++i)

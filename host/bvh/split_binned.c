@@ -219,7 +219,7 @@ static void partition(struct build_record *records, uint32_t count, const struct
 }
 
 /* The number of bins for a node: more bins than boxes find no better plane, and cost more. */
-static uint32_t bins_wanted(const struct bvh_params *params, uint32_t count)
+static uint32_t bins_wanted(const whit_accel_params *params, uint32_t count)
 {
     uint32_t wanted = FREE_BINS_MIN + count / 16;
     return params->bins ? params->bins : wanted < FREE_BINS_MAX ? wanted : FREE_BINS_MAX;
@@ -228,7 +228,7 @@ static uint32_t bins_wanted(const struct bvh_params *params, uint32_t count)
 enum build_choice split_binned(const struct builder *builder, const struct build_range *range,
                                uint32_t thread_count, void *scratch, struct build_halves *halves)
 {
-    const struct bvh_params *params = builder->params;
+    const whit_accel_params *params = builder->params;
     struct build_record *own = builder->records + range->first;
     f4 scale = build_scale(range->bounds.box);
     float area = build_area(range->bounds.box, scale);

@@ -266,7 +266,7 @@ static whit_result sweep_prepare(const whit_log *log, struct sweep *sweep, uint3
 }
 
 whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                        const struct bvh_params *resolved, struct bvh *out)
+                        const whit_accel_params *resolved, struct bvh *out)
 {
     struct sweep sweep = {.mark = NULL};
     struct builder builder = {.params = resolved,
@@ -278,10 +278,10 @@ whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32
                               .small_count = BUILD_SMALL};
     struct build_bounds bounds;
     whit_result result =
-        records_make(log, boxes, count, 0, resolved->thread_count, &builder.records, &bounds);
+        records_make(log, boxes, count, 0, resolved->threads, &builder.records, &bounds);
     sweep.records = builder.records;
     if (result == WHIT_OK)
-        result = sweep_prepare(log, &sweep, count, resolved->thread_count);
+        result = sweep_prepare(log, &sweep, count, resolved->threads);
     if (result == WHIT_OK)
         result = topdown_grow(log, &builder, &bounds, count, 0, out);
     if (result == WHIT_OK)

@@ -122,7 +122,7 @@ static uint32_t widest_axis(const struct small *s, const struct small_range *r)
 
 /* Chooses a cut. False: the range is to be a leaf. */
 static bool choose(const struct small *s, const struct small_range *r,
-                   const struct bvh_params *params, struct small_cut *cut)
+                   const whit_accel_params *params, struct small_cut *cut)
 {
     *cut = (struct small_cut){.cost = INFINITY};
     if (r->depth < BUILD_DEPTH_OF_MEDIANS) {

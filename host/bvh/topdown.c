@@ -247,7 +247,7 @@ whit_result topdown_grow(const whit_log *log, const struct builder *builder,
     struct build build = {.builder = builder,
                           .count = count,
                           .spare = spare,
-                          .thread_count = count <= TASK_MIN ? 1 : builder->params->thread_count};
+                          .thread_count = count <= TASK_MIN ? 1 : builder->params->threads};
     whit_result result = grow_alloc(log, &build, out);
     if (result == WHIT_OK) {
         build_tree(&build, bounds);

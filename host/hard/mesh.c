@@ -407,7 +407,8 @@ static void set_reach(const struct hard_case *hard, struct hard_scene *out)
 
 static whit_result pose_and_build(const whit_log *log, double time_s, struct hard_scene *hard)
 {
-    const struct accel_params params = {.flatten = hard->flatten};
+    const whit_accel_params params = {.instances =
+                                          hard->flatten ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
     whit_result result = scene_pose_init(hard->scene, time_s, &hard->pose);
     if (result == WHIT_OK)
         result = accel_create(log, hard->scene, &params, &hard->accel);

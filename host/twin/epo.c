@@ -83,7 +83,6 @@ struct walk {
     const struct gpu_bvh_node *nodes; /* of all meshes */
     const struct gpu_triangle *triangles;
     uint32_t first_node, first_triangle, place_count, triangle_count;
-    double pair_cost;
     struct leaves *leaves; /* one for each node */
     struct place *places;
     uint32_t *firsts;     /* [triangle]: its first place; at the end place_count */
@@ -150,7 +149,7 @@ static void add_overlap(const struct walk *walk, uint32_t triangle, uint32_t nod
         return;
     uint32_t count = bvh_count(at);
     if (!belongs(walk, triangle, node))
-        *sum += area * (count ? (double)count : walk->pair_cost);
+        *sum += area * (count ? count : 1);
     if (count == 0) {
         add_overlap(walk, triangle, at->first, sum);
         add_overlap(walk, triangle, at->first + 1, sum);
@@ -181,12 +180,10 @@ whit_result accel_mesh_epo(const struct accel *accel, uint32_t mesh_index, struc
     if (mesh->node_count == 0)
         return WHIT_OK;
     uint32_t task_count = (mesh->record_count + TRIANGLES_A_TASK - 1) / TRIANGLES_A_TASK;
-    float cost = accel->params.mesh.traversal_cost;
     struct walk walk = {
         .nodes = accel->nodes,
         .triangles = accel->triangles,
         .first_node = mesh->first_node,
-        .pair_cost = cost > 0.0f ? (double)cost : 1.0,
         .leaves = array_alloc(mesh->node_count, sizeof *walk.leaves),
         .places = array_alloc(mesh->record_count, sizeof *walk.places),
         .firsts = array_alloc((size_t)mesh->record_count + 1, sizeof *walk.firsts),
@@ -196,7 +193,7 @@ whit_result accel_mesh_epo(const struct accel *accel, uint32_t mesh_index, struc
     if (walk.leaves && walk.places && walk.firsts && walk.sums) {
         number_leaves(&walk, mesh->first_node, 0);
         find_triangles(&walk);
-        threads_for(accel->params.mesh.thread_count,
+        threads_for(accel->params.threads,
                     (walk.triangle_count + TRIANGLES_A_TASK - 1) / TRIANGLES_A_TASK, run_task,
                     &walk);
     } else {

@@ -6,8 +6,8 @@
 
 /* End-point overlap (Aila, Karras and Laine 2013, "On quality metrics of bounding volume
    hierarchies", section 3) of one mesh tree before it is normalised: `overlap` is the area of
-   triangles inside a node's box that do not belong to its subtree, summed over nodes: times the
-   traversal cost for inner ones, times their triangles for leaves. `surface` is the area of the
+   triangles inside a node's box that do not belong to its subtree, summed over nodes, of
+   leaves times their triangles. `surface` is the area of the
    triangles. A triangle in several leaves belongs to the subtrees of them all. */
 struct bvh_epo {
     double overlap, surface;

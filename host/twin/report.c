@@ -175,7 +175,7 @@ static whit_result measure(const struct accel *accel, const double *area_ends, u
     };
     whit_result result = WHIT_ERROR_MEMORY;
     if (measuring.costs && measuring.statuses) {
-        threads_for(accel->params.mesh.thread_count, task_count, measure_task, &measuring);
+        threads_for(accel->params.threads, task_count, measure_task, &measuring);
         result = add_measured(&measuring, task_count, report);
     } else {
         log_error(&accel->log, "%s: out of memory for a report on its trees", accel->scene->name);
@@ -215,7 +215,6 @@ static whit_result add_mesh(const struct accel *accel, uint32_t index, struct to
 whit_result accel_report(const struct accel *accel, uint32_t ray_count, whit_accel_report *report)
 {
     uint32_t mesh_count = accel->flat ? 1 : accel->mesh_count;
-    float cost = accel->params.mesh.traversal_cost;
     struct totals totals = {0};
     *report = (whit_accel_report){0};
     double *area_ends = array_alloc(mesh_count, sizeof *area_ends);
@@ -231,8 +230,7 @@ whit_result accel_report(const struct accel *accel, uint32_t ray_count, whit_acc
     if (result == WHIT_OK && totals.area > 0.0) {
         report->predicted_inner_nodes = totals.inner / totals.area;
         report->predicted_triangles = totals.leaves / totals.area;
-        report->sah_cost = report->predicted_inner_nodes * (cost > 0.0f ? (double)cost : 1.0) +
-                           report->predicted_triangles;
+        report->sah_cost = report->predicted_inner_nodes + report->predicted_triangles;
         report->overlap = totals.inner > 0.0 ? totals.shared / totals.inner : 0.0;
         report->epo = totals.epo_surface > 0.0 ? totals.epo_overlap / totals.epo_surface : 0.0;
         if (ray_count > 0)

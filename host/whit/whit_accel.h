@@ -65,10 +65,10 @@ typedef struct whit_accel_report {
     uint64_t leaves_at_depth[WHIT_DEPTH_BINS]; /* the root is depth 0; the last bin also counts
                                                   deeper leaves */
     uint64_t leaves_of_size[WHIT_LEAF_BINS];   /* triangles in a leaf */
-    double sah_cost; /* predicted_inner_nodes times the traversal cost, plus predicted_triangles */
-    double epo;      /* end-point overlap (Aila, Karras and Laine 2013, section 3), relative to the
-                        area of all triangles */
-    double overlap;  /* area shared by siblings, relative to the area of their parents */
+    double sah_cost;                           /* predicted_inner_nodes plus predicted_triangles */
+    double epo;     /* end-point overlap (Aila, Karras and Laine 2013, section 3), relative to the
+                       area of all triangles */
+    double overlap; /* area shared by siblings, relative to the area of their parents */
     /* Mean counts for a random line that meets a root box. Predicted: from ratios of surface areas,
        as if no hit ended the line. Measured: by closest-hit traversal on the CPU, which skips nodes
        behind a hit. */

@@ -60,7 +60,7 @@ double __wrap_whit_clock_cpu_ms(void)
 
 static bool by_medians(const struct accel *accel)
 {
-    return accel->params.mesh.builder == WHIT_BUILD_MEDIAN;
+    return accel->params.build == WHIT_BUILD_MEDIAN;
 }
 
 whit_result __wrap_whit_renderer_render(whit_renderer *renderer)

@@ -149,8 +149,7 @@ void fuzz_check_trees(const struct scene *scene)
         primitives += scene_mesh_primitives(&scene->meshes[i]);
     if (primitives > PRIMITIVES_MAX || scene->instance_count > INSTANCES_MAX)
         return;
-    struct accel_params params = {.validate = true};
-    params.mesh.thread_count = params.instances.thread_count = 1;
+    const whit_accel_params params = {.validate = true, .threads = 1};
     struct accel *accel = NULL;
     whit_result result = accel_create(&fuzz_log, scene, &params, &accel);
     fuzz_check(result == WHIT_OK, "a scene that cannot have trees (%d): %s", (int)result,

@@ -20,9 +20,9 @@ static void prepare(void)
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         struct scene *scene = fuzz_scene_make((enum fuzz_scene)kind);
         for (int i = 0; i <= BUILD_COUNT; i++) {
-            struct accel_params params = {.validate = true, .flatten = i == BUILD_COUNT};
-            params.mesh = fuzz_bvh_params(i < BUILD_COUNT ? builds[i] : 0);
-            params.instances.thread_count = 1;
+            whit_accel_params params = fuzz_tree_params(i < BUILD_COUNT ? builds[i] : 0);
+            params.instances = i == BUILD_COUNT ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON;
+            params.validate = true;
             fuzz_check(accel_create(&fuzz_log, scene, &params, &accels[kind][i]) == WHIT_OK,
                        "no trees");
         }

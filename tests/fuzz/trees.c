@@ -99,20 +99,20 @@ struct scene *fuzz_scene_make(enum fuzz_scene kind)
     return scene;
 }
 
-struct bvh_params fuzz_bvh_params(uint32_t which)
+whit_accel_params fuzz_tree_params(uint32_t which)
 {
-    static const struct bvh_params params[] = {
-        {.builder = WHIT_BUILD_BINNED, .leaf_limit = 2},
-        {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1},
-        {.builder = WHIT_BUILD_SWEEP, .optimize = true},
-        {.builder = WHIT_BUILD_SPATIAL,
+    static const whit_accel_params params[] = {
+        {.build = WHIT_BUILD_BINNED, .leaf_limit = 2},
+        {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1},
+        {.build = WHIT_BUILD_SWEEP, .optimize = true},
+        {.build = WHIT_BUILD_SPATIAL,
          .spatial_alpha = 1e-9f,
          .spatial_budget = 2.0f,
          .leaf_limit = 1},
-        {.builder = WHIT_BUILD_NONE},
+        {.build = WHIT_BUILD_NONE},
     };
-    struct bvh_params out = params[which % (sizeof params / sizeof *params)];
-    out.thread_count = 1;
+    whit_accel_params out = params[which % (sizeof params / sizeof *params)];
+    out.threads = 1;
     return out;
 }
 

@@ -15,7 +15,7 @@ enum fuzz_scene {
 /* Frozen. */
 struct scene *fuzz_scene_make(enum fuzz_scene kind);
 /* Some parameters for every builder; `which` is taken modulo their number. */
-struct bvh_params fuzz_bvh_params(uint32_t which);
+whit_accel_params fuzz_tree_params(uint32_t which);
 
 /* Every order of traversal, and asking for any hit, gives what brute force gives; bad rays hit
    nothing; rays of extreme length only have to end. */

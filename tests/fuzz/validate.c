@@ -16,9 +16,8 @@ static void prepare(void)
     for (int kind = 0; kind < FUZZ_SCENE_COUNT; kind++) {
         struct scene *scene = fuzz_scene_make((enum fuzz_scene)kind);
         for (uint32_t i = 0; i < BUILD_COUNT * FLAT; i++) {
-            struct accel_params params = {.flatten = i % FLAT};
-            params.mesh = fuzz_bvh_params(i / FLAT);
-            params.instances.thread_count = 1;
+            whit_accel_params params = fuzz_tree_params(i / FLAT);
+            params.instances = i % FLAT ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON;
             struct accel **out = &accels[kind][i / FLAT][i % FLAT];
             fuzz_check(accel_create(&fuzz_log, scene, &params, out) == WHIT_OK, "no trees");
             fuzz_check(accel_validate(*out) == WHIT_OK, "trees that are refused as they are");

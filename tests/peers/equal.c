@@ -24,22 +24,25 @@ struct options {
 
 struct builder {
     const char *name;
-    struct bvh_params params;
-    whit_build instances;
+    whit_accel_params params;
 };
 
 static const struct builder builders[] = {
-    {"binned", {.builder = WHIT_BUILD_BINNED}, WHIT_BUILD_BINNED},
+    {"binned", {.build = WHIT_BUILD_BINNED}},
     {"binned:7, leaves of 15",
-     {.builder = WHIT_BUILD_BINNED, .bins = 7, .leaf_limit = 15},
-     WHIT_BUILD_MEDIAN},
-    {"median", {.builder = WHIT_BUILD_MEDIAN}, WHIT_BUILD_MEDIAN},
-    {"sweep", {.builder = WHIT_BUILD_SWEEP}, WHIT_BUILD_BINNED},
-    {"spatial", {.builder = WHIT_BUILD_SPATIAL}, WHIT_BUILD_BINNED},
-    {"median+opt", {.builder = WHIT_BUILD_MEDIAN, .optimize = true}, WHIT_BUILD_MEDIAN},
-    {"binned+opt", {.builder = WHIT_BUILD_BINNED, .optimize = true}, WHIT_BUILD_BINNED},
-    {"sweep+opt", {.builder = WHIT_BUILD_SWEEP, .optimize = true}, WHIT_BUILD_BINNED},
-    {"spatial+opt", {.builder = WHIT_BUILD_SPATIAL, .optimize = true}, WHIT_BUILD_MEDIAN},
+     {.build = WHIT_BUILD_BINNED,
+      .bins = 7,
+      .leaf_limit = 15,
+      .instance_build = WHIT_BUILD_MEDIAN}},
+    {"median", {.build = WHIT_BUILD_MEDIAN, .instance_build = WHIT_BUILD_MEDIAN}},
+    {"sweep", {.build = WHIT_BUILD_SWEEP}},
+    {"spatial", {.build = WHIT_BUILD_SPATIAL}},
+    {"median+opt",
+     {.build = WHIT_BUILD_MEDIAN, .optimize = true, .instance_build = WHIT_BUILD_MEDIAN}},
+    {"binned+opt", {.build = WHIT_BUILD_BINNED, .optimize = true}},
+    {"sweep+opt", {.build = WHIT_BUILD_SWEEP, .optimize = true}},
+    {"spatial+opt",
+     {.build = WHIT_BUILD_SPATIAL, .optimize = true, .instance_build = WHIT_BUILD_MEDIAN}},
 };
 enum { BUILDERS = sizeof builders / sizeof builders[0], ORDERS = 3 };
 static const char *const orders[ORDERS] = {
@@ -147,8 +150,8 @@ static bool run_builder(struct bench *bench, uint32_t index)
 {
     const struct builder *builder = &builders[index];
     bool reference = index == 0;
-    const struct accel_params params = {
-        .mesh = builder->params, .instances = {.builder = builder->instances}, .validate = true};
+    whit_accel_params params = builder->params;
+    params.validate = true;
     struct accel *accel = NULL;
     bool done = accel_create(&peers_log, bench->scene, &params, &accel) == WHIT_OK;
     for (uint32_t order = 0; done && order < ORDERS; ++order) {

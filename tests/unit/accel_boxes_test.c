@@ -28,7 +28,8 @@ static struct world placed_spheres(bool flatten)
         struct affine m = affine_from_trs(to, turned, scale);
         scene_put_again(scene, 0, &(struct put){.matrix = &m});
     }
-    return world_of(scene, (struct accel_params){.flatten = flatten});
+    return world_of(
+        scene, (whit_accel_params){.instances = flatten ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON});
 }
 
 /* Collects the boxes of a level, at most `max`. */

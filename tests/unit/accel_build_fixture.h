@@ -45,11 +45,11 @@ static inline void soup_shuffle(struct soup *soup)
 
 /* ---- Builds ---- */
 
-static inline struct bvh soup_build(const struct soup *soup, struct bvh_params params)
+static inline struct bvh soup_build(const struct soup *soup, whit_accel_params params)
 {
     struct bvh bvh;
-    params.triangles = &soup->triangles;
-    assert_int_equal(bvh_build(&silent, soup->boxes, soup->count, &params, &bvh), WHIT_OK);
+    assert_int_equal(bvh_build(&silent, soup->boxes, soup->count, &soup->triangles, &params, &bvh),
+                     WHIT_OK);
     return bvh;
 }
 
@@ -93,8 +93,7 @@ static inline void box_unite(struct bvh_box *a, const float lo[3], const float h
 struct found {
     uint32_t depth, leaves;
     double cost; /* not yet divided by the root's area */
-    double traversal_cost;
-    bool exact; /* every box is the union of the boxes below it */
+    bool exact;  /* every box is the union of the boxes below it */
 };
 
 /* Walks the tree and fills `found`: checks boxes, counts depth, leaves and cost. */
@@ -116,7 +115,7 @@ static inline void walk_exact(const struct bvh *bvh, const struct bvh_box *boxes
         const struct gpu_bvh_node *pair = &bvh->nodes[node->first];
         box_unite(&sum, pair[0].lo, pair[0].hi);
         box_unite(&sum, pair[1].lo, pair[1].hi);
-        found->cost += area * found->traversal_cost;
+        found->cost += area;
         walk_exact(bvh, boxes, node->first, depth + 1, found);
         walk_exact(bvh, boxes, node->first + 1, depth + 1, found);
     }
@@ -124,10 +123,9 @@ static inline void walk_exact(const struct bvh *bvh, const struct bvh_box *boxes
         found->exact &= node->lo[a] == sum.lo[a] && node->hi[a] == sum.hi[a];
 }
 
-static inline bool is_whole(const struct bvh *bvh, const struct bvh_box *boxes,
-                            double traversal_cost)
+static inline bool is_whole(const struct bvh *bvh, const struct bvh_box *boxes)
 {
-    struct found found = {.traversal_cost = traversal_cost, .exact = true};
+    struct found found = {.exact = true};
     walk_exact(bvh, boxes, 0, 0, &found);
     double root = half_area(bvh->nodes[0].lo, bvh->nodes[0].hi);
     bool cost_right =
@@ -191,7 +189,7 @@ static inline bool is_covered(const struct soup *soup, const struct bvh *bvh)
 }
 
 /* Describes what is wrong with a tree; NULL: nothing. */
-static inline const char *find_fault(const struct soup *soup, const struct bvh_params *params,
+static inline const char *find_fault(const struct soup *soup, const whit_accel_params *params,
                                      const struct bvh *bvh)
 {
     uint32_t limit = params->leaf_limit ? params->leaf_limit : 4;
@@ -203,13 +201,11 @@ static inline const char *find_fault(const struct soup *soup, const struct bvh_p
         bvh->depth >= BVH_DEPTH_MAX || !isfinite(bvh->sah_cost))
         return "counts or costs out of range";
     if (bvh->reference_count < soup->count || bvh->clipped != (parts > 0) ||
-        parts > (params->builder == WHIT_BUILD_SPATIAL ? share * soup->count : 0.0))
+        parts > (params->build == WHIT_BUILD_SPATIAL ? share * soup->count : 0.0))
         return "more parts than allowed";
-    if (parts == 0 && soup->count > 0 &&
-        !is_whole(bvh, soup->boxes,
-                  params->traversal_cost > 0.0f ? (double)params->traversal_cost : 1.0))
+    if (parts == 0 && soup->count > 0 && !is_whole(bvh, soup->boxes))
         return "boxes, depth, leaves or costs are not those of what is below";
-    if (params->builder == WHIT_BUILD_SPATIAL && !is_covered(soup, bvh))
+    if (params->build == WHIT_BUILD_SPATIAL && !is_covered(soup, bvh))
         return "a part of a triangle is lost, or one is in a leaf twice";
     return NULL;
 }
@@ -253,7 +249,7 @@ static inline bool is_depth_first(const struct bvh *bvh)
 
 /* Describes what is wrong with an optimized tree, which must have the leaves of the tree that it
    was made from; NULL: nothing. */
-static inline const char *find_optimizing_fault(const struct soup *soup, struct bvh_params params,
+static inline const char *find_optimizing_fault(const struct soup *soup, whit_accel_params params,
                                                 const struct bvh *better)
 {
     const char *fault = NULL;
@@ -275,39 +271,27 @@ static inline const char *find_optimizing_fault(const struct soup *soup, struct 
 
 /* ---- Every way to build ---- */
 
-static const struct bvh_params every_builder[] = {
-    {.builder = WHIT_BUILD_BINNED, .thread_count = 1},
-    {.builder = WHIT_BUILD_BINNED, .thread_count = 2, .leaf_limit = 1, .bins = 7},
-    {.builder = WHIT_BUILD_BINNED, .thread_count = 1, .leaf_limit = BVH_LEAF_MAX, .bins = 256},
-    {.builder = WHIT_BUILD_BINNED, .thread_count = 1, .leaf_limit = 2, .bins = 2},
-    {.builder = WHIT_BUILD_BINNED, .thread_count = 2, .leaf_limit = 1, .optimize = true},
-    {.builder = WHIT_BUILD_BINNED,
-     .leaf_limit = BVH_LEAF_MAX,
-     .bins = 2,
-     .traversal_cost = 3.0f,
-     .optimize = true},
-    {.builder = WHIT_BUILD_BINNED, .optimize = true},
-    {.builder = WHIT_BUILD_MEDIAN, .thread_count = 2},
-    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1, .optimize = true},
-    {.builder = WHIT_BUILD_MEDIAN, .thread_count = 2, .optimize = true},
-    {.builder = WHIT_BUILD_SWEEP, .thread_count = 2},
-    {.builder = WHIT_BUILD_SWEEP, .thread_count = 1, .leaf_limit = 1},
-    {.builder = WHIT_BUILD_SWEEP,
-     .thread_count = 1,
-     .leaf_limit = BVH_LEAF_MAX,
-     .traversal_cost = 3.0f},
-    {.builder = WHIT_BUILD_SPATIAL, .thread_count = 2},
-    {.builder = WHIT_BUILD_SPATIAL, .thread_count = 1, .leaf_limit = 1, .spatial_alpha = 1e-9f},
-    {.builder = WHIT_BUILD_SPATIAL,
-     .leaf_limit = 1,
-     .spatial_alpha = 1e-9f,
-     .spatial_budget = 2.0f},
-    {.builder = WHIT_BUILD_SPATIAL,
-     .leaf_limit = BVH_LEAF_MAX,
-     .traversal_cost = 3.0f,
-     .spatial_budget = 0.03f},
-    {.builder = WHIT_BUILD_SPATIAL, .leaf_limit = 2, .spatial_budget = -1.0f},
-    {.builder = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .optimize = true},
+static const whit_accel_params every_builder[] = {
+    {.build = WHIT_BUILD_BINNED, .threads = 1},
+    {.build = WHIT_BUILD_BINNED, .threads = 2, .leaf_limit = 1, .bins = 7},
+    {.build = WHIT_BUILD_BINNED, .threads = 1, .leaf_limit = BVH_LEAF_MAX, .bins = 256},
+    {.build = WHIT_BUILD_BINNED, .threads = 1, .leaf_limit = 2, .bins = 2},
+    {.build = WHIT_BUILD_BINNED, .threads = 2, .leaf_limit = 1, .optimize = true},
+    {.build = WHIT_BUILD_BINNED, .leaf_limit = BVH_LEAF_MAX, .bins = 2, .optimize = true},
+    {.build = WHIT_BUILD_BINNED, .optimize = true},
+    {.build = WHIT_BUILD_MEDIAN, .threads = 2},
+    {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1, .optimize = true},
+    {.build = WHIT_BUILD_MEDIAN, .threads = 2, .optimize = true},
+    {.build = WHIT_BUILD_MEDIAN, .leaf_limit = BVH_LEAF_MAX, .optimize = true},
+    {.build = WHIT_BUILD_SWEEP, .threads = 2},
+    {.build = WHIT_BUILD_SWEEP, .threads = 1, .leaf_limit = 1},
+    {.build = WHIT_BUILD_SWEEP, .threads = 1, .leaf_limit = BVH_LEAF_MAX},
+    {.build = WHIT_BUILD_SPATIAL, .threads = 2},
+    {.build = WHIT_BUILD_SPATIAL, .threads = 1, .leaf_limit = 1, .spatial_alpha = 1e-9f},
+    {.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_alpha = 1e-9f, .spatial_budget = 2.0f},
+    {.build = WHIT_BUILD_SPATIAL, .leaf_limit = BVH_LEAF_MAX, .spatial_budget = 0.03f},
+    {.build = WHIT_BUILD_SPATIAL, .leaf_limit = 2, .spatial_budget = -1.0f},
+    {.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .optimize = true},
 };
 enum { EVERY_BUILDER = sizeof every_builder / sizeof *every_builder };
 _Static_assert(WHIT_BUILD_NONE == 4, "every builder is in the list");
@@ -316,7 +300,7 @@ _Static_assert(WHIT_BUILD_NONE == 4, "every builder is in the list");
 static inline void check_all(struct soup soup)
 {
     for (size_t i = 0; i < EVERY_BUILDER; ++i) {
-        const struct bvh_params *params = &every_builder[i];
+        const whit_accel_params *params = &every_builder[i];
         struct bvh bvh = soup_build(&soup, *params);
         const char *fault = find_fault(&soup, params, &bvh);
         if (!fault && params->optimize)

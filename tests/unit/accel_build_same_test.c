@@ -31,25 +31,25 @@ TEST(same_bytes_for_any_thread_count)
                                 soup_grid(13), soup_hair(count, 1e-3f), soup_rooms(count / 2)};
     for (size_t i = 0; i < SOUPS * EVERY_BUILDER; ++i) {
         const struct soup *soup = &soups[i % SOUPS];
-        struct bvh_params params = every_builder[i / SOUPS];
-        bool plain = params.builder != WHIT_BUILD_SPATIAL && !params.optimize;
+        whit_accel_params params = every_builder[i / SOUPS];
+        bool plain = params.build != WHIT_BUILD_SPATIAL && !params.optimize;
         if (i % SOUPS == 0 ? i > 0 : i % SOUPS > 2 && plain)
             continue;
         if (few && (i / SOUPS % 2 == 1 || /* the remaining rows have every builder, too */
                     (params.optimize && i % SOUPS > 2)))
             continue;
-        params.thread_count = 1;
+        params.threads = 1;
         struct bvh one = soup_build(soup, params);
         uint64_t hash = hash_bytes(HASH_START, one.nodes, one.node_count * sizeof *one.nodes);
         hash = hash_bytes(hash, one.order, one.reference_count * sizeof *one.order);
         print_message("  row %2zu of every_builder, %-9s %u nodes %016llx\n", i / SOUPS, soup->name,
                       one.node_count, (unsigned long long)hash);
-        for (params.thread_count = 2; params.thread_count <= 5;
-             params.thread_count += few || !cases_times() ? 2 : 1) {
+        for (params.threads = 2; params.threads <= 5;
+             params.threads += few || !cases_times() ? 2 : 1) {
             struct bvh other = soup_build(soup, params);
             if (!trees_equal(&one, &other) || !orders_equal(&one, &other))
                 fail_msg("%s, row %zu of every_builder: another tree by %u threads", soup->name,
-                         i / SOUPS, params.thread_count);
+                         i / SOUPS, params.threads);
             bvh_finish(&other);
         }
         bvh_finish(&one);
@@ -62,10 +62,10 @@ TEST(same_bytes_for_any_thread_count)
    that no plane separates: those with equal centroids on all three axes. */
 TEST(same_tree_for_any_order)
 {
-    static const struct bvh_params params[] = {{.builder = WHIT_BUILD_BINNED},
-                                               {.builder = WHIT_BUILD_BINNED, .bins = 7},
-                                               {.builder = WHIT_BUILD_SWEEP},
-                                               {.builder = WHIT_BUILD_SPATIAL}};
+    static const whit_accel_params params[] = {{.build = WHIT_BUILD_BINNED},
+                                               {.build = WHIT_BUILD_BINNED, .bins = 7},
+                                               {.build = WHIT_BUILD_SWEEP},
+                                               {.build = WHIT_BUILD_SPATIAL}};
     random_state = 8;
     struct soup soups[] = {soup_scattered(2500, 0.05f), soup_grid(13), soup_hair(3000, 1e-3f)};
     for (uint32_t i = 0; i < soups[0].count; ++i) /* both zeros */
@@ -73,7 +73,7 @@ TEST(same_tree_for_any_order)
     soup_box(&soups[0]);
     for (size_t i = 0; i < 3 * 4; ++i) {
         struct soup *soup = &soups[i % 3];
-        if (i % 3 != 2 && params[i / 3].builder == WHIT_BUILD_SPATIAL)
+        if (i % 3 != 2 && params[i / 3].build == WHIT_BUILD_SPATIAL)
             continue; /* spatial splits round the boxes of parts */
         struct bvh first = soup_build(soup, params[i / 3]);
         soup_shuffle(soup);
@@ -176,7 +176,7 @@ TEST(sweep_finds_the_splits_of_the_quadratic_search)
         }
         soup_box(&soup);
         struct bvh bvh =
-            soup_build(&soup, (struct bvh_params){.builder = WHIT_BUILD_SWEEP, .leaf_limit = 1});
+            soup_build(&soup, (whit_accel_params){.build = WHIT_BUILD_SWEEP, .leaf_limit = 1});
         compared += check_splits(&bvh, soup.boxes, &bvh.nodes[0]);
         bvh_finish(&bvh);
         soup_finish(&soup);
@@ -186,7 +186,7 @@ TEST(sweep_finds_the_splits_of_the_quadratic_search)
 
 /* ---- Quality ---- */
 
-static double cost_of(const struct soup *soup, struct bvh_params params)
+static double cost_of(const struct soup *soup, whit_accel_params params)
 {
     struct bvh bvh = soup_build(soup, params);
     double cost = bvh.sah_cost;
@@ -206,16 +206,14 @@ static struct soup soup_uneven(uint32_t count)
 TEST(the_better_way_costs_less)
 {
     enum { UNEVEN, ROOMS, HAIR, THICK_HAIR, SPHERE, TERRAIN, SOUPS };
-    static const struct bvh_params plain = {0}, spatial = {.builder = WHIT_BUILD_SPATIAL},
-                                   median = {.builder = WHIT_BUILD_MEDIAN},
-                                   halves = {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1},
-                                   full = {.leaf_limit = BVH_LEAF_MAX,
-                                           .bins = 2,
-                                           .traversal_cost = 3.0f};
+    static const whit_accel_params plain = {0}, spatial = {.build = WHIT_BUILD_SPATIAL},
+                                   median = {.build = WHIT_BUILD_MEDIAN},
+                                   halves = {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1},
+                                   full = {.build = WHIT_BUILD_MEDIAN, .leaf_limit = BVH_LEAF_MAX};
     /* `better` NULL: `other` with optimization */
     static const struct {
         const char *name;
-        const struct bvh_params *better, *other;
+        const whit_accel_params *better, *other;
         double share[SOUPS]; /* largest cost, as a share of the cost of `other`; 0: any */
     } rows[] = {
         {"SAH beside medians", &plain, &median, {[UNEVEN] = 0.9}},
@@ -232,7 +230,7 @@ TEST(the_better_way_costs_less)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows * SOUPS; ++i) {
         const struct soup *soup = &soups[i % SOUPS];
-        struct bvh_params better = *rows[i / SOUPS].other;
+        whit_accel_params better = *rows[i / SOUPS].other;
         better.optimize = true;
         if (rows[i / SOUPS].better)
             better = *rows[i / SOUPS].better;
@@ -254,11 +252,10 @@ TEST(sweeping_is_as_good_as_bins)
         struct soup soup = soup_scattered(20000, sizes[round]);
         double costs[sizeof bins / sizeof *bins], best = INFINITY;
         for (size_t k = 0; k < sizeof bins / sizeof *bins; ++k) {
-            costs[k] = cost_of(&soup, (struct bvh_params){.bins = bins[k]});
+            costs[k] = cost_of(&soup, (whit_accel_params){.bins = bins[k]});
             best = fmin(best, costs[k]);
         }
-        assert_true(cost_of(&soup, (struct bvh_params){.builder = WHIT_BUILD_SWEEP}) <=
-                    1.005 * best);
+        assert_true(cost_of(&soup, (whit_accel_params){.build = WHIT_BUILD_SWEEP}) <= 1.005 * best);
         assert_true(costs[0] <= 1.02 * best);
         soup_finish(&soup);
     }
@@ -274,7 +271,7 @@ TEST(no_tree_is_one_box_for_all)
         uint32_t count = counts[c], leaves = (count + BVH_LEAF_MAX - 1) / BVH_LEAF_MAX;
         struct soup soup = soup_scattered(count, 0.1f);
         struct bvh bvh = soup_build(
-            &soup, (struct bvh_params){.builder = WHIT_BUILD_NONE, .leaf_limit = BVH_LEAF_MAX});
+            &soup, (whit_accel_params){.build = WHIT_BUILD_NONE, .leaf_limit = BVH_LEAF_MAX});
         assert_int_equal(bvh_validate(&silent, &bvh, soup.boxes, BVH_LEAF_MAX), WHIT_OK);
         assert_int_equal(bvh.leaf_count, leaves);
         assert_int_equal(bvh.reference_count, count);

@@ -18,10 +18,9 @@ static struct affine placed(double x, double y, double z, double angle, double s
     return affine_from_trs(at, rotation, scale);
 }
 
-static struct accel_params by_threads(uint32_t count)
+static whit_accel_params by_threads(uint32_t count)
 {
-    return (struct accel_params){.mesh = {.thread_count = count},
-                                 .instances = {.thread_count = count}};
+    return (whit_accel_params){.threads = count};
 }
 
 /* Two large meshes, three small ones and one without triangles; rotated, mirrored, far away. */
@@ -262,11 +261,11 @@ TEST(matrices_without_inverse_are_refused)
 
 enum { MOVING = 60 };
 
-static const struct accel_params ways[] = {
-    {.instances = {.builder = WHIT_BUILD_BINNED}, .update = ACCEL_REBUILD},
-    {.instances = {.builder = WHIT_BUILD_MEDIAN}, .update = ACCEL_REBUILD},
-    {.instances = {.builder = WHIT_BUILD_BINNED}, .update = ACCEL_REFIT},
-    {.instances = {.builder = WHIT_BUILD_MEDIAN}, .update = ACCEL_REFIT},
+static const whit_accel_params ways[] = {
+    {.instance_build = WHIT_BUILD_BINNED},
+    {.instance_build = WHIT_BUILD_MEDIAN},
+    {.instance_build = WHIT_BUILD_BINNED, .instance_refit = true},
+    {.instance_build = WHIT_BUILD_MEDIAN, .instance_refit = true},
 };
 enum { WAYS = sizeof ways / sizeof *ways };
 
@@ -308,7 +307,7 @@ static uint32_t same_hits(const struct accel *a, const struct accel *b, uint32_t
 /* Compares each way of updating with a tree built anew, over a thousand steps. */
 TEST(moved_instances_are_hit_alike_whatever_the_tree)
 {
-    struct world fresh = world_of(moving_scene(), (struct accel_params){0});
+    struct world fresh = world_of(moving_scene(), (whit_accel_params){0});
     struct accel *all[WAYS];
     for (size_t w = 0; w < WAYS; ++w)
         all[w] = accel_of(fresh.scene, ways[w]);
@@ -357,7 +356,7 @@ TEST(only_a_rebuild_changes_the_tree)
         }
         assert_true(boxes > count / 2);
         assert_true(axes > 0);
-        assert_int_equal(links == 0, ways[w].update == ACCEL_REFIT);
+        assert_int_equal(links == 0, ways[w].instance_refit);
         world_finish(&world);
     }
 }

@@ -141,8 +141,8 @@ TEST(few_triangles)
         check_all(soup_hair(count, 0.3f));
     }
     struct soup none = soup_make("none", 0), one = soup_scattered(1, 1.0f);
-    struct bvh empty = soup_build(&none, (struct bvh_params){0});
-    struct bvh leaf = soup_build(&one, (struct bvh_params){0});
+    struct bvh empty = soup_build(&none, (whit_accel_params){0});
+    struct bvh leaf = soup_build(&one, (whit_accel_params){0});
     assert_int_equal(empty.node_count, 0);
     assert_int_equal(leaf.node_count, 2);
     assert_int_equal(leaf.depth, 0);
@@ -175,7 +175,7 @@ TEST(a_thousand_trees_are_right)
    the builder's switch to medians the tree would be deeper than the stack. */
 TEST(depth_is_capped)
 {
-    const struct bvh_params params = {.bins = 2, .leaf_limit = 1};
+    const whit_accel_params params = {.bins = 2, .leaf_limit = 1};
     struct soup soup = soup_make("halves", 230);
     for (uint32_t i = 0; i < soup.count; ++i) {
         float at = (float)ldexp(1.0, (int)i - 112);
@@ -193,7 +193,7 @@ TEST(depth_is_capped)
    right of it. */
 TEST(medians_separate)
 {
-    const struct bvh_params params = {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1};
+    const whit_accel_params params = {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1};
     random_state = 13;
     struct soup soup = soup_make("heaps", 200);
     for (uint32_t i = 0; i < soup.count; ++i) {
@@ -236,7 +236,7 @@ static void chain_make(uint32_t chain, struct bvh *bvh)
         memcpy(node->lo, box.lo, sizeof node->lo);
         memcpy(node->hi, box.hi, sizeof node->hi);
     }
-    bvh_complete(bvh, 1.0);
+    bvh_complete(bvh, 1);
 }
 
 TEST(optimizing_keeps_the_limit_of_depth)
@@ -246,7 +246,7 @@ TEST(optimizing_keeps_the_limit_of_depth)
         chain_make(depth + 1, &bvh);
         assert_int_equal(bvh.depth, depth);
         double before = bvh.sah_cost;
-        assert_int_equal(bvh_optimize(&silent, 1, 1.0, &bvh), WHIT_OK);
+        assert_int_equal(bvh_optimize(&silent, 1, &bvh), WHIT_OK);
         assert_int_equal(bvh_validate(&silent, &bvh, NULL, 1), WHIT_OK);
         assert_true(bvh.depth <= BVH_DEPTH_MAX);
         assert_true(bvh.sah_cost <= before);
@@ -263,17 +263,17 @@ TEST(bad_input_is_refused)
     const float bad[] = {NAN, INFINITY, -INFINITY, 4.0f};
     for (int k = 0; k < 4; ++k) {
         boxes[1].lo[1] = bad[k];
-        assert_int_equal(bvh_build(&silent, boxes, 3, NULL, &bvh), WHIT_ERROR_INPUT);
+        assert_int_equal(bvh_build(&silent, boxes, 3, NULL, NULL, &bvh), WHIT_ERROR_INPUT);
         assert_null(bvh.nodes);
     }
     boxes[1].lo[1] = 2.0f;
-    static const struct bvh_params params[] = {{.bins = 1},
+    static const whit_accel_params params[] = {{.bins = 1},
                                                {.bins = 257},
                                                {.leaf_limit = 16},
-                                               {.traversal_cost = -1.0f},
-                                               {.builder = WHIT_BUILD_SPATIAL}};
+                                               {.spatial_alpha = -1.0f},
+                                               {.build = WHIT_BUILD_SPATIAL}};
     for (int k = 0; k < 5; ++k) {
-        assert_int_equal(bvh_build(&silent, boxes, 3, &params[k], &bvh), WHIT_ERROR_USAGE);
+        assert_int_equal(bvh_build(&silent, boxes, 3, NULL, &params[k], &bvh), WHIT_ERROR_USAGE);
         assert_null(bvh.nodes);
     }
     assert_non_null(

@@ -233,7 +233,7 @@ struct world {
 };
 
 /* Builds the trees of a frozen scene, and validates them. */
-static inline struct accel *accel_of(const struct scene *scene, struct accel_params params)
+static inline struct accel *accel_of(const struct scene *scene, whit_accel_params params)
 {
     struct accel *accel = NULL;
     params.validate = true;
@@ -242,7 +242,7 @@ static inline struct accel *accel_of(const struct scene *scene, struct accel_par
 }
 
 /* Takes ownership of the scene and freezes it. */
-static inline struct world world_of(struct scene *scene, struct accel_params params)
+static inline struct world world_of(struct scene *scene, whit_accel_params params)
 {
     struct world world = {.scene = scene_ready(scene)};
     world.accel = accel_of(scene, params);
@@ -267,9 +267,9 @@ static inline struct scene *soup_scene(const struct soup *soup)
 }
 
 /* Takes ownership of the soup. */
-static inline struct world world_of_soup(struct soup soup, struct bvh_params params)
+static inline struct world world_of_soup(struct soup soup, whit_accel_params params)
 {
-    struct world world = world_of(soup_scene(&soup), (struct accel_params){.mesh = params});
+    struct world world = world_of(soup_scene(&soup), params);
     world.soup = soup;
     return world;
 }

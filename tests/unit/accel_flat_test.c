@@ -29,7 +29,7 @@ static struct affine random_matrix(uint64_t *state, uint32_t i)
 
 enum { OBJECTS = 40 };
 
-static struct world mixed_world(struct accel_params params)
+static struct world mixed_world(whit_accel_params params)
 {
     struct scene *scene = new_scene();
     uint64_t state = 7;
@@ -44,7 +44,7 @@ static struct world mixed_world(struct accel_params params)
     return world_of(scene, params);
 }
 
-static const struct accel_params flatten = {.flatten = true};
+static const whit_accel_params flatten = {.instances = WHIT_INSTANCES_OFF};
 
 static struct gpu_ray random_ray(void)
 {
@@ -86,7 +86,7 @@ static struct comparison compare(const struct accel *instanced, const struct acc
 TEST(hits_are_those_of_the_instances)
 {
     enum { RAYS = 300000 };
-    struct world instanced = mixed_world((struct accel_params){0});
+    struct world instanced = mixed_world((whit_accel_params){0});
     struct accel *flat = accel_of(instanced.scene, flatten);
     random_state = 1;
     struct comparison c = compare(instanced.accel, flat, RAYS);
@@ -107,8 +107,9 @@ TEST(builders_agree_bit_for_bit)
                                           WHIT_BUILD_NONE};
     struct world first = mixed_world(flatten);
     for (size_t b = 0; b < sizeof builders / sizeof *builders; ++b) {
-        struct accel *accel = accel_of(
-            first.scene, (struct accel_params){.mesh.builder = builders[b], .flatten = true});
+        struct accel *accel =
+            accel_of(first.scene,
+                     (whit_accel_params){.build = builders[b], .instances = WHIT_INSTANCES_OFF});
         random_state = 3;
         assert_int_equal(accel->triangle_count, first.accel->triangle_count);
         assert_true(builders[b] != WHIT_BUILD_SPATIAL ||
@@ -173,8 +174,8 @@ static void assert_placed(const struct scene *scene, const struct scene_pose *po
 
 TEST(records_say_whose_they_are)
 {
-    struct world world =
-        mixed_world((struct accel_params){.mesh.builder = WHIT_BUILD_SWEEP, .flatten = true});
+    struct world world = mixed_world(
+        (whit_accel_params){.build = WHIT_BUILD_SWEEP, .instances = WHIT_INSTANCES_OFF});
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
     uint32_t mirrored = 0, filters = 0;
@@ -204,7 +205,7 @@ TEST(records_say_whose_they_are)
 
 TEST(a_pose_builds_anew)
 {
-    struct world world = mixed_world((struct accel_params){0});
+    struct world world = mixed_world((whit_accel_params){0});
     struct accel *flat = accel_of(world.scene, flatten);
     struct scene_pose *pose = &world.pose;
     uint64_t seed = 11;

@@ -8,7 +8,7 @@ static struct world sphere_world(const struct affine *matrices, uint32_t count)
     uint32_t sphere = scene_put_mesh(scene, mesh_sphere(1.0, 48, 32));
     for (uint32_t i = 0; i < count; ++i)
         scene_put_again(scene, sphere, &(struct put){.matrix = &matrices[i]});
-    return world_of(scene, (struct accel_params){0});
+    return world_of(scene, (whit_accel_params){0});
 }
 
 /* A corner and the normal of a triangle transformed in double; the normal is on the instance's

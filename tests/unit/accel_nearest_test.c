@@ -22,10 +22,10 @@ static struct scene *ring_scene(void)
 TEST(trees_find_the_nearest)
 {
     random_state = 3;
-    struct world world =
-        world_of(ring_scene(), (struct accel_params){.mesh.builder = WHIT_BUILD_NONE});
-    struct accel *tree = accel_of(world.scene, (struct accel_params){0}),
-                 *flat = accel_of(world.scene, (struct accel_params){.flatten = true});
+    struct world world = world_of(ring_scene(), (whit_accel_params){.build = WHIT_BUILD_NONE});
+    struct accel *tree = accel_of(world.scene, (whit_accel_params){0}),
+                 *flat =
+                     accel_of(world.scene, (whit_accel_params){.instances = WHIT_INSTANCES_OFF});
     for (int n = 0; n < 300; ++n) {
         double p[3];
         random_vec3(&random_state, p);
@@ -45,7 +45,7 @@ TEST(distances_are_those_of_a_box)
 {
     random_state = 5;
     struct world world =
-        world_of_soup(soup_of_mesh("box", mesh_box(2, 2, 2)), (struct bvh_params){0});
+        world_of_soup(soup_of_mesh("box", mesh_box(2, 2, 2)), (whit_accel_params){0});
     for (int n = 0; n < 300; ++n) {
         double p[3], outside = 0.0, inside = INFINITY;
         for (int k = 0; k < 3; ++k) {

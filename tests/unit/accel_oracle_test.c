@@ -11,12 +11,12 @@
 static struct world soup_world(void)
 {
     random_state = 1;
-    return world_of_soup(soup_scattered(400, 0.4f), (struct bvh_params){0});
+    return world_of_soup(soup_scattered(400, 0.4f), (whit_accel_params){0});
 }
 
 static struct world sphere_world(void)
 {
-    return world_of_soup(soup_sphere(20, 20), (struct bvh_params){0});
+    return world_of_soup(soup_sphere(20, 20), (whit_accel_params){0});
 }
 
 /* Instances that are turned, stretched, mirrored and away from the origin, some overlapping. */
@@ -31,7 +31,7 @@ static struct world instances_world(void)
         scene_put(scene, mesh_triangles(soup.positions, soup.count), &(struct put){.matrix = &m});
         soup_finish(&soup);
     }
-    return world_of(scene, (struct accel_params){0});
+    return world_of(scene, (whit_accel_params){0});
 }
 
 static struct gpu_ray random_ray(const struct world *world, uint32_t i)
@@ -165,7 +165,7 @@ TEST(margins_explain_the_float_twin)
                 : world_of(sphere_scene(&silent,
                                         scattered_spheres(20, scenes[r].spread, scenes[r].radius),
                                         scenes[r].placed),
-                           (struct accel_params){0});
+                           (whit_accel_params){0});
         struct tally tally = {0};
         for (uint32_t i = 0; i < cases_of(scenes[r].rays); ++i) {
             struct gpu_ray ray = !scenes[r].make
@@ -210,7 +210,7 @@ TEST(one_triangle_is_known)
     };
     struct scene *scene = scene_begin(&silent, "test");
     scene_put(scene, mesh_triangles(unit_triangle, 1), NULL);
-    struct world world = world_of(scene, (struct accel_params){0});
+    struct world world = world_of(scene, (whit_accel_params){0});
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         const struct gpu_ray ray = {
             {rows[i].x, 0.5f, 4.0f}, rows[i].t_min, {0, 0, -2}, rows[i].t_max};
@@ -236,7 +236,7 @@ TEST(ties_go_to_the_smaller_index)
     struct scene *scene = scene_begin(&silent, "test");
     scene_put(scene, mesh_triangles(corners, 3), NULL);
     scene_put(scene, mesh_triangles(corners, 3), NULL);
-    struct world world = world_of(scene, (struct accel_params){0});
+    struct world world = world_of(scene, (whit_accel_params){0});
     struct gpu_ray ray = {{0.25f, 0.25f, 1.0f}, 0.0f, {0, 0, -1}, INFINITY};
     for (int brute = 0; brute < 2; ++brute) {
         struct oracle_hit hit;
@@ -266,7 +266,7 @@ TEST(borders_are_met_along_the_axes)
         }
         struct scene *scene = scene_begin(&silent, "test");
         scene_put(scene, mesh_triangles(corners, 2), NULL);
-        struct world world = world_of(scene, (struct accel_params){0});
+        struct world world = world_of(scene, (whit_accel_params){0});
         for (uint32_t way = 0; way < 9 * 8; ++way) {
             struct gpu_ray ray = {.t_max = INFINITY};
             float side = way & 1 ? 1.0f : -1.0f;

@@ -276,7 +276,7 @@ typedef struct gpu_ray (*ray_fn)(const struct accel *accel, uint32_t index, floa
 
 /* `apart`: an eighth of the rays hits both ends of the single sphere, and an eighth the two spheres
    at one place, whose ends tie. Gives the number of hits on edges. */
-static uint32_t compare_scene(const char *name, struct scene *scene, struct accel_params params,
+static uint32_t compare_scene(const char *name, struct scene *scene, whit_accel_params params,
                               ray_fn make, uint32_t rays, float spread)
 {
     struct world world = world_of(scene, params);
@@ -305,10 +305,9 @@ static uint32_t compare_scene(const char *name, struct scene *scene, struct acce
     return tally.on_edges;
 }
 
-static const struct accel_params plain = {0}, flat = {.flatten = true},
-                                 split = {.mesh = {.builder = WHIT_BUILD_SPATIAL,
-                                                   .spatial_budget = 2.0f}},
-                                 none = {.mesh = {.builder = WHIT_BUILD_NONE}};
+static const whit_accel_params plain = {0}, flat = {.instances = WHIT_INSTANCES_OFF},
+                               split = {.build = WHIT_BUILD_SPATIAL, .spatial_budget = 2.0f},
+                               none = {.build = WHIT_BUILD_NONE};
 
 TEST(triangles_are_found_by_trees_and_without)
 {
@@ -318,7 +317,7 @@ TEST(triangles_are_found_by_trees_and_without)
         struct soup soup;
         uint32_t placed;
         double spread;
-        const struct accel_params *params;
+        const whit_accel_params *params;
         uint32_t rays;
     } rows[] = {
         {"sphere", soup_sphere(24, 12), 0, 0, &plain, 250},
@@ -348,7 +347,7 @@ TEST(spheres_are_found_by_trees_and_without)
     const struct {
         const char *name;
         struct scene *scene;
-        const struct accel_params *params;
+        const whit_accel_params *params;
         ray_fn make;
         uint32_t rays;
         float spread;
@@ -372,7 +371,7 @@ TEST(spheres_are_found_by_trees_and_without)
 /* The filter decides nearly all triangles of random rays, while aimed rays need integers. */
 TEST(integers_are_for_hard_cases)
 {
-    struct world world = world_of_soup(soup_sphere(24, 12), (struct bvh_params){0});
+    struct world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
     struct rational *random = rational_create(world.accel), *aimed = rational_create(world.accel);
     random_state = 5;
     for (uint32_t i = 0; i < 20000; ++i) {
@@ -500,7 +499,7 @@ TEST(doubles_leave_out_nothing_that_is_hit)
 
 TEST(senseless_rays_hit_nothing)
 {
-    struct world world = world_of_soup(soup_sphere(24, 12), (struct bvh_params){0});
+    struct world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
     struct rational *rational = rational_create(world.accel);
     const struct gpu_ray rays[] = {
         {{0, 0, 0}, 0, {0, 0, 0}, INFINITY},         {{NAN, 0, 0}, 0, {0, 0, 1}, INFINITY},

@@ -119,12 +119,12 @@ static struct soup soup_crossing(uint32_t count, uint64_t seed)
     return soup;
 }
 
-static const struct bvh_params builds[] = {
-    {.builder = WHIT_BUILD_BINNED},
-    {.builder = WHIT_BUILD_MEDIAN},
-    {.builder = WHIT_BUILD_BINNED, .leaf_limit = 1, .bins = 4},
-    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 15},
-    {.builder = WHIT_BUILD_BINNED, .traversal_cost = 1.0f, .thread_count = 1},
+static const whit_accel_params builds[] = {
+    {.build = WHIT_BUILD_BINNED},
+    {.build = WHIT_BUILD_MEDIAN},
+    {.build = WHIT_BUILD_BINNED, .leaf_limit = 1, .bins = 4},
+    {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 15},
+    {.build = WHIT_BUILD_BINNED, .threads = 1},
 };
 enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
 
@@ -153,7 +153,7 @@ TEST(overlap_by_hand)
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
     struct world world =
         world_of_soup(soup_of_mesh("two", mesh_triangles(v, 2)),
-                      (struct bvh_params){.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1});
+                      (whit_accel_params){.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1});
     struct bvh_epo epo;
     assert_int_equal(world.accel->meshes[0].node_count, 4);
     assert_int_equal(accel_mesh_epo(world.accel, 0, &epo), WHIT_OK);
@@ -203,7 +203,7 @@ TEST(threads_change_nothing)
     whit_accel_report reports[2];
     for (uint32_t i = 0; i < 2; ++i) {
         struct world world =
-            world_of_soup(soup_crossing(3000, 3), (struct bvh_params){.thread_count = i ? 5 : 1});
+            world_of_soup(soup_crossing(3000, 3), (whit_accel_params){.threads = i ? 5 : 1});
         reports[i] = report_of(&world, 5000);
         world_finish(&world);
     }
@@ -270,7 +270,7 @@ TEST(meshes_are_weighed_by_area)
             scene_put_again(scene, i, &(struct put){.matrix = &matrix});
         }
     }
-    struct world world = world_of(scene, (struct accel_params){.mesh = builds[0]});
+    struct world world = world_of(scene, builds[0]);
     const struct accel *accel = world.accel;
     whit_accel_report report = report_of(&world, 20000);
     assert_true(accel->mesh_count >= 3); /* the one without triangles may be gone */

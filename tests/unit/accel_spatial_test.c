@@ -110,7 +110,7 @@ TEST(budgets_are_kept_and_used)
     struct soup soup = soup_rooms(COUNT / 2);
     double last = INFINITY;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-        struct bvh bvh = soup_build(&soup, (struct bvh_params){.builder = WHIT_BUILD_SPATIAL,
+        struct bvh bvh = soup_build(&soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL,
                                                                .spatial_budget = rows[i].budget,
                                                                .spatial_alpha = rows[i].alpha});
         if (bvh.reference_count < rows[i].min || bvh.reference_count > rows[i].max ||
@@ -132,7 +132,7 @@ TEST(overlap_decides)
     uint32_t last = UINT32_MAX;
     for (int i = 0; i < 4; ++i) {
         struct bvh bvh = soup_build(
-            &soup, (struct bvh_params){.builder = WHIT_BUILD_SPATIAL, .spatial_alpha = alphas[i]});
+            &soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .spatial_alpha = alphas[i]});
         assert_true(bvh.reference_count < last);
         last = bvh.reference_count;
         bvh_finish(&bvh);
@@ -153,7 +153,7 @@ TEST(whole_triangles_stay_whole)
         for (uint32_t i = 0; i < soup.count; ++i)
             whole[i] = round == 0 ? 0 : round == 1 ? i / 2 % 2 : 1;
         struct bvh bvh = soup_build(
-            &soup, (struct bvh_params){.builder = WHIT_BUILD_SPATIAL, .spatial_budget = 2.0f});
+            &soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .spatial_budget = 2.0f});
         memset(times, 0, soup.count * sizeof *times);
         for (uint32_t i = 0; i < bvh.reference_count; ++i)
             ++times[bvh.order[i]];
@@ -211,11 +211,10 @@ TEST(hits_are_the_same)
     random_state = 10;
     struct soup soups[] = {soup_rooms(1500), soup_hair(2500, 1e-3f), soup_hair(1500, 0.05f)};
     for (size_t s = 0; s < sizeof soups / sizeof *soups; ++s) {
-        struct world plain = world_of_soup(soups[s], (struct bvh_params){0});
-        struct accel *split =
-            accel_of(plain.scene, (struct accel_params){.mesh = {.builder = WHIT_BUILD_SPATIAL,
-                                                                 .leaf_limit = 1,
-                                                                 .spatial_budget = 4}});
+        struct world plain = world_of_soup(soups[s], (whit_accel_params){0});
+        struct accel *split = accel_of(
+            plain.scene,
+            (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 4});
         uint32_t found = 0;
         for (uint32_t i = 0; i < rays; ++i) {
             struct gpu_ray ray = ray_at_leaf(split, i % 3 == 0 ? 1e3 : i % 3 == 1 ? 30.0 : 1.0);
@@ -235,7 +234,7 @@ TEST(lost_parts_are_noticed)
     random_state = 12;
     struct world world = world_of_soup(
         soup_rooms(300),
-        (struct bvh_params){.builder = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 3});
+        (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 3});
     struct accel *accel = world.accel;
     const struct accel_mesh *mesh = &accel->meshes[0];
     uint32_t refused = 0, by_points = 0;
@@ -271,8 +270,7 @@ TEST(filters_are_met_once)
     uint32_t index = scene_put_material(scene, glass);
     for (uint32_t i = 0; i < scene->meshes[0].triangle_count; ++i)
         scene->meshes[0].materials[i] = i / 2 % 3 == 0 ? index : 0;
-    struct world world =
-        world_of(scene, (struct accel_params){.mesh = {.builder = WHIT_BUILD_SPATIAL}});
+    struct world world = world_of(scene, (whit_accel_params){.build = WHIT_BUILD_SPATIAL});
     const struct accel *accel = world.accel;
     assert_true(accel->clipped && accel->record_count > accel->triangle_count);
     uint32_t *times = calloc(accel->triangle_count, sizeof *times), filters = 0;

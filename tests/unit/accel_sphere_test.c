@@ -71,7 +71,7 @@ static void check_own(const char *label, double at, double radius)
     struct own own = {0};
     const double sphere[4] = {at, -0.5 * at, 0.25 * at, radius};
     struct world world =
-        world_of(sphere_scene(&silent, mesh_balls(sphere, 1), false), (struct accel_params){0});
+        world_of(sphere_scene(&silent, mesh_balls(sphere, 1), false), (whit_accel_params){0});
     for (uint32_t i = 0; i < rays; ++i)
         leave(world.accel, world.scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
     print_message("  %s: %u met again, %u left, %u wrong; t at worst %.2f of its bound\n", label,
@@ -94,8 +94,8 @@ TEST(rays_leave_their_sphere)
 
 TEST(flat_keeps_spheres_that_stay_spheres)
 {
-    const struct accel_params flat = {
-        .flatten = true, .validate = true, .mesh = {.builder = WHIT_BUILD_SPATIAL}};
+    const whit_accel_params flat = {
+        .instances = WHIT_INSTANCES_OFF, .validate = true, .build = WHIT_BUILD_SPATIAL};
     random_state = 5;
     for (int turned = 0; turned < 2; ++turned) {
         struct scene *scene = sphere_scene(&silent, scattered_spheres(50, 1.0, 0.3), false);
@@ -109,7 +109,7 @@ TEST(flat_keeps_spheres_that_stay_spheres)
         if (turned)
             assert_non_null(
                 strstr(messages.last_error, "instance 1 `second`: spheres that are turned"));
-        struct accel *many = accel_of(scene, (struct accel_params){0});
+        struct accel *many = accel_of(scene, (whit_accel_params){0});
         uint32_t same = 0;
         for (uint32_t i = 0; !turned && i < 10000; ++i) {
             struct gpu_ray ray = ray_at_spheres(&scene->meshes[0], 4 * i + 1, 20.0);

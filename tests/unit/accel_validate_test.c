@@ -168,7 +168,7 @@ TEST(broken_trees_are_refused)
     random_state = 11;
     struct soup soup = soup_scattered(500, 0.1f);
     for (size_t i = 0; i < WAYS + WORDS; ++i) {
-        struct bvh bvh = soup_build(&soup, (struct bvh_params){0});
+        struct bvh bvh = soup_build(&soup, (whit_accel_params){0});
         if (i < WAYS) {
             if (breakages[i].apply)
                 breakages[i].apply(&bvh);
@@ -205,7 +205,7 @@ static void split_tree_init(struct split_tree *tree)
     };
     tree->bvh.nodes = tree->nodes;
     tree->bvh.order = tree->order;
-    bvh_complete(&tree->bvh, 1.0);
+    bvh_complete(&tree->bvh, 1);
 }
 
 static void split_tree_said(const struct split_tree *tree, const char *reason)
@@ -245,7 +245,7 @@ TEST(validator_survives_any_bytes)
     struct soup soup = soup_scattered(200, 0.1f);
     uint32_t accepted = 0;
     for (int round = 0; round < 5000; ++round) {
-        struct bvh bvh = soup_build(&soup, (struct bvh_params){0});
+        struct bvh bvh = soup_build(&soup, (whit_accel_params){0});
         uint32_t flips = 1 + random_below(&random_state, 4);
         for (uint32_t k = 0; k < flips; ++k) {
             uint8_t *bytes =

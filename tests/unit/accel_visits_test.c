@@ -7,9 +7,9 @@ enum { RAYS = 4000 };
 /* Traces closest-hit rays at a soup, or, if it is NULL, random rays in the box -1..1, where the
    small triangles are. */
 static struct gpu_cost cost_of(const struct scene *scene, const struct soup *soup,
-                               struct bvh_params params, uint32_t order)
+                               whit_accel_params params, uint32_t order)
 {
-    struct accel *accel = accel_of(scene, (struct accel_params){.mesh = params});
+    struct accel *accel = accel_of(scene, params);
     struct gpu_cost cost = {0};
     random_state = 7;
     for (uint32_t i = 0; i < RAYS; ++i) {
@@ -34,12 +34,12 @@ TEST(one_giant_costs_little)
              (float[3]){0, -1.2f, 1000});
     struct scene *scene = scene_ready(soup_scene(&soup));
     struct gpu_cost sweep =
-        cost_of(scene, NULL, (struct bvh_params){.builder = WHIT_BUILD_SWEEP}, ORDER_DISTANCE);
-    static const struct bvh_params others[] = {
-        {.builder = WHIT_BUILD_BINNED},
-        {.builder = WHIT_BUILD_BINNED, .bins = 7},
-        {.builder = WHIT_BUILD_BINNED, .optimize = true},
-        {.builder = WHIT_BUILD_SPATIAL},
+        cost_of(scene, NULL, (whit_accel_params){.build = WHIT_BUILD_SWEEP}, ORDER_DISTANCE);
+    static const whit_accel_params others[] = {
+        {.build = WHIT_BUILD_BINNED},
+        {.build = WHIT_BUILD_BINNED, .bins = 7},
+        {.build = WHIT_BUILD_BINNED, .optimize = true},
+        {.build = WHIT_BUILD_SPATIAL},
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         struct gpu_cost cost = cost_of(scene, NULL, others[i], ORDER_DISTANCE);
@@ -66,8 +66,8 @@ TEST(orders_and_splits_save_visits)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         struct soup soup = rows[i].soup;
         struct scene *scene = scene_ready(soup_scene(&soup));
-        const struct bvh_params binned = {.builder = WHIT_BUILD_BINNED},
-                                split = {.builder = WHIT_BUILD_SPATIAL};
+        const whit_accel_params binned = {.build = WHIT_BUILD_BINNED},
+                                split = {.build = WHIT_BUILD_SPATIAL};
         uint32_t basic = cost_of(scene, &soup, binned, ORDER_BASIC).inner_nodes,
                  distance = cost_of(scene, &soup, binned, ORDER_DISTANCE).inner_nodes,
                  sign = cost_of(scene, &soup, binned, ORDER_SIGN).inner_nodes,

@@ -223,7 +223,7 @@ static void cross_mesh(const struct level *level, const struct soup *soup,
 
 static void assert_crossings(struct soup made, int64_t step, bool block)
 {
-    struct world world = world_of_soup(made, (struct bvh_params){0});
+    struct world world = world_of_soup(made, (whit_accel_params){0});
     const struct soup *soup = &world.soup;
     assert_int_equal(world.scene->triangle_total,
                      soup->count); /* none without area: closed still */

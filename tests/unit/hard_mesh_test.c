@@ -198,7 +198,7 @@ static struct world world_of_hunt(const struct hunt *hunt)
     struct scene *scene = scene_begin(&silent, hunt->name);
     scene_put(scene, mesh_triangles(soup.positions, soup.count),
               &(struct put){.matrix = hunt->placed ? &place : NULL});
-    struct world world = world_of(scene, (struct accel_params){0});
+    struct world world = world_of(scene, (whit_accel_params){0});
     assert_int_equal(scene->triangle_total, soup.count); /* closed still */
     world.soup = soup;
     return world;
@@ -280,7 +280,7 @@ TEST(crossings_are_odd)
 {
     const uint32_t rays = cases_of(RAYS / 3);
     struct world world =
-        world_of_soup(soup_of_mesh("torus", mesh_torus(1.0, 0.4, 48, 24)), (struct bvh_params){0});
+        world_of_soup(soup_of_mesh("torus", mesh_torus(1.0, 0.4, 48, 24)), (whit_accel_params){0});
     struct rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct parity parity = {0};
@@ -314,7 +314,7 @@ TEST(only_t_junctions_leak)
     soup_set(&soup, 0, a, b, c);
     soup_set(&soup, 1, a, middle, d);
     soup_set(&soup, 2, middle, c, d);
-    struct world world = world_of_soup(soup, (struct bvh_params){0});
+    struct world world = world_of_soup(soup, (whit_accel_params){0});
     struct rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct tally seam = {0}, sound = {0};
@@ -357,7 +357,7 @@ TEST(edges_between_instances_are_counted)
     uint32_t mesh = scene_put_mesh(scene, mesh_triangles(soup.positions, soup.count));
     for (int i = 0; i < 2; ++i)
         scene_put_again(scene, mesh, &(struct put){.matrix = &places[i]});
-    struct world world = world_of(scene, (struct accel_params){0});
+    struct world world = world_of(scene, (whit_accel_params){0});
     world.soup = soup;
     struct rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {

@@ -6,20 +6,17 @@
 #include "sphere_fixture.h"
 #include "unit.h"
 
-static const struct bvh_params trees[] = {
-    {.builder = WHIT_BUILD_BINNED},
-    {.builder = WHIT_BUILD_BINNED, .leaf_limit = 1, .bins = 5},
-    {.builder = WHIT_BUILD_BINNED, .leaf_limit = BVH_LEAF_MAX, .bins = 2, .optimize = true},
-    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 2},
-    {.builder = WHIT_BUILD_MEDIAN, .leaf_limit = 1, .optimize = true},
-    {.builder = WHIT_BUILD_SWEEP},
-    {.builder = WHIT_BUILD_SPATIAL},
-    {.builder = WHIT_BUILD_SPATIAL, .optimize = true},
-    {.builder = WHIT_BUILD_SPATIAL,
-     .leaf_limit = 1,
-     .spatial_budget = 4.0f,
-     .spatial_alpha = 1e-9f},
-    {.builder = WHIT_BUILD_NONE},
+static const whit_accel_params trees[] = {
+    {.build = WHIT_BUILD_BINNED},
+    {.build = WHIT_BUILD_BINNED, .leaf_limit = 1, .bins = 5},
+    {.build = WHIT_BUILD_BINNED, .leaf_limit = BVH_LEAF_MAX, .bins = 2, .optimize = true},
+    {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 2},
+    {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1, .optimize = true},
+    {.build = WHIT_BUILD_SWEEP},
+    {.build = WHIT_BUILD_SPATIAL},
+    {.build = WHIT_BUILD_SPATIAL, .optimize = true},
+    {.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 4.0f, .spatial_alpha = 1e-9f},
+    {.build = WHIT_BUILD_NONE},
 };
 enum { TREES = sizeof trees / sizeof *trees, ORDERS = 3 };
 
@@ -97,7 +94,7 @@ static void try_trees(struct world world)
     bool empty = world.soup.count == 0 && world.scene->sphere_total == 0;
     struct accel *accels[TREES] = {world.accel};
     for (uint32_t t = 1; t < TREES; ++t) {
-        accels[t] = accel_of(world.scene, (struct accel_params){.mesh = trees[t]});
+        accels[t] = accel_of(world.scene, trees[t]);
         assert_true(world.soup.count > 0 ||
                     accels[t]->record_count == accels[t]->triangle_count); /* spheres stay whole */
     }
@@ -146,7 +143,7 @@ TEST(trees_and_orders_of_spheres_do_not_matter)
             struct affine matrix = placement_random(&random_state, 1.0, i % 3 == 0);
             scene_put_again(scene, ring, &(struct put){.matrix = &matrix});
         }
-        try_trees(world_of(scene, (struct accel_params){.mesh = trees[0]}));
+        try_trees(world_of(scene, trees[0]));
     }
 }
 
@@ -204,7 +201,7 @@ TEST(equal_triangles_are_shared_out)
 {
     const uint32_t count = cases_times() > 1 ? 1000000 : 10000;
     for (uint32_t t = 0; t < TREES; ++t) {
-        if (trees[t].spatial_budget > 0.0f || trees[t].builder == WHIT_BUILD_NONE)
+        if (trees[t].spatial_budget > 0.0f || trees[t].build == WHIT_BUILD_NONE)
             continue; /* more than one record a triangle; no tree */
         struct world world = world_of_soup(soup_equal(count), trees[t]);
         const struct accel *accel = world.accel;
@@ -215,7 +212,7 @@ TEST(equal_triangles_are_shared_out)
             held += in_leaf;
         }
         print_message("U1 builder %u: %u equal triangles, %u in the largest leaf, depth %u\n",
-                      (uint32_t)trees[t].builder, count, largest, accel->meshes[0].depth);
+                      (uint32_t)trees[t].build, count, largest, accel->meshes[0].depth);
         assert_true(largest >= 1 && largest <= limit);
         assert_int_equal(held, count);
         assert_true(accel->meshes[0].depth <= 2 + (uint32_t)log2(count));
@@ -276,8 +273,7 @@ TEST(any_bits_have_trees)
     uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
     random_state = 7;
     for (uint32_t s = 0; s < scenes; ++s) {
-        struct world world =
-            world_of(scene_of_bits(20, &usable), (struct accel_params){.mesh = trees[s % TREES]});
+        struct world world = world_of(scene_of_bits(20, &usable), trees[s % TREES]);
         const struct scene *scene = world.scene;
         kept += scene->triangle_total;
         for (uint32_t m = 0; m < scene->mesh_count; ++m)

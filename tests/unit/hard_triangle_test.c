@@ -259,7 +259,7 @@ TEST(keys_end_with_the_floats)
 TEST(ends_of_intervals_count)
 {
     enum { RAYS = 5000 };
-    struct world world = world_of_soup(soup_terrain(12), (struct bvh_params){0});
+    struct world world = world_of_soup(soup_terrain(12), (whit_accel_params){0});
     const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t wrong_end = 0, wrong_begin = 0, hits = 0;
@@ -350,7 +350,7 @@ TEST(known_cases)
     struct soup soup = soup_make("line", 1);
     for (uint32_t i = 0; i < 3; ++i)
         vec3_store(&soup.positions[3 * i], line[i]);
-    struct world world = world_of_soup(soup, (struct bvh_params){0});
+    struct world world = world_of_soup(soup, (whit_accel_params){0});
     for (int l = 0; l < LEVELS; ++l) {
         struct gpu_hit hit = {0};
         assert_false(levels[l].exact && level_meets(&levels[l], &at_line, line, &hit));

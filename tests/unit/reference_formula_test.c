@@ -12,7 +12,7 @@ struct drawn {
     struct reference *reference;
 };
 
-static struct drawn open_with(struct scene *scene, const struct accel_params *trees,
+static struct drawn open_with(struct scene *scene, const whit_accel_params *trees,
                               const struct reference_params *params)
 {
     struct drawn d = {.scene = scene};
@@ -404,10 +404,10 @@ TEST(cameras_are_those_of_kernels)
    floats. */
 TEST(trees_do_not_matter)
 {
-    const struct accel_params trees[] = {{.mesh.builder = WHIT_BUILD_MEDIAN},
-                                         {.mesh.builder = WHIT_BUILD_SPATIAL},
-                                         {.mesh.builder = WHIT_BUILD_NONE},
-                                         {.flatten = true}};
+    const whit_accel_params trees[] = {{.build = WHIT_BUILD_MEDIAN},
+                                       {.build = WHIT_BUILD_SPATIAL},
+                                       {.build = WHIT_BUILD_NONE},
+                                       {.instances = WHIT_INSTANCES_OFF}};
     const struct reference_params params = {.picture = {.width = 24, .height = 24, .depth = 6}};
     struct drawn d = open_reference(crowded_scene(), &params.picture);
     struct image first = draw(&d);
@@ -418,7 +418,7 @@ TEST(trees_do_not_matter)
         struct picture picture = reference_picture(other, &params);
         for (size_t k = 0; k < 4 * 24 * 24; ++k)
             over += fabs((double)picture.color.pixels[k] - (double)first.pixels[k]) > 1e-4;
-        if (trees[i].flatten)
+        if (trees[i].instances == WHIT_INSTANCES_OFF)
             assert_true(over <= 4 * 3);
         else
             assert_same_image("other trees", &picture.color, &first);
@@ -433,7 +433,7 @@ TEST(trees_do_not_matter)
    tree rounds its corners. */
 TEST(emitters_do_not_light_themselves)
 {
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     const struct reference_params params = {
         .picture = {.width = 9, .height = 9, .shadows = WHIT_SHADOWS_NONE}};
     const double heights[] = {1.99, 0.7, -3.3, 1001.3};

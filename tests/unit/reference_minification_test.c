@@ -94,8 +94,8 @@ static double rmse(const struct image *a, const struct image *b)
     return sqrt(sum / (double)values);
 }
 
-static void check(const char *what, const struct accel_params *trees,
-                  void (*change)(struct scene *), uint32_t samples)
+static void check(const char *what, const whit_accel_params *trees, void (*change)(struct scene *),
+                  uint32_t samples)
 {
     const struct reference_params params = {
         .picture = {.width = SIDE, .height = SIDE, .depth = 4, .sampling.count = samples},
@@ -148,7 +148,7 @@ TEST_BY_TURNS(cameras_agree_with_the_reference, 0, 2)
 
 TEST_BY_TURNS(a_tree_in_the_world_agrees_too, 1, 2)
 {
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     check("one tree", &flat, NULL, 1);
 }
 

@@ -90,7 +90,7 @@ static void check(struct fixture *f, const struct picture *first, const struct e
 
 /* Draws pictures of 4, 16 and 64 samples, and compares them with adaptive ones in tiles and bands
    of several sizes. */
-static void check_scene(struct scene *scene, const struct accel_params *accel,
+static void check_scene(struct scene *scene, const whit_accel_params *accel,
                         const whit_camera *camera, const double *contrasts, int contrast_count)
 {
     whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = *camera};
@@ -134,7 +134,7 @@ TEST(pixels_are_those_of_plain_pictures)
 
 TEST_BY_TURNS(so_they_are_without_trees, 0, 2)
 {
-    const struct accel_params no_trees = {.mesh = {.builder = WHIT_BUILD_NONE}};
+    const whit_accel_params no_trees = {.build = WHIT_BUILD_NONE};
     check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, contrasts, 1);
 }
 

@@ -90,13 +90,13 @@ static struct scene *strung_out(void)
 
 /* ---- Pictures ---- */
 
-static struct picture take_anew(const struct fixture *f, bool flatten, double time_s)
+static struct picture take_anew(const struct fixture *f, whit_instances instances, double time_s)
 {
-    const struct accel_params flat = {.flatten = flatten};
+    const whit_accel_params trees = {.instances = instances};
     struct fixture anew = {.device = f->device};
     whit_renderer_params params = animate_params;
     params.time_s = time_s;
-    assert_int_equal(accel_create(&fixture_log, f->scene, &flat, &anew.accel), WHIT_OK);
+    assert_int_equal(accel_create(&fixture_log, f->scene, &trees, &anew.accel), WHIT_OK);
     fixture_renew(&anew, &params);
     struct picture picture = render_picture(&anew);
     renderer_destroy(anew.renderer);
@@ -108,13 +108,13 @@ enum { TIMES = 3, STEPS = 6 };
 
 /* Sets the renderer to the times in several orders. The pictures of neighbouring times differ. */
 static void check_any_order(const char *name, struct scene *scene, const double times_s[TIMES],
-                            const struct accel_params *params)
+                            const whit_accel_params *params)
 {
     static const int order[STEPS] = {1, 2, 0, 2, 1, 1};
     struct picture anew[TIMES];
     struct fixture f = fixture_open(scene, params, &animate_params);
     for (int i = 0; i < TIMES; ++i)
-        anew[i] = take_anew(&f, params->flatten, times_s[i]);
+        anew[i] = take_anew(&f, params->instances, times_s[i]);
     for (int i = 0; i < 2; ++i)
         assert_true(pixels_unlike(&anew[i].color, &anew[i + 1].color) > 0);
     for (int i = 0; i < STEPS; ++i) {
@@ -135,17 +135,17 @@ TEST(pictures_are_those_of_new_renderers)
         const char *name;
         struct scene *(*make)(void);
         double times_s[TIMES];
-        struct accel_params trees;
+        whit_accel_params trees;
     } rows[] = {
-        {"a scene file", spin, {0.0, 0.7, 3.1}, {.flatten = false}},
-        {"lights, cameras and glass", everything_moves, {0.0, 0.9, 2.0}, {.flatten = false}},
+        {"a scene file", spin, {0.0, 0.7, 3.1}, {0}},
+        {"lights, cameras and glass", everything_moves, {0.0, 0.9, 2.0}, {0}},
         {"a refitted tree",
          strung_out,
          {0.0, 0.5, 1.0},
-         {.update = ACCEL_REFIT, .instances = {.builder = WHIT_BUILD_MEDIAN}}},
-        {"an object that leaves its place", leaves_its_place, {0.0, 0.5, 1.0}, {.flatten = false}},
-        {"trees that get deeper", strung_out, {0.0, 0.5, 1.0}, {.flatten = false}},
-        {"a flattened scene", everything_moves, {0.0, 0.9, 2.0}, {.flatten = true}},
+         {.instance_refit = true, .instance_build = WHIT_BUILD_MEDIAN}},
+        {"an object that leaves its place", leaves_its_place, {0.0, 0.5, 1.0}, {0}},
+        {"trees that get deeper", strung_out, {0.0, 0.5, 1.0}, {0}},
+        {"a flattened scene", everything_moves, {0.0, 0.9, 2.0}, {.instances = WHIT_INSTANCES_OFF}},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i)
         check_any_order(rows[i].name, rows[i].make(), rows[i].times_s, &rows[i].trees);
@@ -197,8 +197,8 @@ TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
     static const double times_s[] = {0.0, 0.9, 2.0};
     struct fixture f = fixture_open(everything_moves(), NULL, &animate_params);
     for (int i = 0; i < 3; ++i) {
-        struct picture instanced = take_anew(&f, false, times_s[i]);
-        struct picture flat = take_anew(&f, true, times_s[i]);
+        struct picture instanced = take_anew(&f, WHIT_INSTANCES_ON, times_s[i]);
+        struct picture flat = take_anew(&f, WHIT_INSTANCES_OFF, times_s[i]);
         double off = difference(&instanced.color, &flat.color);
         print_message("  at %g s: differs by %.2g\n", times_s[i], off);
         assert_true(off < 1e-4);

@@ -9,8 +9,7 @@
 enum { RAYS = 500 };
 
 /* The stack is as deep as with trees, so that the kernels are the same. */
-static const struct accel_params no_trees = {.mesh = {.builder = WHIT_BUILD_NONE},
-                                             .update = ACCEL_REFIT};
+static const whit_accel_params no_trees = {.build = WHIT_BUILD_NONE, .instance_refit = true};
 
 /* Compares hits and costs with those of the float mirror, and hits with those of `trees`, which are
    of the same scene. */

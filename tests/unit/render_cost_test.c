@@ -81,7 +81,7 @@ TEST_BY_TURNS(clipped_trees_cost_the_same, 0, 2)
 /* One tree for all instances, in world space. */
 TEST_BY_TURNS(flat_trees_cost_the_same, 1, 2)
 {
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     const whit_renderer_params params = {
         .width = 16, .height = 16, .traversal = ORDER_SIGN, .count = true};
     struct fixture f = fixture_open(ring_scene(), &flat, &params);

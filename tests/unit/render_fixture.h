@@ -73,10 +73,10 @@ static inline void fixture_renew(struct fixture *f, const whit_renderer_params *
 }
 
 static inline struct fixture fixture_open(struct scene *scene,
-                                          const struct accel_params *accel_params,
+                                          const whit_accel_params *accel_params,
                                           const whit_renderer_params *render_params)
 {
-    static const struct accel_params usual = {0};
+    static const whit_accel_params usual = {0};
     struct fixture f = {.scene = scene};
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(
@@ -139,7 +139,7 @@ static inline void picture_finish(struct picture *picture)
 }
 
 /* The picture of a scene, which it destroys. */
-static inline struct image color_of(struct scene *scene, const struct accel_params *accel,
+static inline struct image color_of(struct scene *scene, const whit_accel_params *accel,
                                     const whit_renderer_params *params)
 {
     struct fixture f = fixture_open(scene, accel, params);
@@ -148,7 +148,7 @@ static inline struct image color_of(struct scene *scene, const struct accel_para
     return image;
 }
 
-static inline struct picture picture_of(struct scene *scene, const struct accel_params *accel,
+static inline struct picture picture_of(struct scene *scene, const whit_accel_params *accel,
                                         const whit_renderer_params *params)
 {
     struct fixture f = fixture_open(scene, accel, params);

@@ -277,7 +277,8 @@ TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)
     const whit_renderer_params params = {
         .width = SIDE, .height = SIDE, .shadows = WHIT_SHADOWS_NONE};
     for (size_t i = 0; i < 2 * sizeof heights / sizeof *heights; ++i) {
-        const struct accel_params trees = {.flatten = i % 2};
+        const whit_accel_params trees = {.instances =
+                                             i % 2 ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
         struct image image = color_of(glowing_panel(heights[i / 2]), &trees, &params);
         assert_true(red_sum(&image) == 0.0);
         image_finish(&image);
@@ -345,9 +346,9 @@ TEST(packets_to_a_light_shade_as_rays_do)
             light = emitter(WHIT_LIGHT_RECTANGLE, cases[i].at, (double[]){0.3, 0, 0},
                             (double[]){0, 0, 0.3}, 1);
         }
-        const struct accel_params accel = {.mesh.builder = cases[i].clipped ? WHIT_BUILD_SPATIAL
-                                                                            : WHIT_BUILD_BINNED,
-                                           .flatten = true};
+        const whit_accel_params accel = {.build = cases[i].clipped ? WHIT_BUILD_SPATIAL
+                                                                   : WHIT_BUILD_BINNED,
+                                         .instances = WHIT_INSTANCES_OFF};
         whit_renderer_params params = {
             .width = 128,
             .height = 96,

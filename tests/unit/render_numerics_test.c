@@ -32,7 +32,7 @@ static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_
     return bad;
 }
 
-static void check_levels(struct scene *scene, const struct accel_params *accel_params)
+static void check_levels(struct scene *scene, const whit_accel_params *accel_params)
 {
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
@@ -62,7 +62,7 @@ TEST(instances)
     if (!unit_turn(0, 2))
         skip();
     check_levels(ring_scene(), NULL);
-    check_levels(ring_scene(), &(struct accel_params){.flatten = true});
+    check_levels(ring_scene(), &(whit_accel_params){.instances = WHIT_INSTANCES_OFF});
 }
 
 /* At 2^-20 of the size of the terrain in one_mesh: no level may depend on a built-in length. */
@@ -72,8 +72,7 @@ TEST(split_triangles)
         skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_terrain(0x1p-20 * 10.0, 0x1p-20 * 2.0, 40, 3), NULL);
-    check_levels(scene, &(struct accel_params){
-                            .mesh = {.builder = WHIT_BUILD_SPATIAL, .spatial_alpha = 1e-9f}});
+    check_levels(scene, &(whit_accel_params){.build = WHIT_BUILD_SPATIAL, .spatial_alpha = 1e-9f});
 }
 
 /* The same triangle many times, in one mesh and in instances at one place, so that hits tie. */
@@ -178,7 +177,7 @@ TEST(pictures_agree)
    integers nor deferred rays. */
 TEST(trees_do_not_matter)
 {
-    const struct accel_params none = {.mesh = {.builder = WHIT_BUILD_NONE}};
+    const whit_accel_params none = {.build = WHIT_BUILD_NONE};
     whit_renderer_params params = glass_params;
     params.width = 24;
     params.height = 16;

@@ -207,10 +207,11 @@ TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
                                              .height = 8,
                                              .depth = 0,
                                              .packets = i & 1 ? WHIT_PACKETS_ON : WHIT_PACKETS_OFF};
-        const struct accel_params accel = {.flatten = (i & 2) != 0};
+        const whit_accel_params accel = {.instances =
+                                             i & 2 ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
         struct fixture f = fixture_open(panes_scene(70000), &accel, &params);
         whit_result result = renderer_render(f.renderer);
-        print_message("  70000 panes, packets %d, one tree %d: %s\n", i & 1, accel.flatten,
+        print_message("  70000 panes, packets %d, one tree %d: %s\n", i & 1, (i & 2) / 2,
                       whit_result_name(result));
         assert_int_equal(result,
                          device_get_limits(f.device)->loop_limited ? WHIT_ERROR_STATUS : WHIT_OK);
@@ -299,7 +300,7 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
 
 /* Checks the shares of materials in the hits of timed tiles. The picture has two tiles of two rows
    of blocks, of which the second is timed. */
-static void check_shares(const struct accel_params *accel)
+static void check_shares(const whit_accel_params *accel)
 {
     enum { WIDTH = 64, HEIGHT = 32 };
     const whit_renderer_params params = {
@@ -335,7 +336,7 @@ static void check_shares(const struct accel_params *accel)
 
 TEST(shares_are_those_of_hits)
 {
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     check_shares(NULL);
     check_shares(&flat);
 }

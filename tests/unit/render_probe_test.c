@@ -295,8 +295,8 @@ TEST(surfaces_let_rays_pass)
 
 TEST(trees_do_not_matter)
 {
-    static const struct accel_params trees[] = {{.mesh.builder = WHIT_BUILD_NONE},
-                                                {.flatten = true}};
+    static const whit_accel_params trees[] = {{.build = WHIT_BUILD_NONE},
+                                              {.instances = WHIT_INSTANCES_OFF}};
     whit_renderer_params params = sieve_params;
     params.effects_removed = UINT64_C(1) << SCENE_EFFECT_REFRACTION |
                              UINT64_C(1) << SCENE_EFFECT_TEXTURES |

@@ -46,7 +46,7 @@ static void check_same(const struct fixture *f, const char *name,
     picture_finish(&expected);
 }
 
-static void walk(const char *name, const struct accel_params *accel, int count)
+static void walk(const char *name, const whit_accel_params *accel, int count)
 {
     struct fixture f = fixture_open(file_scene(name), accel, &steps[0]);
     for (int i = 0; i < count; ++i) {
@@ -61,7 +61,7 @@ TEST(views_are_those_of_new_renderers)
 {
     walk("spin", NULL, STEPS);
     walk("whitted", NULL, STEPS);
-    walk("cube", &(struct accel_params){.mesh = {.builder = WHIT_BUILD_NONE}}, 3);
+    walk("cube", &(whit_accel_params){.build = WHIT_BUILD_NONE}, 3);
 }
 
 /* Seen from afar, a ray may meet the glass and its hollow at one place, but for rounding. */

@@ -7,7 +7,7 @@
 
 /* ---- Hits ---- */
 
-static void check_twin(struct scene *scene, const struct accel_params *params, const char *label)
+static void check_twin(struct scene *scene, const whit_accel_params *params, const char *label)
 {
     enum { RAYS = 100000 };
     struct fixture f = fixture_open(scene, params, NULL);
@@ -45,7 +45,7 @@ TEST(spheres_equal_twin)
 TEST_BY_TURNS(mixed_scene_equals_twin, 0, 2)
 {
     random_state = 12;
-    const struct accel_params spatial = {.mesh = {.builder = WHIT_BUILD_SPATIAL}};
+    const whit_accel_params spatial = {.build = WHIT_BUILD_SPATIAL};
     struct scene *scene = scene_begin(&fixture_log, "spheres");
     scene_put_mesh(scene, scattered_spheres(60, 1.0, 0.3));
     scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
@@ -183,7 +183,7 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
                                            how & ONE_SIDED_MIRRORED ? mirror : one);
     scene_put(scene, mesh_plane(1.0), &(struct put){.material = &leaf, .matrix = &placed});
     scene_put_sun(scene, 0.6, -1, 0, 1.0f); /* moves the shadow 0.6 to the side */
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     whit_renderer_params params = picture_params;
     params.all_effects = all;
     struct image image = color_of(scene, how & ONE_SIDED_FLAT ? &flat : NULL, &params);

@@ -175,7 +175,7 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
     scene_pose_finish(&pose);
 }
 
-static void check_packets(struct scene *scene, const struct accel_params *params, const char *label)
+static void check_packets(struct scene *scene, const whit_accel_params *params, const char *label)
 {
     const uint32_t many = cases_of(70000); /* the last packet is not full */
     const whit_renderer_params on = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
@@ -205,7 +205,7 @@ TEST(packets_equal_twin)
 {
     check_packets(scene_of(mesh_torus(1.0, 0.45, 60, 30)), NULL, "torus");
     check_packets(integer_ring(), NULL, "ring of integers");
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     check_packets(forty_rings(), &flat, "one tree of 40 instances");
 }
 

@@ -166,7 +166,7 @@ TEST_BY_TURNS(views_of_all_kinds_of_cameras_and_lenses, 0, 2)
 TEST_BY_TURNS(many_views_have_the_kernels_of_a_large_picture, 1, 2)
 {
     const whit_renderer_params small = {.width = 64, .height = 64, .depth = 2};
-    const struct accel_params flat = {.flatten = true};
+    const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     whit_camera cameras[THRONG];
     struct fixture f = fixture_open(file_scene("34k"), &flat, &small), single = f;
     single.renderer = NULL;
