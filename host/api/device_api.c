@@ -14,9 +14,6 @@ whit_result whit_device_list(const whit_log *log, whit_device_info **infos, uint
 static whit_result open_device(const whit_device_params *params, const whit_log *log,
                                whit_device **out)
 {
-    const whit_device_params defaults = {0};
-    if (!params)
-        params = &defaults;
     *out = NULL;
     whit_device *device = calloc(1, sizeof *device);
     if (!device) {
@@ -24,11 +21,7 @@ static whit_result open_device(const whit_device_params *params, const whit_log 
         return WHIT_ERROR_MEMORY;
     }
     device->log = log_or_silence(log);
-    const struct device_params wanted = {
-        .selector = params->selector,
-        .validation = params->validation,
-    };
-    whit_result result = device_create(&device->log, &wanted, &device->device);
+    whit_result result = device_create(&device->log, params, NULL, &device->device);
     if (result != WHIT_OK) {
         whit_device_destroy(device);
         return result;

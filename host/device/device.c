@@ -121,8 +121,8 @@ fail:
     return result;
 }
 
-whit_result device_create(const whit_log *log, const struct device_params *params,
-                          struct device **out)
+whit_result device_create(const whit_log *log, const whit_device_params *params,
+                          const struct device_surface *surface, struct device **out)
 {
     *out = NULL;
     struct device *device = array_alloc_zeroed(1, sizeof *device);
@@ -144,7 +144,7 @@ whit_result device_create(const whit_log *log, const struct device_params *param
     device->poisons = environment_on("WHIT_POISON");
     device_read_fault(device);
 
-    device->surface_source = params ? params->surface : NULL;
+    device->surface_source = surface;
 
     /* Loading drivers takes locks that a child forked meanwhile would find held for ever. */
     child_hold_forks();

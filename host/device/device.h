@@ -33,7 +33,7 @@ struct device_limits {
    driver: WHIT_ERROR_NO_DEVICE, logged with what to install. */
 WHIT_CHECK whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t *count);
 
-/* A window that a device shows pictures in, for device_params. The maker of the window names the
+/* A window that a device shows pictures in. The maker of the window names the
    instance extensions that it needs, and makes the surface: `create` gets a VkInstance and the
    address of a VkSurfaceKHR, and returns a VkResult. The device destroys the surface. */
 struct device_surface {
@@ -43,21 +43,15 @@ struct device_surface {
     void *user;
 };
 
-struct device_params {
-    const char *selector; /* as in whit_device_params */
-    bool validation;      /* Khronos layer with GPU-assisted and synchronization checks; its
-                             absence is an error. WHIT_VALIDATION=1 in the environment turns it on
-                             for every device; WHIT_VALIDATION=sync without the GPU-assisted
-                             checks, which make kernels slow to compile */
-    const struct device_surface *surface; /* NULL: nothing is shown. Borrowed by device_create. A
-                                             device that cannot present to it is not usable. */
-};
-
-/* A selector that matches no device gives WHIT_ERROR_NO_DEVICE, logged with the devices there are.
-   Compiled pipelines are kept from one run to the next (base/store.h), unless WHIT_NO_CACHE=1 is in
-   the environment. */
-WHIT_CHECK whit_result device_create(const whit_log *log, const struct device_params *params,
-                                     struct device **out);
+/* `params` may be NULL. Validation is by the Khronos layer with GPU-assisted and synchronization
+   checks. WHIT_VALIDATION=1 in the environment turns it on for every device; WHIT_VALIDATION=sync
+   without the GPU-assisted checks, which make kernels slow to compile. `surface` is borrowed during
+   the call (NULL: nothing is shown); a device that cannot present to it is not usable. A selector
+   that matches no device gives WHIT_ERROR_NO_DEVICE, logged with the devices there are. Compiled
+   pipelines are kept from one run to the next (base/store.h), unless WHIT_NO_CACHE=1 is in the
+   environment. */
+WHIT_CHECK whit_result device_create(const whit_log *log, const whit_device_params *params,
+                                     const struct device_surface *surface, struct device **out);
 void device_destroy(struct device *device);
 const whit_device_info *device_get_info(const struct device *device);
 const struct device_limits *device_get_limits(const struct device *device);

@@ -148,8 +148,8 @@ static void translate_share(void *context)
     struct commands *commands = NULL;
     struct buffer *buffer = NULL;
     snprintf(selector, sizeof selector, "%u", device_get_info(share->renderer->device)->index);
-    const struct device_params params = {.selector = selector};
-    whit_result result = device_create(&silent, &params, &device);
+    const whit_device_params params = {.selector = selector};
+    whit_result result = device_create(&silent, &params, NULL, &device);
     if (result == WHIT_OK)
         result = commands_create(device, "translation", &commands);
     if (result == WHIT_OK)

@@ -421,15 +421,15 @@ static whit_result set_background(struct view *view)
 
 static whit_result open_device(struct view *view)
 {
-    const struct device_params params = {
+    const whit_device_params params = {
         .selector = view->settings.device[0] ? view->settings.device : NULL,
         .validation = view->settings.validation,
-        .surface = window_surface(view->window),
     };
     const struct swapchain_params chain = {
         .vsync = !view->params->no_vsync,
     };
-    whit_result result = device_create(&view->log, &params, &view->device);
+    whit_result result =
+        device_create(&view->log, &params, window_surface(view->window), &view->device);
     if (result == WHIT_OK)
         result = swapchain_create(view->device, &chain, &view->swapchain);
     if (result == WHIT_OK)

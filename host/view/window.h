@@ -19,7 +19,7 @@ WHIT_CHECK whit_result window_create(const whit_log *log, const struct window_pa
                                      struct window **out);
 void window_destroy(struct window *window); /* call it after destroying the device; NULL is fine */
 
-/* For device_params; borrowed from the window. */
+/* For device_create; borrowed from the window. */
 const struct device_surface *window_surface(const struct window *window);
 
 /* Waits for events, at most `seconds` (0: not at all), and queues them. */

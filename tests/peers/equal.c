@@ -223,8 +223,8 @@ int main(int argc, char **argv)
         return 2;
     }
     struct device *device = NULL;
-    const struct device_params params = {.selector = options.device};
-    if (device_create(&peers_log, &params, &device) != WHIT_OK)
+    const whit_device_params params = {.selector = options.device};
+    if (device_create(&peers_log, &params, NULL, &device) != WHIT_OK)
         return 3;
     device_keep_pipelines(device);
     bool good = true;

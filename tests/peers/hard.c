@@ -193,7 +193,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: hard RAYS\n");
         return 2;
     }
-    if (device_create(&peers_log, NULL, &bench.device) != WHIT_OK)
+    if (device_create(&peers_log, NULL, NULL, &bench.device) != WHIT_OK)
         return 3;
     device_keep_pipelines(bench.device);
     printf("device: %s, %s\n", device_get_info(bench.device)->name,

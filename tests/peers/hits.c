@@ -293,7 +293,7 @@ struct bench {
 
 static bool bench_open(struct bench *bench, const struct options *options)
 {
-    const struct device_params device_params = {.selector = options->device};
+    const whit_device_params device_params = {.selector = options->device};
     const whit_renderer_params render_params = {.width = 16, .height = 16};
     bool ready = load_scene(&peers_log, options->path, NULL, &bench->scene) == WHIT_OK;
     if (ready && bench->scene->sphere_total > 0) {
@@ -302,7 +302,7 @@ static bool bench_open(struct bench *bench, const struct options *options)
     }
     ready = ready && scene_pose_init(bench->scene, 0.0, &bench->pose) == WHIT_OK &&
             accel_create(&peers_log, bench->scene, NULL, &bench->accel) == WHIT_OK &&
-            device_create(&peers_log, &device_params, &bench->device) == WHIT_OK &&
+            device_create(&peers_log, &device_params, NULL, &bench->device) == WHIT_OK &&
             renderer_create(&peers_log, bench->device, bench->accel, &render_params,
                             &bench->renderer) == WHIT_OK;
     if (ready)

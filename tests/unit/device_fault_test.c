@@ -57,9 +57,9 @@ static whit_result cycle_dispatch(struct cycle *cycle)
 static whit_result cycle_run(struct messages *told, bool validation)
 {
     whit_log log = messages_log(told);
-    struct device_params params = {.validation = validation};
+    whit_device_params params = {.validation = validation};
     struct cycle cycle = {0};
-    whit_result result = device_create(&log, &params, &cycle.device);
+    whit_result result = device_create(&log, &params, NULL, &cycle.device);
     if (result == WHIT_OK)
         result = cycle_prepare(&cycle);
     if (result == WHIT_OK)
@@ -257,7 +257,7 @@ TEST(no_device_without_room_for_its_threads)
     bool on_cpu = device_get_info(device)->kind == WHIT_DEVICE_CPU;
     device_close(device, &messages);
     is_short = true;
-    whit_result result = device_create(&log, &(struct device_params){0}, &device);
+    whit_result result = device_create(&log, &(whit_device_params){0}, NULL, &device);
     is_short = false;
     assert_int_equal(result, on_cpu ? WHIT_ERROR_MEMORY : WHIT_OK);
     assert_int_equal(strstr(messages.text, ": out of memory for its threads") != NULL, on_cpu);

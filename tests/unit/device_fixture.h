@@ -13,9 +13,9 @@
 static inline struct device *device_open(struct messages *told, bool validation)
 {
     whit_log log = messages_log(told);
-    struct device_params params = {.validation = validation};
+    whit_device_params params = {.validation = validation};
     struct device *device;
-    whit_result result = device_create(&log, &params, &device);
+    whit_result result = device_create(&log, &params, NULL, &device);
     const char *no_device = getenv("WHIT_TEST_NO_DEVICE");
     if (result == WHIT_ERROR_NO_DEVICE && no_device && strcmp(no_device, "skip") == 0)
         skip();

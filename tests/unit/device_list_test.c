@@ -27,8 +27,8 @@ static int free_list(void **state)
 static whit_result create_with(const char *selector, struct messages *told, struct device **device)
 {
     whit_log log = messages_log(told);
-    struct device_params params = {.selector = selector};
-    return device_create(&log, &params, device);
+    whit_device_params params = {.selector = selector};
+    return device_create(&log, &params, NULL, device);
 }
 
 TEST(lists_what_there_is)
@@ -164,9 +164,9 @@ TEST(no_driver_says_what_to_install)
 
 TEST(silent_log_is_fine)
 {
-    struct device_params params = {.selector = "no such device"};
+    whit_device_params params = {.selector = "no such device"};
     struct device *device;
-    assert_int_equal(device_create(NULL, &params, &device), WHIT_ERROR_NO_DEVICE);
+    assert_int_equal(device_create(NULL, &params, NULL, &device), WHIT_ERROR_NO_DEVICE);
     assert_null(device);
     device_destroy(NULL);
 }

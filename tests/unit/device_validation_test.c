@@ -99,10 +99,10 @@ TEST(environment_turns_it_on)
 TEST(absence_is_an_error)
 {
     whit_log log = messages_log(&messages);
-    struct device_params params = {.validation = true};
+    whit_device_params params = {.validation = true};
     struct device *device;
     setenv("VK_LAYER_PATH", "/nonexistent", 1);
-    assert_int_equal(device_create(&log, &params, &device), WHIT_ERROR_DEVICE);
+    assert_int_equal(device_create(&log, &params, NULL, &device), WHIT_ERROR_DEVICE);
     assert_null(device);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.text, "vulkan-validationlayers"));

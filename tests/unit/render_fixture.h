@@ -42,7 +42,7 @@ static inline int fixture_end(int failed)
 static inline struct device *fixture_device(void)
 {
     if (!fixture_shared) {
-        assert_int_equal(device_create(&fixture_log, NULL, &fixture_shared), WHIT_OK);
+        assert_int_equal(device_create(&fixture_log, NULL, NULL, &fixture_shared), WHIT_OK);
         device_keep_pipelines(fixture_shared);
         unit_at_end(fixture_end);
     }

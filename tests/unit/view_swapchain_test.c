@@ -40,9 +40,8 @@ static whit_result shop_open(struct shop *shop, bool validation)
     whit_result result = window_create(&log, &window, &shop->window);
     if (result != WHIT_OK)
         return result;
-    const struct device_params device = {.validation = validation,
-                                         .surface = window_surface(shop->window)};
-    result = device_create(&log, &device, &shop->device);
+    const whit_device_params device = {.validation = validation};
+    result = device_create(&log, &device, window_surface(shop->window), &shop->device);
     if (result == WHIT_OK)
         result = swapchain_create(shop->device, &chain, &shop->swapchain);
     if (result == WHIT_OK)
