@@ -196,11 +196,10 @@ whit_result instance_create(struct device *device)
         result = find_validation(device);
     if (result == WHIT_OK && device->validation)
         result = find_extensions(device, validation_layer, &features_name, 1, &features);
-    if (result == WHIT_OK && device->validation && (!features || !(found & 1u))) {
-        log_error(&device->log, "validation was asked for, but %s lacks what whit needs of it",
-                  validation_layer);
-        result = WHIT_ERROR_DEVICE;
-    }
+    if (result == WHIT_OK && device->validation && (!features || !(found & 1u)))
+        result =
+            refuse(device, "validation was asked for, but its layer cannot be used",
+                   "it lacks VK_EXT_validation_features or VK_EXT_debug_utils", WHIT_ERROR_DEVICE);
     if (result == WHIT_OK)
         result = make_instance(device, found, names, 2, features != 0);
     if (result != WHIT_OK)
