@@ -68,7 +68,8 @@ static void add_file(const char *path)
 
 static int visit(const char *path, const struct stat *info, int kind, struct FTW *where)
 {
-    static const char *const models[] = {".obj", ".gltf", ".glb", ".ply", ".stl"};
+    static const char *const models[] = {".obj", ".gltf", ".glb", ".ply", ".stl",
+                                         ".fbx", ".dae",  ".3mf", ".off"};
     (void)info;
     const char *dot = strrchr(path + where->base, '.');
     if (kind != FTW_F || !dot)
@@ -296,6 +297,8 @@ static bool read_arguments(struct sheet *sheet, int argc, char **argv)
             if (nftw(argv[i], visit, 16, FTW_PHYS) != 0)
                 return false;
             qsort(files + first, file_count - first, sizeof *files, compare_paths);
+            if (file_count == first)
+                fprintf(stderr, "%s: there is no scene and no model in it\n", argv[i]);
         } else {
             add_file(argv[i]);
         }

@@ -43,7 +43,7 @@ box grey 'Kd 0.7 0.7 0.7'
 box glow 'Ke 40 40 40'
 box lamp 'Ke 1 1 1'
 box coal 'Kd 0 0 0'
-# Nor does one that the file's camera sees from far away.
+# The camera of this file sees a box from far away.
 printf '{ "objects": [{ "shape": "box" }], "camera": { "eye": [0, 4, 40], "target": [0, 0, 0] } }' >"$OUT/far.json"
 # A flat board shows no relief, in whichever direction it faces.
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\n' >"$OUT/board.obj"
@@ -60,5 +60,10 @@ sheet 1 "2 scenes, 1 failed" "$OUT/far.json" "$OUT/grey.obj" --check yes
 check "a box far away is too small" grep -Eq ' [0-4]\.[0-9] % covered .* WRONG .*far.json$' "$OUT/stdout"
 sheet 0 "2 scenes, 0 failed" "$OUT/board.obj" "$OUT/grey.obj" --check yes
 check "the board is flat" grep -q ' flat relief .*board.obj$' "$OUT/stdout"
+mkdir "$OUT/empty" "$OUT/models"
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >"$OUT/models/a.off" && cp "$OUT/grey.obj" "$OUT/grey.mtl" "$OUT/models/"
+sheet 0 "2 scenes, 0 failed" "$OUT/models"
+expect 2 "a folder without models" "$OUT/empty" -o "$OUT/sheet.png"
+check "is named" grep -q "empty: there is no scene and no model in it" "$OUT/stderr"
 expect 2 "no output" "$OUT/scenes"
 finish
