@@ -284,8 +284,7 @@ bool spatial_apply(struct build_record *records, const struct build_range *range
         if (side == SIDE_BOTH) {
             bool has_low = record_half(&records[i], plane, false, triangles, &low);
             bool has_high = record_half(&records[i], plane, true, triangles, &high);
-            /* A triangle whose part on one side is empty by rounding goes to the other side whole.
-             */
+            /* A triangle with an empty part on one side, by rounding, goes whole to the other. */
             if (!has_high || (has_low && end == range->count + range->spare))
                 side = SIDE_LEFT;
             else if (!has_low)

@@ -360,8 +360,7 @@ static const struct aiScene *import(struct library *library)
             return NULL;
         }
     }
-    /* Without this, assimp makes a mesh of the skeleton, or of the nodes, of a file without meshes.
-     */
+    /* assimp would draw the skeleton or the nodes of a file without meshes. */
     struct aiPropertyStore *wants = aiCreatePropertyStore();
     aiSetImportPropertyInteger(wants, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
     const struct aiScene *scene =

@@ -131,9 +131,10 @@ static void drop(struct aiScene *scene, enum import_kind kind, struct import_cou
             mesh->mNumUVComponents[set] = 2;
     }
     counts->animations = scene->mNumAnimations;
-    /* assimp 5.2.4 gives pictures of a 3MF that it has freed, most often a thumbnail. */
-    if (kind == IMPORT_3MF)
+    if (kind == IMPORT_3MF) { /* assimp 5.2.4 has freed its pictures, most often a thumbnail */
+        counts->pictures = scene->mNumTextures;
         scene->mNumTextures = 0;
+    }
     counts->lights = scene->mNumLights;
     counts->cameras = scene->mNumCameras;
     scene->mNumAnimations = 0;

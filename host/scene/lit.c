@@ -96,9 +96,9 @@ static void pick_texel(const struct scene *scene, const struct hit *hit, enum sc
     memcpy(rgba, texture->rgba + 4 * ((size_t)at[1] * texture->width + at[0]), 4);
 }
 
-/* Whether all rays stop at a hit. They pass glass, and where a surface is more transparent than
-   opaque, as between the leaves of a picture of leaves. The exporters of some programs call every
-   material transparent, with an opacity of 1. */
+/* Whether all rays stop at a hit. They pass glass, and they pass points with an opacity below one
+   half, or below the cutoff of a mask. A material that its file calls transparent may still be
+   opaque at every point, since some exporters call all materials so. */
 static bool is_solid(const struct scene *scene, const struct hit *hit)
 {
     const struct scene_material *m = hit->material;

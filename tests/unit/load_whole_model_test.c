@@ -406,6 +406,7 @@ TEST_IN(units_of_3mf, fixture_begin, fixture_end)
     }
     assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[0], 1, 1e-6);
     assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[2], 0, 1e-6);
+    assert_true(fixture_noted(*state, "a.3mf: 1 picture is not read"));
 }
 
 /* --- parts that are not read ---------------------------------------------------------------- */
