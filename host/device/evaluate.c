@@ -1,3 +1,4 @@
+#include "device/evaluate_loops.h"
 #include "device/evaluate_memory.h"
 
 #include <stdlib.h>
@@ -272,11 +273,60 @@ static void put_merge(struct evaluation *e, struct instance *in)
         e->failed = true;
 }
 
+static void walk_words(struct evaluation *e, struct instance *in, uint32_t first, uint32_t end);
+
+/* Forgets what an earlier pass over the words [first, end) made of their ids. */
+static void forget(struct evaluation *e, uint32_t first, uint32_t end)
+{
+    for (uint32_t at = first; at < end; at += spv_length(e->words + at)) {
+        const uint32_t *words = e->words + at;
+        uint32_t op = spv_op(words);
+        bool has_result =
+            op == OP_FUNCTION_PARAMETER || op == OP_FUNCTION_CALL || spirv_shape(op).result;
+        struct source_id *source = &e->source[op == OP_LABEL ? words[1]
+                                              : has_result   ? words[2]
+                                                             : 0];
+        source->to = source->holds = source->chosen = source->end_label = 0;
+        source->incoming = source->header = 0;
+        source->reached = source->visited = source->is_merge = source->is_continue = false;
+    }
+}
+
+/* Writes the iterations of a loop one after the other. The last pass over its words only decides
+   the test that leaves it. */
+static void unroll(struct evaluation *e, struct instance *in, const struct counted_loop *loop)
+{
+    struct source_id *header = &e->source[loop->header];
+    uint32_t outer = in->unrolled;
+    in->unrolled = loop->header;
+    header->begins_loop = false;
+    evaluate_repeat_writes(e, loop->first, loop->end);
+    for (uint32_t i = 0; !e->failed && i <= loop->trips; ++i) {
+        forget(e, loop->first, loop->end);
+        header->reached = true;
+        header->incoming = 1;
+        e->delayed = loop->header;
+        e->source[loop->variable].holds = constant_id(e, loop->type, loop->values[i]);
+        walk_words(e, in, loop->first, loop->end);
+    }
+    e->source[loop->variable].holds = 0;
+    header->begins_loop = true;
+    in->unrolled = outer;
+    in->resume_at = loop->end;
+}
+
 static void branch_to(struct evaluation *e, struct instance *in, uint32_t target)
 {
     bool is_loop = in->merge && spv_op(e->words + in->merge) == OP_LOOP_MERGE;
+    struct counted_loop loop;
     e->source[in->label].end_label = e->label;
     e->source[in->label].chosen = target;
+    if (target == in->unrolled)
+        return; /* the next iteration continues the current output block */
+    if (e->source[target].begins_loop && evaluate_counted_loop(e, target, &loop)) {
+        unroll(e, in, &loop);
+        return;
+    }
     if (is_loop)
         put_merge(e, in);
     in->merge = 0;
@@ -410,21 +460,13 @@ static uint32_t end_call(struct evaluation *e, struct instance *in)
     return value;
 }
 
-/* Forgets what an earlier inlining made of the function's ids. */
-static void forget(struct evaluation *e, uint32_t function_at)
+/* The word of the OpFunctionEnd of a function. */
+static uint32_t end_of(const struct evaluation *e, uint32_t function_at)
 {
-    const uint32_t *at = e->words + function_at;
-    for (; spv_op(at) != OP_FUNCTION_END; at += spv_length(at)) {
-        struct spirv_shape shape = spirv_shape(spv_op(at));
-        uint32_t id = spv_op(at) == OP_LABEL                                  ? at[1]
-                      : spv_op(at) == OP_FUNCTION_PARAMETER || (shape.result) ? at[2]
-                      : spv_op(at) == OP_FUNCTION_CALL                        ? at[2]
-                                                                              : 0;
-        struct source_id *source = &e->source[id];
-        source->to = source->holds = source->chosen = source->end_label = 0;
-        source->incoming = source->header = 0;
-        source->reached = source->visited = source->is_merge = source->is_continue = false;
-    }
+    uint32_t at = function_at;
+    while (spv_op(e->words + at) != OP_FUNCTION_END)
+        at += spv_length(e->words + at);
+    return at;
 }
 
 static void walk_call(struct evaluation *e, struct instance *caller, const uint32_t *call)
@@ -440,7 +482,7 @@ static void walk_call(struct evaluation *e, struct instance *caller, const uint3
         e->failed = true;
         return;
     }
-    forget(e, function_at);
+    forget(e, function_at, end_of(e, function_at));
     evaluate_bind_parameters(e, call, function_at);
     if (e->source[call[3]].returns > 1)
         begin_wrap(e, &in);
@@ -533,6 +575,10 @@ static void walk_instruction(struct evaluation *e, struct instance *in, const ui
         walk_call(e, in, at);
         return;
     case OP_LOOP_MERGE:
+        if (in->label == in->unrolled)
+            return;
+        in->merge = (uint32_t)(at - e->words);
+        return;
     case OP_SELECTION_MERGE:
         in->merge = (uint32_t)(at - e->words);
         return;
@@ -554,22 +600,30 @@ static void walk_instruction(struct evaluation *e, struct instance *in, const ui
     }
 }
 
+static void walk_words(struct evaluation *e, struct instance *in, uint32_t first, uint32_t end)
+{
+    for (uint32_t at = first; !e->failed && at < end;) {
+        const uint32_t *instruction = e->words + at;
+        in->resume_at = 0;
+        if (!in->skips || spv_op(instruction) == OP_LABEL)
+            walk_instruction(e, in, instruction);
+        at = in->resume_at ? in->resume_at : at + spv_length(instruction);
+    }
+}
+
 /* A call's first block continues the caller's current block. */
 static void walk_function(struct evaluation *e, struct instance *in, uint32_t function_at)
 {
-    const uint32_t *at = e->words + function_at;
-    while (spv_op(at) != OP_LABEL && spv_op(at) != OP_FUNCTION_END)
-        at += spv_length(at);
-    if (spv_op(at) != OP_LABEL) {
+    uint32_t at = function_at, end = end_of(e, function_at);
+    while (spv_op(e->words + at) != OP_LABEL && at < end)
+        at += spv_length(e->words + at);
+    if (at == end) {
         e->failed = true;
         return;
     }
-    in->label = at[1];
+    in->label = e->words[at + 1];
     e->source[in->label].reached = e->source[in->label].visited = true;
-    for (at += 2; !e->failed && spv_op(at) != OP_FUNCTION_END; at += spv_length(at)) {
-        if (!in->skips || spv_op(at) == OP_LABEL)
-            walk_instruction(e, in, at);
-    }
+    walk_words(e, in, at + 2, end);
 }
 
 /* ---- The module ---- */
@@ -605,10 +659,16 @@ static bool begin(struct evaluation *e)
         e->words[3] > SPIRV_BOUND_MAX)
         return false;
     e->source_count = e->result_count = e->result_capacity = e->words[3];
-    e->source = array_alloc_zeroed(e->source_count, sizeof *e->source);
-    e->results = array_alloc_zeroed(e->source_count, sizeof *e->results);
+    e->source = array_alloc(e->source_count, sizeof *e->source);
+    e->results = array_alloc(e->source_count, sizeof *e->results);
     e->starved = !e->source || !e->results;
-    return !e->starved;
+    if (e->starved)
+        return false;
+    /* These arrays take megabytes. A page that calloc() zeroed, that is first read and then
+       written, faults twice; a page that is written faults once. */
+    memset(e->source, 0, e->source_count * sizeof *e->source);
+    memset(e->results, 0, e->source_count * sizeof *e->results);
+    return true;
 }
 
 whit_result spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,

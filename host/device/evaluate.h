@@ -1,13 +1,14 @@
 /* Partial evaluation of a kernel: its specialization constants are filled in, its calls inlined,
-   and what is then never executed or used is left out. This takes one pass over the words of the
-   module; a library of general passes takes a hundred times as long. Floats are never computed and
-   nothing is moved or merged, so results keep their bits.
+   short loops unrolled, and what is then never executed or used is left out. This takes one pass
+   over the words of the module; a library of general passes takes a hundred times as long. Floats
+   are never computed and nothing is moved or merged, so results keep their bits.
 
    It handles the SPIR-V that glslang writes: structured, blocks in the order of their nesting, one
    entry point, no recursion. Any other module is refused.
 
    evaluate_read.c finds what the module contains, evaluate.c walks through the functions and
-   decides branches, evaluate_memory.c follows what variables hold, evaluate_output.c leaves out
+   decides branches, evaluate_loops.c finds loops to unroll, evaluate_memory.c follows what
+   variables hold, evaluate_output.c leaves out
    what nothing uses and writes the module. */
 #ifndef DEVICE_EVALUATE_H
 #define DEVICE_EVALUATE_H
@@ -72,6 +73,8 @@ struct instance {
     bool skips;           /* leaves out instructions until the next block that is reached */
     uint32_t wrap, wrap_label, label_before; /* see begin_wrap; wrap: its first word in `body` */
     uint32_t loops[16], loop_depth;          /* input ids: merge blocks of the enclosing loops */
+    uint32_t unrolled;  /* header of the innermost loop that is being unrolled; 0: none */
+    uint32_t resume_at; /* input word behind a loop that was unrolled just now; 0: none */
 };
 
 struct evaluation {

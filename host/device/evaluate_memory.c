@@ -59,8 +59,15 @@ void evaluate_count_writes(struct evaluation *e)
     }
 }
 
-/* The output id of the value behind `pointer`, an input id; 0: not known. */
-static uint32_t held_by(const struct evaluation *e, uint32_t pointer)
+void evaluate_repeat_writes(struct evaluation *e, uint32_t first, uint32_t end)
+{
+    for (uint32_t at = first; at < end; at += spv_length(e->words + at)) {
+        if (spv_op(e->words + at) == OP_STORE)
+            e->source[root_of(e, e->words[at + 1])].writes = 2;
+    }
+}
+
+uint32_t evaluate_held(const struct evaluation *e, uint32_t pointer)
 {
     const struct source_id *source = &e->source[pointer];
     const struct result_id *variable = &e->results[source->to];
@@ -74,7 +81,7 @@ static uint32_t held_by(const struct evaluation *e, uint32_t pointer)
 /* Replaces the load of a part by an extract from the whole value, where that is known. */
 static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t *chain)
 {
-    uint32_t whole = held_by(e, chain[3]), length = spv_length(chain);
+    uint32_t whole = evaluate_held(e, chain[3]), length = spv_length(chain);
     if (!whole)
         return false;
     for (uint32_t i = 4; i < length; ++i) {
@@ -93,7 +100,7 @@ static bool load_part(struct evaluation *e, const uint32_t *load, const uint32_t
 
 void evaluate_load(struct evaluation *e, const uint32_t *load)
 {
-    uint32_t pointer = load[3], held = held_by(e, pointer);
+    uint32_t pointer = load[3], held = evaluate_held(e, pointer);
     if (held) {
         e->source[load[2]].to = held;
         return;
@@ -147,7 +154,7 @@ void evaluate_bind_parameters(struct evaluation *e, const uint32_t *call, uint32
         struct source_id *parameter = &e->source[at[2]];
         uint32_t to = evaluate_id(e, call[i]), held = 0;
         if (e->results[to].base && parameter->writes == 0 && !is_shared(e, call, i))
-            held = held_by(e, call[i]);
+            held = evaluate_held(e, call[i]);
         parameter->to = to;
         parameter->holds = held;
         at += spv_length(at);

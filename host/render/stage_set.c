@@ -53,10 +53,11 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         if (job->wanted[i])
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
+    /* Without packets, the shadow rays of all generations have the same code. */
+    share_kernel(job, STAGE_SHADOW, STAGE_SHADOW_LATER);
     if (!few)
         return;
     share_kernel(job, STAGE_CAMERA, STAGE_CLOSEST);
-    share_kernel(job, STAGE_SHADOW, STAGE_SHADOW_LATER);
     share_kernel(job, STAGE_RESOLVE, STAGE_RESOLVE_LATER);
 }
 

@@ -1,6 +1,6 @@
-/* The time that the stages of a picture take. Time stamps around each dispatch would slow small
-   tiles down on drivers that end a batch of work for each stamp (lavapipe). So only some tiles are
-   timed, and the time of an item there stands for all items. */
+/* The time that the stages of a picture take, where it is asked for. Time stamps around each
+   dispatch would slow small tiles down on drivers that end a batch of work for each stamp
+   (lavapipe). So only some tiles are timed, and the time of an item there stands for all items. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -22,8 +22,10 @@ void stage_times_begin(struct target *target)
     struct stage_times *times = &target->stages.times;
     uint32_t tile = times->tiles;
     bool scattered = tile * 0x9e3779b9u < UINT32_MAX / TIMED_ONE_IN;
-    *times = (struct stage_times){
-        .tiles = tile + 1, .on = tile == 1 || (tile > 1 && scattered), .row = RENDER_STAGE_COUNT};
+    bool timed = tile == 1 || (tile > 1 && scattered);
+    *times = (struct stage_times){.tiles = tile + 1,
+                                  .on = timed && target->renderer->params.time_stages,
+                                  .row = RENDER_STAGE_COUNT};
 }
 
 void stage_times_submission(struct target *target)

@@ -181,7 +181,7 @@ static whit_result warm_up(struct session *session, bool few_pixels)
     params.width = WARM_WIDTH;
     params.height = WARM_HEIGHT;
     params.sampling.count = 1;
-    params.many_pictures = true;
+    params.many_pictures = params.time_stages = true;
     params.few_pixels = few_pixels;
     params.keep_unread = true; /* later versions and probes may read what this one does not */
     params.shader = session->shader ? session->shader->shader : NULL;

@@ -122,6 +122,9 @@ typedef struct whit_renderer_params {
        slower, for pictures that are often abandoned after their first step. The picture is the
        same. */
     bool few_pixels;
+    /* Measures whit_stats.stages[].ms and whit_stats.shares, which on a CPU takes up to a tenth of
+       the picture's time. */
+    bool time_stages;
     uint32_t tile_size; /* pixels on a side, 16..1024; 0: chosen by measured time */
     const volatile bool *cancel;
     /* Called from the rendering thread with the share of the picture that is done, 0..1; may be
@@ -284,7 +287,7 @@ typedef struct whit_stage {
     char name[24];
     uint64_t rays; /* items that the stage worked on: rays; hits in shading stages, sums in the
                       stage that adds them up */
-    double ms;     /* < 0: not measured */
+    double ms;     /* < 0: not measured, as without params.time_stages */
 } whit_stage;
 #define WHIT_STAGES 14
 

@@ -13,8 +13,9 @@ expect 0 "of a small picture" scene "$W" --kernels --size 64x48 --json
 check "one for all materials, and for all generations" \
     test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = "closest, shade, shadow later, resolve later"
 expect 0 "as JSON" scene "$W" --kernels --size 480x320 --json
-check "all stages of whitted" test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = \
-    "camera, closest, shade, shade glass, shadow, shadow later, resolve, resolve later"
+check "all stages of whitted, with one kernel for all shadow rays, which go without packets" \
+    test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = \
+    "camera, closest, shade, shade glass, shadow later, resolve, resolve later"
 check "each was made" jq -e 'all(.kernels[]; .instructions > 100 and .create_ms > 0)' "$OUT/stdout"
 sum=$(jq '[.kernels[].instructions] | add' "$OUT/stdout")
 shows "the picture" "^  $sum of " render "$W" -o "$OUT/w.pfm" --size 480x320 --stats text --quiet

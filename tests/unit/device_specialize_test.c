@@ -116,6 +116,31 @@ TEST(what_is_switched_off_is_gone)
     assert_true(of_plain < of_all * 9 / 10);
 }
 
+/* Loops left with the control Unroll. */
+static uint32_t loops_to_unroll(enum kernel kernel, const struct gpu_spec *spec)
+{
+    size_t count = 0;
+    uint32_t *words = filled_in(kernel, spec, &count), loops = 0;
+    for (size_t at = SPV_HEADER_WORDS; at < count; at += spv_length(words + at))
+        loops += spv_op(words + at) == OP_LOOP_MERGE && (words[at + 3] & 1);
+    free(words);
+    return loops;
+}
+
+TEST(loops_of_one_and_two_iterations_are_unrolled)
+{
+    static const enum kernel traced[] = {KERNEL_CLOSEST, KERNEL_SHADOW};
+    for (size_t i = 0; i < sizeof traced / sizeof *traced; ++i) {
+        struct gpu_spec spec = GPU_SPEC_DEFAULTS;
+        spec.SPEC_PACKET_RAYS = 1;
+        assert_int_equal(loops_to_unroll(traced[i], &spec), 0);
+        spec.SPEC_PACKET_RAYS = 2;
+        assert_int_equal(loops_to_unroll(traced[i], &spec), 0);
+        spec.SPEC_PACKET_RAYS = 4;
+        assert_true(loops_to_unroll(traced[i], &spec) > 2);
+    }
+}
+
 TEST(nonsense_is_left_to_the_driver)
 {
     uint32_t words[64], *out = NULL;

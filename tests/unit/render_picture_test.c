@@ -303,8 +303,11 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
 static void check_shares(const whit_accel_params *accel)
 {
     enum { WIDTH = 64, HEIGHT = 32 };
-    const whit_renderer_params params = {
-        .width = WIDTH, .height = HEIGHT, .tile_size = 32, .classes = WHIT_CLASSES_MANY};
+    const whit_renderer_params params = {.width = WIDTH,
+                                         .height = HEIGHT,
+                                         .tile_size = 32,
+                                         .classes = WHIT_CLASSES_MANY,
+                                         .time_stages = true};
     struct fixture f = fixture_open(mixed_scene(), accel, &params);
     struct picture picture = render_picture(&f);
     const whit_stats *stats = &picture.stats;
@@ -341,12 +344,26 @@ TEST(shares_are_those_of_hits)
     check_shares(&flat);
 }
 
+TEST(stages_are_timed_only_where_asked)
+{
+    whit_renderer_params params = {.width = 64, .height = 32, .tile_size = 32};
+    for (int timed = 0; timed < 2; ++timed) {
+        params.time_stages = timed == 1;
+        struct picture picture = picture_of(mixed_scene(), NULL, &params);
+        const whit_stage *camera = &picture.stats.stages[RENDER_STAGE_CAMERA];
+        assert_int_equal(camera->rays, 64 * 32);
+        assert_int_equal(camera->ms > 0.0, timed == 1);
+        assert_int_equal(picture.stats.share_count > 0, timed == 1);
+        picture_finish(&picture);
+    }
+}
+
 /* With two segments lists are filled from both ends. The hits of camera rays are counted only after
    later generations of rays have listed theirs, and must still be there. */
 TEST(shares_are_the_same_by_one_segment_and_by_two)
 {
     whit_renderer_params params = {
-        .width = 64, .height = 32, .tile_size = 32, .depth = 4, .segments = 1};
+        .width = 64, .height = 32, .tile_size = 32, .depth = 4, .segments = 1, .time_stages = true};
     struct picture one = picture_of(mixed_scene(), NULL, &params);
     params.segments = 2;
     struct picture two = picture_of(mixed_scene(), NULL, &params);

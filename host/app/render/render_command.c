@@ -172,6 +172,7 @@ whit_result render_create(const struct job *job, const struct render_request *re
     whit_renderer_params params = job_picture(job);
     params.many_pictures = request->frames.given || request->many;
     params.keep_unread = request->keep_unread;
+    params.time_stages = job->settings.stats != STATS_NONE;
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count |= request->counters;
