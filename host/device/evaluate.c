@@ -213,11 +213,12 @@ static void end_return(struct evaluation *e, struct instance *in)
     EMIT(e, &e->body, OP_BRANCH, in->after);
 }
 
-static void put_label(struct evaluation *e, uint32_t id)
+static void put_label(struct evaluation *e, uint32_t id, bool follows)
 {
     EMIT(e, &e->body, OP_LABEL, id);
     e->label = id;
-    ++e->block;
+    e->goes_to = 0;
+    evaluate_enter_block(e, id, follows);
 }
 
 static void begin_block(struct evaluation *e, struct instance *in, uint32_t label)
@@ -235,9 +236,14 @@ static void begin_block(struct evaluation *e, struct instance *in, uint32_t labe
         block->visited = true;
         return;
     }
+    bool follows = e->goes_to == label && block->incoming == 1;
     end_delayed(e);
     end_return(e, in);
-    put_label(e, evaluate_id(e, label));
+    if (block->begins_loop && block->reached) {
+        evaluate_begin_loop(e, label);
+        follows = false;
+    }
+    put_label(e, evaluate_id(e, label), follows);
     block->visited = true;
     if (in->skips && block->is_continue)
         EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, block->header));
@@ -263,8 +269,10 @@ static void put_merge(struct evaluation *e, struct instance *in)
     in->merge = 0;
     evaluate_copy(e, merge);
     e->source[merge[1]].is_merge = true;
-    if (spv_op(merge) != OP_LOOP_MERGE)
+    if (spv_op(merge) != OP_LOOP_MERGE) {
+        evaluate_begin_construct(e, evaluate_id(e, merge[1]));
         return;
+    }
     e->source[merge[2]].is_continue = true;
     e->source[merge[2]].header = in->label;
     if (in->loop_depth < sizeof in->loops / sizeof *in->loops)
@@ -321,6 +329,7 @@ static void branch_to(struct evaluation *e, struct instance *in, uint32_t target
     struct counted_loop loop;
     e->source[in->label].end_label = e->label;
     e->source[in->label].chosen = target;
+    e->goes_to = target;
     if (target == in->unrolled)
         return; /* the next iteration continues the current output block */
     if (e->source[target].begins_loop && evaluate_counted_loop(e, target, &loop)) {
@@ -346,6 +355,7 @@ static void branch_either(struct evaluation *e, struct instance *in, const uint3
         return;
     }
     e->source[in->label].end_label = e->label;
+    e->goes_to = 0;
     put_merge(e, in);
     evaluate_copy(e, at);
     enter(e, at[2]);
@@ -356,6 +366,7 @@ static void branch_either(struct evaluation *e, struct instance *in, const uint3
 static void branch_among(struct evaluation *e, struct instance *in, const uint32_t *at)
 {
     e->source[in->label].end_label = e->label;
+    e->goes_to = 0;
     put_merge(e, in);
     evaluate_copy(e, at);
     enter(e, at[2]);
@@ -429,13 +440,15 @@ static void begin_wrap(struct evaluation *e, struct instance *in)
     in->wrap_label = new_id(e);
     EMIT(e, &e->body, OP_SELECTION_MERGE, in->after, 0);
     EMIT(e, &e->body, OP_SWITCH, selector, in->wrap_label);
-    put_label(e, in->wrap_label);
+    evaluate_begin_construct(e, in->after);
+    put_label(e, in->wrap_label, false);
 }
 
 static void take_back_wrap(struct evaluation *e, const struct instance *in)
 {
     for (uint32_t i = 0; i < WRAP_WORDS; ++i)
         e->body.words[in->wrap + i] = spv_head(OP_NOP, 1);
+    e->constructs.count -= 2;
     e->results[in->wrap_label].same_as = in->label_before;
 }
 
@@ -452,7 +465,7 @@ static uint32_t end_call(struct evaluation *e, struct instance *in)
         return in->value;
     }
     end_return(e, in);
-    put_label(e, in->after);
+    put_label(e, in->after, false);
     if (!in->result_type)
         return 0;
     uint32_t value = new_id(e);
@@ -647,7 +660,7 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
     evaluate_count_writes(e);
     e->label = new_id(e);
     e->first_label = e->label;
-    e->block = 1;
+    evaluate_enter_block(e, e->label, false);
     if (!e->failed)
         walk_function(e, &in, e->source[e->entry].at);
 }
@@ -697,5 +710,7 @@ whit_result spirv_evaluate(const uint32_t *words, size_t word_count, const uint3
     free(e.constants.words);
     free(e.variables.words);
     free(e.body.words);
+    free(e.open.words);
+    free(e.constructs.words);
     return *out ? WHIT_OK : e.starved ? WHIT_ERROR_MEMORY : WHIT_ERROR_INPUT;
 }

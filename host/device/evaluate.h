@@ -46,8 +46,8 @@ struct result_id {
     uint32_t value; /* known value, of bools and 32-bit integers */
     uint32_t base; /* of a pointer: the variable with storage class Function that it points into; 0:
                       none */
-    uint32_t stored; /* of such a variable: id of its value, in block number `block` */
-    uint32_t block;
+    uint32_t stored; /* of such a variable: id of its value while open[depth] is `region` */
+    uint32_t region, depth;
     uint32_t same_as; /* of labels that take_back_wrap removed: the block that goes on instead */
     bool known, exact, live;
 };
@@ -87,9 +87,13 @@ struct evaluation {
     struct word_list globals, variables, body;
     struct word_list constants; /* ids of constants whose value is known */
     uint32_t uint_type;
-    uint32_t first_label; /* of the output function */
-    uint32_t block;       /* number of the current output block */
-    uint32_t label;       /* of the current output block */
+    uint32_t first_label;  /* of the output function */
+    uint32_t label;        /* of the current output block */
+    uint32_t goes_to;      /* input id of the block to which the last branch goes, if it is the only
+                              one; 0: none */
+    struct word_list open; /* numbers of the regions around the current output block */
+    struct word_list constructs; /* of those around it: label of the merge block, open.count */
+    uint32_t regions;            /* numbers given so far */
     uint32_t delayed; /* input id of the block that the last one branches to, with that branch not
                          written yet; 0: none */
     bool failed;      /* the module is refused, or memory ran out */

@@ -67,15 +67,86 @@ void evaluate_repeat_writes(struct evaluation *e, uint32_t first, uint32_t end)
     }
 }
 
+/* ---- Regions ---- */
+
+void evaluate_begin_construct(struct evaluation *e, uint32_t merge)
+{
+    evaluate_push(e, &e->constructs, merge);
+    evaluate_push(e, &e->constructs, e->open.count);
+}
+
+void evaluate_enter_block(struct evaluation *e, uint32_t label, bool follows)
+{
+    struct word_list *constructs = &e->constructs;
+    for (uint32_t i = constructs->count; i > 0; i -= 2) {
+        if (constructs->words[i - 2] == label) {
+            e->open.count = constructs->words[i - 1];
+            constructs->count = i - 2;
+            return;
+        }
+    }
+    if (follows)
+        return;
+    e->open.count = constructs->count ? constructs->words[constructs->count - 1] : 0;
+    evaluate_push(e, &e->open, ++e->regions);
+}
+
+static void forget_value(struct evaluation *e, uint32_t pointer)
+{
+    uint32_t to = e->source[root_of(e, pointer)].to;
+    if (to)
+        e->results[e->results[to].base].stored = 0;
+}
+
+/* Forgets the variables that the called function writes through its parameters. */
+static void forget_arguments(struct evaluation *e, const uint32_t *call)
+{
+    const uint32_t *at = e->words + e->source[call[3]].at;
+    at += spv_length(at);
+    for (uint32_t i = 4; i < spv_length(call) && spv_op(at) == OP_FUNCTION_PARAMETER; ++i) {
+        if (e->source[at[2]].writes > 0)
+            forget_value(e, call[i]);
+        at += spv_length(at);
+    }
+}
+
+void evaluate_begin_loop(struct evaluation *e, uint32_t header)
+{
+    uint32_t at = e->source[header].at, end = e->count;
+    for (; at < end; at += spv_length(e->words + at)) {
+        const uint32_t *instruction = e->words + at;
+        uint32_t op = spv_op(instruction);
+        if (op == OP_LOOP_MERGE && end == e->count) {
+            end = e->source[instruction[1]].at;
+            evaluate_begin_construct(e, evaluate_id(e, instruction[1]));
+        } else if (op == OP_STORE) {
+            forget_value(e, instruction[1]);
+        } else if (op == OP_FUNCTION_CALL) {
+            forget_arguments(e, instruction);
+        }
+    }
+}
+
+/* ---- Loads and stores ---- */
+
 uint32_t evaluate_held(const struct evaluation *e, uint32_t pointer)
 {
     const struct source_id *source = &e->source[pointer];
     const struct result_id *variable = &e->results[source->to];
     if (source->holds)
         return source->holds;
-    return source->to && variable->base == source->to && variable->block == e->block
-               ? variable->stored
-               : 0;
+    bool known = source->to && variable->base == source->to && variable->depth < e->open.count &&
+                 e->open.words[variable->depth] == variable->region;
+    return known ? variable->stored : 0;
+}
+
+/* Notes that a variable holds `value`, both output ids, from here on. */
+static void hold(struct evaluation *e, uint32_t variable, uint32_t value)
+{
+    struct result_id *result = &e->results[variable];
+    result->stored = value;
+    result->depth = e->open.count - 1;
+    result->region = e->open.words[result->depth];
 }
 
 /* Replaces the load of a part by an extract from the whole value, where that is known. */
@@ -110,10 +181,8 @@ void evaluate_load(struct evaluation *e, const uint32_t *load)
         return;
     evaluate_copy(e, load);
     uint32_t to = evaluate_id(e, pointer);
-    if (!e->failed && e->results[to].base == to) {
-        e->results[to].stored = e->source[load[2]].to;
-        e->results[to].block = e->block;
-    }
+    if (!e->failed && e->results[to].base == to)
+        hold(e, to, e->source[load[2]].to);
 }
 
 void evaluate_store(struct evaluation *e, const uint32_t *store)
@@ -122,9 +191,8 @@ void evaluate_store(struct evaluation *e, const uint32_t *store)
     evaluate_copy(e, store);
     if (e->failed || !e->results[to].base)
         return;
-    struct result_id *variable = &e->results[e->results[to].base];
-    variable->stored = value;
-    variable->block = e->results[to].base == to ? e->block : 0;
+    uint32_t variable = e->results[to].base;
+    hold(e, variable, variable == to ? value : 0);
     /* The variable is written nowhere else, so every load of it gives this value. */
     if (op_at(e, store[1]) == OP_VARIABLE && e->source[store[1]].writes == 1 &&
         e->results[value].known)
