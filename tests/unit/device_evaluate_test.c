@@ -1,4 +1,5 @@
 /* Kernels that are evaluated before the driver sees them compute what C computes. */
+#include "device/specialize.h"
 #include "device_fixture.h"
 
 #include "device_evaluate.h"
@@ -132,12 +133,24 @@ static uint32_t remembered(uint32_t a)
     return m.sum * 3 + m.v + m.w + m.x + m.y + m.z;
 }
 
+/* A kernel that is refused would go to the driver whole. */
+static void check_it_is_evaluated(uint32_t trips)
+{
+    uint32_t *words;
+    size_t count;
+    assert_int_equal(
+        spirv_evaluate(device_evaluate, sizeof device_evaluate / 4, &trips, 1, &words, &count),
+        WHIT_OK);
+    free(words);
+}
+
 TEST(evaluated_kernels_compute_the_same)
 {
     struct device *device = device_open(&messages, false);
     for (uint32_t i = 0; i < CASES; ++i)
         cases[i] = i < 1024 ? i : i * 0x9e3779b9u;
     for (uint32_t trips = 1; trips <= TRIPS_MAX; ++trips) {
+        check_it_is_evaluated(trips);
         kernel_answer_as(device, &trips, 1, device_evaluate, sizeof device_evaluate, CASES, cases,
                          sizeof *cases, answers, sizeof *answers);
         for (uint32_t i = 0; i < CASES; ++i) {

@@ -101,7 +101,7 @@ RendererParams = _struct(
     ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("portable", c_bool),
     ("exposure_ev", c_double),
     ("soft_highlights all_effects", c_bool), ("effects_added effects_removed", c_uint64),
-    ("compile_async many_pictures keep_unread reuse_rays few_pixels", c_bool), ("tile_size", c_uint32), ("cancel", c_void_p),
+    ("compile_async many_pictures keep_unread reuse_rays few_pixels time_stages", c_bool), ("tile_size", c_uint32), ("cancel", c_void_p),
     ("progress", _ProgressFn), ("progress_user", c_void_p), ("step_spacing step_aov", c_uint32),
     ("step", c_void_p), ("time_limit_s", c_double), ("load_path", LoadPath), ("traversal", Traversal),
     ("numerics", Numerics), ("packets", Packets), ("classes", Classes), ("segments", c_uint32), ("count", c_bool),
