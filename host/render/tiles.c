@@ -188,16 +188,25 @@ whit_result render_finish_submission(struct target *target)
     return submit(target);
 }
 
+/* Pixels on a side of the largest tile for which the buffers have room. */
+static uint32_t largest_tile(const struct renderer *renderer)
+{
+    return (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
+}
+
+uint32_t tiles_adapt(uint32_t tile, uint32_t largest, double spent_ms)
+{
+    uint32_t grown = 2 * tile < largest ? 2 * tile : largest;
+    double growth = (double)grown / tile;
+    if (spent_ms > SUBMISSION_LIMIT_MS && tile > TILE_MIN)
+        return tile / 2 > TILE_MIN ? tile / 2 : TILE_MIN;
+    return growth > 1.0 && growth * growth * spent_ms < SUBMISSION_LIMIT_MS ? grown : tile;
+}
+
 static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
 {
-    uint64_t slots = (uint64_t)progress->tile * progress->tile;
-    if (renderer->params.tile_size)
-        return;
-    if (spent_ms > SUBMISSION_LIMIT_MS && progress->tile > TILE_MIN)
-        progress->tile /= 2;
-    else if (4.0 * spent_ms < SUBMISSION_LIMIT_MS &&
-             slots * 4 <= renderer->picture.buffers.chunk_slots)
-        progress->tile *= 2;
+    if (!renderer->params.tile_size)
+        progress->tile = tiles_adapt(progress->tile, largest_tile(renderer), spent_ms);
 }
 
 void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
@@ -356,7 +365,7 @@ whit_result renderer_render(struct renderer *renderer)
 struct progress render_progress(const struct renderer *renderer)
 {
     uint32_t asked = renderer->params.tile_size;
-    uint32_t largest = (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
+    uint32_t largest = largest_tile(renderer);
     bool cpu = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
     uint32_t first = cpu ? TILE_FIRST_CPU : TILE_FIRST;
     return (struct progress){

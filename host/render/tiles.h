@@ -16,6 +16,10 @@ void render_take_sample(const struct target *target, uint32_t index, uint32_t sa
    loop iterations together than the driver allows; else WHIT_OK. */
 WHIT_CHECK whit_result params_check_loops(const struct renderer *renderer);
 
+/* The side of the next tile, in pixels, after one of `tile` that took spent_ms. Tiles that take too
+   long are halved. Others grow to at most twice their size, up to `largest`, for which the buffers
+   have room, unless they would take too long then. */
+uint32_t tiles_adapt(uint32_t tile, uint32_t largest, double spent_ms);
 /* Gives the progress of a pass over all pixels, which begins now. */
 struct progress render_progress(const struct renderer *renderer);
 /* Draws the picture, of one camera or of many. */

@@ -344,6 +344,20 @@ TEST(shares_are_those_of_hits)
     check_shares(&flat);
 }
 
+/* Submissions may take 100 ms. */
+TEST(tiles_grow_into_the_room_there_is)
+{
+    assert_int_equal(tiles_adapt(128, 512, 20.0), 256);
+    assert_int_equal(tiles_adapt(128, 512, 26.0), 128);
+    assert_int_equal(tiles_adapt(128, 192, 26.0), 192);
+    assert_int_equal(tiles_adapt(128, 192, 45.0), 128);
+    assert_int_equal(tiles_adapt(192, 192, 1.0), 192);
+    assert_int_equal(tiles_adapt(16, 8, 1.0), 16);
+    assert_int_equal(tiles_adapt(192, 192, 101.0), 96);
+    assert_int_equal(tiles_adapt(24, 192, 101.0), 16);
+    assert_int_equal(tiles_adapt(16, 192, 101.0), 16);
+}
+
 TEST(stages_are_timed_only_where_asked)
 {
     whit_renderer_params params = {.width = 64, .height = 32, .tile_size = 32};
