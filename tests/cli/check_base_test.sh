@@ -86,4 +86,13 @@ for signal in INT KILL; do
     wait $! 2>/dev/null
     check "$signal: nothing is left" wait_for $$ is_gone
 done
+# So it is if whit is ended while git still writes the tree, here two folders of 2000 files.
+mkdir suite/more suite/z && (cd suite/more && seq 2000 | split -l 1 -a 3 && cp ./* ../z) && git add suite && git commit -qm files
+"$WHIT" check suite/looks.whit --base HEAD >/dev/null 2>&1 &
+check "git is busy: the tree is there" wait_for $! is_there
+test ! -e "$(echo "$TMPDIR"/whit-base-*)/tree/suite/z/ccx" || echo "note    git had written all files by then"
+kill -KILL $!
+wait $! 2>/dev/null
+sleep 1 # it may be gone for a moment only
+check "git is busy: nothing is left" wait_for $$ is_gone
 finish

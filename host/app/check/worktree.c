@@ -51,9 +51,16 @@ static void read_line(int from, char *text, size_t bytes)
     text[strcspn(text, "\n")] = 0;
 }
 
+/* Writes a line to the keeper. If the keeper is gone, there is nobody to tell. */
+static void tell_keeper(int keeper, long number)
+{
+    if (keeper >= 0)
+        (void)!dprintf(keeper, "%ld\n", number);
+}
+
 /* Runs git to its end and gives the first line of its output. False: it failed, and the line says
-   why. */
-static bool run_git(const char *const *words, char *line, size_t bytes)
+   why. `keeper`: the worktree's, which is told the process and its end; or -1. */
+static bool run_git(const char *const *words, int keeper, char *line, size_t bytes)
 {
     int ends[2], status = -1;
     pid_t pid;
@@ -64,22 +71,30 @@ static bool run_git(const char *const *words, char *line, size_t bytes)
     }
     int failed = start(words, -1, ends[1], &pid);
     close(ends[1]);
-    if (failed)
+    if (failed) {
         snprintf(line, bytes, "%s: %s", words[0], strerror(failed));
-    else
+    } else {
+        tell_keeper(keeper, pid);
         read_line(ends[0], line, bytes);
+    }
     close(ends[0]);
     while (!failed && waitpid(pid, &status, 0) < 0 && errno == EINTR)
         ;
+    tell_keeper(keeper, 0);
     return !failed && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 /* Starts a shell that waits until this process ends or closes `line`, and then removes the
-   worktree. This also works after a second signal or a crash. */
+   worktree. This also works after a second signal or a crash. If this process ended while git still
+   made the worktree, the shell waits for git, up to a minute: else git would go on writing there,
+   and its lock would keep the worktree on the list. */
 static bool start_keeper(struct worktree *tree, const char *folder)
 {
     static const char script[] =
-        "trap '' INT TERM HUP QUIT; read -r end; git -C \"$1\" worktree remove --force \"$2" TREE
+        "trap '' INT TERM HUP QUIT; "
+        "if read -r git && ! read -r ended; then i=0; "
+        "while [ $i -lt 1200 ] && kill -0 \"$git\"; do sleep 0.05; i=$((i + 1)); done; fi; "
+        "read -r end; git -C \"$1\" worktree remove --force --force \"$2" TREE
         "\"; rm -rf \"$2\"; git -C \"$1\" worktree prune";
     const char *const words[] = {"sh", "-c", script, "sh", folder, tree->holder, NULL};
     int ends[2];
@@ -123,7 +138,7 @@ static bool find_prefix(const char *folder, char *line, size_t bytes)
 {
     const char *const words[] = {"git",           "-C", folder[0] ? folder : ".", "rev-parse",
                                  "--show-prefix", NULL};
-    return run_git(words, line, bytes);
+    return run_git(words, -1, line, bytes);
 }
 
 char *worktree_folder(const struct worktree *tree, const char *folder)
@@ -158,7 +173,7 @@ whit_result worktree_add(struct worktree *tree, const char *folder, const char *
     whit_result result = WHIT_OK;
     if (!start_keeper(tree, folder))
         result = refuse(revision, strerror(errno));
-    else if (!run_git(add, line, sizeof line))
+    else if (!run_git(add, tree->line, line, sizeof line))
         result = refuse(revision, line[0] ? line : "git has failed");
     free(path);
     return result;
