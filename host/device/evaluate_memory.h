@@ -1,10 +1,10 @@
 /* Follows what variables hold while a kernel is evaluated.
 
-   What a variable holds is known in the blocks that come after the instruction that wrote or read
-   it on every way. SPIR-V nests blocks in constructs: selections and loops. A region is the blocks
-   at the same level of a branch of a selection, or of a loop. A region stays open until its
-   construct ends. What became known in a region holds in that region and in those nested in it, up
-   to the next write. */
+   Once an instruction has written or read a variable, the value is known in all blocks that can be
+   reached only through that instruction, up to the next write. SPIR-V nests blocks in constructs:
+   selections and loops. A region is the part of a construct in which each block can be reached only
+   through the blocks before it, such as one branch of a selection. A region stays open until its
+   construct ends; what is known in it is also known in the regions nested in it. */
 #ifndef DEVICE_EVALUATE_MEMORY_H
 #define DEVICE_EVALUATE_MEMORY_H
 
