@@ -1,3 +1,4 @@
+#include "device/evaluate_constants.h"
 #include "device/evaluate_loops.h"
 #include "device/evaluate_memory.h"
 
@@ -13,8 +14,7 @@ void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word)
         e->failed = e->starved = true;
 }
 
-/* A new output id; 0, which is no valid id, when there are too many ids or memory runs out. */
-static uint32_t new_id(struct evaluation *e)
+uint32_t evaluate_new_id(struct evaluation *e)
 {
     const struct result_id fresh = {0};
     e->failed = e->failed || e->result_count >= SPIRV_BOUND_MAX;
@@ -28,7 +28,7 @@ static uint32_t new_id(struct evaluation *e)
 uint32_t evaluate_id(struct evaluation *e, uint32_t id)
 {
     if (!e->source[id].to)
-        e->source[id].to = new_id(e);
+        e->source[id].to = evaluate_new_id(e);
     return e->source[id].to;
 }
 
@@ -39,20 +39,12 @@ uint32_t evaluate_result(struct evaluation *e, const uint32_t *instruction)
     return id;
 }
 
-static void push_words(struct evaluation *e, struct word_list *list, uint32_t count,
-                       const uint32_t *words)
+void evaluate_push_words(struct evaluation *e, struct word_list *list, uint32_t count,
+                         const uint32_t *words)
 {
     for (uint32_t i = 0; i < count; ++i)
         evaluate_push(e, list, words[i]);
 }
-
-#define EMIT(e, list, op, ...)                                                                     \
-    do {                                                                                           \
-        const uint32_t words_[] = {0, __VA_ARGS__};                                                \
-        uint32_t count_ = sizeof words_ / sizeof *words_;                                          \
-        evaluate_push((e), (list), spv_head((op), count_));                                        \
-        push_words((e), (list), count_ - 1, words_ + 1);                                           \
-    } while (0)
 
 void evaluate_copy(struct evaluation *e, const uint32_t *instruction)
 {
@@ -72,120 +64,9 @@ void evaluate_copy(struct evaluation *e, const uint32_t *instruction)
 
 static uint32_t add_variable(struct evaluation *e, uint32_t pointer_type)
 {
-    uint32_t id = new_id(e);
-    EMIT(e, &e->variables, OP_VARIABLE, pointer_type, id, STORAGE_FUNCTION);
+    uint32_t id = evaluate_new_id(e);
+    EVALUATE_EMIT(e, &e->variables, OP_VARIABLE, pointer_type, id, STORAGE_FUNCTION);
     e->results[id].base = id;
-    return id;
-}
-
-/* ---- Constants ---- */
-
-static void know(struct evaluation *e, uint32_t id, uint32_t type, uint32_t value)
-{
-    e->results[id].known = true;
-    e->results[id].type = type;
-    e->results[id].value = value;
-    evaluate_push(e, &e->constants, id);
-}
-
-static void put_constant(struct evaluation *e, uint32_t type, uint32_t id, uint32_t value)
-{
-    bool is_bool = spv_op(e->words + e->source[type].at) == OP_TYPE_BOOL;
-    if (is_bool)
-        EMIT(e, &e->globals, value ? OP_CONSTANT_TRUE : OP_CONSTANT_FALSE, type, id);
-    else
-        EMIT(e, &e->globals, OP_CONSTANT, type, id, value);
-    know(e, id, type, value);
-}
-
-static uint32_t constant_id(struct evaluation *e, uint32_t type, uint32_t value)
-{
-    for (uint32_t i = 0; i < e->constants.count; ++i) {
-        const struct result_id *constant = &e->results[e->constants.words[i]];
-        if (constant->type == type && constant->value == value)
-            return e->constants.words[i];
-    }
-    uint32_t id = new_id(e);
-    put_constant(e, type, id, value);
-    return id;
-}
-
-static bool is_word(const struct evaluation *e, uint32_t type)
-{
-    const uint32_t *at = e->words + e->source[type].at;
-    return spv_op(at) == OP_TYPE_BOOL || (spv_op(at) == OP_TYPE_INT && at[2] == 32);
-}
-
-/* Computes an operation. False: an operand is not known, or spirv_fold does not handle it. */
-static bool fold(const struct evaluation *e, uint32_t op, uint32_t type, const uint32_t *operands,
-                 uint32_t count, uint32_t *value)
-{
-    uint32_t values[3];
-    if (count > 3 || !is_word(e, type))
-        return false;
-    for (uint32_t i = 0; i < count; ++i) {
-        const struct result_id *operand = &e->results[e->source[operands[i]].to];
-        if (!operand->known)
-            return false;
-        values[i] = operand->value;
-    }
-    return spirv_fold(op, values, count, value);
-}
-
-/* The value of a bool or 32-bit specialization constant: what the caller set, else its default. */
-static uint32_t spec_value(const struct evaluation *e, const uint32_t *instruction,
-                           const uint32_t *values)
-{
-    uint32_t op = spv_op(instruction), value = values[instruction[2]];
-    if (e->source[instruction[2]].is_set)
-        return op == OP_SPEC_CONSTANT ? value : value != 0;
-    return op == OP_SPEC_CONSTANT ? instruction[3] : op == OP_SPEC_CONSTANT_TRUE;
-}
-
-/* Writes a type, constant or global variable, which keeps its id. values[id]: the caller's value of
-   a specialization constant, where is_set. */
-static void walk_global(struct evaluation *e, const uint32_t *at, const uint32_t *values)
-{
-    uint32_t op = spv_op(at), value;
-    switch (op) {
-    case OP_SPEC_CONSTANT_TRUE:
-    case OP_SPEC_CONSTANT_FALSE:
-    case OP_SPEC_CONSTANT:
-        if (is_word(e, at[1]))
-            put_constant(e, at[1], at[2], spec_value(e, at, values));
-        else
-            e->failed = true;
-        return;
-    case OP_SPEC_CONSTANT_OP:
-        if (fold(e, at[3], at[1], at + 4, spv_length(at) - 4, &value))
-            put_constant(e, at[1], at[2], value);
-        else
-            e->failed = true;
-        return;
-    case OP_SPEC_CONSTANT_COMPOSITE:
-        evaluate_push(e, &e->globals, spv_head(OP_CONSTANT_COMPOSITE, spv_length(at)));
-        push_words(e, &e->globals, spv_length(at) - 1, at + 1);
-        return;
-    default:
-        push_words(e, &e->globals, spv_length(at), at);
-        if (op == OP_TYPE_INT && is_word(e, at[1]))
-            e->uint_type = at[1]; /* or int: either will do */
-        if (op >= OP_CONSTANT_TRUE && op <= OP_CONSTANT && is_word(e, at[1]))
-            know(e, at[2], at[1], op == OP_CONSTANT ? at[3] : op == OP_CONSTANT_TRUE);
-    }
-}
-
-/* The type of pointers to `type` in storage class Function; added where it is missing. */
-static uint32_t pointer_type(struct evaluation *e, uint32_t type)
-{
-    for (uint32_t at = 0; at < e->globals.count; at += spv_length(e->globals.words + at)) {
-        const uint32_t *instruction = e->globals.words + at;
-        if (spv_op(instruction) == OP_TYPE_POINTER && instruction[2] == STORAGE_FUNCTION &&
-            instruction[3] == type)
-            return instruction[1];
-    }
-    uint32_t id = new_id(e);
-    EMIT(e, &e->globals, OP_TYPE_POINTER, id, STORAGE_FUNCTION, type);
     return id;
 }
 
@@ -195,7 +76,7 @@ static uint32_t pointer_type(struct evaluation *e, uint32_t type)
 static void end_delayed(struct evaluation *e)
 {
     if (e->delayed)
-        EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, e->delayed));
+        EVALUATE_EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, e->delayed));
     e->delayed = 0;
 }
 
@@ -207,15 +88,15 @@ static void end_return(struct evaluation *e, struct instance *in)
     in->return_waits = false;
     if (in->result_type) {
         if (!in->variable)
-            in->variable = add_variable(e, pointer_type(e, in->result_type));
-        EMIT(e, &e->body, OP_STORE, in->variable, in->value);
+            in->variable = add_variable(e, evaluate_pointer_type(e, in->result_type));
+        EVALUATE_EMIT(e, &e->body, OP_STORE, in->variable, in->value);
     }
-    EMIT(e, &e->body, OP_BRANCH, in->after);
+    EVALUATE_EMIT(e, &e->body, OP_BRANCH, in->after);
 }
 
 static void put_label(struct evaluation *e, uint32_t id, bool follows)
 {
-    EMIT(e, &e->body, OP_LABEL, id);
+    EVALUATE_EMIT(e, &e->body, OP_LABEL, id);
     e->label = id;
     e->goes_to = 0;
     evaluate_enter_block(e, id, follows);
@@ -246,9 +127,9 @@ static void begin_block(struct evaluation *e, struct instance *in, uint32_t labe
     put_label(e, evaluate_id(e, label), follows);
     block->visited = true;
     if (in->skips && block->is_continue)
-        EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, block->header));
+        EVALUATE_EMIT(e, &e->body, OP_BRANCH, evaluate_id(e, block->header));
     else if (in->skips)
-        EMIT(e, &e->body, OP_UNREACHABLE, );
+        EVALUATE_EMIT(e, &e->body, OP_UNREACHABLE, );
 }
 
 static void enter(struct evaluation *e, uint32_t label)
@@ -314,7 +195,7 @@ static void unroll(struct evaluation *e, struct instance *in, const struct count
         header->reached = true;
         header->incoming = 1;
         e->delayed = loop->header;
-        e->source[loop->variable].holds = constant_id(e, loop->type, loop->values[i]);
+        e->source[loop->variable].holds = evaluate_constant(e, loop->type, loop->values[i]);
         walk_words(e, in, loop->first, loop->end);
     }
     e->source[loop->variable].holds = 0;
@@ -433,13 +314,13 @@ enum { WRAP_WORDS = 8, CALLS_DEEP = 64 };
    returns break out of. take_back_wrap undoes this where only one of them is reached. */
 static void begin_wrap(struct evaluation *e, struct instance *in)
 {
-    uint32_t selector = e->uint_type ? constant_id(e, e->uint_type, 0) : 0;
+    uint32_t selector = e->uint_type ? evaluate_constant(e, e->uint_type, 0) : 0;
     e->failed = e->failed || !selector;
     in->wrap = e->body.count;
     in->label_before = e->label;
-    in->wrap_label = new_id(e);
-    EMIT(e, &e->body, OP_SELECTION_MERGE, in->after, 0);
-    EMIT(e, &e->body, OP_SWITCH, selector, in->wrap_label);
+    in->wrap_label = evaluate_new_id(e);
+    EVALUATE_EMIT(e, &e->body, OP_SELECTION_MERGE, in->after, 0);
+    EVALUATE_EMIT(e, &e->body, OP_SWITCH, selector, in->wrap_label);
     evaluate_begin_construct(e, in->after);
     put_label(e, in->wrap_label, false);
 }
@@ -468,8 +349,8 @@ static uint32_t end_call(struct evaluation *e, struct instance *in)
     put_label(e, in->after, false);
     if (!in->result_type)
         return 0;
-    uint32_t value = new_id(e);
-    EMIT(e, &e->body, OP_LOAD, in->result_type, value, in->variable);
+    uint32_t value = evaluate_new_id(e);
+    EVALUATE_EMIT(e, &e->body, OP_LOAD, in->result_type, value, in->variable);
     return value;
 }
 
@@ -490,7 +371,7 @@ static void walk_call(struct evaluation *e, struct instance *caller, const uint3
     struct instance in = {.caller = caller,
                           .depth = caller->depth + 1,
                           .result_type = is_void ? 0 : call[1],
-                          .after = new_id(e)};
+                          .after = evaluate_new_id(e)};
     if (spv_op(function) != OP_FUNCTION || in.depth > CALLS_DEEP) {
         e->failed = true;
         return;
@@ -506,7 +387,7 @@ static void walk_call(struct evaluation *e, struct instance *caller, const uint3
 static void walk_return(struct evaluation *e, struct instance *in, const uint32_t *at)
 {
     if (!in->caller) {
-        EMIT(e, &e->body, OP_RETURN, );
+        EVALUATE_EMIT(e, &e->body, OP_RETURN, );
         return;
     }
     if (in->loop_depth > 0) { /* SPIR-V lets control leave a loop by its merge block only */
@@ -539,7 +420,7 @@ static bool decide(struct evaluation *e, const uint32_t *at)
     bool decided =
         (first.known && first.value == deciding) || (second.known && second.value == deciding);
     uint32_t other = first.known ? at[4] : at[3];
-    e->source[at[2]].to = decided ? constant_id(e, at[1], deciding) : evaluate_id(e, other);
+    e->source[at[2]].to = decided ? evaluate_constant(e, at[1], deciding) : evaluate_id(e, other);
     return true;
 }
 
@@ -547,8 +428,8 @@ static void walk_plain(struct evaluation *e, const uint32_t *at)
 {
     struct spirv_shape shape = spirv_shape(spv_op(at));
     uint32_t value;
-    if (shape.result && fold(e, spv_op(at), at[1], at + 3, spv_length(at) - 3, &value)) {
-        e->source[at[2]].to = constant_id(e, at[1], value);
+    if (shape.result && evaluate_fold(e, spv_op(at), at[1], at + 3, spv_length(at) - 3, &value)) {
+        e->source[at[2]].to = evaluate_constant(e, at[1], value);
         return;
     }
     if (decide(e, at))
@@ -563,7 +444,7 @@ static void walk_variable(struct evaluation *e, const uint32_t *at)
     uint32_t id = add_variable(e, at[1]);
     e->source[at[2]].to = id;
     if (spv_length(at) > 4) /* an initializer counts at each call, not once in the kernel */
-        EMIT(e, &e->body, OP_STORE, id, evaluate_id(e, at[4]));
+        EVALUATE_EMIT(e, &e->body, OP_STORE, id, evaluate_id(e, at[4]));
 }
 
 static void walk_instruction(struct evaluation *e, struct instance *in, const uint32_t *at)
@@ -655,10 +536,10 @@ static void walk_module(struct evaluation *e, uint32_t *spec_of, const uint32_t 
     for (uint32_t at = SPV_HEADER_WORDS; at < e->functions_at; at += spv_length(e->words + at)) {
         uint32_t op = spv_op(e->words + at);
         if (op == OP_UNDEF || (op >= OP_TYPE_VOID && op <= OP_VARIABLE))
-            walk_global(e, e->words + at, spec_of);
+            evaluate_global(e, e->words + at, spec_of);
     }
     evaluate_count_writes(e);
-    e->label = new_id(e);
+    e->label = evaluate_new_id(e);
     e->first_label = e->label;
     evaluate_enter_block(e, e->label, false);
     if (!e->failed)

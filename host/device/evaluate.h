@@ -6,10 +6,10 @@
    It handles the SPIR-V that glslang writes: structured, blocks in the order of their nesting, one
    entry point, no recursion. Any other module is refused.
 
-   evaluate_read.c finds what the module contains, evaluate.c walks through the functions and
-   decides branches, evaluate_loops.c finds loops to unroll, evaluate_memory.c follows what
-   variables hold, evaluate_output.c leaves out
-   what nothing uses and writes the module. */
+   evaluate_read.c finds what the module contains, evaluate_constants.c computes its constants,
+   evaluate.c walks through the functions and decides branches, evaluate_loops.c finds loops to
+   unroll, evaluate_memory.c follows what variables hold, evaluate_output.c leaves out what nothing
+   uses and writes the module. */
 #ifndef DEVICE_EVALUATE_H
 #define DEVICE_EVALUATE_H
 
@@ -107,7 +107,19 @@ bool evaluate_read(struct evaluation *e, uint32_t *spec_of);
 /* evaluate_output.c: malloc()ed; NULL when memory runs out. */
 uint32_t *evaluate_write(struct evaluation *e, size_t *word_count);
 
+/* A new output id; 0, which is no valid id, when there are too many ids or memory runs out. */
+uint32_t evaluate_new_id(struct evaluation *e);
 void evaluate_push(struct evaluation *e, struct word_list *list, uint32_t word);
+void evaluate_push_words(struct evaluation *e, struct word_list *list, uint32_t count,
+                         const uint32_t *words);
+/* Adds an instruction of the given words to a list. */
+#define EVALUATE_EMIT(e, list, op, ...)                                                            \
+    do {                                                                                           \
+        const uint32_t words_[] = {0, __VA_ARGS__};                                                \
+        uint32_t count_ = sizeof words_ / sizeof *words_;                                          \
+        evaluate_push((e), (list), spv_head((op), count_));                                        \
+        evaluate_push_words((e), (list), count_ - 1, words_ + 1);                                  \
+    } while (0)
 /* The output id for input id `id`; made where there is none yet. */
 uint32_t evaluate_id(struct evaluation *e, uint32_t id);
 /* The output id for `instruction`'s result. It is exact (NoContraction) where the input's is. */
