@@ -27,6 +27,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.few_pixels = from->few_pixels;
     params.bailout = from->bailout;
     params.depth = from->depth;
+    params.time_stages = from->time_stages;
     return params;
 }
 

@@ -94,7 +94,8 @@ static void follow_size(const struct engine *engine, const struct engine_lane *l
 static bool shows_it(const struct engine *engine, const struct engine_lane *lane)
 {
     return lane == engine->lanes && lane->drawn != lane->asked && lane->quality == ENGINE_WHOLE &&
-           !lane->stale && lane->frames > 0 && settings_same(&lane->last, &lane->settings);
+           !lane->stale && lane->frames > 0 && settings_same(&lane->last, &lane->settings) &&
+           (lane->timed || !engine->params.time_stages);
 }
 
 /* Chooses the picture to draw for a lane now; false: none. Called with engine->lock held. */
@@ -201,6 +202,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     lane->place = engine->places;
     lane->quality = quality;
     lane->stale = !own;
+    lane->timed = task->session->time_stages;
     lane->last = task->settings;
     lane->shown = frame->divisor;
     if (task->brief)
@@ -294,6 +296,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     task->lane = lane;
     task->asked = lane->asked;
     session->cancel = false;
+    session->time_stages = engine->params.time_stages;
     engine->busy = true;
     engine->drawing = session;
     engine->drawing_since_ms = whit_clock_ms();
@@ -528,28 +531,52 @@ uint32_t engine_destroy(struct engine *engine)
     return validation;
 }
 
+static void stop_background(struct engine *engine)
+{
+    engine_refine_pause(engine);
+    engine_reload_stop(engine);
+    engine_change_stop(engine);
+}
+
+static void ask_anew(struct engine *engine, struct engine_lane *lane)
+{
+    ++lane->asked;
+    lane->asked_ms = whit_clock_ms();
+    lane->failed = false;
+    if (engine->drawing && !engine->brief)
+        engine->drawing->cancel = true;
+}
+
 static void ask(struct engine *engine, struct engine_lane *lane, const struct settings *settings,
                 bool moving)
 {
     bool same = lane->wanted && settings_same(&lane->settings, settings);
     if (same && lane->moving == moving)
         return;
-    engine_refine_pause(engine);
-    engine_reload_stop(engine);
-    engine_change_stop(engine);
+    stop_background(engine);
     if (!same) {
         engine->change_left = true;
-        ++lane->asked;
-        lane->asked_ms = whit_clock_ms();
-        lane->failed = false;
-        if (engine->drawing && !engine->brief)
-            engine->drawing->cancel = true;
+        ask_anew(engine, lane);
     }
     lane->wanted = true;
     lane->settings = *settings;
     lane->moving = moving;
     stop_unwanted(engine);
     pthread_cond_signal(&engine->work);
+}
+
+void engine_time_stages(struct engine *engine, bool on)
+{
+    pthread_mutex_lock(&engine->lock);
+    struct engine_lane *lane = &engine->lanes[0];
+    bool began = on && !engine->params.time_stages;
+    engine->params.time_stages = on;
+    if (began && lane->wanted) {
+        stop_background(engine);
+        ask_anew(engine, lane);
+        pthread_cond_signal(&engine->work);
+    }
+    pthread_mutex_unlock(&engine->lock);
 }
 
 void engine_ask(struct engine *engine, const struct settings *settings, bool moving)

@@ -13,6 +13,7 @@ struct engine;
 struct engine_params {
     double budget_ms;         /* time for a picture while something moves; 0: 1000 / 30 */
     bool refine, times;       /* see engine_set_rest */
+    bool time_stages;         /* see engine_time_stages */
     uint32_t sessions;        /* most sessions kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* called from any thread: something can be taken. May be NULL */
     void *wake_user;
@@ -27,6 +28,10 @@ uint32_t engine_destroy(struct engine *engine);
 
 /* Sets another budget_ms. */
 void engine_set_budget(struct engine *engine, double budget_ms);
+
+/* Says whether the stages of pictures are timed, which takes up to a tenth of their time. If they
+   are, and those of the window's picture were not, it is drawn once more. */
+void engine_time_stages(struct engine *engine, bool on);
 
 /* Says what to draw from now on. `moving`: more requests will follow soon, so a smaller picture of
    one sample is drawn within the budget. Otherwise the picture is as the settings say, after a

@@ -228,7 +228,7 @@ static whit_renderer_params task_params(const struct engine_task *task)
 {
     struct session *session = task->session;
     session->settings = task->settings;
-    whit_renderer_params params = settings_picture(&session->settings);
+    whit_renderer_params params = session_picture(session);
     params.width = (params.width + task->divisor - 1) / task->divisor;
     params.height = (params.height + task->divisor - 1) / task->divisor;
     bool counts = task->settings.paint != PAINT_COLOR;
@@ -293,7 +293,8 @@ static whit_result draw_as(struct session *session, const whit_renderer_params *
 
 whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats)
 {
-    const whit_renderer_params params = task_params(task);
+    whit_renderer_params params = task_params(task);
+    params.time_stages = false; /* which takes time */
     whit_result result = draw_as(task->session, &params);
     if (result == WHIT_OK)
         whit_renderer_get_stats(task->session->renderer, stats);

@@ -35,6 +35,7 @@ struct engine_lane {
     enum engine_quality quality; /* quality of the last picture */
     bool failed;                 /* the request could not be drawn */
     struct settings last;        /* settings of the last picture */
+    bool timed;                  /* the stages of the last picture were timed */
     bool stale; /* the last picture is by an older session; the right one is being made */
     struct session *session;   /* session of the last picture; NULL: none, or gone */
     struct engine_frame frame; /* the newest picture; number 0: taken */

@@ -107,7 +107,7 @@ static whit_result draw_part(struct session *session, struct engine_refine *refi
                              const struct engine_kept *kept, whit_refine_info *info)
 {
     session->settings = refine->base.settings; /* the renderer borrows the camera's name */
-    const whit_renderer_params usual = settings_picture(&session->settings);
+    const whit_renderer_params usual = session_picture(session);
     whit_result result = begin_parts(refine, session->renderer, &usual, kept);
     if (result != WHIT_OK)
         return result;
@@ -392,6 +392,7 @@ void engine_refine_one(struct engine *engine, struct engine_lane *lane)
     struct engine_frame frame;
     uint64_t asked = lane->asked;
     session->cancel = false;
+    session->time_stages = engine->params.time_stages;
     engine->drawing = session;
     engine->drawing_since_ms = whit_clock_ms();
     engine->refining = true;

@@ -70,7 +70,7 @@ static void show_again(struct engine *engine)
         if (!session || (i > 0 && (!lane->wanted || session == engine->lanes[0].session)))
             continue;
         session->settings = lane->last;
-        const whit_renderer_params params = settings_picture(&session->settings);
+        const whit_renderer_params params = session_picture(session);
         if (whit_renderer_set_view(session->renderer, &params) != WHIT_OK)
             lane->drawn = 0; /* draw it again, which reports the error */
     }

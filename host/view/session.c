@@ -174,14 +174,21 @@ static void note_step(void *user, const whit_step *step)
         session->step(session->step_user, step);
 }
 
+whit_renderer_params session_picture(const struct session *session)
+{
+    whit_renderer_params params = settings_picture(&session->settings);
+    params.time_stages = session->time_stages;
+    return params;
+}
+
 /* Draws a small picture, as drivers compile a kernel when it runs for the first time. */
 static whit_result warm_up(struct session *session, bool few_pixels)
 {
-    whit_renderer_params params = settings_picture(&session->settings);
+    whit_renderer_params params = session_picture(session);
     params.width = WARM_WIDTH;
     params.height = WARM_HEIGHT;
     params.sampling.count = 1;
-    params.many_pictures = params.time_stages = true;
+    params.many_pictures = true;
     params.few_pixels = few_pixels;
     params.keep_unread = true; /* later versions and probes may read what this one does not */
     params.shader = session->shader ? session->shader->shader : NULL;
@@ -279,7 +286,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
     double start_ms = whit_clock_ms();
     result = settings_choose_camera(&session->settings, session->scene->scene);
     if (result == WHIT_OK) {
-        whit_renderer_params params = settings_picture(&session->settings);
+        whit_renderer_params params = session_picture(session);
         params.shader = session->shader->shader;
         params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
         params.step_spacing = FIRST_STEP;

@@ -56,6 +56,7 @@ struct session {
     whit_device *device;
     whit_renderer *renderer;
     volatile bool cancel; /* stops what the session is doing */
+    bool time_stages;     /* as whit_renderer_params.time_stages */
     whit_log log;         /* log of all its parts */
     void *owner;          /* belongs to the session's maker, as `error` does */
     char error[512];
@@ -90,6 +91,8 @@ struct session_parts {
     bool awaits_version; /* made for the next version of the shader: it draws nothing before */
 };
 
+/* The parameters of a picture with the session's settings, which they borrow. */
+whit_renderer_params session_picture(const struct session *session);
 /* Loads the scene, builds trees, opens the device and compiles. Errors are logged: those of the
    scene and its trees by `scene_log`, which must live as long as the scene. `session` is zeroed
    except for `cancel` and its owner's fields. Call session_close also after a failure. */

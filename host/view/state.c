@@ -68,6 +68,19 @@ static json_t *shader_json(const struct shaders *shaders)
     return object;
 }
 
+/* Time of all stages in ms; -1: they were not timed. */
+static double stages_ms(const whit_stats *stats)
+{
+    double sum = 0.0;
+    bool timed = false;
+    for (int i = 0; i < WHIT_STAGES; ++i) {
+        bool known = stats->stages[i].rays > 0 && stats->stages[i].ms >= 0.0;
+        sum += known ? stats->stages[i].ms : 0.0;
+        timed = timed || known;
+    }
+    return timed ? sum : -1.0;
+}
+
 static json_t *frame_json(const struct engine_frame *frame)
 {
     char words[4096], builder[SETTING_VALUE_BYTES];
@@ -94,6 +107,7 @@ static json_t *frame_json(const struct engine_frame *frame)
     put_count(object, "made", frame->made);
     put_count(object, "kernels", frame->kernels);
     put_number(object, "render_ms", frame->stats.render_ms);
+    put_number(object, "stages_ms", stages_ms(&frame->stats));
     put_number(object, "visits", frame->visits);
     put_count(object, "visits_rays", frame->visits_rays);
     put_hash(object, "ids", frame->ids ? whit_image_words(frame->ids) : NULL, pixels * 8);

@@ -350,6 +350,7 @@ static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
         engine_ask(view->engine, &view->settings, view_is_moving(view));
+    engine_time_stages(view->engine, view->hud == HUD_FULL);
     /* Refining takes all cores, so measurements in the background come first. Replays ask for it
        themselves. */
     bool rests = prices_are_still(view->prices) && prices_are_still(view->panels.measured) &&

@@ -199,10 +199,10 @@ WHIT_CHECK whit_result whit_renderer_render_views(whit_renderer *renderer,
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Prepares another picture of the same scene with the same kernels. Of `params` it takes width,
-   height, camera, time_s, sampling, light_samples, bailout, depth, exposure_ev, soft_highlights and
-   sliders, and nothing else; the camera's name is borrowed until the next call. The picture is that
-   of a renderer made with these params, byte for byte. After an error nothing can be rendered until
-   a call succeeds. WHIT_ERROR_USAGE and others as of whit_renderer_create. */
+   height, camera, time_s, sampling, light_samples, bailout, depth, exposure_ev, soft_highlights,
+   time_stages and sliders, and nothing else; the camera's name is borrowed until the next call. The
+   picture is that of a renderer made with these params, byte for byte. After an error nothing can
+   be rendered until a call succeeds. WHIT_ERROR_USAGE and others as of whit_renderer_create. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 

@@ -110,12 +110,16 @@ END
 check "the words of a state name it" test "$(value stays words | grep -c -- "--at-rest stay")" -eq 1
 check "and no line that renders" test "$(value stays render | grep -c -- at-rest)" -eq 0
 
-# With all figures shown, the estimated errors are drawn as a curve over time.
+# With all figures shown, the stages are timed, for which the picture is drawn again, and the estimated errors are drawn
+# as a curve over time.
 # shellcheck disable=SC2086
 play "a curve" "$SCENES/cube.json" --size 320x480 $camera,10 <<END
-plain: press F2 | hud = full | frame.estimates = 0
+start: | hud = small | frame.stages_ms = -1
+plain: press F2 | hud = full | frame.estimates = 0 | frame.pixels as start | frame.stages_ms > 0
 refined
 curve: | frame.estimates > 1
+small: press F2 x2 | hud = small | frame.number as curve
+again: press F2 | hud = full | frame.pixels as curve | frame.samples as curve | change.number = 0
 END
 bottom() {
     value "$1" panels.figures | cut -d ' ' -f 4
