@@ -42,8 +42,8 @@ static uint8_t encode_alpha(float alpha)
     return (uint8_t)(fminf(fmaxf(alpha, 0.0f), 1.0f) * 255.0f + 0.5f);
 }
 
-void display_encode(const struct display_encoder *encoder, const struct image *image, size_t index,
-                    uint8_t *to, uint32_t to_channels)
+static void encode_pixel(const struct display_encoder *encoder, const struct image *image,
+                         size_t index, uint8_t *to, uint32_t to_channels)
 {
     float rgba[4];
     image_displayed_pixel(image, index, rgba);
@@ -55,30 +55,42 @@ void display_encode(const struct display_encoder *encoder, const struct image *i
         to[c] = c == 3 ? encode_alpha(rgba[c]) : encode(encoder, rgba[c]);
 }
 
-enum { BAND_ROWS = 128 };
+/* The number of pixels that a thread encodes at a time. */
+enum { PART_PIXELS = 1 << 14 };
 
 struct display_job {
+    const struct display_encoder *encoder;
     const struct image *image;
-    uint8_t *rgba;
-    struct display_encoder encoder;
+    size_t first, count; /* pixels */
+    uint32_t channels;
+    uint8_t *to;
 };
 
-static void encode_band(void *context, uint32_t band)
+static void encode_part(void *context, uint32_t part)
 {
     const struct display_job *job = context;
-    const struct image *image = job->image;
-    size_t first = (size_t)band * BAND_ROWS * image->width;
-    size_t end = first + (size_t)BAND_ROWS * image->width;
-    size_t pixel_count = (size_t)image->width * image->height;
-    for (size_t i = first; i < end && i < pixel_count; ++i) {
-        job->rgba[4 * i + 3] = 255;
-        display_encode(&job->encoder, image, i, &job->rgba[4 * i], image->channels == 4 ? 4 : 3);
-    }
+    size_t first = (size_t)part * PART_PIXELS, left = job->count - first;
+    size_t end = first + (left < PART_PIXELS ? left : PART_PIXELS);
+    for (size_t i = first; i < end; ++i)
+        encode_pixel(job->encoder, job->image, job->first + i, job->to + i * job->channels,
+                     job->channels);
+}
+
+void display_encode(const struct display_encoder *encoder, const struct image *image,
+                    uint32_t first_row, uint32_t row_count, uint8_t *to, uint32_t to_channels)
+{
+    struct display_job job = {.encoder = encoder,
+                              .image = image,
+                              .first = (size_t)first_row * image->width,
+                              .count = (size_t)row_count * image->width,
+                              .channels = to_channels,
+                              .to = to};
+    threads_for(0, (uint32_t)((job.count + PART_PIXELS - 1) / PART_PIXELS), encode_part, &job);
 }
 
 void display_bytes(const struct image *image, uint8_t *rgba)
 {
-    struct display_job job = {.image = image, .rgba = rgba};
-    display_encoder_init(&job.encoder);
-    threads_for(0, (image->height + BAND_ROWS - 1) / BAND_ROWS, encode_band, &job);
+    struct display_encoder encoder;
+    display_encoder_init(&encoder);
+    display_encode(&encoder, image, 0, image->height, rgba, 4);
 }

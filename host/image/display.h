@@ -12,9 +12,10 @@ struct display_encoder {
     float from[257];
 };
 void display_encoder_init(struct display_encoder *encoder);
-/* Converts pixel `index` to 1, 3 or 4 bytes; grey is repeated. Non-finite pixels become magenta. */
-void display_encode(const struct display_encoder *encoder, const struct image *image, size_t index,
-                    uint8_t *to, uint32_t to_channels);
+/* Converts rows by all threads: each pixel to 1, 3 or 4 bytes. Grey is repeated, alpha is 255 where
+   there is none. Non-finite pixels become magenta. */
+void display_encode(const struct display_encoder *encoder, const struct image *image,
+                    uint32_t first_row, uint32_t row_count, uint8_t *to, uint32_t to_channels);
 
 /* Converts a picture of floats to the RGBA pixels that its PNG has: width * height * 4 bytes. */
 void display_bytes(const struct image *image, uint8_t *rgba);

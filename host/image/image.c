@@ -37,8 +37,10 @@ void image_finish(struct image *image)
 {
     if (!image)
         return;
-    free(image->pixels);
-    free(image->words);
+    if (!image->borrowed) {
+        free(image->pixels);
+        free(image->words);
+    }
     *image = (struct image){0};
 }
 

@@ -16,6 +16,7 @@ struct image {
     uint32_t width, height, channels;
     float *pixels;   /* width * height * channels, or NULL */
     uint32_t *words; /* the same for integers, or NULL; exactly one of the two is set */
+    bool borrowed;   /* the memory belongs to something else */
     /* Factor on the floats when a picture of light is displayed (PNG, window, FLIP, over_1_255);
        0: 1. Files of floats keep unscaled values. */
     float display_scale;

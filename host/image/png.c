@@ -20,7 +20,7 @@ struct job {
     FILE *stream;
     png_structp png;
     png_infop info;
-    uint8_t *bytes;  /* the picture or one row of it */
+    uint8_t *bytes;  /* the picture or some rows of it */
     png_bytepp rows; /* into `bytes` */
     png_textp texts;
     whit_result result;
@@ -147,13 +147,25 @@ static void set_texts(struct job *job, const struct image_target *target)
     png_set_text(job->png, job->info, job->texts, (int)target->text_count);
 }
 
-static void write_row(struct png_writer *writer, const struct image *rows, uint32_t y)
+/* Rows are converted for the file together, as many as take ROWS_BYTES, or one. */
+enum { ROWS_BYTES = 1 << 20 };
+
+static uint32_t rows_at_once(const struct png_writer *writer, uint32_t width)
+{
+    size_t row_bytes = (size_t)width * writer->channels;
+    return row_bytes < ROWS_BYTES ? (uint32_t)(ROWS_BYTES / row_bytes) : 1;
+}
+
+static void write_rows(struct png_writer *writer, const struct image *rows)
 {
     struct job *job = &writer->job;
-    for (uint32_t x = 0; x < rows->width; ++x)
-        display_encode(&writer->encoder, rows, (size_t)y * rows->width + x,
-                       job->bytes + (size_t)x * writer->channels, writer->channels);
-    png_write_row(job->png, job->bytes);
+    uint32_t many = rows_at_once(writer, rows->width);
+    for (uint32_t y = 0; y < rows->height; y += many) {
+        uint32_t count = rows->height - y < many ? rows->height - y : many;
+        display_encode(&writer->encoder, rows, y, count, job->bytes, writer->channels);
+        for (uint32_t i = 0; i < count; ++i)
+            png_write_row(job->png, job->bytes + (size_t)i * rows->width * writer->channels);
+    }
 }
 
 static void write_head(struct png_writer *writer, const struct image_target *target,
@@ -176,7 +188,8 @@ static void write_head(struct png_writer *writer, const struct image_target *tar
     png_set_compression_level(job->png, 1);
     png_set_compression_strategy(job->png, Z_RLE);
     png_write_info(job->png, job->info);
-    job->bytes = allocate(job, (size_t)shape->width * writer->channels, 1);
+    job->bytes =
+        allocate(job, rows_at_once(writer, shape->width), (size_t)shape->width * writer->channels);
 }
 
 /* A function of its own for setjmp, after which local variables of its frame may be undefined. */
@@ -212,10 +225,8 @@ no_memory:
 
 void png_rows_add(struct png_writer *writer, const struct image *rows)
 {
-    if (writer->job.result == WHIT_OK && setjmp(png_jmpbuf(writer->job.png)) == 0) {
-        for (uint32_t y = 0; y < rows->height; ++y)
-            write_row(writer, rows, y);
-    }
+    if (writer->job.result == WHIT_OK && setjmp(png_jmpbuf(writer->job.png)) == 0)
+        write_rows(writer, rows);
 }
 
 whit_result png_rows_end(struct png_writer *writer, bool whole)
