@@ -217,7 +217,8 @@ static whit_result read_aov(struct renderer *renderer, whit_aov aov, struct imag
     return renderer_read_color(renderer, out);
 }
 
-whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
+/* Reads an aov, or borrows the colours. */
+static whit_result make_image(whit_renderer *renderer, whit_aov aov, bool borrow, whit_image **out)
 {
     *out = NULL;
     whit_result result = api_need_device(renderer);
@@ -228,7 +229,8 @@ whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_imag
         log_error(&renderer->log, "out of memory");
         return WHIT_ERROR_MEMORY;
     }
-    result = read_aov(renderer->renderer, aov, &image->image);
+    result = borrow ? renderer_borrow_color(renderer->renderer, &image->image)
+                    : read_aov(renderer->renderer, aov, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;
@@ -237,6 +239,16 @@ whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_imag
         whit_image_display_as(image, &renderer->params);
     *out = image;
     return WHIT_OK;
+}
+
+whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
+{
+    return make_image(renderer, aov, false, out);
+}
+
+whit_result whit_renderer_borrow_color(whit_renderer *renderer, whit_image **out)
+{
+    return make_image(renderer, WHIT_AOV_COLOR, true, out);
 }
 
 /* ---- Costs ---- */

@@ -347,6 +347,13 @@ whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const voi
     return result;
 }
 
+/* A host buffer that is not cached is read directly too: the staging buffer would be no faster. */
+void *buffer_contents(const struct buffer *buffer)
+{
+    bool direct = buffer->fast_to_read || (buffer->uses & BUFFER_HOST);
+    return direct ? buffer->mapped : NULL;
+}
+
 whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data,
                         uint64_t size_bytes)
 {
@@ -355,10 +362,9 @@ whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data
     whit_result result = check_access(buffer, offset_bytes, size_bytes);
     if (result != WHIT_OK || size_bytes == 0)
         return result;
-    /* A host buffer that is not cached is read directly too: the staging buffer would be no faster.
-     */
-    if (buffer->mapped && (buffer->fast_to_read || (buffer->uses & BUFFER_HOST))) {
-        memcpy(to, buffer->mapped + offset_bytes, size_bytes);
+    const uint8_t *from = buffer_contents(buffer);
+    if (from) {
+        memcpy(to, from + offset_bytes, size_bytes);
         return WHIT_OK;
     }
     result = staging_ready(device);

@@ -27,5 +27,8 @@ WHIT_CHECK whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes
                                     uint64_t size_bytes);
 WHIT_CHECK whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data,
                                    uint64_t size_bytes);
+/* The contents, where the host reads the buffer's memory itself; else NULL. They change when
+   kernels write them, and are gone with the buffer. */
+void *buffer_contents(const struct buffer *buffer);
 
 #endif

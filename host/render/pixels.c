@@ -35,6 +35,11 @@ static uint32_t usual_tile(const struct device *device)
     return tile;
 }
 
+bool pixels_have_data(const struct target *target)
+{
+    return target->probed || !target->renderer->params.color_only;
+}
+
 uint32_t pixels_blocks_across(uint32_t pixels)
 {
     return (pixels + 7) / 8;
@@ -93,7 +98,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     } all[] = {
         {&p->pixels, (pixels + sums + (posts ? pixels : 0)) * 16, BUFFER_STORAGE | BUFFER_HOST,
          "pixels"},
-        {&p->ids, pixels * 8, BUFFER_STORAGE | BUFFER_HOST, "ids"},
+        {&p->ids, pixels_have_data(target) ? pixels * 8 : 0, BUFFER_STORAGE | BUFFER_HOST, "ids"},
         {&p->aovs, (p->chunk_slots + pixels) * 16 * aovs, BUFFER_STORAGE | BUFFER_HOST,
          "values of functions"},
         {&p->distances, renderer->views.count && !target->probed ? pixels * 4 : 0,

@@ -18,6 +18,8 @@ void target_drop_pixels(struct target *target);
 /* Partial sums that a pixel needs while its samples are added up pairwise: log2 of its most
    samples, rounded up. */
 uint32_t pixels_levels(const whit_renderer_params *params);
+/* Whether pixels get ids and weights of cut rays, beside colours. */
+bool pixels_have_data(const struct target *target);
 /* Number of blocks of 8 pixels that cover a row or column of `pixels`. */
 uint32_t pixels_blocks_across(uint32_t pixels);
 

@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "device/buffer.h"
+#include "render/pixels.h"
 #include "render/queues.h"
 #include "render/renderer.h"
 #include "render/textures.h"
@@ -85,6 +86,8 @@ whit_result queues_create(struct target *target)
         queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, min / 4);
     }
     uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
+    uint64_t cut_sums =
+        pixels_have_data(target) ? (uint64_t)renderer->params.width * p->band_rows : p->chunk_slots;
     uint64_t heads = sizeof(struct gpu_tally) +
                      (uint64_t)queues->generation_count * sizeof(struct gpu_generation);
     uint32_t lights = renderer->pose.light_count, lists = lights <= LIGHT_LISTS ? lights : 1;
@@ -108,8 +111,8 @@ whit_result queues_create(struct target *target)
         {&queues->hit_list, rays * 4 * CLASSES_MAX, loaded, "hits to shade"},
         {&queues->cuts, calls ? (uint64_t)p->chunk_slots * 8 : 0, BUFFER_STORAGE,
          "weights that are cut"},
-        {&queues->cut_sums, calls ? (uint64_t)renderer->params.width * p->band_rows * 8 : 0,
-         BUFFER_STORAGE, "sums of weights that are cut"},
+        {&queues->cut_sums, calls ? cut_sums * 8 : 0, BUFFER_STORAGE,
+         "sums of weights that are cut"},
         {&queues->deferred,
          variant_has_deferred(target) ? sizeof(struct gpu_work) + rays * sizeof(uint32_t) : 0,
          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting items"},

@@ -7,6 +7,7 @@
 #include "picture/grid.h"
 #include "render/adaptive_samples.h"
 #include "render/hooks.h"
+#include "render/pixels.h"
 #include "render/readback.h"
 #include "render/renderer.h"
 #include "render/views.h"
@@ -136,7 +137,7 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
             result = read_listed_aovs(renderer, progress, band_y, rows);
     } else if (!readback_is_late(renderer)) {
         result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
-        if (result == WHIT_OK)
+        if (result == WHIT_OK && renderer->ids.words)
             result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
         if (result == WHIT_OK && renderer->cuts.pixels)
             result = read_cuts(renderer, rows, &renderer->cuts.pixels[2 * first]);
@@ -185,6 +186,21 @@ whit_result renderer_read_color(struct renderer *renderer, struct image *out)
     return result;
 }
 
+whit_result renderer_borrow_color(struct renderer *renderer, struct image *out)
+{
+    const struct pixel_buffers *p = &renderer->picture.buffers;
+    float *pixels =
+        readback_is_late(renderer) ? buffer_contents(p->pixels) : renderer->color.pixels;
+    if (!renderer->rendered || !pixels || renderer->views.count)
+        return renderer_read_color(renderer, out);
+    *out = (struct image){.width = renderer->params.width,
+                          .height = views_rows(renderer),
+                          .channels = 4,
+                          .pixels = pixels,
+                          .borrowed = true};
+    return WHIT_OK;
+}
+
 whit_result renderer_read_distances(struct renderer *renderer, struct image *out)
 {
     if (!renderer->views.count) {
@@ -203,9 +219,20 @@ whit_result renderer_read_distances(struct renderer *renderer, struct image *out
     return result;
 }
 
+/* As begin_read, for what renderers with params.color_only do not keep. */
+static whit_result begin_read_data(const struct renderer *renderer, bool integers,
+                                   struct image *out)
+{
+    if (!pixels_have_data(&renderer->picture)) {
+        log_error(&renderer->log, "the renderer keeps colours alone (color_only)");
+        return WHIT_ERROR_USAGE;
+    }
+    return begin_read(renderer, 2, integers, out);
+}
+
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 {
-    whit_result result = begin_read(renderer, 2, true, out);
+    whit_result result = begin_read_data(renderer, true, out);
     if (result != WHIT_OK)
         return result;
     if (readback_is_late(renderer))
@@ -266,7 +293,7 @@ whit_result renderer_read_cuts(struct renderer *renderer, struct image *out)
         log_error(&renderer->log, "weights that were cut are not kept with adaptive samples");
         return WHIT_ERROR_USAGE;
     }
-    whit_result result = begin_read(renderer, 2, false, out);
+    whit_result result = begin_read_data(renderer, false, out);
     if (result != WHIT_OK)
         return result;
     if (readback_is_late(renderer))

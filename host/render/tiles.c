@@ -404,9 +404,10 @@ whit_result render_all(struct renderer *renderer)
     renderer->kept.known = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = image_init(&renderer->color, params->width, rows, 4, false);
-    if (result == WHIT_OK && !readback_is_late(renderer))
+    bool data = pixels_have_data(&renderer->picture);
+    if (result == WHIT_OK && !readback_is_late(renderer) && data)
         result = image_init(&renderer->ids, params->width, rows, 2, true);
-    if (result == WHIT_OK && !readback_is_late(renderer) &&
+    if (result == WHIT_OK && !readback_is_late(renderer) && data &&
         params->sampling.kind == WHIT_SAMPLING_FIXED)
         result = image_init(&renderer->cuts, params->width, rows, 2, false);
     if (result == WHIT_OK && !readback_is_late(renderer) && renderer->views.count)

@@ -8,6 +8,7 @@
 #include "render/effects.h"
 #include "render/hooks.h"
 #include "render/lights.h"
+#include "render/pixels.h"
 #include "render/stage_set.h"
 #include "render/textures.h"
 #include "render/upload.h"
@@ -98,6 +99,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_CAMERA = variant_camera(renderer);
     spec.SPEC_LISTED = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     spec.SPEC_VIEWS = renderer->views.count > 0;
+    spec.SPEC_PIXEL_DATA = pixels_have_data(target);
     spec.SPEC_AOVS = hooks_aov_count(target);
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);

@@ -152,7 +152,8 @@
     X(56, SPEC_CHECK_WORDS, 1)        /* words with a bit for each check of a test */            \
     X(57, SPEC_AOVS, 0)               /* number of a user's aov functions */                      \
     X(58, SPEC_VIEWS, 0)              /* views of many cameras, one below the other */             \
-    X(59, SPEC_HIT_PART, 0)           /* HIT_PART_* */
+    X(59, SPEC_HIT_PART, 0)           /* HIT_PART_* */                                            \
+    X(60, SPEC_PIXEL_DATA, 1)         /* pixels get ids and weights of cut rays, too */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -30,7 +30,7 @@ layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
 layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
 {
-    vec2 cut_sums[]; // of each pixel: weights of cut rays, for --depth and --bailout, over all
+    vec2 cut_sums[]; // of each pixel, or slot: weights of cut rays, for --depth and --bailout, over all
                      // samples so far
 };
 layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer

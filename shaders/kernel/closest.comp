@@ -94,7 +94,8 @@ bool leave_ray(uint r, bool alive)
     bool met = alive && hit.primitive != HIT_NONE;
     if (alive && primary && !(SPEC_LISTED != 0u && chunk.listed != 0u) && chunk.sample_index == 0u) {
         uvec2 at = slot_place(ray_slot[r]);
-        ids[(at.y - chunk.band_y) * frame.width + at.x] = uvec2(hit.instance, hit.primitive);
+        if (SPEC_PIXEL_DATA != 0u)
+            ids[(at.y - chunk.band_y) * frame.width + at.x] = uvec2(hit.instance, hit.primitive);
         if (SPEC_VIEWS != 0u)
             distances[(at.y - chunk.band_y) * frame.width + at.x] =
                 hit.primitive != HIT_NONE ? hit.t : uintBitsToFloat(0x7f800000u);

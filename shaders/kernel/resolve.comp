@@ -62,9 +62,10 @@ void add_cuts(bool alive, uint slot, uint pixel)
     vec2 cut = vec2(0.0);
     if (alive) {
         cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
+        uint at = SPEC_PIXEL_DATA != 0u ? pixel : slot; // no longer than the tile is drawn
         if (chunk.summed != 0u)
-            cut += cut_sums[pixel];
-        cut_sums[pixel] = cut;
+            cut += cut_sums[at];
+        cut_sums[at] = cut;
     }
     uint depth = max_of_lanes(floatBitsToUint(cut.x)), bailout = max_of_lanes(floatBitsToUint(cut.y));
     if (subgroupElect() && depth != 0u)

@@ -372,6 +372,69 @@ TEST(stages_are_timed_only_where_asked)
     }
 }
 
+/* Several tiles share the sums of weights of a renderer that keeps colours alone, and each sample
+   adds to them. */
+static void check_colors_alone(whit_sampling sampling)
+{
+    whit_renderer_params params = {.width = 64,
+                                   .height = 48,
+                                   .tile_size = 32,
+                                   .depth = 2,
+                                   .bailout = 0.05,
+                                   .sampling = sampling};
+    struct picture all = picture_of(mixed_scene(), NULL, &params);
+    params.color_only = true;
+    struct fixture f = fixture_open(mixed_scene(), NULL, &params);
+    struct image color = render(&f), borrowed, none;
+    whit_stats stats;
+    renderer_get_stats(f.renderer, &stats);
+    assert_same_image("colours alone", &color, &all.color);
+    assert_int_equal(renderer_borrow_color(f.renderer, &borrowed), WHIT_OK);
+    assert_same_image("borrowed", &borrowed, &all.color);
+    image_finish(&borrowed); /* the renderer keeps its pixels */
+    image_finish(&color);
+    color = render(&f);
+    assert_same_image("drawn again", &color, &all.color);
+    assert_true(stats.weight_cut_depth > 0.0 && stats.weight_cut_bailout > 0.0);
+    assert_true(stats.weight_cut_depth == all.stats.weight_cut_depth);
+    assert_true(stats.weight_cut_bailout == all.stats.weight_cut_bailout);
+    assert_int_equal(whit_stats_rays(&stats), whit_stats_rays(&all.stats));
+    assert_true(stats.device_bytes < all.stats.device_bytes);
+    assert_int_equal(renderer_read_ids(f.renderer, &none), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_read_cuts(f.renderer, &none), WHIT_ERROR_USAGE);
+    image_finish(&color);
+    fixture_close(&f);
+    picture_finish(&all);
+}
+
+TEST(colors_alone_are_the_same)
+{
+    check_colors_alone((whit_sampling){.count = 1});
+    check_colors_alone((whit_sampling){.count = 5});
+    check_colors_alone((whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1});
+}
+
+TEST(weights_of_cut_rays_are_those_of_their_pixels)
+{
+    const whit_renderer_params params = {.width = 64, .height = 48, .bailout = 0.05};
+    struct fixture f = fixture_open(mixed_scene(), NULL, &params);
+    struct picture picture = render_picture(&f);
+    struct image cuts;
+    size_t missed = 0, cut = 0;
+    assert_int_equal(renderer_read_cuts(f.renderer, &cuts), WHIT_OK);
+    for (size_t i = 0; i < (size_t)params.width * params.height; ++i) {
+        bool has = cuts.pixels[2 * i] > 0.0f || cuts.pixels[2 * i + 1] > 0.0f;
+        bool misses = picture.ids.words[2 * i + 1] == HIT_NONE;
+        assert_false(has && misses);
+        missed += misses;
+        cut += has;
+    }
+    assert_true(missed > 0 && cut > 0);
+    image_finish(&cuts);
+    picture_finish(&picture);
+    fixture_close(&f);
+}
+
 /* With two segments lists are filled from both ends. The hits of camera rays are counted only after
    later generations of rays have listed theirs, and must still be there. */
 TEST(shares_are_the_same_by_one_segment_and_by_two)

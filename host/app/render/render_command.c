@@ -166,6 +166,25 @@ whit_result render_check_camera(const struct job *job)
     return refuse_camera(job, wanted, scene.camera_count);
 }
 
+/* Whether the shader expects something of the picture: then another renderer is made when the
+   picture is done. */
+static bool expects_something(const whit_shader *shader)
+{
+    whit_shader_info info = {.expectation_count = 0};
+    if (shader)
+        whit_shader_get_info(shader, &info);
+    return info.expectation_count > 0;
+}
+
+/* Whether nothing but colours is read from the renderer. */
+static bool wants_color_only(const struct job *job, const struct render_request *request)
+{
+    const whit_overlay overlay = settings_overlay(&job->settings);
+    return !request->many && !request->ids && !request->keep_unread && !request->cameras.file &&
+           !refine_is_wanted(&request->refine) && !overlay.edges_of_instances &&
+           !overlay.edges_of_primitives && !expects_something(job->shader);
+}
+
 whit_result render_create(const struct job *job, const struct render_request *request,
                           struct frames_progress *progress, whit_renderer **renderer)
 {
@@ -173,6 +192,7 @@ whit_result render_create(const struct job *job, const struct render_request *re
     params.many_pictures = request->frames.given || request->many;
     params.keep_unread = request->keep_unread;
     params.time_stages = job->settings.stats != STATS_NONE;
+    params.color_only = wants_color_only(job, request);
     params.progress = frames_progress_update;
     params.progress_user = progress;
     params.count |= request->counters;
@@ -229,7 +249,7 @@ static whit_result save_own_colors(whit_renderer *renderer, const struct setting
                                    const struct layers *layers, const struct recipe *recipe)
 {
     whit_image *image;
-    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    whit_result result = whit_renderer_borrow_color(renderer, &image);
     if (result == WHIT_OK && request->part.sets)
         part_sum(&request->part, settings->picture.sampling.count, image);
     if (result == WHIT_OK)
@@ -299,16 +319,6 @@ whit_result render_save(const struct job *job, const struct render_request *requ
         result = part_save_beside(request->output, &recipe);
     recipe_finish(&recipe);
     return result;
-}
-
-/* Whether the shader expects something of the picture: then another renderer is made when the
-   picture is done. */
-static bool expects_something(const whit_shader *shader)
-{
-    whit_shader_info info = {.expectation_count = 0};
-    if (shader)
-        whit_shader_get_info(shader, &info);
-    return info.expectation_count > 0;
 }
 
 /* Makes what the job lacks: scene, trees, device. */

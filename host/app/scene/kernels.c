@@ -80,6 +80,7 @@ int kernels_run(struct job *job, bool json)
         result = job_open_device(job);
     if (result == WHIT_OK) {
         whit_renderer_params params = job_picture(job);
+        params.color_only = true; /* as `whit render` */
         result = whit_kernels_list(job->device, job->accel, &params, kernels, &count);
     }
     if (result != WHIT_OK)
