@@ -58,6 +58,15 @@ void platform_zero(void *data, size_t size_bytes)
     memset(data, 0, size_bytes);
 }
 
+bool platform_reads_back_slowly(void)
+{
+#if defined(__x86_64__) && defined(__GNUC__)
+    return __builtin_cpu_is("intel") && __builtin_cpu_supports("avx512f");
+#else
+    return false;
+#endif
+}
+
 uint64_t platform_peak_memory_bytes(void)
 {
     struct rusage own, children;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "accel/material_bits.h"
+#include "base/platform.h"
 #include "device/pipeline.h"
 #include "render/effects.h"
 #include "render/hooks.h"
@@ -91,8 +92,10 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_SETTLES = !variant_has_deferred(target);
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
-    spec.SPEC_WIDE_ROWS =
-        spec.SPEC_INTERLEAVE && device_get_info(renderer->device)->int64; /* lavapipe */
+    /* lavapipe writes a vector's elements to a buffer one by one: for each it stores the whole
+       vector on the stack and reads the element back. */
+    spec.SPEC_WIDE_ROWS = spec.SPEC_INTERLEAVE && device_get_info(renderer->device)->int64 &&
+                          !platform_reads_back_slowly();
     /* The counters need all entries of the node stack in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU && !renderer->params.count;
