@@ -109,7 +109,7 @@ whit_result queues_create(struct target *target)
         {&queues->sums, rays * 16, loaded, "sums"},
         {&queues->lit_list, (uint64_t)lists * queues->lit_capacity * 4, loaded, "hits by lights"},
         {&queues->hit_list, rays * 4 * CLASSES_MAX, loaded, "hits to shade"},
-        {&queues->cuts, calls ? (uint64_t)p->chunk_slots * 8 : 0, BUFFER_STORAGE,
+        {&queues->cuts, calls ? (uint64_t)p->chunk_slots * 8 : 0, BUFFER_STORAGE | BUFFER_TEXELS,
          "weights that are cut"},
         {&queues->cut_sums, calls ? cut_sums * 8 : 0, BUFFER_STORAGE,
          "sums of weights that are cut"},

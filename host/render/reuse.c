@@ -87,7 +87,7 @@ static void dispatch_post(struct renderer *renderer, struct gpu_chunk *chunk)
     const struct stages *stages = &renderer->picture.stages;
     const struct pass *pass = &stages->set.passes[stages->set.of[STAGE_POST]];
     commands_bind(renderer->commands, pass->pipeline, pass->set);
-    commands_push(renderer->commands, chunk, sizeof *chunk);
+    render_push_chunk(renderer, chunk);
     commands_dispatch(renderer->commands,
                       (render_groups(chunk) + pass->rays_each - 1) / pass->rays_each, 1, 1);
 }

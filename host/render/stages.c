@@ -125,7 +125,7 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
         commands_barrier(commands);
     }
     commands_bind(commands, pass->pipeline, pass->set);
-    commands_push(commands, chunk, sizeof *chunk);
+    render_push_chunk(target->renderer, chunk);
     if (chunk->generation == 0 && list == LIST_RAYS)
         commands_dispatch(commands, (render_groups(chunk) + pass->rays_each - 1) / pass->rays_each,
                           1, 1);

@@ -167,6 +167,12 @@ void render_take_deferred(struct target *target, const struct pass *pass, struct
     ++target->stats.dispatches;
 }
 
+void render_push_chunk(struct renderer *renderer, struct gpu_chunk *chunk)
+{
+    chunk->block_row = chunk->first_block / chunk->blocks_x;
+    commands_push(renderer->commands, chunk, sizeof *chunk);
+}
+
 uint32_t render_groups(const struct gpu_chunk *chunk)
 {
     uint32_t slots = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;

@@ -293,6 +293,7 @@ static struct bindings bind_stages(const struct target *target)
     bind(&bindings, BIND_LIT_LIST, BINDING_STORAGE, queues->lit_list);
     bind(&bindings, BIND_LIT_LIST_TEXELS, BINDING_TEXELS, queues->lit_list);
     bind(&bindings, BIND_CUTS, BINDING_STORAGE, queues->cuts);
+    bind(&bindings, BIND_CUT_TEXELS, BINDING_TEXELS, queues->cuts);
     bind(&bindings, BIND_AOVS, BINDING_STORAGE, pixels->aovs);
     bind(&bindings, BIND_VIEWS, BINDING_STORAGE, renderer->views.buffer);
     bind(&bindings, BIND_DISTANCES, BINDING_STORAGE, pixels->distances);

@@ -49,14 +49,15 @@
 #define BIND_SUMS                33
 #define BIND_SUM_TEXELS          34
 #define BIND_CUTS                35
-#define BIND_CUT_SUMS            36
-#define BIND_AOVS                37
-#define BIND_DBG                 38
-#define BIND_VIEWS               39
-#define BIND_DISTANCES           40
-#define BIND_SHAPE_SHADOWS       41
-#define BIND_HOOK_ROWS           42
-#define BIND_HOOK_TEXELS         43
-#define BIND_STAGES_COUNT        44
+#define BIND_CUT_TEXELS          36
+#define BIND_CUT_SUMS            37
+#define BIND_AOVS                38
+#define BIND_DBG                 39
+#define BIND_VIEWS               40
+#define BIND_DISTANCES           41
+#define BIND_SHAPE_SHADOWS       42
+#define BIND_HOOK_ROWS           43
+#define BIND_HOOK_TEXELS         44
+#define BIND_STAGES_COUNT        45
 
 #endif

@@ -235,12 +235,14 @@ struct gpu_chunk {
     gpu_uint summed, samples; /* of a pixel in this pass: samples summed already, and all */
     gpu_uint sums_row, sums_step; /* in the pixel buffer: slot 0's first partial sum, step to its
                                      next */
-    gpu_uint blocks_x; /* blocks in a row of the drawn part */
+    gpu_uint blocks_x;  /* blocks in a row of the drawn part */
+    gpu_uint block_row; /* first_block / blocks_x, set by render_push_chunk() */
     gpu_uint lattice;  /* LATTICE_*: which of the picture's pixels are drawn */
     gpu_uint before_post; /* HOOK_POST: in the pixel buffer, first pixel as it is before post() */
     gpu_uint aovs_alone;  /* 1: writes the aovs of pixels, no colours */
+    gpu_uint pad;
 };
-GPU_ASSERT_SIZE(gpu_chunk, 104)
+GPU_ASSERT_SIZE(gpu_chunk, 112)
 
 #define GENERATION_NONE 0xffffffffu
 

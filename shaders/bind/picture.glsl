@@ -41,7 +41,7 @@ uint invocation_slot()
 // block a subgroup of 8 has 4 x 2 pixels.
 uvec2 slot_place(uint slot)
 {
-    uint blocks_x = chunk.blocks_x, first_y = chunk.first_block / blocks_x;
+    uint blocks_x = chunk.blocks_x, first_y = chunk.block_row;
     // The place is less than 2^14 blocks from the start of that row. Floats divide such numbers
     // exactly enough, while lavapipe divides integers lane by lane.
     uint place = chunk.first_block - first_y * blocks_x + slot / BLOCK_PIXELS;

@@ -38,6 +38,7 @@ layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
     uint cuts[]; // two for each slot: weights of rays cut by --depth and by --bailout, in 1 /
                  // CUT_PARTS
 };
+layout(set = 0, binding = BIND_CUT_TEXELS) uniform usamplerBuffer cut_texels;
 layout(set = 0, binding = BIND_AOVS, std430) buffer AovBuffer
 {
     vec4 aovs[]; // SPEC_AOVS for each slot, of the current sample; behind all slots SPEC_AOVS for
@@ -80,6 +81,19 @@ vec4 fetch_sum(uint id)
     if (SPEC_LOAD_PATH == LOAD_TEXEL)
         return uintBitsToFloat(texelFetch(sum_texels, int(id)));
     return sums[id];
+}
+
+// The weights of a slot's cut rays.
+vec2 fetch_cuts(uint slot)
+{
+    uvec2 own = uvec2(0u);
+    if (SPEC_LOAD_PATH == LOAD_TEXEL) {
+        uvec4 pair = texelFetch(cut_texels, int(slot >> 1));
+        own = (slot & 1u) != 0u ? pair.zw : pair.xy;
+    } else {
+        own = uvec2(cuts[slot * 2u], cuts[slot * 2u + 1u]);
+    }
+    return vec2(own) / CUT_PARTS;
 }
 
 // Ids of the refracted, the straight and the reflected ray that sums[].w names; HIT_NONE where
@@ -443,6 +457,12 @@ uint count_before(uint wanted, out uint all)
     return sum - wanted;
 }
 
+// Whether the invocation is the first of its subgroup, in which all must take part.
+bool is_first_lane()
+{
+    return SPEC_EIGHT_LANES != 0u ? gl_SubgroupInvocationID == 0u : subgroupElect();
+}
+
 uint from_first(uint value)
 {
     return SPEC_EIGHT_LANES != 0u ? subgroupShuffle(value, 0u) : subgroupBroadcastFirst(value);
@@ -453,7 +473,7 @@ uint from_first(uint value)
 uint extend_segment(uint generation, uint list, uint all, uint each, bool back)
 {
     uint at = 0u;
-    if (subgroupElect() && all != 0u) {
+    if (is_first_lane() && all != 0u) {
         at = back ? atomicAdd(generations[generation].lists[list].back, all)
                   : atomicAdd(generations[generation].lists[list].front, all);
         uint more = (at + all + each - 1u) / each - (at + each - 1u) / each;

@@ -61,16 +61,16 @@ void add_cuts(bool alive, uint slot, uint pixel)
 {
     vec2 cut = vec2(0.0);
     if (alive) {
-        cut = vec2(cuts[slot * 2u], cuts[slot * 2u + 1u]) * (chunk.sample_weight / CUT_PARTS);
+        cut = fetch_cuts(slot) * chunk.sample_weight;
         uint at = SPEC_PIXEL_DATA != 0u ? pixel : slot; // no longer than the tile is drawn
         if (chunk.summed != 0u)
             cut += cut_sums[at];
         cut_sums[at] = cut;
     }
     uint depth = max_of_lanes(floatBitsToUint(cut.x)), bailout = max_of_lanes(floatBitsToUint(cut.y));
-    if (subgroupElect() && depth != 0u)
+    if (is_first_lane() && depth != 0u)
         atomicMax(tally.cut_depth_weight, depth);
-    if (subgroupElect() && bailout != 0u)
+    if (is_first_lane() && bailout != 0u)
         atomicMax(tally.cut_bailout_weight, bailout);
 }
 

@@ -157,9 +157,9 @@ uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
                                    : 0u,
                              status);
     uint sum = add_up_lanes(next != HIT_NONE ? uint(calls.wanted[0]) | uint(calls.wanted[2]) << 16 : 0u);
-    if (subgroupElect() && (sum & 0xffffu) != 0u)
+    if (is_first_lane() && (sum & 0xffffu) != 0u)
         atomicAdd(tally.refracted, sum & 0xffffu);
-    if (subgroupElect() && sum >> 16 != 0u)
+    if (is_first_lane() && sum >> 16 != 0u)
         atomicAdd(tally.reflected, sum >> 16);
     if (next == HIT_NONE)
         return 0u;
@@ -196,9 +196,9 @@ uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
 void tally_cuts(uint cuts)
 {
     cuts = add_up_lanes(cuts);
-    if (subgroupElect() && (cuts & 0xffffu) != 0u)
+    if (is_first_lane() && (cuts & 0xffffu) != 0u)
         atomicAdd(tally.cut_depth, cuts & 0xffffu);
-    if (subgroupElect() && cuts >> 16 != 0u)
+    if (is_first_lane() && cuts >> 16 != 0u)
         atomicAdd(tally.cut_bailout, cuts >> 16);
 }
 

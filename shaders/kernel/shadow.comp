@@ -151,6 +151,6 @@ void main()
     report_hooks();
 #endif
     rays = add_up_lanes(rays);
-    if (SPEC_SHADOWS != 0u && subgroupElect() && rays != 0u)
+    if (SPEC_SHADOWS != 0u && is_first_lane() && rays != 0u)
         atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);
 }
