@@ -4,6 +4,7 @@
 
 #include "app/arguments.h"
 #include "app/cache.h"
+#include "app/drivers.h"
 
 enum { NOTES_SHOWN = 20 };
 
@@ -40,6 +41,7 @@ bool job_read(struct job *job, struct cli_reader *reader, void *own, bool option
 void job_start(const struct job *job)
 {
     cache_prepare(job->settings.no_cache);
+    drivers_prepare();
     cli_limit_time(job->settings.time_limit_s);
 }
 

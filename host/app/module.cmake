@@ -11,7 +11,7 @@ foreach(command check cost)
 endforeach()
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
-  app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/ends.c app/job.c app/main.c
+  app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/drivers.c app/ends.c app/job.c app/main.c
   app/page.c app/settings_json.c ${page_sources}
   app/bench/bench_command.c app/bench/request.c
   app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
