@@ -9,7 +9,6 @@
 #include "app/bench/request.h"
 #include "app/cache.h"
 #include "app/commands.h"
-#include "app/drivers.h"
 
 static int list_benches(void)
 {
@@ -72,7 +71,6 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return EXIT_USAGE;
     }
 #endif
-    drivers_prepare();
     cache_prepare(request.settings.no_cache); /* in the environment, which whit-bench inherits */
     return run_bench(argc, argv);
 }
