@@ -1,4 +1,4 @@
-/* What fault_sweep and the library that it preloads tell each other, in shared memory. */
+/* The shared memory of fault_sweep and the library that it preloads. */
 #ifndef FAULT_H
 #define FAULT_H
 

@@ -134,7 +134,7 @@ static bool is_counted(enum fault_calls kind, uintptr_t caller)
            (shared->event == FAULT_FAILS || getpid() == program);
 }
 
-/* What follows the event at the next call, in whichever thread that is. */
+/* Raises the signal that follows the event, at the next call of any thread. */
 static void raise_next(void)
 {
     int number = atomic_exchange(&next_signal, 0);
@@ -252,7 +252,7 @@ __attribute__((destructor)) static void end(void)
 
 #ifndef FAULT_NO_ALLOC
 
-/* What dlsym itself asks for, before there is a next calloc. */
+/* Memory for the calls of calloc that dlsym makes while it looks for the next calloc. */
 static _Alignas(16) char early[4096];
 static size_t early_bytes;
 static __thread bool resolving;
@@ -515,7 +515,7 @@ static bool vulkan_fails(uintptr_t caller, const char *what, const void *of)
         return vulkan_fails(CALLER, #name, of) ? (VkResult)shared->code : next arguments;          \
     }
 
-/* What was submitted is not to be destroyed while it runs: these wait, and then fail. */
+/* Submitted work must not be destroyed while it runs: these functions wait, and then fail. */
 #define VULKAN_WAIT(name, of, parameters, arguments)                                               \
     VKAPI_ATTR VkResult VKAPI_CALL name parameters                                                 \
     {                                                                                              \

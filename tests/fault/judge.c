@@ -56,7 +56,7 @@ static bool says_why(const struct sweep *sweep, const char *errors)
            (sweep->say && strcasestr(errors, sweep->say));
 }
 
-/* What is wrong with how it ended; NULL: nothing. */
+/* Names the fault in how the program ended; NULL: there is none. */
 static const char *judge_end(const struct sweep *sweep, int status, const char *errors)
 {
     static char text[128];
@@ -195,7 +195,8 @@ static bool same_words(const struct content *a, const struct content *b)
     return left && right;
 }
 
-/* What an output was without a fault; of reports one that is complete, or `part` of one. */
+/* Whether an output is the one of a run without a fault; for reports, whether it is a complete one,
+   or (*part) a part of one. */
 static bool is_whole(const struct sweep *sweep, uint32_t output, const struct content *now,
                      bool *part)
 {
@@ -209,8 +210,9 @@ static bool is_whole(const struct sweep *sweep, uint32_t output, const struct co
     return complete;
 }
 
-/* What it says of how much was written is so; NULL if it is. A program that ends at once may have
-   put a frame in its place that it has not counted. */
+/* Checks the number of outputs that the program says it wrote. Returns its false statement; NULL:
+   there is none. A program that ends at once may have put a frame in its place that it has not
+   counted. */
 static const char *judge_words(const struct sweep *sweep, const char *errors, uint32_t new_count)
 {
     unsigned done, count;

@@ -1,4 +1,4 @@
-/* What is wrong with a run. */
+/* Judges a run: names the first fault in it. */
 #ifndef FAULT_JUDGE_H
 #define FAULT_JUDGE_H
 

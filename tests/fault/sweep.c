@@ -127,7 +127,8 @@ static void run_child(const struct sweep *sweep, bool validated)
     _exit(126);
 }
 
-/* What waitpid says of a run in which something happens at call `at`; 0: nothing does. */
+/* Runs the program once, with the event at call `at` (0: without one). Returns the status that
+   waitpid gives. */
 static int run_once(struct sweep *sweep, const struct fault *fault, uint32_t at, bool validated)
 {
     int status = 0;

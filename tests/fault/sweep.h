@@ -8,7 +8,7 @@
 #include "fault.h"
 
 enum { OUTPUTS_MAX = 4, FAULTS_MAX = 8 };
-/* What outputs hold before a run. */
+/* The contents of outputs before a run. */
 #define OLD_TEXT "old\n"
 
 struct fault {

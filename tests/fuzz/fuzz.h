@@ -1,5 +1,6 @@
-/* What the fuzz targets share. Each target is one file that fills in `fuzz_target`; fuzz.c holds
-   the entry point that libFuzzer calls, replay.c a main() that runs files through it instead. */
+/* The interface of the fuzz targets. Each target is one file that fills in `fuzz_target`; fuzz.c
+   holds the entry point that libFuzzer calls, replay.c a main() that runs files through it instead.
+ */
 #ifndef TESTS_FUZZ_H
 #define TESTS_FUZZ_H
 
@@ -15,8 +16,8 @@ struct scene;
 struct fuzz_target {
     /* One input, exactly size_bytes long for sanitizers. What is wrong is told by fuzz_check. */
     void (*run)(const uint8_t *data, size_t size_bytes);
-    /* What an input may have allocated at a time, beyond ten times its size. Watched where
-       AddressSanitizer is built in. */
+    /* The memory that an input may have allocated at a time, beyond ten times its size. It is
+       checked where AddressSanitizer is built in. */
     uint64_t memory_bytes;
     void (*prepare)(void); /* once, before the first input; may be NULL */
 };
@@ -46,8 +47,8 @@ void fuzz_check_errors(whit_result result, const char *path);
 void fuzz_load(const char *path);
 void fuzz_check_trees(const struct scene *scene);
 
-/* What a child has answered goes to this function, which may change it; NULL: the end of a model's
-   bytes says how it is damaged. */
+/* Gets each answer of a child, and may change it. NULL: the end of a model's bytes says how the
+   answer is damaged. */
 extern void (*fuzz_reply)(struct child_reply *reply);
 
 /* Copies a file. In a PNG each chunk gets the checksum that fits; other files are copied as they

@@ -13,7 +13,7 @@ static const struct setting none[] = {{0}};
 static const struct cli_command command = {
     .name = "fuzz", .arguments = "", .summary = "", .options = none, .settings = IN_VIEW};
 
-/* What was read is what is written, and reads back as itself. */
+/* Each value is written as it was read, and reads back as itself. */
 static void check_values(const struct settings *settings)
 {
     for (const struct setting *row = settings_table; row->name; ++row) {

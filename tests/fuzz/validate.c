@@ -25,7 +25,7 @@ static void prepare(void)
     }
 }
 
-/* What patches may write to: words that the validator looks at. */
+/* Memory that patches may change: the words that the validator checks. */
 struct area {
     uint8_t *bytes;
     size_t size_bytes; /* of all elements */

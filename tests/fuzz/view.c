@@ -1,5 +1,5 @@
-/* What the viewer reads: recordings, whose events are written as they were read, and the cameras
-   that it remembers. */
+/* Files that the viewer reads: recordings, whose events are written as they were read, and the
+   cameras that it remembers. */
 #include "fuzz.h"
 
 #include <math.h>
@@ -24,7 +24,8 @@ static bool same_text(const char *a, const char *b)
     return a == b || (a && b && strcmp(a, b) == 0);
 }
 
-/* What has a line has one that means the same; moves are kept to nine digits. */
+/* An event that can be written as a line reads back as the same event; moves are kept to nine
+   digits. */
 static void check_line(const struct view_event *event)
 {
     char line[EVENT_PATH + 64] = "";

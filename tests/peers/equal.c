@@ -48,7 +48,7 @@ enum { BUILDERS = sizeof builders / sizeof builders[0], ORDERS = 3 };
 static const char *const orders[ORDERS] = {
     [ORDER_DISTANCE] = "distance", [ORDER_SIGN] = "sign", [ORDER_BASIC] = "basic"};
 
-/* What one way to trace a scene gives. */
+/* The hits and the picture of one way to trace a scene. */
 struct answer {
     struct gpu_hit *closest, *any;
     struct image color, ids;

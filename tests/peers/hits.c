@@ -23,7 +23,7 @@
 
 enum { CHUNK = 4096, HITS_THREADS = 2 };
 
-/* What the oracle says of an answer that should be its own. */
+/* How an answer compares with the oracle's. */
 enum agreement {
     AGREE,
     AGREE_TIE,   /* other ids, as near: both hits are right */
@@ -192,7 +192,7 @@ static void print_ray(const struct comparison *c, uint64_t i, const char *what)
     printf("    margin %.3g, next hit %.17g\n", exact.edge_margin, exact.second_t);
 }
 
-/* What is wrong first, then what is explained. */
+/* Prints the answers that are wrong first, then those that are explained. */
 static void print_list(const struct comparison *c, const uint8_t *differs, const char *who,
                        const char *const names[AGREEMENTS], uint64_t limit)
 {

@@ -1,4 +1,4 @@
-/* What holds of the picture of every scene:
+/* Checks a picture of any scene:
 
        picture_check SCENE [full | threads | validated | stored | levels | all-levels | flat |
                             small-flat | stages | few-stages]
@@ -113,7 +113,7 @@ static void check_file(const char *path, const char *width, const char *height)
 
 /* ---- Pictures of a scene ---- */
 
-/* What a picture is drawn with. */
+/* The objects that a picture is drawn with. */
 struct subject {
     const char *path;
     whit_scene *scene;

@@ -4,7 +4,7 @@
 # colors: lit as the scene says. masks: every object in one flat colour of its own, so that only the
 # geometry and the camera count.
 #
-# What is set equal: POV-Ray is left-handed, so its camera's `right` is negative and all coordinates
+# Both programs get the same scene: POV-Ray is left-handed, so its camera's `right` is negative and all coordinates
 # stay as they are; `angle` is the horizontal one; gamma is 1 throughout. `specular` with `roughness`
 # 1 / n is Blinn's (n.h)^n, as whit has it. A light that fades with fade_distance f and fade_power 2 is
 # 2 / (1 + (d/f)^2) of its colour, which for a small f is inverse square within (f/d)^2.
