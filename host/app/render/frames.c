@@ -186,9 +186,9 @@ void sequence_finish(struct sequence *sequence)
 static whit_result save_with_layers(const struct job *job, const struct render_request *single,
                                     whit_renderer *renderer, const whit_stats *stats)
 {
-    struct layers layers = {0};
-    whit_result result = render_save(job, single, renderer, NULL, &layers, stats);
-    layers_finish(&layers);
+    struct drawn_images images = {0};
+    whit_result result = render_save(job, single, renderer, &images, stats);
+    drawn_images_finish(&images);
     return result;
 }
 

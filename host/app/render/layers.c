@@ -34,6 +34,14 @@ void layers_finish(struct layers *layers)
     *layers = (struct layers){0};
 }
 
+void drawn_images_finish(struct drawn_images *images)
+{
+    whit_image_destroy(images->color);
+    whit_image_destroy(images->ids);
+    layers_finish(&images->layers);
+    *images = (struct drawn_images){0};
+}
+
 bool layers_check(const struct job *job)
 {
     char list[512] = "";

@@ -15,6 +15,14 @@ struct layers {
     uint32_t count;
 };
 
+/* The images of a picture to be saved, owned. A zeroed one has none: then the renderer has them. */
+struct drawn_images {
+    whit_image *color; /* overlays are drawn into it */
+    whit_image *ids;
+    struct layers layers;
+};
+void drawn_images_finish(struct drawn_images *images);
+
 /* Reads the aov images of the shader (NULL: none) from `renderer`, which has drawn the picture, or
    from `refine` where `renderer` is NULL. After an error there are none. */
 WHIT_CHECK whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,

@@ -119,19 +119,9 @@ static whit_result take_step(const struct refine_goal *goal, struct refine_steps
     return WHIT_OK;
 }
 
-/* Draws the first sample again for the hit identities: after steps the renderer has none, or those
-   of a part of the picture. */
-static whit_result draw_first_sample(const struct job *job, whit_renderer *renderer)
-{
-    whit_renderer_params params = job_picture(job);
-    params.sampling = (whit_sampling){.count = 1};
-    whit_result result = whit_renderer_set_view(renderer, &params);
-    return result == WHIT_OK ? whit_renderer_render(renderer) : result;
-}
-
 static whit_result finish(struct job *job, const struct refine_goal *goal,
                           const struct refine_steps *steps, struct refined *refined,
-                          whit_image **color, struct layers *layers)
+                          struct drawn_images *images)
 {
     const whit_refine_info *now = &steps->now;
     *refined = (struct refined){
@@ -142,34 +132,33 @@ static whit_result finish(struct job *job, const struct refine_goal *goal,
         .reached = goal->limit_ms > 0.0 || (now->error >= 0.0 && now->error <= goal->error),
     };
     job->settings.picture.sampling = (whit_sampling){.count = now->samples};
-    whit_result result = whit_refine_image(steps->refine, color);
-    return result == WHIT_OK ? layers_read(job->shader, NULL, steps->refine, layers) : result;
+    whit_result result = whit_refine_image(steps->refine, &images->color);
+    return result == WHIT_OK ? layers_read(job->shader, NULL, steps->refine, &images->layers)
+                             : result;
 }
 
 whit_result refine_render(struct job *job, const struct render_request *request,
                           whit_renderer *renderer, struct frames_progress *progress,
-                          struct refined *refined, whit_image **color, struct layers *layers,
-                          whit_stats *stats)
+                          struct refined *refined, struct drawn_images *images, whit_stats *stats)
 {
     const whit_renderer_params params = job_picture(job);
     const struct refine_goal *goal = &request->refine;
     struct refine_steps steps = {.now.error = -1.0};
     bool needs_ids = request->ids || job->settings.edges != EDGES_OFF;
-    *color = NULL;
+    *images = (struct drawn_images){0};
     whit_result result = whit_refine_create(renderer, &params, &steps.refine);
-    while (result == WHIT_OK && !is_done(goal, &steps.now) && has_time(goal, &steps))
+    while (result == WHIT_OK && !is_done(goal, &steps.now) && has_time(goal, &steps)) {
+        bool first = steps.now.samples == 0;
         result = take_step(goal, &steps, progress);
+        if (result == WHIT_OK && first && needs_ids)
+            result = whit_renderer_image(renderer, WHIT_AOV_IDS, &images->ids);
+    }
     if (result == WHIT_OK)
-        result = finish(job, goal, &steps, refined, color, layers);
+        result = finish(job, goal, &steps, refined, images);
     whit_refine_destroy(steps.refine);
     *stats = steps.stats;
-    if (result == WHIT_OK && needs_ids)
-        result = draw_first_sample(job, renderer);
-    if (result != WHIT_OK) {
-        whit_image_destroy(*color);
-        layers_finish(layers);
-        *color = NULL;
-    }
+    if (result != WHIT_OK)
+        drawn_images_finish(images);
     return result;
 }
 

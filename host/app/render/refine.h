@@ -36,14 +36,13 @@ bool refine_check(struct cli_reader *reader, const struct job *job,
    that take longer to make and draw faster. */
 enum { REFINE_SAMPLES_USUAL = 64 };
 
-/* Draws until request->refine is met. Gives *color, `layers` and the `stats` of all steps. Sets the
-   job's number of samples to that of the picture, so that its recipe draws it again. Where
-   `request` needs hit identities, the renderer then has those of the first sample. After an error
-   *color is NULL and there are no layers. */
+/* Draws until request->refine is met. Gives *images, with the ids of the first sample where
+   `request` or edges need them, and the `stats` of all steps. Sets the job's number of samples to
+   that of the picture, so that its recipe draws it again. After an error there are no images. */
 WHIT_CHECK whit_result refine_render(struct job *job, const struct render_request *request,
                                      whit_renderer *renderer, struct frames_progress *progress,
-                                     struct refined *refined, whit_image **color,
-                                     struct layers *layers, whit_stats *stats);
+                                     struct refined *refined, struct drawn_images *images,
+                                     whit_stats *stats);
 
 /* Prints samples and error, as a note where the goal was reached, else as an error. */
 void refine_say(const struct refine_goal *goal, const struct refined *refined);

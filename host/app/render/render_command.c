@@ -204,15 +204,16 @@ whit_result render_create(const struct job *job, const struct render_request *re
     return result == WHIT_OK ? job_still_wanted() : result;
 }
 
-static whit_result save_ids(whit_renderer *renderer, const char *path, const struct recipe *recipe)
+/* `ids`: NULL where the renderer has them. */
+static whit_result save_ids(whit_renderer *renderer, whit_image *ids, const char *path,
+                            const struct recipe *recipe)
 {
-    whit_image *image;
+    whit_image *image = whit_image_share(ids);
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
-    whit_result result = whit_renderer_image(renderer, WHIT_AOV_IDS, &image);
-    if (result != WHIT_OK)
-        return result;
-    result = whit_image_save(image, path, recipe->texts, recipe->count, &cli_log);
+    whit_result result = image ? WHIT_OK : whit_renderer_image(renderer, WHIT_AOV_IDS, &image);
+    if (result == WHIT_OK)
+        result = whit_image_save(image, path, recipe->texts, recipe->count, &cli_log);
     whit_image_destroy(image);
     return result;
 }
@@ -232,9 +233,11 @@ static whit_result save_thumbnail(const whit_image *image, const char *path)
 
 static whit_result save_colors(whit_renderer *renderer, const struct settings *settings,
                                const struct render_request *request, whit_image *image,
-                               const struct layers *layers, const struct recipe *recipe)
+                               const struct drawn_images *images, const struct recipe *recipe)
 {
-    const whit_overlay overlay = settings_overlay(settings);
+    const struct layers *layers = &images->layers;
+    whit_overlay overlay = settings_overlay(settings);
+    overlay.ids = images->ids ? whit_image_words(images->ids) : NULL;
     whit_result result = whit_renderer_draw_over(renderer, &overlay, image);
     if (result == WHIT_OK)
         result = request->thumbnail
@@ -246,14 +249,14 @@ static whit_result save_colors(whit_renderer *renderer, const struct settings *s
 
 static whit_result save_own_colors(whit_renderer *renderer, const struct settings *settings,
                                    const struct render_request *request,
-                                   const struct layers *layers, const struct recipe *recipe)
+                                   const struct drawn_images *images, const struct recipe *recipe)
 {
     whit_image *image;
     whit_result result = whit_renderer_borrow_color(renderer, &image);
     if (result == WHIT_OK && request->part.sets)
         part_sum(&request->part, settings->picture.sampling.count, image);
     if (result == WHIT_OK)
-        result = save_colors(renderer, settings, request, image, layers, recipe);
+        result = save_colors(renderer, settings, request, image, images, recipe);
     whit_image_destroy(image);
     return result;
 }
@@ -282,9 +285,10 @@ static bool keeps_layers(const struct settings *settings, const struct render_re
 }
 
 whit_result render_save(const struct job *job, const struct render_request *request,
-                        whit_renderer *renderer, whit_image *color, struct layers *layers,
+                        whit_renderer *renderer, struct drawn_images *images,
                         const whit_stats *stats)
 {
+    struct layers *layers = &images->layers;
     const struct settings *settings = &job->settings;
     struct recipe recipe;
     whit_device_info device;
@@ -301,10 +305,10 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     if (part && !recipe_add_part(&recipe, &request->part, settings))
         result = WHIT_ERROR_MEMORY;
     if (result == WHIT_OK && request->ids)
-        result = save_ids(renderer, request->ids, &recipe);
+        result = save_ids(renderer, images->ids, request->ids, &recipe);
     if (result == WHIT_OK && cli_cancel)
         result = WHIT_ERROR_CANCELLED;
-    if (result == WHIT_OK && !color && keeps_layers(settings, request))
+    if (result == WHIT_OK && !images->color && keeps_layers(settings, request))
         result = layers_read(job->shader, renderer, NULL, layers);
     if (!keeps_layers(settings, request))
         layers_finish(layers);
@@ -313,8 +317,9 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     else if (result == WHIT_OK && settings->aov[0])
         result = layers_save(layers, settings->aov, request->output, &recipe);
     else if (result == WHIT_OK)
-        result = color ? save_colors(renderer, settings, request, color, layers, &recipe)
-                       : save_own_colors(renderer, settings, request, layers, &recipe);
+        result = images->color
+                     ? save_colors(renderer, settings, request, images->color, images, &recipe)
+                     : save_own_colors(renderer, settings, request, images, &recipe);
     if (result == WHIT_OK && part && part_is_pfm(request->output))
         result = part_save_beside(request->output, &recipe);
     recipe_finish(&recipe);
@@ -400,15 +405,13 @@ static void say_done(const struct job *job, const struct render_request *request
                                               : "");
 }
 
-/* *color: NULL where the renderer has the colours. */
 static whit_result draw_one(struct job *job, const struct render_request *request,
                             whit_renderer *renderer, struct frames_progress *progress,
-                            struct refined *refined, whit_image **color, struct layers *layers,
-                            whit_stats *stats)
+                            struct refined *refined, struct drawn_images *images, whit_stats *stats)
 {
-    *color = NULL;
+    *images = (struct drawn_images){0};
     if (refine_is_wanted(&request->refine))
-        return refine_render(job, request, renderer, progress, refined, color, layers, stats);
+        return refine_render(job, request, renderer, progress, refined, images, stats);
     whit_result result = whit_renderer_render(renderer);
     if (result == WHIT_OK)
         whit_renderer_get_stats(renderer, stats);
@@ -419,20 +422,18 @@ static whit_result draw_and_save(struct job *job, const struct render_request *r
                                  whit_renderer *renderer, struct frames_progress *progress,
                                  struct refined *refined, struct sequence *sequence)
 {
-    whit_image *color;
-    struct layers layers = {0};
+    struct drawn_images images;
     whit_result result =
-        draw_one(job, request, renderer, progress, refined, &color, &layers, &sequence->stats);
+        draw_one(job, request, renderer, progress, refined, &images, &sequence->stats);
     cli_progress_finish(&progress->bar);
     if (result != WHIT_OK)
         return result;
     double start_ms = whit_clock_ms();
     if (!cli_cancel)
         cli_set_saving();
-    result = render_save(job, request, renderer, color, &layers, &sequence->stats);
+    result = render_save(job, request, renderer, &images, &sequence->stats);
     sequence->save_ms = whit_clock_ms() - start_ms;
-    whit_image_destroy(color);
-    layers_finish(&layers);
+    drawn_images_finish(&images);
     return result;
 }
 

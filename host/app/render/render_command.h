@@ -54,11 +54,10 @@ WHIT_CHECK whit_result render_check_camera(const struct job *job);
 WHIT_CHECK whit_result render_create(const struct job *job, const struct render_request *request,
                                      struct frames_progress *progress, whit_renderer **renderer);
 
-/* Saves the files that `request` names for the picture just rendered. `color`: its colours, or NULL
-   where the renderer has them; overlays are drawn into it. `layers`: the images of the shader's
-   aovs, which are read from the renderer where `color` is NULL. */
+/* Saves the files that `request` names for the picture just rendered. `images` has all of its
+   images, or none of them, and then those of the shader's aovs are read into it. */
 whit_result render_save(const struct job *job, const struct render_request *request,
-                        whit_renderer *renderer, whit_image *color, struct layers *layers,
+                        whit_renderer *renderer, struct drawn_images *images,
                         const whit_stats *stats);
 
 #endif
