@@ -51,8 +51,8 @@ WHIT_CHECK whit_result renderer_render_views(struct renderer *renderer, const wh
 uint32_t renderer_view_count(const struct renderer *renderer);
 /* Linear RGBA floats. */
 WHIT_CHECK whit_result renderer_read_color(struct renderer *renderer, struct image *out);
-/* As renderer_read_color, but without a copy where the host reads the device's memory itself: then
- *out borrows the renderer's pixels until it draws again. */
+/* As renderer_read_color, but without a copy where the host reads the device's memory itself: the
+   image then has the renderer's pixels, until it draws again. */
 WHIT_CHECK whit_result renderer_borrow_color(struct renderer *renderer, struct image *out);
 /* Instance and primitive of each pixel's first sample (HIT_NONE: nothing was hit). */
 WHIT_CHECK whit_result renderer_read_ids(struct renderer *renderer, struct image *out);

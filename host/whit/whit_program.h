@@ -54,7 +54,8 @@ WHIT_CHECK whit_result whit_image_strips_add(whit_image_strips *strips, const wh
 WHIT_CHECK whit_result whit_image_strips_commit(whit_image_strips *strips);
 void whit_image_strips_abandon(whit_image_strips *strips);
 /* As whit_renderer_image of WHIT_AOV_COLOR, but the image may have its pixels in common with the
-   renderer: it ends before the renderer draws again or is destroyed. */
+   renderer: destroy it before the renderer draws again. WHIT_ERROR_USAGE and others as of
+   whit_renderer_image. */
 WHIT_CHECK whit_result whit_renderer_borrow_color(whit_renderer *renderer, whit_image **out);
 /* The floats of a picture, to be changed; NULL where it has integers. */
 float *whit_image_edit(whit_image *image);
