@@ -35,7 +35,7 @@ void render_clear_deferred(struct renderer *renderer, struct buffer *deferred);
    with `deferred` set. */
 void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
                           const void *push, uint32_t push_bytes);
-/* Records the push constants of the bound kernel, a stage. */
+/* Records the push constants of the bound kernel, a stage. chunk->blocks_x must not be 0. */
 void render_push_chunk(struct renderer *renderer, struct gpu_chunk *chunk);
 /* Number of workgroups for the camera rays of a chunk, at one ray an invocation. */
 uint32_t render_groups(const struct gpu_chunk *chunk);

@@ -257,7 +257,7 @@ TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
     for (int lights = 4; lights <= 4000; lights += 3996) {
         struct fixture f = fixture_open(lamps_scene(lights), NULL, &params);
         struct progress progress = {.share = 1.0, .work_total = 1};
-        struct gpu_chunk chunk = {.block_count = 1, .band_rows = 8};
+        struct gpu_chunk chunk = {.block_count = 1, .blocks_x = 1, .band_rows = 8};
         double longest_ms = 0.0;
         assert_int_equal(renderer_compile(f.renderer), WHIT_OK);
         render_take_sample(&f.renderer->picture, 0, 1, &chunk);
