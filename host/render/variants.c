@@ -73,6 +73,17 @@ static bool priorities_differ(const struct scene *scene)
     return false;
 }
 
+/* Whether rows are written in words of 64 bits. lavapipe writes a vector's elements to a buffer one
+   by one: for each it stores the whole vector on the stack and reads the element back. Tests choose
+   by WHIT_WIDE_ROWS, 0 or 1, what other processors would have. */
+static bool writes_wide_rows(const struct device *device)
+{
+    const whit_device_info *info = device_get_info(device);
+    const char *chosen = getenv("WHIT_WIDE_ROWS");
+    bool slow = chosen ? strcmp(chosen, "0") == 0 : platform_reads_back_slowly();
+    return info->kind == WHIT_DEVICE_CPU && info->int64 && !slow;
+}
+
 static struct gpu_spec make_spec(const struct target *target, const struct scene_effects *effects,
                                  bool secondary)
 {
@@ -92,10 +103,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_SETTLES = !variant_has_deferred(target);
     spec.SPEC_SECONDARY = secondary;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
-    /* lavapipe writes a vector's elements to a buffer one by one: for each it stores the whole
-       vector on the stack and reads the element back. */
-    spec.SPEC_WIDE_ROWS = spec.SPEC_INTERLEAVE && device_get_info(renderer->device)->int64 &&
-                          !platform_reads_back_slowly();
+    spec.SPEC_WIDE_ROWS = writes_wide_rows(renderer->device);
     /* The counters need all entries of the node stack in memory. */
     spec.SPEC_SHORT_STACK =
         device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU && !renderer->params.count;
