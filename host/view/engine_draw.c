@@ -294,7 +294,7 @@ static whit_result draw_as(struct session *session, const whit_renderer_params *
 whit_result engine_draw_again(const struct engine_task *task, whit_stats *stats)
 {
     whit_renderer_params params = task_params(task);
-    params.time_stages = false; /* which takes time */
+    params.time_stages = false; /* time stamps take time */
     whit_result result = draw_as(task->session, &params);
     if (result == WHIT_OK)
         whit_renderer_get_stats(task->session->renderer, stats);
