@@ -1,5 +1,5 @@
-/* What stands before the functions of a kernel: its types, constants and global variables, with its
-   specialization constants filled in. */
+/* The types, constants and global variables of a kernel. Its specialization constants are filled
+   in. */
 #ifndef DEVICE_EVALUATE_CONSTANTS_H
 #define DEVICE_EVALUATE_CONSTANTS_H
 

@@ -30,8 +30,9 @@ layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
 layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
 {
-    vec2 cut_sums[]; // of each pixel, or slot: weights of cut rays, for --depth and --bailout, over all
-                     // samples so far
+    // Weights of the cut rays of each pixel (without SPEC_PIXEL_DATA: slot), for --depth and --bailout,
+    // over all samples so far.
+    vec2 cut_sums[];
 };
 layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
 {

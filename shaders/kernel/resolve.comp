@@ -62,7 +62,7 @@ void add_cuts(bool alive, uint slot, uint pixel)
     vec2 cut = vec2(0.0);
     if (alive) {
         cut = fetch_cuts(slot) * chunk.sample_weight;
-        uint at = SPEC_PIXEL_DATA != 0u ? pixel : slot; // no longer than the tile is drawn
+        uint at = SPEC_PIXEL_DATA != 0u ? pixel : slot; // sums of slots last while their tile is drawn
         if (chunk.summed != 0u)
             cut += cut_sums[at];
         cut_sums[at] = cut;

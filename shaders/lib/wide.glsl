@@ -1,5 +1,6 @@
 // Rows of 16 bytes as words of 64 bits. lavapipe writes to storage buffers lane by lane and word by
-// word: rows in such words take 0.7 of the time, pairs of rows at once 0.6.
+// word: rows in such words take 0.7 of the time, pairs of rows at once 0.6. On Intel's processors with
+// AVX-512 they take longer, and are not used (SPEC_WIDE_ROWS).
 #ifndef LIB_WIDE_GLSL
 #define LIB_WIDE_GLSL
 
