@@ -208,9 +208,9 @@ whit_result render_create(const struct job *job, const struct render_request *re
 static whit_result save_ids(whit_renderer *renderer, whit_image *ids, const char *path,
                             const struct recipe *recipe)
 {
-    whit_image *image = whit_image_share(ids);
     if (cli_cancel)
         return WHIT_ERROR_CANCELLED;
+    whit_image *image = whit_image_share(ids);
     whit_result result = image ? WHIT_OK : whit_renderer_image(renderer, WHIT_AOV_IDS, &image);
     if (result == WHIT_OK)
         result = whit_image_save(image, path, recipe->texts, recipe->count, &cli_log);
