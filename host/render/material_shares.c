@@ -14,7 +14,7 @@
    of `capacity` items the tile has used the `first` ones and the `last` ones. */
 struct tile_hits {
     uint32_t *list; /* ids of hits: `capacity` items for each class of materials (CLASS_*) */
-    uint32_t *rows; /* by id: variant_hit_rows() rows of four words */
+    uint32_t *rows; /* by id: hit_rows of struct stage_set, of four words each */
     uint32_t capacity, first, last;
 };
 
@@ -40,7 +40,7 @@ static whit_result read_tile(struct target *target, const struct gpu_generation 
                              struct tile_hits *hits)
 {
     const struct queue_buffers *queues = &target->buffers.queues;
-    uint64_t row_bytes = variant_hit_rows(target->renderer) * 16;
+    uint64_t row_bytes = target->stages.set.hit_rows * 16;
     *hits = (struct tile_hits){.capacity = queues->ray_capacity, .first = camera_rays};
     for (uint32_t g = 1; g < generation_count; ++g) {
         const struct gpu_items *rays = &generations[g].lists[LIST_RAYS];
@@ -60,12 +60,12 @@ static whit_result read_tile(struct target *target, const struct gpu_generation 
     return result;
 }
 
-static uint32_t material_of(const struct renderer *renderer, const struct tile_hits *hits,
-                            uint32_t id)
+static uint32_t material_of(const struct target *target, const struct tile_hits *hits, uint32_t id)
 {
+    const struct renderer *renderer = target->renderer;
     const struct accel *accel = renderer->accel;
     const struct scene *scene = renderer->scene;
-    const uint32_t *row = &hits->rows[(size_t)id * variant_hit_rows(renderer) * 4];
+    const uint32_t *row = &hits->rows[(size_t)id * target->stages.set.hit_rows * 4];
     uint32_t index = row[3] & ~HIT_AT_EXIT;
     if (index == HIT_SHAPE)
         return renderer->frame.shape_material & ~SHAPE_IS_GLASS;
@@ -97,10 +97,10 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
             const gpu_uint *firsts = generations[g].firsts;
             uint32_t end = g == 0 ? camera_rays : hits.capacity; /* hit_capacity() of queues.glsl */
             for (uint32_t i = 0; i < items->front; ++i)
-                ++(*counts)[k * material_count + material_of(renderer, &hits, list[firsts[0] + i])];
+                ++(*counts)[k * material_count + material_of(target, &hits, list[firsts[0] + i])];
             for (uint32_t i = 0; i < items->back; ++i)
                 ++(*counts)[k * material_count +
-                            material_of(renderer, &hits, list[end - 1 - firsts[1] - i])];
+                            material_of(target, &hits, list[end - 1 - firsts[1] - i])];
         }
     }
     tile_hits_finish(&hits);

@@ -86,6 +86,7 @@ whit_result queues_create(struct target *target)
         queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, min / 4);
     }
     uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
+    struct gpu_spec spec = variant_async_spec(target); /* of all of the picture's, the most rows */
     uint64_t cut_sums =
         pixels_have_data(target) ? (uint64_t)renderer->params.width * p->band_rows : p->chunk_slots;
     uint64_t heads = sizeof(struct gpu_tally) +
@@ -104,7 +105,7 @@ whit_result queues_create(struct target *target)
          BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT | BUFFER_HOST, "generations"},
         {&queues->empty, heads, BUFFER_STORAGE | BUFFER_HOST, "empty generations"},
         {&queues->rays, ray_bytes(sent), loaded, "rays"},
-        {&queues->hits, rays * variant_hit_rows(renderer) * 16, loaded, "hits"},
+        {&queues->hits, rays * variant_hit_rows(&spec) * 16, loaded, "hits"},
         {&queues->lit, (uint64_t)queues->lit_capacity * LIT_ROWS * 16, loaded, "lit hits"},
         {&queues->sums, rays * 16, loaded, "sums"},
         {&queues->lit_list, (uint64_t)lists * queues->lit_capacity * 4, loaded, "hits by lights"},

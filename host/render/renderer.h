@@ -101,6 +101,7 @@ struct stage_set {
     struct pass passes[STAGE_COUNT]; /* empty: nothing to do, or the kernel of another stage */
     enum stage of[STAGE_COUNT];      /* the stage whose kernel each runs: itself, or a later one */
     uint32_t classes;                /* classes of materials; each has its own shading kernel */
+    uint32_t hit_rows;               /* as variant_hit_rows() */
     bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
     bool asks;                       /* whether hits go on to the shadow stages */
 };

@@ -82,7 +82,8 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){.classes = job->classes, .asks = job->asks};
+    *out = (struct stage_set){
+        .classes = job->classes, .asks = job->asks, .hit_rows = variant_hit_rows(&job->spec)};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||
@@ -237,6 +238,7 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
         }
     }
     set->classes = made.classes;
+    set->hit_rows = made.hit_rows;
     memcpy(set->of, made.of, sizeof set->of);
     memcpy(set->calls, made.calls, sizeof set->calls);
     count_instructions(target);

@@ -37,9 +37,10 @@ bool variant_has_deferred(const struct target *target)
            !target->probed;
 }
 
-uint32_t variant_hit_rows(const struct renderer *renderer)
+uint32_t variant_hit_rows(const struct gpu_spec *spec)
 {
-    return renderer->accel->flat && renderer->params.numerics != NUMERICS_EXACT ? 1 : 2;
+    bool has_key = spec->SPEC_NUMERICS == NUMERICS_EXACT && spec->SPEC_MEDIA == MEDIA_TOUCH;
+    return has_key || spec->SPEC_INSTANCED ? 2 : 1;
 }
 
 static bool only_spheres(const struct scene *scene)
@@ -90,7 +91,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     const struct renderer *renderer = target->renderer;
     const struct accel *accel = renderer->accel;
     struct gpu_spec spec = GPU_SPEC_DEFAULTS;
-    spec.SPEC_GROUP_SIZE = RENDER_GROUP_SIZE;
+    spec.SPEC_GROUP_SIZE = spec.SPEC_LIST_GROUP = spec.SPEC_DEFERRED_GROUP = RENDER_GROUP_SIZE;
     spec.SPEC_LOAD_PATH = renderer->scene_buffers.texel_loads ? LOAD_TEXEL : LOAD_STORAGE;
     spec.SPEC_STACK_SIZE = renderer->node_stack_size;
     spec.SPEC_INSTANCED = !accel->single_identity && !accel->flat;
@@ -101,7 +102,12 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_PROBE = target->probed;
     spec.SPEC_SETTLES = !variant_has_deferred(target);
+    /* Few rays are deferred, by a large kernel. lavapipe runs all of it for each subgroup of a
+       workgroup, also for those without rays. */
+    if (variant_has_deferred(target))
+        spec.SPEC_DEFERRED_GROUP = device_get_info(renderer->device)->subgroup_size;
     spec.SPEC_SECONDARY = secondary;
+    spec.SPEC_EIGHT_LANES = device_get_info(renderer->device)->subgroup_size == 8;
     spec.SPEC_INTERLEAVE = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
     spec.SPEC_WIDE_ROWS = writes_wide_rows(renderer->device);
     /* The counters need all entries of the node stack in memory. */
@@ -318,6 +324,7 @@ bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec)
     if (spec->SPEC_SETTLES)
         return false;
     spec->SPEC_SETTLES = 1;
+    spec->SPEC_GROUP_SIZE = spec->SPEC_DEFERRED_GROUP;
     spec->SPEC_PACKETS = 0; /* few rays are deferred */
     spec->SPEC_PACKET_RAYS = 1;
     return true;
@@ -459,7 +466,6 @@ static bool packets_look(const struct gpu_spec *spec, bool shadow)
 static void choose_packets(const struct renderer *renderer, enum stage stage, struct gpu_spec *spec)
 {
     uint32_t stack = renderer->packet_stack_size;
-    spec->SPEC_EIGHT_LANES = device_get_info(renderer->device)->subgroup_size == 8;
     if (!renderer->packets || spec->SPEC_PROBE || stack > PACKET_STACK_MAX)
         return;
     spec->SPEC_LIT_RAYS = packets_look(spec, true) ? 1 : renderer->packet_rays;
@@ -524,6 +530,14 @@ static void narrow_to_functions(const struct target *target, struct gpu_spec *sp
         spec->SPEC_VERTEX_COLORS = 0;
 }
 
+/* Whether shading traces rays: to surfaces in contact, or where a user's functions do. If not, its
+   code is the same at all levels of numerics. */
+static bool shading_traces(const struct target *target, const struct gpu_spec *spec)
+{
+    return spec->SPEC_MEDIA == MEDIA_TOUCH || spec->SPEC_PROBE ||
+           hooks_code(target, kernels[KERNEL_SHADE].name);
+}
+
 void variant_job_init(const struct target *target, const struct gpu_spec *set_spec,
                       uint32_t classes, enum stage stage, struct variant_job *job)
 {
@@ -555,6 +569,10 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     struct gpu_spec *spec = &job->spec;
     memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
     spec->SPEC_SETTLES |= !stages[stage].deferred;
+    if (stages[stage].kernel == &kernels[KERNEL_SHADE] && !shading_traces(target, spec)) {
+        spec->SPEC_NUMERICS = NUMERICS_WATERTIGHT;
+        spec->SPEC_SETTLES = 1;
+    }
     spec->SPEC_LIT_PARTS = lit_parts(renderer, spec);
     spec->SPEC_CLASSES = classes;
     spec->SPEC_SEGMENTS = renderer->params.segments ? renderer->params.segments

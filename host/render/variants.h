@@ -25,7 +25,7 @@ bool variant_has_deferred(const struct target *target);
 bool variant_can_split_hits(const struct target *target);
 bool variant_splits_hits(const struct target *target);
 /* Rows of 16 bytes that a hit has: HIT_ROWS of bind/queues.glsl. */
-uint32_t variant_hit_rows(const struct renderer *renderer);
+uint32_t variant_hit_rows(const struct gpu_spec *spec);
 /* Everything that is needed to make the pipelines of a stage. It points into itself: do not copy or
    move it. */
 struct variant_job {

@@ -9,17 +9,14 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
 {
     struct vec3 ta = turn_dominant(ray, a), tb = turn_dominant(ray, b), tc = turn_dominant(ray, c);
     struct sheared s = shear_triangle(ray, ta, tb, tc);
-    float far = float_larger(vec3_largest_magnitude(a),
-                             float_larger(vec3_largest_magnitude(b), vec3_largest_magnitude(c)));
+    float depth = vec3_largest_magnitude(vec3_make(ta.z, tb.z, tc.z));
     float size = float_larger(float_larger(float_larger(fabsf(s.ax), fabsf(s.ay)),
                                            float_larger(fabsf(s.bx), fabsf(s.by))),
                               float_larger(fabsf(s.cx), fabsf(s.cy)));
-    float off = 12.0f * EXACT_UNIT * far + EXACT_TINY;
-    float edge_error = 4.125f * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
-    bool below = s.ea < -edge_error || s.eb < -edge_error || s.ec < -edge_error;
-    bool above = s.ea > edge_error || s.eb > edge_error || s.ec > edge_error;
-    bool all_below = s.ea < -edge_error && s.eb < -edge_error && s.ec < -edge_error;
-    bool all_above = s.ea > edge_error && s.eb > edge_error && s.ec > edge_error;
+    float off4 = (34.03125f * EXACT_UNIT) * depth + (12.890625f * EXACT_UNIT) * size;
+    float edge_error = off4 * (size + off4) + EXACT_TINY;
+    float least = float_smaller(s.ea, float_smaller(s.eb, s.ec));
+    float most = float_larger(s.ea, float_larger(s.eb, s.ec));
     float det = (s.ea + s.eb) + s.ec;
     float az = ray->shear.z * ta.z, bz = ray->shear.z * tb.z, cz = ray->shear.z * tc.z;
     float inv_det = 1.0f / det;
@@ -28,17 +25,19 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     out->t = ((s.ea * inv_det) * az + out->u * bz) + out->v * cz;
     float z_lo = float_smaller(az, float_smaller(bz, cz)),
           z_hi = float_larger(az, float_larger(bz, cz));
-    float z_error = 40.0f * EXACT_UNIT * float_larger(fabsf(z_lo), fabsf(z_hi)) + EXACT_TINY;
+    float z_error = (41.0f * EXACT_UNIT * fabsf(ray->shear.z)) * depth + EXACT_TINY;
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);
     float t_error = weights_error * (z_hi - z_lo) + z_error;
     out->edge_error = edge_error;
-    out->outside = below && above;
-    out->inside = (all_below || all_above) && fabsf(det) < EXACT_LARGE &&
-                  fabsf(out->t) < EXACT_LARGE && weights_error < 0.25f;
-    float any_lo = z_lo - z_error, any_hi = z_hi + z_error;
-    bool known = any_lo <= any_hi; /* not NaN */
-    out->lo = out->inside ? out->t - t_error : known ? any_lo : -INFINITY;
-    out->hi = out->inside ? out->t + t_error : known ? any_hi : INFINITY;
+    /* NaN is neither: `least` and `most` may be those of two edges, but then `t` is NaN. */
+    out->outside = least < -edge_error && most > edge_error;
+    out->inside = (least > edge_error || most < -edge_error) &&
+                  float_larger(fabsf(det), fabsf(out->t)) < EXACT_LARGE && weights_error < 0.25f;
+    float error = out->inside ? t_error : z_error;
+    float lo = (out->inside ? out->t : z_lo) - error, hi = (out->inside ? out->t : z_hi) + error;
+    bool known = lo <= hi; /* not NaN */
+    out->lo = known ? lo : -INFINITY;
+    out->hi = known ? hi : INFINITY;
 }
 
 /* ---- The exact test: integers of DIGITS digits of 16 bits, in units of 2^-447 ----

@@ -153,7 +153,9 @@
     X(57, SPEC_AOVS, 0)               /* number of a user's aov functions */                      \
     X(58, SPEC_VIEWS, 0)              /* views of many cameras, one below the other */             \
     X(59, SPEC_HIT_PART, 0)           /* HIT_PART_* */                                            \
-    X(60, SPEC_PIXEL_DATA, 1)         /* pixels get ids and weights of cut rays, too */
+    X(60, SPEC_PIXEL_DATA, 1)         /* pixels get ids and weights of cut rays, too */            \
+    X(61, SPEC_LIST_GROUP, 64)        /* SPEC_GROUP_SIZE of kernels that take items of lists */    \
+    X(62, SPEC_DEFERRED_GROUP, 64)    /* SPEC_GROUP_SIZE of kernels for deferred items */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

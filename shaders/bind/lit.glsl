@@ -151,7 +151,7 @@ void list_lit(bool wanted, Lit lit, inout uint status)
     uint g = chunk.generation, lists = list_of_light(frame.light_count - 1u) + 1u, i = 0u;
     uint reaching = frame.light_count <= LIGHT_LISTS ? reaching_lights(lit) : 1u;
     wanted = wanted && reaching != 0u;
-    uint index = append_items(g, LIST_LIT, uint(wanted), SPEC_GROUP_SIZE);
+    uint index = append_items(g, LIST_LIT, uint(wanted), SPEC_LIST_GROUP);
     uint room = SPEC_SEGMENTS == 2u ? chunk.lit_capacity / 2u : chunk.lit_capacity;
     if (wanted && index >= room)
         status |= STATUS_QUEUE_FULL;
@@ -159,7 +159,7 @@ void list_lit(bool wanted, Lit lit, inout uint status)
     index = item_place(index, chunk.lit_capacity);
     if (wanted)
         store_lit(index, lit);
-    uint each = SPEC_GROUP_SIZE * (is_primary() ? SPEC_LIT_RAYS : 1u);
+    uint each = SPEC_LIST_GROUP * (is_primary() ? SPEC_LIT_RAYS : 1u);
     do {
         bool own = wanted && (reaching >> i & 1u) != 0u;
         uint at = append_items(g, LIST_LIGHTS + i, uint(own), each);

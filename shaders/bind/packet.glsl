@@ -254,7 +254,7 @@ uint next_packet_ref(const uint mode, uint ref, uint base)
     ref += 1u - REF_ONE_PRIMITIVE;
     ref = pop_packet(is_inner(ref), ref, base);
     bool going = false;
-    EACH_RAY going = going || packet_hits[r].t >= 0.0;
+    EACH_RAY going = going || farthest(packet_hits[r]) >= 0.0;
     bool ends = SPEC_NUMERICS == NUMERICS_EXACT || !finds_closest(mode);
     return ends && !any_lane(going) ? REF_DONE : ref;
 }
@@ -353,7 +353,7 @@ void packet_instances(const uint mode, float t_min, uint root)
                 }
                 walk_packet(mode, t_min, instance, base, mesh_ref, lane_deferred, deferred);
                 bool going = false;
-                EACH_RAY going = going || packet_hits[r].t >= 0.0;
+                EACH_RAY going = going || farthest(packet_hits[r]) >= 0.0;
                 bool ends = SPEC_NUMERICS == NUMERICS_EXACT || !finds_closest(mode);
                 bool over = ends && !any_lane(going);
                 if (!deferred) {

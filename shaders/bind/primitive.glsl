@@ -125,7 +125,7 @@ Candidate bound_triangle(RaySetup ray, float t_min, vec3 a, vec3 b, vec3 c)
     ExactBounds bounds = exact_filter(ray, a, b, c);
     Candidate m;
     m.met = !bounds.outside && !(bounds.hi < t_min);
-    m.t = bounds.t > t_min ? bounds.t : t_min;
+    m.t = has_bounds_alone() || bounds.t > t_min ? bounds.t : t_min; // floats are sure of t >= t_min
     m.u = bounds.u;
     m.v = bounds.v;
     m.front = !bounds.inside || bounds.front;

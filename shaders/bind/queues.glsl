@@ -106,9 +106,13 @@ uvec3 child_ids(uint has)
     return mix(uvec3(HIT_NONE), (has & SUM_ID_MASK) + place, some);
 }
 
+// Whether hits keep the bounds of their keys: for surfaces in contact, whose order along the ray
+// depends on them.
+const bool HIT_HAS_KEY = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_MEDIA == MEDIA_TOUCH;
+
 // Number of rows of a hit. The second row holds the instance, which a record of a flat tree names
-// itself, and at NUMERICS_EXACT the bounds of the hit's key.
-const uint HIT_ROWS = SPEC_NUMERICS == NUMERICS_EXACT || SPEC_FLAT == 0u ? 2u : 1u;
+// itself, and the bounds of the key.
+const uint HIT_ROWS = HIT_HAS_KEY || SPEC_INSTANCED != 0u ? 2u : 1u;
 
 // Instance and primitive of a record. `instance`: the hit's, used with SPEC_INSTANCED.
 uvec2 fetch_record_ids(uint record, uint instance)
@@ -259,9 +263,11 @@ void store_hit(uint id, Hit hit)
 {
     uint record = hit.triangle | (hit.at_exit ? HIT_AT_EXIT : 0u);
     store_hit_row(id * HIT_ROWS, uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), record));
-    if (HIT_ROWS == 2u && (SPEC_NUMERICS == NUMERICS_EXACT || SPEC_INSTANCED != 0u))
+    if (HIT_HAS_KEY)
         store_hit_row(id * HIT_ROWS + 1u,
                       uvec4(hit.instance, floatBitsToUint(hit.lo), floatBitsToUint(hit.hi), 0u));
+    else if (HIT_ROWS == 2u)
+        hit_rows[id * HIT_ROWS + 1u].x = hit.instance;
 }
 
 void store_sum(uint id, vec3 radiance, uint has)
@@ -327,11 +333,11 @@ Hit fetch_hit(uint id)
     hit.u = uintBitsToFloat(r0.y);
     hit.v = uintBitsToFloat(r0.z);
     hit.triangle = r0.w & ~HIT_AT_EXIT;
-    hit.at_exit = SPEC_NUMERICS == NUMERICS_EXACT && (r0.w & HIT_AT_EXIT) != 0u;
+    hit.at_exit = HIT_HAS_KEY && (r0.w & HIT_AT_EXIT) != 0u;
     uvec2 own = fetch_hit_ids(id, hit.triangle);
     hit.instance = own.x;
     hit.primitive = own.y;
-    if (SPEC_NUMERICS == NUMERICS_EXACT) {
+    if (HIT_HAS_KEY) {
         uvec4 r1 = fetch_hit_row(id * HIT_ROWS + 1u);
         hit.lo = uintBitsToFloat(r1.y);
         hit.hi = uintBitsToFloat(r1.z);
@@ -412,6 +418,8 @@ uint invocation_item(uint r, uint capacity)
 // kernels with other items, such as shadow.comp, append nothing and do not read it.
 uint deferred_item(uint r)
 {
+    if (r == 0u)
+        count_deferred();
     uint at = gl_WorkGroupID.x * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
     uint item = at < deferred.count && r == 0u ? deferred_items[at] : ITEM_NONE;
     is_back = SPEC_SEGMENTS == 2u && item != ITEM_NONE && item >= middle_id();
@@ -435,38 +443,6 @@ uint traced_item(uint r)
         return camera_item(r);
     uint item = invocation_item(r, chunk.ray_capacity);
     return item == ITEM_NONE ? ITEM_NONE : place_in_tile(item);
-}
-
-// The sum of `wanted` over the subgroup's invocations before this one; `all`: over all of them. All
-// invocations must take part.
-uint count_before(uint wanted, out uint all)
-{
-    uint sum = wanted;
-    if (SPEC_EIGHT_LANES != 0u) { // lavapipe has no faster way to add up lanes
-        uint lane = gl_SubgroupInvocationID;
-        uint other = subgroupShuffle(sum, (lane - 1u) & 7u);
-        sum += lane >= 1u ? other : 0u;
-        other = subgroupShuffle(sum, (lane - 2u) & 7u);
-        sum += lane >= 2u ? other : 0u;
-        other = subgroupShuffle(sum, (lane - 4u) & 7u);
-        sum += lane >= 4u ? other : 0u;
-        all = subgroupShuffle(sum, 7u);
-    } else {
-        sum = subgroupInclusiveAdd(wanted);
-        all = subgroupAdd(wanted);
-    }
-    return sum - wanted;
-}
-
-// Whether the invocation is the first of its subgroup, in which all must take part.
-bool is_first_lane()
-{
-    return SPEC_EIGHT_LANES != 0u ? gl_SubgroupInvocationID == 0u : subgroupElect();
-}
-
-uint from_first(uint value)
-{
-    return SPEC_EIGHT_LANES != 0u ? subgroupShuffle(value, 0u) : subgroupBroadcastFirst(value);
 }
 
 // Reserves room for `all` items of the subgroup in a segment of a list; returns the place of the
@@ -516,7 +492,7 @@ void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint
 {
     uint before[SPEC_PACKET_RAYS];
     [[unroll]] for (uint k = 0u; k < SPEC_CLASSES; k++) {
-        uint all = 0u, each = SPEC_GROUP_SIZE, list = LIST_HITS + k, first = 0u;
+        uint all = 0u, each = SPEC_LIST_GROUP, list = LIST_HITS + k, first = 0u;
         [[unroll]] for (uint r = 0u; r < SPEC_PACKET_RAYS; r++) {
             uint of_ray;
             before[r] = all + count_before(uint(met[r] && class_of[r] == k), of_ray);
@@ -539,7 +515,7 @@ void list_hits(bool met[SPEC_PACKET_RAYS], uint class_of[SPEC_PACKET_RAYS], uint
 uint reserve_rays(uint wanted, inout uint status)
 {
     uint next = chunk.generation + 1u;
-    uint at = append_items(next, LIST_RAYS, wanted, SPEC_GROUP_SIZE);
+    uint at = append_items(next, LIST_RAYS, wanted, SPEC_LIST_GROUP);
     if (wanted == 0u)
         return HIT_NONE;
     uvec2 firsts = fetch_firsts(next);
@@ -553,32 +529,12 @@ uint reserve_rays(uint wanted, inout uint status)
     return is_back ? chunk.ray_capacity - at - wanted : at;
 }
 
-// The maximum over the subgroup's invocations, all of which must take part.
-uint max_of_lanes(uint value)
-{
-    if (SPEC_EIGHT_LANES == 0u)
-        return subgroupMax(value);
-    value = max(value, subgroupShuffleXor(value, 1u));
-    value = max(value, subgroupShuffleXor(value, 2u));
-    return max(value, subgroupShuffleXor(value, 4u));
-}
-
 // Counts rays that a user's functions traced. In files that trace none, compilers know `rays` to be
 // 0 and drop this.
 void tally_traced(uint rays)
 {
     if (rays != 0u)
         atomicAdd(tally.by_functions, rays);
-}
-
-// The sum over the subgroup. `value` may hold two counters of 16 bits whose sums stay below 2^16.
-uint add_up_lanes(uint value)
-{
-    if (SPEC_EIGHT_LANES == 0u)
-        return subgroupAdd(value);
-    value += subgroupShuffleXor(value, 1u);
-    value += subgroupShuffleXor(value, 2u);
-    return value + subgroupShuffleXor(value, 4u);
 }
 
 #endif

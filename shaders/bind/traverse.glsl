@@ -27,20 +27,6 @@ bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint
                                                               primitive > known_primitive)));
 }
 
-// The bitwise or over the 8 lanes of a packet, all of which must take part. On lavapipe shuffles
-// are single instructions, while ballots and the like are loops over lanes.
-uint gather_lanes(uint bits)
-{
-    bits |= subgroupShuffleXor(bits, 1u);
-    bits |= subgroupShuffleXor(bits, 2u);
-    return bits | subgroupShuffleXor(bits, 4u);
-}
-
-bool any_lane(bool wanted)
-{
-    return gather_lanes(uint(wanted)) != 0u;
-}
-
 const uint REF_DONE = 0xffffffffu;
 const uint REF_ONE_PRIMITIVE = 1u << BVH_COUNT_SHIFT;
 
@@ -225,11 +211,6 @@ uint step_siblings(RaySetup ray, float t_min, float near_scale, uint pair, inout
     return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
 }
 
-bool has_integers()
-{
-    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u;
-}
-
 // Whether filters can be added without a closer look: their depth follows from the record, or from
 // it and the distance.
 bool filters_in_passing()
@@ -253,6 +234,8 @@ bool goes_through(const uint mode)
 // NUMERICS_EXACT: whether that is possible, unless both keys are known.
 bool is_nearer(Candidate m, uint instance, uint primitive, Hit hit)
 {
+    if (has_bounds_alone())
+        return m.met && !(m.lo > hit.hi);
     float t = SPEC_NUMERICS == NUMERICS_EXACT ? m.lo : m.t;
     return m.met && (t < farthest(hit) ||
                      (t == farthest(hit) && (instance < hit.instance ||
@@ -266,8 +249,10 @@ bool is_reached(const uint mode, Candidate m, uint flags, uint instance, uint pr
 {
     bool reached = is_nearer(m, instance, primitive, hit);
     if (mode == TRAVERSE_NEXT)
-        reached = reached && is_behind(SPEC_NUMERICS == NUMERICS_EXACT ? m.hi : m.t, instance,
-                                       primitive, skip_instance, skip_primitive);
+        reached = reached && (has_bounds_alone()
+                                  ? !(m.hi < hit_before)
+                                  : is_behind(SPEC_NUMERICS == NUMERICS_EXACT ? m.hi : m.t, instance,
+                                              primitive, skip_instance, skip_primitive));
     if (mode == TRAVERSE_SHADOW)
         reached = reached && (flags & TRIANGLE_NO_SHADOW) == 0u;
     // One-sided surfaces are culled for closest hits alone: they stop light from behind too.
@@ -325,7 +310,9 @@ void keep_hit(Candidate m, bool at_exit, uint record, Primitive p, inout Hit hit
 // first.
 bool is_unsure(const uint mode, Candidate m, Hit hit)
 {
-    return !m.sure || m.hi >= hit.lo || (mode == TRAVERSE_NEXT && m.lo <= hit_before);
+    // A ray that needs no closest hit has ended where its hit is known: until then lo is hi.
+    float nearest = finds_closest(mode) ? hit.lo : hit.hi;
+    return !m.sure || !(m.hi < nearest) || (mode == TRAVERSE_NEXT && !(m.lo > hit_before));
 }
 
 // Whether some records may need look_at_record before they count.

@@ -22,7 +22,7 @@ layout(set = 0, binding = BIND_INSTANCE_TEXELS) uniform usamplerBuffer instance_
 layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer
 {
     uint status_word;
-    uint status_waits; // items listed by list_deferred() so far
+    uint status_waits; // deferred items so far: see count_deferred()
     uint status_loop;  // with STATUS_FUEL: the largest number of a loop that ran out
     uint status_shape; // with STATUS_SHAPE: the largest SHAPE_* with a pixel
 };

@@ -87,10 +87,7 @@ bool leave_ray(uint r, bool alive)
     bool primary = is_primary();
     if (alive)
         add_cost(ray_slot[r], ray_kind[r]);
-    bool deferred = alive && must_wait(hit.status);
-    if (deferred)
-        list_deferred(ray_id[r]);
-    alive = alive && !deferred;
+    alive = alive && !must_wait(hit.status);
     bool met = alive && hit.primitive != HIT_NONE;
     if (alive && primary && !(SPEC_LISTED != 0u && chunk.listed != 0u) && chunk.sample_index == 0u) {
         uvec2 at = slot_place(ray_slot[r]);
@@ -127,14 +124,17 @@ void main()
         alive[r] = packet_alive[r];
     }
     traverse_packets(TRAVERSE_CLOSEST, 0.0, frame.root, frame.root8, frame.eye);
-    bool met[SPEC_PACKET_RAYS];
+    bool met[SPEC_PACKET_RAYS], waits[SPEC_PACKET_RAYS];
     uint class_of[SPEC_PACKET_RAYS], status = 0u;
     EACH_RAY {
+        waits[r] = alive[r] && must_wait(packet_hits[r].status);
         met[r] = leave_ray(r, alive[r]);
         class_of[r] = class_of_hit(packet_hits[r]);
-        status |= alive[r] && !must_wait(packet_hits[r].status) ? packet_hits[r].status : 0u;
+        status |= alive[r] && !waits[r] ? packet_hits[r].status : 0u;
     }
     list_hits(met, class_of, ray_id);
+    if (has_bounds_alone())
+        list_deferred_rays(waits, ray_id);
     report_status(status);
 #ifdef HOOKS
     report_hooks();

@@ -254,8 +254,8 @@ void main()
     id = alive ? id : 0u;
     uint status = 0u;
     Met met = fetch_met(id, alive, true, status);
-    if (alive && must_wait(status))
-        list_deferred(id);
+    if (has_bounds_alone())
+        list_deferred(alive && must_wait(status), id);
     alive = alive && !must_wait(status);
 #ifdef HOOKS
     record_for(id, alive);
@@ -274,8 +274,8 @@ void main()
     calls.lost = calls.lost || lost;
 #ifdef HOOKS
     status |= hook_status;
-    if (alive && must_wait(hook_status))
-        list_deferred(id);
+    if (has_bounds_alone())
+        list_deferred(alive && must_wait(hook_status), id);
     alive = alive && !must_wait(hook_status);
     if (alive) {
         report_hooks();

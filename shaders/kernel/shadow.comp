@@ -84,12 +84,9 @@ void add_arrival(uint r, gpu_light light, uint point)
 }
 
 // Adds the light of all points to the ray's sum; returns how many shadow rays that took.
-uint leave_lit(uint r, bool alive, uint item, gpu_light light)
+uint leave_lit(uint r, bool alive, gpu_light light)
 {
-    bool deferred = alive && must_wait(status_of[r]);
-    if (deferred)
-        list_deferred(item);
-    if (deferred || !alive)
+    if (!alive)
         return 0u;
     vec3 sum = sum_of[r], open = open_of[r];
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
@@ -142,10 +139,14 @@ void main()
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
     uint rays = 0u, status = 0u;
+    bool waits[SPEC_PACKET_RAYS];
     EACH_RAY {
-        rays += leave_lit(r, alive[r], item[r], light);
-        status |= alive[r] && !must_wait(status_of[r]) ? status_of[r] : 0u;
+        waits[r] = alive[r] && must_wait(status_of[r]);
+        rays += leave_lit(r, alive[r] && !waits[r], light);
+        status |= alive[r] && !waits[r] ? status_of[r] : 0u;
     }
+    if (has_bounds_alone())
+        list_deferred_rays(waits, item);
     report_status(status);
 #ifdef HOOKS
     report_hooks();

@@ -4,7 +4,9 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "../bind/packet.glsl"
 #include "../lib/wide.glsl"
@@ -178,21 +180,23 @@ void trace_beam()
 void trace_ray()
 {
     uint index = gl_GlobalInvocationID.x;
-    bool waited = batch.deferred != 0u;
-    if (index >= (waited ? deferred.count : batch.ray_count))
-        return;
-    if (waited)
+    bool waited = batch.deferred != 0u, alive = index < (waited ? deferred.count : batch.ray_count);
+    if (waited && has_integers())
+        count_deferred();
+    if (waited && alive)
         index = deferred_items[index];
-    if (index == HIT_NONE)
-        return;
+    alive = alive && index != HIT_NONE;
+    index = alive ? index : 0u;
     gpu_ray ray = fetch_ray(index);
-    Hit hit = traverse(MODE, ray.origin, ray.dir, ray.t_min, ray.t_max, batch.root, HIT_NONE, HIT_NONE);
+    Hit hit = traverse(MODE, ray.origin, ray.dir, ray.t_min, ray.t_max, alive ? batch.root : REF_DONE,
+                       HIT_NONE, HIT_NONE);
     if (SPEC_NUMERICS == NUMERICS_EXACT && finds_closest(MODE))
         finish_hit(ray.origin, ray.dir, hit);
-    if (SPEC_SETTLES == 0u && must_wait(hit.status)) {
-        list_deferred(index);
+    bool waits = alive && must_wait(hit.status);
+    if (has_bounds_alone())
+        list_deferred(waits, index);
+    if (!alive || waits)
         return;
-    }
     report_status(hit.status);
     if (SPEC_COUNT != 0u)
         costs[index] = traversal_cost;

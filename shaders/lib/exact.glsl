@@ -38,6 +38,18 @@ float largest_magnitude(vec3 p)
     return larger(size.x, larger(size.y, size.z));
 }
 
+bool has_integers()
+{
+    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u;
+}
+
+// Whether bounds by floats alone decide hits, or leave them open; the bounds may then be NaN, for
+// which all comparisons are written.
+bool has_bounds_alone()
+{
+    return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES == 0u;
+}
+
 // The bounds of a hit, in floats. Vertices are relative to the ray's origin, as in
 // intersect_triangle.
 ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
@@ -48,36 +60,35 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
     vec2 sa, sb, sc;
     vec3 edges;
     shear_triangle(ray, ta, tb, tc, sa, sb, sc, edges);
-    float far = larger(largest_magnitude(a), larger(largest_magnitude(b), largest_magnitude(c)));
+    float depth = largest_magnitude(vec3(ta.z, tb.z, tc.z));
     float size = larger(larger(larger(abs(sa.x), abs(sa.y)), larger(abs(sb.x), abs(sb.y))),
                         larger(abs(sc.x), abs(sc.y)));
-    // Error bounds: of sheared coordinates (`off`) and of edge functions.
-    precise float off = 12.0 * EXACT_UNIT * far + EXACT_TINY;
-    precise float edge_error =
-        4.125 * (off * (size + off) + EXACT_UNIT * (size * size)) + EXACT_TINY;
-    bvec3 below = lessThan(edges, vec3(-edge_error));
-    bvec3 above = greaterThan(edges, vec3(edge_error));
+    // Error bounds: 4.125 times that of sheared coordinates, and that of edge functions.
+    precise float off4 = (34.03125 * EXACT_UNIT) * depth + (12.890625 * EXACT_UNIT) * size;
+    precise float edge_error = off4 * (size + off4) + EXACT_TINY;
+    float least = smaller(edges.x, smaller(edges.y, edges.z));
+    float most = larger(edges.x, larger(edges.y, edges.z));
     Weights w = weigh_triangle(ray, ta.z, tb.z, tc.z, edges);
     float z_lo = smaller(w.z.x, smaller(w.z.y, w.z.z));
     float z_hi = larger(w.z.x, larger(w.z.y, w.z.z));
-    precise float z_error = 40.0 * EXACT_UNIT * larger(abs(z_lo), abs(z_hi)) + EXACT_TINY;
+    precise float z_error = (41.0 * EXACT_UNIT * abs(ray.shear.z)) * depth + EXACT_TINY;
     precise float weights_error = (3.25 * edge_error) * abs(w.inv_det);
     precise float t_error = weights_error * (z_hi - z_lo) + z_error;
     ExactBounds bounds;
-    bounds.outside = any(below) && any(above);
-    bounds.inside = (all(below) || all(above)) && abs(w.det) < EXACT_LARGE &&
-                    abs(w.t) < EXACT_LARGE && weights_error < 0.25;
+    // NaN is neither: `least` and `most` may be those of two edges, but then `t` is NaN.
+    bounds.outside = least < -edge_error && most > edge_error;
+    bounds.inside = (least > edge_error || most < -edge_error) &&
+                    larger(abs(w.det), abs(w.t)) < EXACT_LARGE && weights_error < 0.25;
     bounds.front = (w.det > 0.0) == (ray.shear.z > 0.0);
     bounds.t = w.t;
     bounds.u = w.b;
     bounds.v = w.c;
-    precise float t_lo = w.t - t_error;
-    precise float t_hi = w.t + t_error;
-    precise float any_lo = z_lo - z_error;
-    precise float any_hi = z_hi + z_error;
-    bool known = any_lo <= any_hi; // not NaN
-    bounds.lo = bounds.inside ? t_lo : known ? any_lo : uintBitsToFloat(0xff800000u);
-    bounds.hi = bounds.inside ? t_hi : known ? any_hi : uintBitsToFloat(0x7f800000u);
+    float error = bounds.inside ? t_error : z_error;
+    precise float lo = (bounds.inside ? w.t : z_lo) - error;
+    precise float hi = (bounds.inside ? w.t : z_hi) + error;
+    bool known = has_bounds_alone() || lo <= hi; // not NaN
+    bounds.lo = known ? lo : uintBitsToFloat(0xff800000u);
+    bounds.hi = known ? hi : uintBitsToFloat(0x7f800000u);
     return bounds;
 }
 

@@ -261,18 +261,18 @@ mutation(camera_by_inversesqrt render_cost RED camera_rays_are_those_of_c)
 change(shaders/bind/camera.glsl [[inverse_square_root(squared)]] [[inversesqrt(squared)]])
 
 mutation(filter_without_bound accel_hard RED cases_are_what_they_say)
-change(host/twin/exact.c exact_filter [[4\.125f]] [[0.0f]])
-change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
+change(host/twin/exact.c exact_filter [[off4 \* \(]] [[0.0f * (]])
+change(shaders/lib/exact.glsl [[off4 * (]] [[0.0 * (]])
 
 mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
-change(shaders/lib/exact.glsl [[4.125 * (off]] [[0.0 * (off]])
+change(shaders/lib/exact.glsl [[off4 * (]] [[0.0 * (]])
 
 mutation(filter_with_half_its_bound accel_filter RED errors_stay_within_their_bounds)
-change(host/twin/exact.c exact_filter [[4\.125f]] [[2.0625f]])
-change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
+change(host/twin/exact.c exact_filter [[off4 \* \(]] [[0.5f * off4 * (]])
+change(shaders/lib/exact.glsl [[off4 * (]] [[0.5 * off4 * (]])
 
 mutation(filter_with_half_its_bound_in_kernels device_filter RED bounds_are_those_of_c)
-change(shaders/lib/exact.glsl [[4.125 * (off]] [[2.0625 * (off]])
+change(shaders/lib/exact.glsl [[off4 * (]] [[0.5 * off4 * (]])
 
 mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
 change(host/twin/exact.c exact_filter
@@ -321,10 +321,14 @@ mutation(far_ends_taken_for_near_in_kernels render_numerics RED spheres)
 change(shaders/bind/traverse.glsl [[hit.at_exit = at_exit;]] [[hit.at_exit = false;]])
 
 mutation(waiting_rays_forgotten render_deferred RED batches_are_those_of_looks_in_place)
-change(shaders/kernel/trace.comp [[list_deferred(index);]] [[;]])
+change(shaders/kernel/trace.comp [[list_deferred(waits, index);]] [[;]])
 
 mutation(waiting_pixels_forgotten render_deferred RED pictures_are_those_of_looks_in_place)
-change(shaders/kernel/closest.comp [[list_deferred(ray_id[r]);]] [[;]])
+change(shaders/kernel/closest.comp [[list_deferred_rays(waits, ray_id);]] [[;]])
+
+mutation(hits_without_keys render_media RED shared_faces_are_found_at_every_level)
+change(shaders/bind/queues.glsl [[HIT_HAS_KEY = SPEC_NUMERICS == NUMERICS_EXACT &&]]
+  [[HIT_HAS_KEY = SPEC_NUMERICS == NUMERICS_FAST &&]])
 
 mutation(waiting_rays_leave_children render_deferred RED pictures_are_those_of_looks_in_place)
 change(shaders/kernel/shade.comp [[alive = alive && !must_wait(status);]] [[;]])

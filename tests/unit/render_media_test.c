@@ -140,6 +140,38 @@ TEST_BY_TURNS(lone_bodies_need_less, 2, 4)
     }
 }
 
+/* Two bodies that share a plane, with other triangles there. At `exact` the float t of a hit may be
+   behind that of the other surface, whose exact t is the same: then only exact keys find it. */
+TEST(shared_faces_are_found_at_every_level)
+{
+    struct image images[2];
+    for (int exact = 0; exact < 2; ++exact) {
+        struct scene *scene = dark_scene((double[]){3, 2, 6}, (double[]){0, 0, 0});
+        struct scene_material red = clear_glass(1.5f, 0), green = red;
+        set_sky(scene, 1, 1, 1);
+        set_rgb(red.absorption, 0, 1, 1);
+        set_rgb(green.absorption, 1, 0, 1);
+        add_object(scene, mesh_box(2, 2, 2), red, 0, 0, 1);
+        add_object(scene, mesh_box(3, 2.5, 1), green, 0, 0, -0.5);
+        const whit_renderer_params params = {.width = 40,
+                                             .height = 40,
+                                             .depth = 4,
+                                             .numerics =
+                                                 exact ? NUMERICS_EXACT : NUMERICS_WATERTIGHT};
+        struct fixture f = fixture_open(scene, NULL, &params);
+        assert_int_equal(variant_spec(&f.renderer->picture).SPEC_MEDIA, MEDIA_TOUCH);
+        images[exact] = render(&f);
+        fixture_close(&f);
+    }
+    double worst = 0;
+    for (size_t i = 0; i < 4 * (size_t)(40 * 40); ++i)
+        worst = fmax(worst, fabs((double)(images[0].pixels[i] - images[1].pixels[i])));
+    print_message("  %.2g apart at most\n", worst);
+    assert_true(worst < 1e-4);
+    image_finish(&images[0]);
+    image_finish(&images[1]);
+}
+
 /* ---- The list of media ---- */
 
 static struct scene *shell_scene(int count)
