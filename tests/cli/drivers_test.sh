@@ -8,7 +8,7 @@ export VK_LOADER_DEBUG=driver
 # that it leaves out.
 drivers() {
     expect 0 "$@"
-    found=$(grep 'Found ICD manifest' "$OUT/stderr" | grep -c -e intel -e radeon -e virtio)
+    found=$(grep 'Found ICD manifest' "$OUT/stderr" | grep -c -e intel -e nouveau -e radeon -e virtio)
     ignored=$(grep -c 'ignored because it was disabled' "$OUT/stderr")
 }
 
