@@ -261,7 +261,7 @@ void store_hit_row(uint row, uvec4 value)
 
 void store_hit(uint id, Hit hit)
 {
-    uint record = hit.triangle | (hit.at_exit ? HIT_AT_EXIT : 0u);
+    uint record = hit.triangle | (HIT_HAS_KEY && hit.at_exit ? HIT_AT_EXIT : 0u);
     store_hit_row(id * HIT_ROWS, uvec4(floatBitsToUint(vec3(hit.t, hit.u, hit.v)), record));
     if (HIT_HAS_KEY)
         store_hit_row(id * HIT_ROWS + 1u,

@@ -382,13 +382,15 @@ bool test_rows(const uint mode, RaySetup ray, float t_min, uint record, RecordRo
             deferred = deferred || (accepted && is_unsure(mode, m, hit));
         accepted = accepted && !deferred;
     }
-    if (leaves_open(mode, accepted, m, hit))
-        return true;
+    bool open = leaves_open(mode, accepted, m, hit);
+    accepted = accepted && !open;
     if (mode == TRAVERSE_SHADOW && SPEC_FILTERS != 0u && filters_in_passing() && accepted)
         accepted = !pass_filter(ray, t_min, p, chord, at_exit, m, hit);
     if (accepted)
         keep_hit(m, at_exit, record, p, hit);
-    return (!finds_closest(mode) && accepted) || must_wait(hit.status);
+    if (SPEC_FILTERS != 0u)
+        open = must_wait(hit.status); // pass_filter() may have deferred it
+    return open || (!finds_closest(mode) && accepted);
 }
 
 bool test_record(const uint mode, RaySetup ray, float t_min, uint record, uint instance,
