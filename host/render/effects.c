@@ -1,5 +1,6 @@
 /* The one list of effects and the specialization constants that they switch. */
 #include <stddef.h>
+#include <string.h>
 
 #include "render/effects.h"
 #include "scene/effects.h"
@@ -133,4 +134,66 @@ void effects_switch(const struct scene_effects *effects, struct gpu_spec *spec)
         if (switched[i])
             constants[i] = values[i];
     }
+}
+
+void effects_narrow_textures(const struct renderer *renderer, enum scene_materials which,
+                             struct gpu_spec *spec)
+{
+    _Static_assert(TEXTURES_ALL == (1u << SCENE_SLOT_COUNT) - 1 &&
+                       TEXTURES_SPECULAR_LEVEL == 1u << SCENE_SLOT_SPECULAR_LEVEL &&
+                       TEXTURES_OPACITY == 1u << SCENE_SLOT_OPACITY,
+                   "a bit for each slot");
+    _Static_assert(SAMPLING_FILTERED == (uint32_t)SCENE_SAMPLING_FILTERED &&
+                       SAMPLING_SRGB == (uint32_t)SCENE_SAMPLING_SRGB,
+                   "the same bits");
+    struct scene_effects own = {.called = {false}};
+    uint64_t added = renderer->params.effects_added;
+    if (renderer->params.all_effects || (added >> SCENE_EFFECT_TEXTURES & 1) ||
+        (added >> SCENE_EFFECT_NORMAL_MAPS & 1))
+        return;
+    scene_effects_scan_materials(renderer->scene, which, &own);
+    spec->SPEC_TEXTURES &= own.texture_slots;
+    spec->SPEC_SAMPLING &= own.sampling;
+}
+
+void effects_narrow_to_class(const struct renderer *renderer, uint32_t material_class,
+                             struct gpu_spec *spec)
+{
+    static const struct {
+        enum scene_effect effect;
+        uint32_t constant;
+    } all[] = {
+        {SCENE_EFFECT_REFLECTION, offsetof(struct gpu_spec, SPEC_REFLECTION)},
+        {SCENE_EFFECT_REFRACTION, offsetof(struct gpu_spec, SPEC_REFRACTION)},
+        {SCENE_EFFECT_MEDIA, offsetof(struct gpu_spec, SPEC_CROSSINGS)},
+        {SCENE_EFFECT_FRESNEL, offsetof(struct gpu_spec, SPEC_FRESNEL)},
+        {SCENE_EFFECT_NORMAL_MAPS, offsetof(struct gpu_spec, SPEC_NORMAL_MAPS)},
+        {SCENE_EFFECT_EMISSION, offsetof(struct gpu_spec, SPEC_EMISSION)},
+        {SCENE_EFFECT_HIGHLIGHTS, offsetof(struct gpu_spec, SPEC_HIGHLIGHTS)},
+        {SCENE_EFFECT_METAL_ROUGH, offsetof(struct gpu_spec, SPEC_METAL_ROUGH)},
+        {SCENE_EFFECT_CATCHERS, offsetof(struct gpu_spec, SPEC_CATCHERS)},
+        {SCENE_EFFECT_CUTOUTS, offsetof(struct gpu_spec, SPEC_CUTOUTS)},
+    };
+    struct scene_effects own = {.called = {false}};
+    bool glass = material_class == CLASS_GLASS;
+    /* Kernels of glass then trace to the surface in contact, whose material may be of the other
+       class. */
+    bool walks = glass && spec->SPEC_MEDIA == MEDIA_TOUCH;
+    enum scene_materials which = glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE;
+    scene_effects_scan_materials(renderer->scene, which, &own);
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+        bool added = renderer->params.effects_added >> all[i].effect & 1;
+        bool cuts = walks && all[i].effect == SCENE_EFFECT_CUTOUTS;
+        if (!own.called[all[i].effect] && !added && !cuts)
+            memset((char *)spec + all[i].constant, 0, sizeof(uint32_t));
+    }
+    if (!walks || !spec->SPEC_CUTOUTS)
+        effects_narrow_textures(renderer, which, spec);
+    /* Glass without refraction is lit like other surfaces: see material_drawn. */
+    if (!own.lit && !(glass && !renderer->effects.called[SCENE_EFFECT_REFRACTION]))
+        spec->SPEC_LIGHTS = 0;
+    if (!walks && spec->SPEC_SPHERES)
+        spec->SPEC_SPHERES = !own.on_spheres     ? SPHERES_NONE
+                             : !own.on_triangles ? SPHERES_ONLY
+                                                 : SPHERES_SOME;
 }

@@ -86,7 +86,7 @@ whit_result queues_create(struct target *target)
         queues->lit_capacity = larger(p->chunk_slots * LIT_A_SLOT, min / 4);
     }
     uint64_t rays = queues->ray_capacity, sent = secondary ? rays : 0;
-    struct gpu_spec spec = variant_async_spec(target); /* of all of the picture's, the most rows */
+    struct gpu_spec spec = variant_async_spec(target); /* no kernel of the picture has more rows */
     uint64_t cut_sums =
         pixels_have_data(target) ? (uint64_t)renderer->params.width * p->band_rows : p->chunk_slots;
     uint64_t heads = sizeof(struct gpu_tally) +

@@ -13,8 +13,8 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     float size = float_larger(float_larger(float_larger(fabsf(s.ax), fabsf(s.ay)),
                                            float_larger(fabsf(s.bx), fabsf(s.by))),
                               float_larger(fabsf(s.cx), fabsf(s.cy)));
-    float off4 = (34.03125f * EXACT_UNIT) * depth + (12.890625f * EXACT_UNIT) * size;
-    float edge_error = off4 * (size + off4) + EXACT_TINY;
+    float factors_error = (34.03125f * EXACT_UNIT) * depth + (12.890625f * EXACT_UNIT) * size;
+    float edge_error = factors_error * (size + factors_error) + EXACT_TINY;
     float least = float_smaller(s.ea, float_smaller(s.eb, s.ec));
     float most = float_larger(s.ea, float_larger(s.eb, s.ec));
     float det = (s.ea + s.eb) + s.ec;
@@ -29,7 +29,8 @@ void exact_filter(const struct ray_setup *ray, struct vec3 a, struct vec3 b, str
     float weights_error = (3.25f * edge_error) * fabsf(inv_det);
     float t_error = weights_error * (z_hi - z_lo) + z_error;
     out->edge_error = edge_error;
-    /* NaN is neither: `least` and `most` may be those of two edges, but then `t` is NaN. */
+    /* If an edge function is NaN, these may be of the two others. Opposite signs of two suffice for
+       `outside`; and `inside` is false, as `t` is NaN too. */
     out->outside = least < -edge_error && most > edge_error;
     out->inside = (least > edge_error || most < -edge_error) &&
                   float_larger(fabsf(det), fabsf(out->t)) < EXACT_LARGE && weights_error < 0.25f;

@@ -39,8 +39,8 @@ void list_deferred(bool wanted, uint item)
         deferred_items[at] = item;
 }
 
-// The same for each of the invocation's rays. Mostly none is listed: so one round of the loop, which
-// lavapipe always runs, lists one ray of each invocation.
+// Lists items[r] where wanted[r], for all rays `r` of the invocation. A round of the loop lists one
+// of them. lavapipe runs one round always, and mostly no ray needs it.
 void list_deferred_rays(bool wanted[SPEC_PACKET_RAYS], uint items[SPEC_PACKET_RAYS])
 {
     bool more = false;

@@ -310,7 +310,7 @@ void keep_hit(Candidate m, bool at_exit, uint record, Primitive p, inout Hit hit
 // first.
 bool is_unsure(const uint mode, Candidate m, Hit hit)
 {
-    // A ray that needs no closest hit has ended where its hit is known: until then lo is hi.
+    // A ray for which any hit will do ends at its first one. Until then its lo and hi are equal.
     float nearest = finds_closest(mode) ? hit.lo : hit.hi;
     return !m.sure || !(m.hi < nearest) || (mode == TRAVERSE_NEXT && !(m.lo > hit_before));
 }

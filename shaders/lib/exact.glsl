@@ -63,9 +63,9 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
     float depth = largest_magnitude(vec3(ta.z, tb.z, tc.z));
     float size = larger(larger(larger(abs(sa.x), abs(sa.y)), larger(abs(sb.x), abs(sb.y))),
                         larger(abs(sc.x), abs(sc.y)));
-    // Error bounds: 4.125 times that of sheared coordinates, and that of edge functions.
-    precise float off4 = (34.03125 * EXACT_UNIT) * depth + (12.890625 * EXACT_UNIT) * size;
-    precise float edge_error = off4 * (size + off4) + EXACT_TINY;
+    // Error bounds: of the four factors of an edge function together, and of an edge function.
+    precise float factors_error = (34.03125 * EXACT_UNIT) * depth + (12.890625 * EXACT_UNIT) * size;
+    precise float edge_error = factors_error * (size + factors_error) + EXACT_TINY;
     float least = smaller(edges.x, smaller(edges.y, edges.z));
     float most = larger(edges.x, larger(edges.y, edges.z));
     Weights w = weigh_triangle(ray, ta.z, tb.z, tc.z, edges);
@@ -75,7 +75,8 @@ ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
     precise float weights_error = (3.25 * edge_error) * abs(w.inv_det);
     precise float t_error = weights_error * (z_hi - z_lo) + z_error;
     ExactBounds bounds;
-    // NaN is neither: `least` and `most` may be those of two edges, but then `t` is NaN.
+    // If an edge function is NaN, these may be of the two others. Opposite signs of two suffice for
+    // `outside`; and `inside` is false, as `t` is NaN too.
     bounds.outside = least < -edge_error && most > edge_error;
     bounds.inside = (least > edge_error || most < -edge_error) &&
                     larger(abs(w.det), abs(w.t)) < EXACT_LARGE && weights_error < 0.25;

@@ -1,4 +1,4 @@
-// What the invocations of a subgroup find out together. All of them must take part.
+// Sums, maxima and other reductions over the invocations of a subgroup, all of which must call them.
 #ifndef LIB_LANES_GLSL
 #define LIB_LANES_GLSL
 

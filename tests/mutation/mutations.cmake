@@ -93,7 +93,7 @@ change(shaders/kernel/resolve.comp [[own.rgb + child_sum(from.x) + straight + ch
   [[child_sum(from.z) + straight + child_sum(from.x) + own.rgb]])
 
 mutation(class_too_poor render_effects RED only_pixels_that_see_glass_refract)
-change(host/render/variants.c [[glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE]]
+change(host/render/effects.c [[glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE]]
   [[glass ? SCENE_MATERIALS_OPAQUE : SCENE_MATERIALS_GLASS]])
 
 mutation(loops_cut_unnoticed render_picture RED cut_loops_are_reported)
@@ -261,18 +261,18 @@ mutation(camera_by_inversesqrt render_cost RED camera_rays_are_those_of_c)
 change(shaders/bind/camera.glsl [[inverse_square_root(squared)]] [[inversesqrt(squared)]])
 
 mutation(filter_without_bound accel_hard RED cases_are_what_they_say)
-change(host/twin/exact.c exact_filter [[off4 \* \(]] [[0.0f * (]])
-change(shaders/lib/exact.glsl [[off4 * (]] [[0.0 * (]])
+change(host/twin/exact.c exact_filter [[factors_error \* \(]] [[0.0f * (]])
+change(shaders/lib/exact.glsl [[factors_error * (]] [[0.0 * (]])
 
 mutation(filter_without_bound_in_kernels render_numerics RED one_mesh)
-change(shaders/lib/exact.glsl [[off4 * (]] [[0.0 * (]])
+change(shaders/lib/exact.glsl [[factors_error * (]] [[0.0 * (]])
 
 mutation(filter_with_half_its_bound accel_filter RED errors_stay_within_their_bounds)
-change(host/twin/exact.c exact_filter [[off4 \* \(]] [[0.5f * off4 * (]])
-change(shaders/lib/exact.glsl [[off4 * (]] [[0.5 * off4 * (]])
+change(host/twin/exact.c exact_filter [[factors_error \* \(]] [[0.5f * factors_error * (]])
+change(shaders/lib/exact.glsl [[factors_error * (]] [[0.5 * factors_error * (]])
 
 mutation(filter_with_half_its_bound_in_kernels device_filter RED bounds_are_those_of_c)
-change(shaders/lib/exact.glsl [[off4 * (]] [[0.5 * off4 * (]])
+change(shaders/lib/exact.glsl [[factors_error * (]] [[0.5 * factors_error * (]])
 
 mutation(keys_without_interval accel_hard RED cases_are_what_they_say)
 change(host/twin/exact.c exact_filter
