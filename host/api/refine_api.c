@@ -12,7 +12,7 @@ struct whit_refine {
     whit_renderer *renderer; /* borrowed */
     whit_renderer_params params;
     whit_log log;
-    uint32_t samples, doublings;
+    uint32_t samples;
     bool cut;                           /* some rays were cut, by depth or bail-out */
     bool radiance_known;                /* cut_radiance was measured; needed if `cut` */
     double cut_radiance;                /* assumed mean radiance of cut rays */
@@ -20,8 +20,8 @@ struct whit_refine {
     struct image cuts;                  /* WHIT_AOV_CUTS, mean of all samples */
     struct image aovs[SHADER_AOVS_MAX]; /* the shader's AOVs, mean of all samples */
     uint32_t aov_count;                 /* 0 after whit_refine_begin, whose samples have no AOVs */
-    struct image changes;               /* see estimate_note_change; one channel */
-    struct image errors;                /* by estimate_error, from 2 samples on */
+    struct estimate estimate;
+    struct image errors; /* by estimate_error, from 2 samples on */
     double error, error_of_cuts;
     whit_stats stats;
 };
@@ -75,7 +75,7 @@ void whit_refine_destroy(whit_refine *refine)
         return;
     image_finish(&refine->color);
     image_finish(&refine->cuts);
-    image_finish(&refine->changes);
+    estimate_finish(&refine->estimate);
     image_finish(&refine->errors);
     for (uint32_t i = 0; i < SHADER_AOVS_MAX; ++i)
         image_finish(&refine->aovs[i]);
@@ -145,11 +145,11 @@ static bool is_any_cut(const struct image *cuts)
 static whit_result begin(whit_refine *refine, uint32_t samples, struct part *part)
 {
     struct image *color = &part->color;
-    whit_result result = image_init(&refine->changes, color->width, color->height, 1, false);
+    whit_result result = estimate_init(&refine->estimate, color->width, color->height);
     if (result == WHIT_OK)
         result = image_init(&refine->errors, color->width, color->height, 1, false);
     if (result != WHIT_OK) {
-        image_finish(&refine->changes);
+        estimate_finish(&refine->estimate);
         return result;
     }
     refine->color = part->color;
@@ -189,14 +189,13 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
 static void add_part(whit_refine *refine, const struct part *part)
 {
     const struct image *const halves[2] = {&refine->color, &part->color};
-    estimate_note_change(halves, &refine->changes);
+    estimate_note_change(&refine->estimate, halves);
     add_half(&refine->color, &part->color);
     add_half(&refine->cuts, &part->cuts);
     for (uint32_t i = 0; i < refine->aov_count; ++i)
         add_half(&refine->aovs[i], &part->aovs[i]);
     whit_stats_add(&part->stats, &refine->stats);
     refine->samples *= 2;
-    ++refine->doublings;
 }
 
 static void take_radiance(whit_refine *refine, const struct part *part)
@@ -218,7 +217,7 @@ static bool is_last(const whit_refine *refine)
 /* Whether an error can be estimated: only after samples were doubled. */
 static bool is_told(const whit_refine *refine)
 {
-    return refine->doublings > 0;
+    return refine->estimate.doublings > 0;
 }
 
 whit_result whit_refine_step(whit_refine *refine)
@@ -244,7 +243,7 @@ whit_result whit_refine_step(whit_refine *refine)
         return result;
     refine->cut = is_any_cut(&refine->cuts);
     if (is_told(refine))
-        refine->error = estimate_error(&refine->changes, &refine->cuts, refine->cut_radiance,
+        refine->error = estimate_error(&refine->estimate, &refine->cuts, refine->cut_radiance,
                                        &refine->errors, &refine->error_of_cuts);
     return WHIT_OK;
 }

@@ -16,15 +16,15 @@ typedef struct whit_refine whit_refine;
 
 typedef struct whit_refine_info {
     uint32_t samples; /* of each pixel, so far; 0: there is no picture yet */
-    /* Estimated error of the picture: the root mean square of whit_refine_error_image over all
-       pixels. < 0: not known until samples were doubled once. */
+    /* Estimated RMSE of the picture: two thirds of the root mean square of whit_refine_error_image
+       over all pixels. < 0: not known until samples were doubled once. */
     double error;
     /* The part of `error` that is due to rays that were not traced. More samples do not reduce
        it. */
     double error_of_cuts;
-    /* The radiance that each ray that was not traced is assumed to carry: the mean over the rays
-       spawned by the surfaces that the camera sees, largest channel; over camera rays where there
-       are none. 0 where no ray was cut. */
+    /* The mean radiance of the rays spawned by the surfaces that the camera sees, largest channel;
+       of camera rays where there are none. Each ray that was not traced is assumed to carry twice
+       that. 0 where no ray was cut. */
     double cut_radiance;
     bool last; /* no further step: twice as many samples would exceed the limit */
 } whit_refine_info;
@@ -59,9 +59,9 @@ WHIT_CHECK whit_result whit_refine_image(const whit_refine *refine, whit_image *
    WHIT_ERROR_USAGE also where the shader has no such aov, and after whit_refine_begin, whose
    samples have no aovs. */
 WHIT_CHECK whit_result whit_refine_aov(const whit_refine *refine, uint32_t index, whit_image **out);
-/* One channel: the estimated error of each pixel, linear, in its worst channel. It is the change by
-   the last doubling of samples in the 3 x 3 pixels around, plus the weights of cut rays times
-   `cut_radiance`. It is no bound: it knows nothing of light that no sample has met.
+/* One channel: the estimated error of each pixel, linear, in its worst channel, by the changes that
+   doublings of samples brought to it and to the 3 x 3 pixels around, plus the weights of cut rays
+   times twice `cut_radiance`. It is no bound: it knows nothing of light that no sample has met.
    WHIT_ERROR_USAGE where no error is known yet. */
 WHIT_CHECK whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out);
 /* Statistics of all steps together: rays are those of the picture, and `rays_of_estimate` those of

@@ -258,11 +258,8 @@ static const char noisy[] = "changes are like noise, and are small by chance in 
 static const struct {
     const char *name, *why;
 } short_of_it[] = {
-    {"34k.json", few_edges},
-    {"54k.json", few_edges},
     {"8k.json", few_edges},
     {"cube.json", few_edges},
-    {"glass-of-water.json", "rays that were cut bring more than the mean: lights in glass"},
     {"lens.json", noisy},
     {"room.json", few_edges},
     {"spin.json", noisy},
