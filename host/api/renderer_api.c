@@ -57,11 +57,6 @@ whit_renderer_params whit_renderer_defaults(void)
                                   .bailout = WHIT_BAILOUT_DEFAULT};
 }
 
-whit_classes whit_classes_of(const whit_renderer_params *params)
-{
-    return render_few_kernels(params) ? WHIT_CLASSES_ONE : WHIT_CLASSES_MANY;
-}
-
 static whit_result pose_on_cpu(struct accel *accel, double time_s)
 {
     struct scene_pose pose = {0};

@@ -83,8 +83,10 @@ static whit_result open_renderer(struct measure *measure)
     cost_small_size(report, &width, &height);
     const whit_renderer_params params = measure_sized(measure, &measure->usual, width, height);
     measure_say(measure, "the usual settings");
-    whit_result result = whit_renderer_create(measure->request->device, measure->request->accel,
-                                              &params, &measure->renderer);
+    whit_result result =
+        measure_renderer(measure, &measure->usual, measure->request->accel, &measure->renderer);
+    if (result == WHIT_OK)
+        result = whit_renderer_set_view(measure->renderer, &params);
     if (result == WHIT_OK)
         result = whit_renderer_render(measure->renderer); /* to learn which clocks there are */
     if (result != WHIT_OK)

@@ -17,14 +17,19 @@ whit_renderer_params measure_sized(const struct measure *measure, const struct s
                                    uint32_t width, uint32_t height)
 {
     whit_renderer_params params = settings_picture(target);
-    params.width = measure->report->width;
-    params.height = measure->report->height;
-    params.classes = whit_classes_of(&params); /* as for the full size */
     params.width = width;
     params.height = height;
     params.cancel = measure->request->cancel;
     params.time_limit_s = measure_left_s(measure);
     return params;
+}
+
+whit_result measure_renderer(const struct measure *measure, const struct settings *target,
+                             whit_accel *accel, whit_renderer **out)
+{
+    const struct cost_report *report = measure->report;
+    const whit_renderer_params full = measure_sized(measure, target, report->width, report->height);
+    return whit_renderer_create(measure->request->device, accel, &full, out);
 }
 
 /* ---- Errors ---- */
@@ -212,15 +217,15 @@ static bool is_refusal(whit_result result)
            result == WHIT_ERROR_DEVICE || result == WHIT_ERROR_INPUT;
 }
 
-/* Takes a renderer for `params`, to be given back by give_renderer. Rows of KNOB_VIEW share one,
+/* Takes a renderer for `target`, to be given back by give_renderer. Rows of KNOB_VIEW share one,
    since making another would compile its kernel again. *ran: its kernel has run before. */
-static whit_result take_renderer(struct measure *measure, const whit_renderer_params *params,
+static whit_result take_renderer(struct measure *measure, const struct settings *target,
                                  enum knob_level level, whit_accel *accel, whit_renderer **out,
                                  bool *ran)
 {
     *ran = level == KNOB_VIEW && measure->beside;
     if (!*ran)
-        return whit_renderer_create(measure->request->device, accel, params, out);
+        return measure_renderer(measure, target, accel, out);
     *out = measure->beside;
     measure->beside = NULL;
     return WHIT_OK;
@@ -244,7 +249,7 @@ static whit_result find_out(struct measure *measure, const struct settings *targ
     whit_renderer *renderer = NULL;
     double ms = 0.0;
     bool ran;
-    whit_result result = take_renderer(measure, &params, level, accel, &renderer, &ran);
+    whit_result result = take_renderer(measure, target, level, accel, &renderer, &ran);
     if (result == WHIT_OK)
         result = draw_judged(measure, renderer, &params, ran, &ms);
     if (result == WHIT_OK)

@@ -7,6 +7,11 @@
 /* Params for the target's picture at another size, limited to what is left of the time limit. */
 whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,
                                    uint32_t width, uint32_t height);
+/* Makes a renderer with the kernels and packets that the full-size picture has. Views of smaller
+   sizes that it gets keep them, so that their times are those of the full size, pixel by pixel. */
+WHIT_CHECK whit_result measure_renderer(const struct measure *measure,
+                                        const struct settings *target, whit_accel *accel,
+                                        whit_renderer **out);
 /* Measures one row (errors, price, hits) in about `seconds`. A setting that the device or the scene
    refuses gets a note in its row, and the result is WHIT_OK. */
 WHIT_CHECK whit_result measure_row(struct measure *measure, const struct settings *target,

@@ -76,10 +76,6 @@ typedef struct whit_overlay {
 WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay *overlay,
                                                whit_image *color);
 
-/* Gives the choice that WHIT_CLASSES_AUTO makes for a renderer with these params: _ONE or _MANY,
-   and _MANY too where the params are refused. */
-whit_classes whit_classes_of(const whit_renderer_params *params);
-
 /* Estimates the traversal cost of the camera rays of the picture that was set last, without
    counting in its kernel: the twin traces to their first hit the rays of all pixels, or of a
    smaller picture of the same view with at most `pixels` pixels. It runs on the calling thread and
