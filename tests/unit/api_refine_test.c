@@ -258,12 +258,8 @@ static const char noisy[] = "changes are like noise, and are small by chance in 
 static const struct {
     const char *name, *why;
 } short_of_it[] = {
-    {"8k.json", few_edges},
-    {"cube.json", few_edges},
-    {"lens.json", noisy},
-    {"room.json", few_edges},
-    {"spin.json", noisy},
-    {"spotlight.json", few_edges},
+    {"8k.json", few_edges},   {"cube.json", few_edges}, {"lens.json", noisy},
+    {"room.json", few_edges}, {"spin.json", noisy},     {"spotlight.json", few_edges},
     {"strands.json", noisy},
 };
 
