@@ -3,7 +3,7 @@
 #define BIND_OPTICS_GLSL
 
 #include "../lib/optics.glsl"
-#include "surface.glsl"
+#include "texels.glsl"
 
 // The share of light that a smooth interface of two media reflects; see fresnel_dielectric().
 float reflected_share(float cos_in, float eta)
@@ -27,36 +27,34 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     float opacity = m.opacity * s.color_alpha;
     float metallic = m.metallic, roughness = m.roughness, specular_level = m.specular_level;
     vec3 transmission = m.transmission, mirror = m.reflection;
-    if (is_textured(TEXTURES_DIFFUSE, m.tex_diffuse)) {
-        vec3 diffuse = sample_use(s, m.tex_diffuse).rgb;
-        o.diffuse *= diffuse;
-        o.ambient *= diffuse;
+    if (SPEC_TEXTURES != 0u || SPEC_NORMAL_MAPS != 0u) {
+        Texels x = sample_texels_of(s, m);
+        if ((SPEC_TEXTURES & TEXTURES_DIFFUSE) != 0u) {
+            o.diffuse *= x.diffuse;
+            o.ambient *= x.diffuse;
+        }
+        if ((SPEC_TEXTURES & TEXTURES_SPECULAR) != 0u) {
+            o.highlight *= x.specular;
+            mirror *= x.specular;
+        }
+        if ((SPEC_TEXTURES & TEXTURES_EMISSION) != 0u)
+            o.emission *= x.emission;
+        if ((SPEC_TEXTURES & TEXTURES_METAL_ROUGH) != 0u) {
+            o.shininess *= x.metal_rough.r;
+            roughness *= x.metal_rough.g;
+            metallic *= x.metal_rough.b;
+        }
+        if ((SPEC_TEXTURES & TEXTURES_SPECULAR_LEVEL) != 0u)
+            specular_level *= x.specular_level;
+        if ((SPEC_TEXTURES & TEXTURES_TRANSMISSION) != 0u)
+            transmission *= x.transmission;
+        if (SPEC_CUTOUTS != 0u && (SPEC_TEXTURES & TEXTURES_OPACITY) != 0u)
+            opacity = opacity_of(m, x.opacity) * s.color_alpha;
+        if (SPEC_NORMAL_MAPS != 0u)
+            bend_normal(s, m, x);
     }
-    if (is_textured(TEXTURES_SPECULAR, m.tex_specular)) {
-        vec3 specular = sample_use(s, m.tex_specular).rgb;
-        o.highlight *= specular;
-        mirror *= specular;
-    }
-    if (SPEC_EMISSION != 0u && is_textured(TEXTURES_EMISSION, m.tex_emission))
-        o.emission *= sample_use(s, m.tex_emission).rgb;
-    if ((SPEC_METAL_ROUGH != 0u || SPEC_HIGHLIGHTS != 0u) &&
-        is_textured(TEXTURES_METAL_ROUGH, m.tex_metal_rough)) {
-        vec3 rgb = sample_use(s, m.tex_metal_rough).rgb;
-        o.shininess *= rgb.r;
-        roughness *= rgb.g;
-        metallic *= rgb.b;
-    }
-    if (SPEC_METAL_ROUGH != 0u && is_textured(TEXTURES_SPECULAR_LEVEL, m.tex_specular_level))
-        specular_level *= sample_use(s, m.tex_specular_level).a;
-    if (SPEC_REFRACTION != 0u && is_textured(TEXTURES_TRANSMISSION, m.tex_transmission))
-        transmission *= sample_use(s, m.tex_transmission).r;
-    if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u) {
-        if (is_textured(TEXTURES_OPACITY, m.tex_opacity))
-            opacity = sample_cover(s, m) * s.color_alpha;
+    if (SPEC_CUTOUTS != 0u && (m.flags & MATERIAL_BLEND) != 0u)
         o.straight = clamp(1.0 - opacity, 0.0, 1.0);
-    }
-    if (SPEC_NORMAL_MAPS != 0u)
-        bend_normal(s, m);
 
     float cos_view = clamp(abs(dot(dir, s.ns)), 0.0, 1.0);
     o.eta = eta;

@@ -211,51 +211,6 @@ Surface fetch_surface(Hit hit)
     return s;
 }
 
-// Samples texture `t` at `uv`, at the level of the footprint there: the mean of the squares of its
-// two axes, in texels.
-vec4 sample_footprint(Surface s, gpu_texture t, vec2 uv)
-{
-    if (SPEC_MINIFICATION == 0u)
-        return sample_texture(t, uv);
-    vec2 uv0, uv1, uv2, size = vec2(texture_size(t));
-    fetch_uvs(s.shade_index, t.uv_set, uv0, uv1, uv2);
-    uv1 -= uv0;
-    uv2 -= uv0;
-    vec2 d1 = vec2(dot(t.matrix.xy, uv1), dot(t.matrix.zw, uv1)) * size;
-    vec2 d2 = vec2(dot(t.matrix.xy, uv2), dot(t.matrix.zw, uv2)) * size;
-    vec3 squares = vec3(dot(d1, d1), dot(d1, d2), dot(d2, d2));
-    return sample_minified(t, uv, dot(s.footprint, squares));
-}
-
-vec4 sample_use(Surface s, uint use)
-{
-    gpu_texture t = fetch_texture_use(use);
-    return sample_footprint(s, t, interpolate_uv(s.shade_index, t.uv_set, s.u, s.v));
-}
-
-// The opacity of a surface whose material blends.
-float sample_cover(Surface s, gpu_material material)
-{
-    vec4 texel = sample_use(s, material.tex_opacity);
-    return opacity_of(material, texel);
-}
-
-// The directions in which u and v of a texture's image grow, in world space, not unit; zero where
-// the texture is a point or a line on the triangle.
-void texture_frame(Surface s, gpu_texture t, out vec3 tangent, out vec3 bitangent)
-{
-    vec2 uv0, uv1, uv2;
-    fetch_uvs(s.shade_index, t.uv_set, uv0, uv1, uv2);
-    uv1 -= uv0;
-    uv2 -= uv0;
-    vec2 d1 = vec2(dot(t.matrix.xy, uv1), dot(t.matrix.zw, uv1));
-    vec2 d2 = vec2(dot(t.matrix.xy, uv2), dot(t.matrix.zw, uv2));
-    float det = d1.x * d2.y - d1.y * d2.x;
-    float inv = det != 0.0 ? 1.0 / det : 0.0;
-    tangent = (s.e1 * d2.y - s.e2 * d1.y) * inv;
-    bitangent = (s.e2 * d1.x - s.e1 * d2.x) * inv;
-}
-
 // Sets s.footprint for a ray along `dir` with the cross section `area` where it hits the surface. A
 // parallel ray at offset `a` hits the plane of e1 and e2 at dot(along1, a) e1 + dot(along2, a) e2
 // from there. A texture that moves by d1 and d2 along these edges then moves by J a, and half the
@@ -267,39 +222,6 @@ void take_footprint(inout Surface s, vec3 dir, float area)
     float seen = dot(cross(s.e1, s.e2), dir);
     vec3 parts = vec3(dot(along1, along1), 2.0 * dot(along1, along2), dot(along2, along2));
     s.footprint = parts * (0.5 * area / (seen * seen));
-}
-
-// Bends s.ns by a normal map in tangent space, or by the slope of a height map.
-void bend_normal(inout Surface s, gpu_material material)
-{
-    bool is_map = material.tex_normal != TEXTURE_NONE;
-    uint use = is_map ? material.tex_normal : material.tex_bump;
-    if (use == TEXTURE_NONE)
-        return;
-    gpu_texture picture = fetch_texture_use(use);
-    vec3 tangent, bitangent;
-    texture_frame(s, picture, tangent, bitangent);
-    vec3 t = normalize_or(tangent - s.ns * dot(s.ns, tangent), vec3(0.0));
-    vec3 b = normalize_or(bitangent - s.ns * dot(s.ns, bitangent), vec3(0.0));
-    vec2 uv = interpolate_uv(s.shade_index, picture.uv_set, s.u, s.v);
-    vec3 texel = sample_footprint(s, picture, uv).rgb;
-    vec3 bent;
-    if (is_map) {
-        vec3 map = texel * 2.0 - 1.0;
-        map.xy *= material.normal_scale;
-        bent = t * map.x - b * map.y + s.ns * map.z;
-    } else {
-        // The heights one texel further, along the image's own axes.
-        vec2 size = vec2(float(picture.size & 0xffffu), float(picture.size >> 16));
-        gpu_texture right = picture, below = picture;
-        right.offset.x += 1.0 / size.x;
-        below.offset.y += 1.0 / size.y;
-        vec2 rise = vec2(sample_footprint(s, right, uv).r, sample_footprint(s, below, uv).r) - texel.r;
-        // Heights are in units of 1/32 of the texture's side: MTL gives none.
-        vec2 slope = rise * size * (material.normal_scale / 32.0);
-        bent = s.ns - t * slope.x - b * slope.y;
-    }
-    s.ns = normalize_or(bent, s.ns);
 }
 
 #endif
