@@ -15,8 +15,8 @@
 #include "render/translation.h"
 #include "render/variants.h"
 
-/* The first dispatch of the smallest kernel takes less than this if its code is in the cache, and
-   more if it has to be translated. */
+/* The first dispatch of a kernel takes less than this if its code is in the cache, and more if it
+   has to be translated. */
 static const double CACHED_MS = 10.0;
 /* START_INSTRUCTIONS: SPIR-V instructions that the first device translates while the second one is
    made. */
@@ -171,23 +171,35 @@ static bool keeps_machine_code(const struct renderer *renderer)
            !(off && (strcmp(off, "1") == 0 || strcmp(off, "true") == 0));
 }
 
+/* Dispatches kernels, the smallest first, until one takes longer than the cache allows, or none is
+   left in `all`. *slow gets that one, which the device is still translating. */
+static whit_result find_slow(struct share *all, struct kernel *slow)
+{
+    whit_result result = WHIT_OK;
+    while (result == WHIT_OK && all->count > 0 && !stop_is_due(all->renderer)) {
+        *slow = all->kernels[--all->count];
+        result = submit_here(all->renderer, slow);
+        if (result == WHIT_OK)
+            result = commands_wait(all->renderer->commands, CACHED_MS);
+    }
+    return result;
+}
+
 whit_result translation_share(struct target *target, const struct stages_job *job)
 {
     const struct renderer *renderer = target->renderer;
     struct share all = all_kernels(target, job), here = {.renderer = renderer}, there = here;
-    if (!keeps_machine_code(renderer) || all.count < KERNELS_MIN || stop_is_due(renderer))
+    struct kernel slow;
+    if (!keeps_machine_code(renderer) || all.count < KERNELS_MIN)
         return WHIT_OK;
-    const struct kernel *smallest = &all.kernels[--all.count];
-    whit_result result = submit_here(renderer, smallest);
-    if (result == WHIT_OK)
-        result = commands_wait(renderer->commands, CACHED_MS);
+    whit_result result = find_slow(&all, &slow);
     if (result != WHIT_ERROR_TIME_LIMIT)
         return result;
-    here.instructions = smallest->instructions;
+    here.instructions = slow.instructions;
     there.instructions = START_INSTRUCTIONS;
     for (uint32_t i = 0; i < all.count; ++i)
         add(here.instructions <= there.instructions ? &here : &there, &all.kernels[i]);
-    struct thread *thread = thread_start(translate_share, &there);
+    struct thread *thread = there.count > 0 ? thread_start(translate_share, &there) : NULL;
     result = commands_wait(renderer->commands, -1.0);
     if (result == WHIT_OK)
         result = translate_here(&here);

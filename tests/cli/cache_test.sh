@@ -160,8 +160,10 @@ beside() {
     check "$how: the same picture" cmp -s "$OUT/empty.pfm" "$OUT/$how.pfm"
 }
 mkdir "$OUT/second"
-beside empty "$([ "$(nproc)" -lt 2 ] && echo 0 || echo some)"
+some=$([ "$(nproc)" -lt 2 ] && echo 0 || echo some)
+beside empty "$some"
 beside full any
+beside part "$some" --traversal basic # the smallest kernels, which trace no rays, are in the cache
 beside none 0 --no-cache
 
 # ---- No place at all ----
