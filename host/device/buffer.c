@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "base/platform.h"
+#include "base/threads.h"
 #include "device/commands.h"
 #include "device/vulkan.h"
 
@@ -321,6 +322,28 @@ static whit_result staging_ready(struct device *device)
     return result;
 }
 
+/* A copy into the memory of a device, in parts that several threads take: the system clears pages
+   when they are first written, which takes longer than the copy. */
+enum { COPY_PART_BYTES = 4 << 20 };
+struct copy {
+    uint8_t *to;
+    const uint8_t *from;
+    uint64_t bytes;
+};
+
+static void copy_part(void *context, uint32_t part)
+{
+    const struct copy *copy = context;
+    uint64_t at = (uint64_t)part * COPY_PART_BYTES, left = copy->bytes - at;
+    memcpy(copy->to + at, copy->from + at, left < COPY_PART_BYTES ? left : COPY_PART_BYTES);
+}
+
+static void copy_in(uint8_t *to, const uint8_t *from, uint64_t bytes)
+{
+    struct copy copy = {to, from, bytes};
+    threads_for(0, (uint32_t)((bytes + COPY_PART_BYTES) / COPY_PART_BYTES), copy_part, &copy);
+}
+
 whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const void *data,
                          uint64_t size_bytes)
 {
@@ -330,7 +353,7 @@ whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const voi
     if (result != WHIT_OK || size_bytes == 0)
         return result;
     if (buffer->mapped) {
-        memcpy(buffer->mapped + offset_bytes, from, size_bytes);
+        copy_in(buffer->mapped + offset_bytes, from, size_bytes);
         return WHIT_OK;
     }
     result = staging_ready(device);
