@@ -226,6 +226,8 @@ struct renderer {
     uint32_t packet_rays; /* rays that each lane of a packet has */
     bool few_kernels;     /* one kernel for several stages and all materials: render_few_kernels */
     bool wide;            /* nodes of eight children are on the device */
+    uint32_t
+        tile; /* pixels on a side of the last tile that was drawn in little time; 0: none was */
     struct kept_picture kept;
     struct trace_state trace;
     struct async_state async;

@@ -197,7 +197,7 @@ whit_result render_finish_submission(struct target *target)
 /* Pixels on a side of the largest tile for which the buffers have room. */
 static uint32_t largest_tile(const struct renderer *renderer)
 {
-    return (uint32_t)sqrt((double)renderer->picture.buffers.chunk_slots);
+    return (uint32_t)ceil(sqrt((double)renderer->picture.buffers.chunk_slots));
 }
 
 uint32_t tiles_adapt(uint32_t tile, uint32_t largest, double spent_ms)
@@ -209,10 +209,14 @@ uint32_t tiles_adapt(uint32_t tile, uint32_t largest, double spent_ms)
     return growth > 1.0 && growth * growth * spent_ms < SUBMISSION_LIMIT_MS ? grown : tile;
 }
 
-static void adapt_tile(const struct renderer *renderer, struct progress *progress, double spent_ms)
+/* The next picture begins with the size that this one has come to. Its tiles may take longer, if it
+   shows something else: so only where there is time for that. */
+static void adapt_tile(struct renderer *renderer, struct progress *progress, double spent_ms)
 {
-    if (!renderer->params.tile_size)
-        progress->tile = tiles_adapt(progress->tile, largest_tile(renderer), spent_ms);
+    if (renderer->params.tile_size)
+        return;
+    renderer->tile = spent_ms < 0.5 * SUBMISSION_LIMIT_MS ? progress->tile : 0;
+    progress->tile = tiles_adapt(progress->tile, largest_tile(renderer), spent_ms);
 }
 
 void render_take_sample(const struct target *target, uint32_t index, uint32_t samples,
@@ -373,7 +377,8 @@ struct progress render_progress(const struct renderer *renderer)
     uint32_t asked = renderer->params.tile_size;
     uint32_t largest = largest_tile(renderer);
     bool cpu = device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU;
-    uint32_t first = cpu ? TILE_FIRST_CPU : TILE_FIRST;
+    uint32_t usual = cpu ? TILE_FIRST_CPU : TILE_FIRST;
+    uint32_t first = renderer->tile > usual ? renderer->tile : usual;
     return (struct progress){
         .lattice = lattice_whole(renderer),
         .start_ms = clock_ms(),

@@ -358,6 +358,30 @@ TEST(tiles_grow_into_the_room_there_is)
     assert_int_equal(tiles_adapt(16, 192, 101.0), 16);
 }
 
+/* 160 x 90 pixels are 240 blocks of 8 x 8: no square number of them. */
+TEST(a_small_picture_is_one_tile)
+{
+    whit_renderer_params params = {.width = 160, .height = 90};
+    struct picture picture = picture_of(mixed_scene(), NULL, &params);
+    assert_int_equal(picture.stats.tiles, 1);
+    picture_finish(&picture);
+}
+
+TEST(a_picture_begins_with_the_tile_that_the_last_one_came_to)
+{
+    const whit_renderer_params params = {.width = 320, .height = 240};
+    struct fixture f = fixture_open(plain_scene(), NULL, &params);
+    uint32_t usual = render_progress(f.renderer).tile;
+    assert_int_equal(f.renderer->tile, 0);
+    f.renderer->tile = usual + 8;
+    assert_int_equal(render_progress(f.renderer).tile, usual + 8);
+    f.renderer->tile = 4096;
+    assert_true(render_progress(f.renderer).tile <= 320);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    assert_true(f.renderer->tile != 4096);
+    fixture_close(&f);
+}
+
 TEST(stages_are_timed_only_where_asked)
 {
     whit_renderer_params params = {.width = 64, .height = 32, .tile_size = 32};
