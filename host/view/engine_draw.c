@@ -10,9 +10,10 @@
 static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
 enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };
 static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0, LARGER_MARGIN = 0.8;
-/* A picture takes 1.4 times as long in steps (34k.json at 1280x720: 450 ms, without 330). One of up
-   to AT_ONCE_MS is drawn without them, if something is shown already. */
-static const double AT_ONCE_MS = 600.0, STEPS_TAKE = 1.4;
+/* A picture takes 1.0 to 1.3 times as long in steps (1280x720: 34k, default and whitted 1.0 on an
+   AMD EPYC, 1.3, 1.1 and 1.02 on a Xeon). One of up to AT_ONCE_MS is drawn without them,
+   if something is shown already. */
+static const double AT_ONCE_MS = 600.0, STEPS_TAKE = 1.1;
 
 static uint32_t samples_of(const struct settings *settings)
 {
