@@ -341,7 +341,7 @@ static void copy_part(void *context, uint32_t part)
 static void copy_in(uint8_t *to, const uint8_t *from, uint64_t bytes)
 {
     struct copy copy = {to, from, bytes};
-    threads_for(0, (uint32_t)((bytes + COPY_PART_BYTES) / COPY_PART_BYTES), copy_part, &copy);
+    threads_for(0, (uint32_t)((bytes + COPY_PART_BYTES - 1) / COPY_PART_BYTES), copy_part, &copy);
 }
 
 whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const void *data,

@@ -66,6 +66,7 @@ bool is_for(uint bit, uint slot)
     return (SPEC_TEXTURES & slot) != 0u && bit == slot;
 }
 
+// The use of the texture that a sample is taken from.
 uint texel_use(gpu_material m, uint bit)
 {
     uint use = m.tex_diffuse;
@@ -98,6 +99,7 @@ void put_texel(uint bit, vec4 texel, inout Texels x)
     }
 }
 
+// Samples the texture of the lowest bit of `needed`, and takes that bit off.
 void sample_next(Surface s, gpu_material m, inout uint needed, inout Texels x)
 {
     uint bit = needed & (~needed + 1u);
