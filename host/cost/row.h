@@ -7,8 +7,9 @@
 /* Params for the target's picture at another size, limited to what is left of the time limit. */
 whit_renderer_params measure_sized(const struct measure *measure, const struct settings *target,
                                    uint32_t width, uint32_t height);
-/* Makes a renderer with the kernels and packets that the full-size picture has. Views of smaller
-   sizes that it gets keep them, so that their times are those of the full size, pixel by pixel. */
+/* Makes a renderer with the kernels and packets that the full-size picture has. It keeps them when
+   it draws views of smaller sizes, so that these take as long per pixel. Errors as of
+   whit_renderer_create. */
 WHIT_CHECK whit_result measure_renderer(const struct measure *measure,
                                         const struct settings *target, whit_accel *accel,
                                         whit_renderer **out);

@@ -13,14 +13,16 @@ struct estimate_pixel {
     float faded; /* by estimate_error: the root of a value between these two */
 };
 
-/* What the doublings of a picture's samples changed. All zero before estimate_init. */
+/* The changes that doublings of samples have brought to a picture so far. A record that is all zero
+   may be given to estimate_finish. */
 struct estimate {
     uint32_t width, height, doublings;
     struct estimate_pixel *pixels; /* row 0 is the top */
     double first, last;            /* means over all pixels of the first and of the last change */
 };
 
-/* Before the first doubling. WHIT_ERROR_MEMORY. */
+/* Makes the record of a picture before its first doubling; estimate_finish releases it.
+   WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result estimate_init(struct estimate *estimate, uint32_t width, uint32_t height);
 void estimate_finish(struct estimate *estimate);
 

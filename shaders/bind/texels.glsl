@@ -1,4 +1,4 @@
-// What the textures of a surface's material say at a point.
+// Samples of the textures of a material, at a point of a surface.
 #ifndef BIND_TEXELS_GLSL
 #define BIND_TEXELS_GLSL
 
@@ -12,13 +12,13 @@
 #define TEXELS_HEIGHT_BELOW 1024u
 #define TEXELS_HEIGHTS      (TEXELS_HEIGHT | TEXELS_HEIGHT_RIGHT | TEXELS_HEIGHT_BELOW)
 
-// Factors are 1 where the material has no such texture.
+// Samples of all textures of a material. Factors are 1 where it has no such texture.
 struct Texels {
     vec3 diffuse, specular, emission, metal_rough;
     float specular_level, transmission;
     vec4 opacity;
-    vec3 normal;  // of a normal map, as stored; or, in red, the height
-    vec2 heights; // of a height map, to the right and below
+    vec3 relief;         // of the normal map, as stored; or of the height map, in red
+    vec2 heights_beside; // of the height map, one texel to the right and one below
 };
 
 // Samples texture `t` at `uv`, at the level of the footprint there: the mean of the squares of its
@@ -93,9 +93,9 @@ void put_texel(uint bit, vec4 texel, inout Texels x)
     x.transmission = is_for(bit, TEXTURES_TRANSMISSION) ? texel.r : x.transmission;
     x.opacity = is_for(bit, TEXTURES_OPACITY) ? texel : x.opacity;
     if (SPEC_NORMAL_MAPS != 0u) {
-        x.normal = (bit & (TEXELS_NORMAL | TEXELS_HEIGHT)) != 0u ? texel.rgb : x.normal;
-        x.heights.x = bit == TEXELS_HEIGHT_RIGHT ? texel.r : x.heights.x;
-        x.heights.y = bit == TEXELS_HEIGHT_BELOW ? texel.r : x.heights.y;
+        x.relief = (bit & (TEXELS_NORMAL | TEXELS_HEIGHT)) != 0u ? texel.rgb : x.relief;
+        x.heights_beside.x = bit == TEXELS_HEIGHT_RIGHT ? texel.r : x.heights_beside.x;
+        x.heights_beside.y = bit == TEXELS_HEIGHT_BELOW ? texel.r : x.heights_beside.y;
     }
 }
 
@@ -113,9 +113,9 @@ void sample_next(Surface s, gpu_material m, inout uint needed, inout Texels x)
     needed ^= bit;
 }
 
-// Where materials may have several textures, a loop over those that each lane needs: the code of a
-// sample stands in the kernel once, and a subgroup runs it as often as the material with the most
-// textures asks.
+// Samples all textures of the material. If materials of the scene have several, each lane loops over
+// those of its own: so the kernel has the code of a sample once, and a subgroup runs it as often as
+// the material with the most textures asks.
 Texels sample_texels_of(Surface s, gpu_material m)
 {
     const bool several = SPEC_NORMAL_MAPS != 0u || (SPEC_TEXTURES & (SPEC_TEXTURES - 1u)) != 0u;
@@ -161,12 +161,12 @@ void bend_normal(inout Surface s, gpu_material material, Texels x)
     vec3 b = normalize_or(bitangent - s.ns * dot(s.ns, bitangent), vec3(0.0));
     vec3 bent;
     if (is_map) {
-        vec3 map = x.normal * 2.0 - 1.0;
+        vec3 map = x.relief * 2.0 - 1.0;
         map.xy *= material.normal_scale;
         bent = t * map.x - b * map.y + s.ns * map.z;
     } else {
         // Heights are in units of 1/32 of the texture's side: MTL gives none.
-        vec2 size = vec2(texture_size(picture)), rise = x.heights - x.normal.r;
+        vec2 size = vec2(texture_size(picture)), rise = x.heights_beside - x.relief.r;
         vec2 slope = rise * size * (material.normal_scale / 32.0);
         bent = s.ns - t * slope.x - b * slope.y;
     }

@@ -44,7 +44,7 @@ static void note(struct estimate *estimate, const float changes[COUNT])
     image_finish(&b);
 }
 
-/* Notes the changes, all 0 but those of one pixel or two, and gives the estimate of each pixel. */
+/* Notes the changes, and gives the estimate of each pixel of a picture without cut rays. */
 static void note_and_estimate(struct estimate *estimate, const float changes[COUNT],
                               struct image *out)
 {
