@@ -213,11 +213,17 @@ static void switch_effect(struct view *view, uint32_t index, bool called, bool o
     view->panels.pending = together ? -1 : (int)index + 1;
 }
 
-/* Draws "on: 3.10 -> 3.52 ms, 120 of 12288 pixels", in a narrow window on two lines. */
+/* Whether a price has room on one line, and else is drawn on two. */
+static bool prices_are_short(void)
+{
+    return ui_characters(3) >= 120;
+}
+
+/* Draws "on: 3.10 -> 3.52 ms, 120 of 12288 pixels". */
 static void draw_price(const struct effect_price *price)
 {
     ui_text("%s: %.2f -> %.2f ms,", price->added ? "on" : "off", price->before_ms, price->after_ms);
-    if (ui_characters(3) >= 120)
+    if (prices_are_short())
         ui_same_line(0);
     ui_text("%llu of %llu pixels", (unsigned long long)price->other_colors,
             (unsigned long long)price->pixels);
@@ -269,7 +275,10 @@ static void draw_price_of(struct view *view, uint32_t index, bool in, bool can)
     else if (state.finished || !in)
         ui_text_dim("press to measure");
     else
-        ui_text_dim(strcmp(state.what, whit_effect_name(index)) == 0 ? "measuring" : "to come");
+        /* As many lines as the price will have, so that nothing moves under the mouse. */
+        ui_text_dim("%s%s",
+                    strcmp(state.what, whit_effect_name(index)) == 0 ? "measuring" : "to come",
+                    prices_are_short() ? "" : "\n");
 }
 
 /* Characters that the columns of effects and prices take at most, and the column of reasons. */
@@ -316,8 +325,6 @@ static void draw_effects(struct view *view)
         char effects[SETTING_VALUE_BYTES];
         effects_write(&view->settings.picture, effects);
         ui_text("--effects %s", effects);
-        if (view->panels.measured)
-            draw_dearest(view->panels.measured, view->frame.scene->scene);
         ui_text_dim("%s A click switches, and measures the whole picture.",
                     settings_compiles(&view->frame.settings)
                         ? "With --shader no price comes by itself."
@@ -332,6 +339,8 @@ static void draw_effects(struct view *view)
         }
         if (ui_button("close##effects"))
             panels_switch_effects(view);
+        if (view->panels.measured) /* below the switches, which must not move under the mouse */
+            draw_dearest(view->panels.measured, view->frame.scene->scene);
     }
     ui_panel_end();
 }
