@@ -66,12 +66,12 @@ void view_changed(struct view *view)
     view->dirty = true;
 }
 
+/* The window is drawn again with the picture of the new camera. */
 void view_moved(struct view *view)
 {
     camera_to_text(&view->camera, view->settings.camera, sizeof view->settings.camera);
     view->file_camera = -1;
     view->moved_ms = view_now_ms(view);
-    view->dirty = true;
 }
 
 bool view_bounds(const struct view *view, double lo[3], double hi[3])
@@ -197,10 +197,11 @@ static whit_result take_status(struct view *view)
     struct engine_status old = view->status;
     engine_get_status(view->engine, &view->status);
     /* After a save of the shader the window is not drawn only to show that the engine begins
-       something: drawing takes cores from the compiler. */
+       something: drawing takes cores from the compiler. While the picture moves, the next one
+       comes soon. */
     bool tells = !view->shaders.wait.goes_on;
     bool other_stage = old.stage != view->status.stage;
-    bool other_drawing = old.drawing != view->status.drawing;
+    bool other_drawing = old.drawing != view->status.drawing && !view_is_moving(view);
     if ((other_stage && (tells || view->status.stage == SESSION_DONE)) ||
         (other_drawing && (tells || old.drawing)) || strcmp(old.error, view->status.error) != 0 ||
         old.change.number != view->status.change.number ||

@@ -50,6 +50,18 @@ END
     done
 fi
 
+# While the camera is dragged the window is drawn when there is a new picture, not at each move of the mouse.
+if part 0 2; then
+    play "a drag" "$SCENES/spin.json" $SMALL <<END
+start: move 40 30, button left down
+$(for i in 1 2 3 4 5 6 7 8 9 10 11 12; do echo "move $((40 + i)) $((40 - i))"; echo picture; done)
+dragged! | frame.whole as start
+END
+    drawn=$(value dragged measure.drawn) pictures=$(value dragged measure.gap_ms.count)
+    check "each move has a picture ($pictures)" test "$pictures" -ge 8
+    check "the window is drawn once a picture ($drawn)" test "$drawn" -le "$((pictures + 4))"
+fi
+
 # ---- Time ----
 
 if part 1 2; then
