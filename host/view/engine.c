@@ -100,7 +100,7 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
     task->session = engine_find_session(engine, &lane->settings);
     if (task->session) {
         if (task->session != lane->session)
-            lane->ms_per_sample = 0.0;
+            lane->pace = (struct pace){0};
         engine_plan(engine, lane, task);
         follow_size(engine, lane, task);
         return true;
@@ -145,19 +145,6 @@ static bool note_change(struct engine *engine, const struct engine_frame *frame)
     return same;
 }
 
-/* Notes how long a sample of a pixel takes, to plan the next pictures by it. */
-static void note_speed(struct engine_lane *lane, const struct engine_frame *frame)
-{
-    double pixels = (double)frame->width * frame->height;
-    double samples = frame->samples ? frame->samples : 8;
-    double ms = frame->draw_ms / (pixels * samples);
-    /* Small pictures have overhead, so a larger time counts only at full size. */
-    if (frame->divisor == 1 || lane->ms_per_sample <= 0.0 || ms > lane->ms_per_sample)
-        lane->ms_per_sample = ms;
-    else
-        lane->ms_per_sample = 0.75 * lane->ms_per_sample + 0.25 * ms;
-}
-
 /* Keeps the last two versions of the shader: the file may be saved again as it was before. */
 static void keep_version(struct engine *engine, struct shader_ref *shader)
 {
@@ -191,7 +178,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     lane->last = task->settings;
     lane->shown = frame->divisor;
     if (task->brief)
-        lane->divisor = task->divisor;
+        lane->pace.divisor = task->divisor;
     task->session->last_use = ++engine->uses;
     frame->number = ++lane->frames;
     if (task->brief)
@@ -301,7 +288,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
         engine_keep(&engine->other, &frame);
     pthread_mutex_lock(&engine->lock);
     if (result == WHIT_OK)
-        note_speed(lane, &frame);
+        engine_note_time(lane, &frame);
     if (result == WHIT_OK)
         engine_refine_take(engine, task, same, &frame);
     engine->busy = false;

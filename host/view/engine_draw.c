@@ -7,9 +7,8 @@
 #include "view/engine_private.h"
 #include "whit/whit_program.h"
 
-static const uint32_t divisors[] = {1, 2, 3, 4, 6, 8};
-enum { DIVISORS = sizeof divisors / sizeof *divisors, DIVISOR_UNKNOWN = 4 };
-static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0, LARGER_MARGIN = 0.8;
+enum { ADAPTIVE_SAMPLES = 8 }; /* expected; they are 4 and more */
+static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0;
 /* A picture takes 1.0 to 1.3 times as long in steps (1280x720: 34k, default and whitted 1.0 on an
    AMD EPYC, 1.3, 1.1 and 1.02 on a Xeon). One of up to AT_ONCE_MS is drawn without them,
    if something is shown already. */
@@ -20,35 +19,30 @@ static uint32_t samples_of(const struct settings *settings)
     const whit_renderer_params *p = &settings->picture;
     if (settings->paint != PAINT_COLOR)
         return 1;
-    return p->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 8
+    return p->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? ADAPTIVE_SAMPLES
            : p->sampling.count                        ? p->sampling.count
-                                                      : 1; /* adaptive: 4 and more */
+                                                      : 1;
 }
 
-/* The expected time of one sample of all pixels; 0: unknown. */
-static double sample_ms(const struct engine_lane *lane)
+static double pixels_of(const struct settings *settings)
 {
-    const whit_renderer_params *p = &lane->settings.picture;
-    return (double)p->width * p->height * lane->ms_per_sample;
+    return (double)settings->picture.width * settings->picture.height;
 }
 
-/* The divisor of the largest picture of one sample that fits the budget. A larger picture than the
-   last must fit it with a margin, so that sizes do not flicker. */
+void engine_note_time(struct engine_lane *lane, const struct engine_frame *frame)
+{
+    double samples = frame->samples > 0 ? frame->samples : ADAPTIVE_SAMPLES;
+    pace_note(&lane->pace, frame->divisor,
+              frame->draw_ms / (samples * pixels_of(&frame->settings)));
+}
+
 static uint32_t choose_divisor(const struct engine *engine, const struct engine_lane *lane)
 {
     double budget_ms =
         engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
     if (engine->lanes[1].wanted)
         budget_ms *= 0.5; /* two pictures share it */
-    double full_ms = sample_ms(lane);
-    if (full_ms <= 0.0)
-        return DIVISOR_UNKNOWN;
-    for (int i = 0; i < DIVISORS; ++i) {
-        double margin = divisors[i] < lane->divisor ? LARGER_MARGIN : 1.0;
-        if (full_ms <= margin * budget_ms * divisors[i] * divisors[i])
-            return divisors[i];
-    }
-    return divisors[DIVISORS - 1];
+    return pace_divisor(&lane->pace, budget_ms / pixels_of(&lane->settings));
 }
 
 /* The spacing of the first step: not coarser than what is shown of the same picture, or than what
@@ -58,7 +52,7 @@ static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t
     uint32_t spacing = 8, finest = first ? divisor : lane->shown / 2;
     if (lane->moving || lane->settings.paint != PAINT_COLOR)
         return 0; /* steps exist for colours and aovs alone */
-    double whole_ms = sample_ms(lane) * samples_of(&lane->settings);
+    double whole_ms = lane->pace.ms[0] * pixels_of(&lane->settings) * samples_of(&lane->settings);
     if (!first && whole_ms > 0.0 && whole_ms <= AT_ONCE_MS)
         return 0; /* quick enough, and something is shown already */
     if (first && whole_ms <= 0.0)

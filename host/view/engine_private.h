@@ -9,6 +9,7 @@
 #include "view/engine_refine.h"
 #include "view/engine_reload.h"
 #include "view/engine_turns.h"
+#include "view/pace.h"
 
 struct engine_job;
 struct engine_task;
@@ -40,11 +41,10 @@ struct engine_lane {
     struct session *session;   /* session of the last picture; NULL: none, or gone */
     struct engine_frame frame; /* the newest picture; number 0: taken */
     uint64_t frames;
-    uint64_t first;       /* number of the first picture of the request */
-    uint64_t place;       /* engine.places when the last picture was drawn */
-    uint32_t divisor;     /* divisor of the last quick picture; 0: none */
-    uint32_t shown;       /* divisor of the last picture */
-    double ms_per_sample; /* time a sample of a pixel in its session; 0: not known */
+    uint64_t first;   /* number of the first picture of the request */
+    uint64_t place;   /* engine.places when the last picture was drawn */
+    uint32_t shown;   /* divisor of the last picture */
+    struct pace pace; /* of its session */
 };
 
 struct engine {

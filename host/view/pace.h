@@ -1,0 +1,25 @@
+#ifndef WHIT_VIEW_PACE_H
+#define WHIT_VIEW_PACE_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { PACE_SIZES = 6 };
+
+/* How long pictures of one sample take at each size, and so how small they have to be to follow
+   the camera. Times are divided by the number of pixels of the window, which may be resized. All
+   0: nothing was drawn yet. */
+struct pace {
+    double ms[PACE_SIZES];     /* expected time; 0: not known */
+    bool measured[PACE_SIZES]; /* a picture of this size was drawn since the last whole one */
+    double off[2];             /* the last two pictures' times as parts of what was expected */
+    uint32_t divisor;          /* by which the sides of the last small picture were divided */
+};
+
+/* Notes a picture whose sides are those of the window divided by `divisor`. */
+void pace_note(struct pace *pace, uint32_t divisor, double ms);
+
+/* The divisor of the largest picture that takes at most budget_ms. A larger picture than the last
+   has to fit with a margin, so that sizes do not flicker. */
+uint32_t pace_divisor(const struct pace *pace, double budget_ms);
+
+#endif
