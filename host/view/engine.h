@@ -65,7 +65,9 @@ struct engine_frame {
     whit_image *cuts;                /* WHIT_AOV_CUTS; NULL unless more samples may be added */
     uint8_t *rgba;                   /* width * height * 4 bytes, as displayed */
     uint32_t width, height, divisor; /* the window's size over `divisor` */
-    uint32_t samples;                /* samples a pixel; adaptive: 0 */
+    double
+        bailout; /* with which it was drawn: more than its settings have while the camera moves */
+    uint32_t samples; /* samples a pixel; adaptive: 0 */
     /* It has another number of samples than the settings say. Without `ids`, ids and boxes are
        those of the picture before (engine_frame_inherit). */
     bool refined;

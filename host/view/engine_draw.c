@@ -13,6 +13,9 @@ static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0;
    AMD EPYC, 1.3, 1.1 and 1.02 on a Xeon). One of up to AT_ONCE_MS is drawn without them,
    if something is shown already. */
 static const double AT_ONCE_MS = 600.0, STEPS_TAKE = 1.1;
+/* The bailout of small pictures while the camera moves: the rays that it cuts are hardly seen
+   in enlarged pixels. At 213x120 default takes 0.82 of the time, with an RMSE of 0.0015. */
+static const double MOVING_BAILOUT = 1.0 / 64.0;
 
 static uint32_t samples_of(const struct settings *settings)
 {
@@ -231,6 +234,8 @@ static whit_renderer_params task_params(const struct engine_task *task)
         params.sampling.count = 1;
         params.sampling.kind = WHIT_SAMPLING_FIXED;
     }
+    if (task->quality == ENGINE_QUICK && task->divisor > 1 && !counts)
+        params.bailout = fmax(params.bailout, MOVING_BAILOUT);
     params.step_spacing = task->step_spacing;
     params.step_aov =
         shader_ref_find_aov(session->shader, session->settings.aov) + 1; /* 0: no such aov */
@@ -249,6 +254,7 @@ static struct engine_frame begin_frame(const struct engine_task *task, uint32_t 
         .width = width,
         .height = height,
         .divisor = task->divisor,
+        .bailout = session->settings.picture.bailout,
         .samples = 1,
         .moving = task->moving,
         .asked_ms = task->asked_ms,
@@ -313,6 +319,7 @@ whit_result engine_draw(const struct engine_task *task, struct engine_frame *fra
     struct session *session = task->session;
     whit_renderer_params params = task_params(task);
     *frame = begin_frame(task, params.width, params.height);
+    frame->bailout = params.bailout;
     if (params.sampling.count > 1)
         frame->samples = params.sampling.count;
     if (params.sampling.kind == WHIT_SAMPLING_ADAPTIVE)

@@ -21,9 +21,12 @@ void hud_quality(const struct view *view, char text[HUD_QUALITY_BYTES])
     if (frame->samples > 0)
         snprintf(samples, sizeof samples, "%u sample%s", frame->samples,
                  frame->samples > 1 ? "s" : "");
+    char bailout[32] = "";
+    if (frame->bailout > frame->settings.picture.bailout)
+        snprintf(bailout, sizeof bailout, ", bailout 1/%.0f", 1.0 / frame->bailout);
     if (frame->divisor > 1)
-        snprintf(text, HUD_QUALITY_BYTES, "1/%u of the size, %s%s", frame->divisor, samples,
-                 view->status.drawing ? ", on its way" : "");
+        snprintf(text, HUD_QUALITY_BYTES, "1/%u of the size, %s%s%s", frame->divisor, samples,
+                 bailout, view->status.drawing ? ", on its way" : "");
     else
         snprintf(text, HUD_QUALITY_BYTES, "full size, %s%s", samples,
                  frame->whole ? "" : " as yet");
