@@ -49,8 +49,8 @@ static void *run(void *user)
 void threads_for(uint32_t thread_count, uint32_t count, void (*fn)(void *context, uint32_t index),
                  void *context)
 {
-    if (thread_count == 0)
-        thread_count = threads_available();
+    if (thread_count == 0) /* the number of cores comes from a file, which takes 5 us */
+        thread_count = count > 1 ? threads_available() : 1;
     if (thread_count > THREADS_MAX)
         thread_count = THREADS_MAX;
     if (thread_count > count)
