@@ -177,7 +177,6 @@ void swapchain_destroy(struct swapchain *swapchain)
     VkDevice vk = swapchain->device->vk;
     (void)vkDeviceWaitIdle(vk); /* fails for a lost device, which has no work left */
     drop_views(swapchain);
-    swapchain_drop_canvas(swapchain);
     buffer_destroy(swapchain->picture);
     buffer_destroy(swapchain->capture);
     vkDestroySwapchainKHR(vk, swapchain->vk, NULL);
@@ -316,6 +315,7 @@ whit_result swapchain_resize(struct swapchain *swapchain, uint32_t width, uint32
         return result;
     VK_TRY(device, vkQueueWaitIdle(device->queue)); /* the last present may still use semaphores */
     drop_views(swapchain);
+    swapchain->has_picture = false;
     swapchain->captured = false;
     swapchain->stale = false;
     result = make_chain(swapchain, width, height);

@@ -20,12 +20,13 @@ WHIT_CHECK whit_result swapchain_create(struct device *device,
 void swapchain_destroy(struct swapchain *swapchain); /* waits first; NULL is fine */
 
 /* Makes the images anew for a window of this size in pixels. 0 x 0, as of a minimised window, is
-   fine: then nothing is shown until the next call. The picture is kept. */
+   fine: then nothing is shown until the next call. The picture has to be set again. */
 WHIT_CHECK whit_result swapchain_resize(struct swapchain *swapchain, uint32_t width,
                                         uint32_t height);
 
 /* Sets the picture that swapchain_show shows from now on: RGBA bytes, sRGB, row 0 at the top. It is
-   copied, and stretched to the window where the sizes differ. */
+   copied, and stretched to the window where the sizes differ. Until it is called, the window is
+   dark. */
 WHIT_CHECK whit_result swapchain_set_picture(struct swapchain *swapchain, const uint8_t *rgba,
                                              uint32_t width, uint32_t height);
 

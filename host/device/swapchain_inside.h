@@ -31,11 +31,8 @@ struct swapchain {
     VkQueryPool queries; /* null without timestamps */
     VkRenderPass pass;
 
-    struct buffer *picture; /* in host memory, with bytes in the order of `format` */
-    uint32_t picture_width, picture_height;
-    VkImage canvas; /* a copy of the picture, for stretching it to the window */
-    VkDeviceMemory canvas_memory;
-    VkExtent2D canvas_extent;
+    struct buffer *picture; /* of the window's size, in host memory, in the order of `format` */
+    bool has_picture;       /* since the window has its size */
     struct buffer *capture;
     struct swapchain_info info;
 };

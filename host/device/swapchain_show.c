@@ -1,10 +1,16 @@
 /* Shows pictures in the window. One picture is in flight at a time: the host is never more than one
    picture ahead of the screen. */
 #include "device/swapchain_show.h"
+
+#include <stdlib.h>
+
+#include "base/array.h"
 #include "base/clock.h"
 #include "device/buffer.h"
+#include "device/stretch.h"
 
 enum { COPY_PIXELS = 4096 }; /* reordered at a time */
+static const VkClearColorValue DARK = {{0.06f, 0.08f, 0.10f, 1.0f}};
 
 /* ---- The picture ---- */
 
@@ -15,53 +21,6 @@ whit_result swapchain_wait(struct swapchain *swapchain)
     if (swapchain->in_flight)
         VK_TRY(device, vkWaitForFences(device->vk, 1, &swapchain->fence, VK_TRUE, UINT64_MAX));
     swapchain->in_flight = false;
-fail:
-    return result;
-}
-
-void swapchain_drop_canvas(struct swapchain *swapchain)
-{
-    vkDestroyImage(swapchain->device->vk, swapchain->canvas, NULL);
-    vkFreeMemory(swapchain->device->vk, swapchain->canvas_memory, NULL);
-    swapchain->canvas = VK_NULL_HANDLE;
-    swapchain->canvas_memory = VK_NULL_HANDLE;
-    swapchain->canvas_extent = (VkExtent2D){0};
-}
-
-static whit_result make_canvas(struct swapchain *swapchain, uint32_t width, uint32_t height)
-{
-    struct device *device = swapchain->device;
-    whit_result result = WHIT_OK;
-    VkImageCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = swapchain->format.format,
-        .extent = {width, height, 1},
-        .mipLevels = 1,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-    };
-    swapchain_drop_canvas(swapchain);
-    VK_TRY(device, vkCreateImage(device->vk, &info, NULL, &swapchain->canvas));
-    device_name_object(device, VK_OBJECT_TYPE_IMAGE, (uint64_t)swapchain->canvas, "picture");
-    VkMemoryRequirements needs;
-    vkGetImageMemoryRequirements(device->vk, swapchain->canvas, &needs);
-    uint32_t type = 0;
-    while (
-        type + 1 < device->memory.memoryTypeCount &&
-        (!(needs.memoryTypeBits >> type & 1) ||
-         !(device->memory.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)))
-        ++type;
-    VkMemoryAllocateInfo allocation = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
-        .memoryTypeIndex = type,
-    };
-    VK_TRY(device, vkAllocateMemory(device->vk, &allocation, NULL, &swapchain->canvas_memory));
-    VK_TRY(device, vkBindImageMemory(device->vk, swapchain->canvas, swapchain->canvas_memory, 0));
-    swapchain->canvas_extent = (VkExtent2D){width, height};
 fail:
     return result;
 }
@@ -89,31 +48,57 @@ static whit_result write_pixels(const struct swapchain *swapchain, const uint8_t
     return result;
 }
 
-static bool fits(const struct swapchain *swapchain)
+/* Writes the picture at the size of the window. By the device, lavapipe takes 4 times as long, and
+   80 ms to compile the code when the first picture is shown. */
+static whit_result write_stretched(const struct swapchain *swapchain, const uint8_t *rgba,
+                                   uint32_t width, uint32_t height)
 {
-    return swapchain->picture_width == swapchain->extent.width &&
-           swapchain->picture_height == swapchain->extent.height;
+    const struct stretch stretch = {.from = rgba,
+                                    .from_width = width,
+                                    .from_height = height,
+                                    .width = swapchain->extent.width,
+                                    .height = swapchain->extent.height,
+                                    .swaps = swapchain->swaps};
+    uint64_t row_bytes = (uint64_t)stretch.width * sizeof(uint32_t);
+    uint32_t *row = array_alloc(stretch.width, sizeof *row);
+    void *scratch = array_alloc(stretch_scratch_bytes(&stretch), 1);
+    whit_result result = WHIT_OK;
+    if (row && scratch) {
+        stretch_begin(&stretch, scratch);
+        for (uint32_t y = 0; y < stretch.height && result == WHIT_OK; ++y) {
+            stretch_row(&stretch, scratch, y, row);
+            result = buffer_write(swapchain->picture, y * row_bytes, row, row_bytes);
+        }
+    } else {
+        log_error(&swapchain->device->log, "out of memory for the window's picture");
+        result = WHIT_ERROR_MEMORY;
+    }
+    free(scratch);
+    free(row);
+    return result;
 }
 
 whit_result swapchain_set_picture(struct swapchain *swapchain, const uint8_t *rgba, uint32_t width,
                                   uint32_t height)
 {
-    uint64_t bytes = (uint64_t)width * height * 4;
+    VkExtent2D extent = swapchain->extent;
+    uint64_t bytes = (uint64_t)extent.width * extent.height * 4;
+    bool fits = width == extent.width && height == extent.height;
     whit_result result = swapchain_wait(swapchain);
-    if (result == WHIT_OK && (!swapchain->picture || buffer_size(swapchain->picture) < bytes)) {
+    swapchain->has_picture = false;
+    if (bytes == 0 || result != WHIT_OK)
+        return result;
+    if (!swapchain->picture || buffer_size(swapchain->picture) < bytes) {
         buffer_destroy(swapchain->picture);
         swapchain->picture = NULL;
-        swapchain->picture_width = swapchain->picture_height = 0;
         result = buffer_create(swapchain->device, bytes, BUFFER_HOST, "window picture",
                                &swapchain->picture);
     }
     if (result == WHIT_OK)
-        result = write_pixels(swapchain, rgba, bytes / 4);
-    if (result != WHIT_OK)
-        return result;
-    swapchain->picture_width = width;
-    swapchain->picture_height = height;
-    return WHIT_OK;
+        result = fits ? write_pixels(swapchain, rgba, bytes / 4)
+                      : write_stretched(swapchain, rgba, width, height);
+    swapchain->has_picture = result == WHIT_OK;
+    return result;
 }
 
 /* ---- What is recorded ---- */
@@ -136,58 +121,22 @@ static void change_layout(const struct swapchain *swapchain, VkImage image, VkIm
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
-static void copy_picture(const struct swapchain *swapchain, VkImage image)
+/* Copies the picture; without one the window is dark. Leaves the image in layout
+   COLOR_ATTACHMENT_OPTIMAL. */
+static void record_picture(const struct swapchain *swapchain, VkImage image)
 {
-    VkBufferImageCopy copy = {
+    const VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    const VkBufferImageCopy copy = {
         .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-        .imageExtent = {swapchain->picture_width, swapchain->picture_height, 1}};
-    change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdCopyBufferToImage(swapchain->commands, swapchain->picture->vk, image,
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-}
-
-/* Scales the picture to the image bilinearly. */
-static whit_result stretch_picture(struct swapchain *swapchain, VkImage image)
-{
-    VkExtent2D from = {swapchain->picture_width, swapchain->picture_height}, to = swapchain->extent,
-               has = swapchain->canvas_extent;
-    const VkImageSubresourceLayers layers = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    VkImageBlit blit = {
-        .srcSubresource = layers,
-        .srcOffsets = {{0, 0, 0}, {(int32_t)from.width, (int32_t)from.height, 1}},
-        .dstSubresource = layers,
-        .dstOffsets = {{0, 0, 0}, {(int32_t)to.width, (int32_t)to.height, 1}},
-    };
-    if (has.width != from.width || has.height != from.height) {
-        whit_result result = make_canvas(swapchain, from.width, from.height);
-        if (result != WHIT_OK)
-            return result;
-    }
-    copy_picture(swapchain, swapchain->canvas);
-    change_layout(swapchain, swapchain->canvas, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdBlitImage(swapchain->commands, swapchain->canvas, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                   image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
-    return WHIT_OK;
-}
-
-/* Leaves the image in layout COLOR_ATTACHMENT_OPTIMAL. */
-static whit_result record_picture(struct swapchain *swapchain, VkImage image)
-{
-    VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    whit_result result = WHIT_OK;
-    if (swapchain->picture_width == 0)
-        layout = VK_IMAGE_LAYOUT_UNDEFINED; /* without a picture, the overlay fills the window */
-    else if (fits(swapchain))
-        copy_picture(swapchain, image);
+        .imageExtent = {swapchain->extent.width, swapchain->extent.height, 1}};
+    const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED, layout);
+    if (swapchain->has_picture)
+        vkCmdCopyBufferToImage(swapchain->commands, swapchain->picture->vk, image, layout, 1,
+                               &copy);
     else
-        result = stretch_picture(swapchain, image);
-    if (result == WHIT_OK)
-        change_layout(swapchain, image, layout, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    return result;
+        vkCmdClearColorImage(swapchain->commands, image, layout, &DARK, 1, &all);
+    change_layout(swapchain, image, layout, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
 }
 
 static void record_overlay(struct swapchain *swapchain, const struct window_image *image,
@@ -264,9 +213,7 @@ static whit_result record(struct swapchain *swapchain, uint32_t index, swapchain
     if (swapchain->queries)
         vkCmdResetQueryPool(swapchain->commands, swapchain->queries, 0, 2);
     stamp(swapchain, 0);
-    result = record_picture(swapchain, image->image);
-    if (result != WHIT_OK)
-        return result;
+    record_picture(swapchain, image->image);
     record_overlay(swapchain, image, draw, user);
     if (capture)
         result = record_capture(swapchain, image, &layout);

@@ -1,4 +1,4 @@
-/* Functions of swapchain_show.c that only swapchain.c calls. */
+/* A function of swapchain_show.c that only swapchain.c calls. */
 #ifndef DEVICE_SWAPCHAIN_SHOW_H
 #define DEVICE_SWAPCHAIN_SHOW_H
 
@@ -6,7 +6,5 @@
 
 /* Waits for the last submission, after which the device uses none of the swapchain's images. */
 WHIT_CHECK whit_result swapchain_wait(struct swapchain *swapchain);
-/* Frees `canvas`, if there is one; nothing may be in flight. */
-void swapchain_drop_canvas(struct swapchain *swapchain);
 
 #endif

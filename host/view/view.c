@@ -261,6 +261,10 @@ static whit_result draw_window(struct view *view)
         view->resized = false;
         whit_result result = fit_window(view);
         swapchain_get_info(view->swapchain, &info);
+        if (result == WHIT_OK && info.width > 0) {
+            view->compare.stale = true; /* the picture has to be set again */
+            result = compare_step(view);
+        }
         if (result == WHIT_OK && info.width == 0 && keep) {
             log_error(&view->log, "%s: the window has no pixels now", view->shot);
             return WHIT_ERROR_OUTPUT;
@@ -410,17 +414,6 @@ static whit_result open_ui(struct view *view)
     return result;
 }
 
-/* Sets a picture until the first one is drawn. Scaling it makes lavapipe compile the code, some 80
-   ms, that first steps need too; it would be other code if a side were a power of 2. */
-static whit_result set_background(struct view *view)
-{
-    enum { SIDE = 3 };
-    uint8_t dark[4 * SIDE * SIDE];
-    for (size_t i = 0; i < sizeof dark; i += 4)
-        memcpy(dark + i, (const uint8_t[4]){0x10, 0x14, 0x18, 0xFF}, 4);
-    return swapchain_set_picture(view->swapchain, dark, SIDE, SIDE);
-}
-
 static whit_result open_device(struct view *view)
 {
     const whit_device_params params = {
@@ -436,8 +429,6 @@ static whit_result open_device(struct view *view)
         result = swapchain_create(view->device, &chain, &view->swapchain);
     if (result == WHIT_OK)
         result = fit_window(view);
-    if (result == WHIT_OK)
-        result = set_background(view);
     return result == WHIT_OK ? open_ui(view) : result;
 }
 

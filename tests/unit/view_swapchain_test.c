@@ -84,16 +84,37 @@ static whit_result show_text(struct shop *shop, bool *shown)
     return swapchain_show(shop->swapchain, ui_draw, shop->ui, shown);
 }
 
-static whit_result check_picture(struct shop *shop)
+/* Shows the window without an overlay, and reads its pixels. */
+static whit_result read_window(struct shop *shop, uint8_t rgba[WIDTH * HEIGHT * 4])
 {
-    uint8_t rgba[WIDTH * HEIGHT * 4];
     bool shown = false;
     whit_result result = swapchain_show_and_keep(shop->swapchain, NULL, NULL, &shown);
     if (result == WHIT_OK)
-        result = swapchain_read(shop->swapchain, rgba, sizeof rgba);
+        result = swapchain_read(shop->swapchain, rgba, WIDTH * HEIGHT * 4);
+    if (result == WHIT_OK)
+        assert_true(shown);
+    return result;
+}
+
+/* Without a picture the window has one dark colour. */
+static whit_result check_dark(struct shop *shop)
+{
+    uint8_t rgba[WIDTH * HEIGHT * 4];
+    whit_result result = read_window(shop, rgba);
+    for (size_t i = 0; i < sizeof rgba && result == WHIT_OK; ++i) {
+        if (i % 4 < 3)
+            assert_in_range(rgba[i], 10, 30);
+        assert_int_equal(rgba[i], rgba[i % 4]);
+    }
+    return result;
+}
+
+static whit_result check_picture(struct shop *shop)
+{
+    uint8_t rgba[WIDTH * HEIGHT * 4];
+    whit_result result = read_window(shop, rgba);
     if (result != WHIT_OK)
         return result;
-    assert_true(shown);
     for (int i = 0; i < WIDTH * HEIGHT; ++i) {
         assert_int_equal(rgba[4 * i], (uint8_t)(i % WIDTH * 3));
         assert_int_equal(rgba[4 * i + 1], (uint8_t)(i / WIDTH * 5));
@@ -108,12 +129,9 @@ static whit_result check_stretched(struct shop *shop)
 {
     const uint8_t columns[] = {0, 0, 0, 255, 200, 150, 250, 255};
     uint8_t rgba[WIDTH * HEIGHT * 4];
-    bool shown = false;
     whit_result result = swapchain_set_picture(shop->swapchain, columns, 2, 1);
     if (result == WHIT_OK)
-        result = swapchain_show_and_keep(shop->swapchain, NULL, NULL, &shown);
-    if (result == WHIT_OK)
-        result = swapchain_read(shop->swapchain, rgba, sizeof rgba);
+        result = read_window(shop, rgba);
     if (result != WHIT_OK)
         return result;
     for (int x = 0; x < WIDTH; ++x) {
@@ -149,7 +167,11 @@ static whit_result shop_work(struct shop *shop)
     if (result != WHIT_OK)
         return result;
     assert_int_equal(info.width, WIDTH);
-    result = check_picture(shop);
+    result = check_dark(shop);
+    if (result == WHIT_OK)
+        result = set_picture(shop);
+    if (result == WHIT_OK)
+        result = check_picture(shop);
     return result == WHIT_OK ? check_stretched(shop) : result;
 }
 
@@ -241,6 +263,8 @@ static void change_at(const char *call, int result, bool shown_then)
     assert_int_equal(swapchain_resize(shop.swapchain, WIDTH, HEIGHT), WHIT_OK);
     swapchain_get_info(shop.swapchain, &info);
     assert_false(info.stale);
+    assert_int_equal(check_dark(&shop), WHIT_OK);
+    assert_int_equal(set_picture(&shop), WHIT_OK);
     assert_int_equal(check_picture(&shop), WHIT_OK);
     unsetenv("WHIT_FAULT");
     assert_int_equal(shop.messages.lines, 0);
