@@ -1,7 +1,8 @@
 /* lavapipe translates kernels to machine code when they are first dispatched, one after another on
-   one core, and keeps the code in a cache of files. If the cache has none yet, a second device
-   translates half of a picture's kernels on another core meanwhile, and the first device finds them
-   in the cache. Dispatches of zero workgroups suffice: they translate and run nothing. */
+   one core, and keeps the code in a cache of files. Where the cache lacks some, a second device
+   translates kernels on another core meanwhile, and the first device finds them in the cache.
+   Dispatches of zero workgroups suffice: they translate and run nothing. */
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,9 +19,7 @@
 /* The first dispatch of a kernel takes less than this if its code is in the cache, and more if it
    has to be translated. */
 static const double CACHED_MS = 10.0;
-/* START_INSTRUCTIONS: SPIR-V instructions that the first device translates while the second one is
-   made. */
-enum { START_INSTRUCTIONS = 1000, KERNELS_MIN = 3, KERNELS_MAX = 2 * STAGE_COUNT };
+enum { KERNELS_MIN = 3, KERNELS_MAX = 2 * STAGE_COUNT };
 
 struct kernel {
     const struct pass *pass;
@@ -29,16 +28,30 @@ struct kernel {
     uint32_t instructions;
 };
 
-struct share {
+/* Kernels that both devices translate: each takes the largest that is left, so that both end at
+   nearly the same time. */
+struct work {
     const struct renderer *renderer;
     struct kernel kernels[KERNELS_MAX];
-    uint32_t count, instructions, done;
+    uint32_t count;
+    atomic_uint taken;
+    uint32_t done_there;
 };
 
-static void add(struct share *share, const struct kernel *kernel)
+/* Whether the picture is to stop, which it will do before its first dispatch. */
+static bool stop_is_due(const struct renderer *renderer)
 {
-    share->kernels[share->count++] = *kernel;
-    share->instructions += kernel->instructions;
+    const whit_renderer_params *params = &renderer->params;
+    return (params->cancel && *params->cancel) ||
+           (params->time_limit_s > 0.0 &&
+            clock_ms() - renderer->create_ms > params->time_limit_s * 1e3);
+}
+
+/* The next kernel to translate; NULL: none is left, or the picture is to stop. */
+static const struct kernel *take(struct work *work)
+{
+    uint32_t index = stop_is_due(work->renderer) ? work->count : atomic_fetch_add(&work->taken, 1);
+    return index < work->count ? &work->kernels[index] : NULL;
 }
 
 static struct kernel kernel_of(const struct pass *pass, const struct variant_job *job,
@@ -55,20 +68,17 @@ static int by_size(const void *a, const void *b)
     return (x->instructions < y->instructions) - (x->instructions > y->instructions);
 }
 
-/* All kernels of the set, the largest first. */
-static struct share all_kernels(const struct target *target, const struct stages_job *job)
+/* Sets work to all kernels of the set, the largest first. */
+static void add_kernels(struct work *work, const struct target *target,
+                        const struct stages_job *job)
 {
-    struct share all = {.renderer = target->renderer};
     for (int i = 0; i < STAGE_COUNT; ++i) {
         const struct pass *pass = &target->stages.set.passes[i];
         for (int deferred = 0; pass->pipeline && deferred < 1 + (pass->deferred != NULL);
-             ++deferred) {
-            struct kernel kernel = kernel_of(pass, &job->stages[i], deferred);
-            add(&all, &kernel);
-        }
+             ++deferred)
+            work->kernels[work->count++] = kernel_of(pass, &job->stages[i], deferred);
     }
-    qsort(all.kernels, all.count, sizeof *all.kernels, by_size);
-    return all;
+    qsort(work->kernels, work->count, sizeof *work->kernels, by_size);
 }
 
 static whit_result submit_nothing(struct commands *commands, struct pipeline *pipeline,
@@ -91,24 +101,14 @@ static whit_result submit_here(const struct renderer *renderer, const struct ker
                             : submit_nothing(renderer->commands, pass->pipeline, pass->set);
 }
 
-/* Whether the picture is to stop, which it will do before its first dispatch. */
-static bool stop_is_due(const struct renderer *renderer)
+static whit_result translate_here(struct work *work)
 {
-    const whit_renderer_params *params = &renderer->params;
-    return (params->cancel && *params->cancel) ||
-           (params->time_limit_s > 0.0 &&
-            clock_ms() - renderer->create_ms > params->time_limit_s * 1e3);
-}
-
-static whit_result translate_here(const struct share *share)
-{
+    const struct kernel *kernel;
     whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < share->count; ++i) {
-        if (stop_is_due(share->renderer))
-            return WHIT_OK;
-        result = submit_here(share->renderer, &share->kernels[i]);
+    while (result == WHIT_OK && (kernel = take(work)) != NULL) {
+        result = submit_here(work->renderer, kernel);
         if (result == WHIT_OK)
-            result = commands_wait(share->renderer->commands, -1.0);
+            result = commands_wait(work->renderer->commands, -1.0);
     }
     return result;
 }
@@ -137,26 +137,27 @@ static whit_result translate_there(struct device *device, struct commands *comma
     return result;
 }
 
-/* Translates the second device's share. An error here costs only time: the first device translates
-   a kernel that is missing in the cache when it dispatches it. */
-static void translate_share(void *context)
+/* Translates kernels with a second device. An error here costs only time: the first device
+   translates a kernel that is missing in the cache when it dispatches it. */
+static void translate_beside(void *context)
 {
-    struct share *share = context;
+    struct work *work = context;
+    const struct kernel *kernel;
     const whit_log silent = {0};
     char selector[16];
     struct device *device = NULL;
     struct commands *commands = NULL;
     struct buffer *buffer = NULL;
-    snprintf(selector, sizeof selector, "%u", device_get_info(share->renderer->device)->index);
+    snprintf(selector, sizeof selector, "%u", device_get_info(work->renderer->device)->index);
     const whit_device_params params = {.selector = selector};
     whit_result result = device_create(&silent, &params, NULL, &device);
     if (result == WHIT_OK)
         result = commands_create(device, "translation", &commands);
     if (result == WHIT_OK)
         result = buffer_create(device, 16, BUFFER_STORAGE | BUFFER_TEXELS, "translation", &buffer);
-    while (result == WHIT_OK && share->done < share->count && !stop_is_due(share->renderer)) {
-        result = translate_there(device, commands, buffer, &share->kernels[share->done]);
-        share->done += result == WHIT_OK;
+    while (result == WHIT_OK && (kernel = take(work)) != NULL) {
+        result = translate_there(device, commands, buffer, kernel);
+        work->done_there += result == WHIT_OK;
     }
     buffer_destroy(buffer);
     commands_destroy(commands);
@@ -172,15 +173,14 @@ static bool keeps_machine_code(const struct renderer *renderer)
 }
 
 /* Dispatches kernels, the smallest first, until one takes longer than the cache allows, or none is
-   left in `all`. *slow gets that one, which the device is still translating. */
-static whit_result find_slow(struct share *all, struct kernel *slow)
+   left. The device is still translating that one, WHIT_ERROR_TIME_LIMIT. */
+static whit_result find_slow(struct work *work)
 {
     whit_result result = WHIT_OK;
-    while (result == WHIT_OK && all->count > 0 && !stop_is_due(all->renderer)) {
-        *slow = all->kernels[--all->count];
-        result = submit_here(all->renderer, slow);
+    while (result == WHIT_OK && work->count > 0 && !stop_is_due(work->renderer)) {
+        result = submit_here(work->renderer, &work->kernels[--work->count]);
         if (result == WHIT_OK)
-            result = commands_wait(all->renderer->commands, CACHED_MS);
+            result = commands_wait(work->renderer->commands, CACHED_MS);
     }
     return result;
 }
@@ -188,22 +188,18 @@ static whit_result find_slow(struct share *all, struct kernel *slow)
 whit_result translation_share(struct target *target, const struct stages_job *job)
 {
     const struct renderer *renderer = target->renderer;
-    struct share all = all_kernels(target, job), here = {.renderer = renderer}, there = here;
-    struct kernel slow;
-    if (!keeps_machine_code(renderer) || all.count < KERNELS_MIN)
+    struct work work = {.renderer = renderer};
+    add_kernels(&work, target, job);
+    if (!keeps_machine_code(renderer) || work.count < KERNELS_MIN)
         return WHIT_OK;
-    whit_result result = find_slow(&all, &slow);
+    whit_result result = find_slow(&work);
     if (result != WHIT_ERROR_TIME_LIMIT)
         return result;
-    here.instructions = slow.instructions;
-    there.instructions = START_INSTRUCTIONS;
-    for (uint32_t i = 0; i < all.count; ++i)
-        add(here.instructions <= there.instructions ? &here : &there, &all.kernels[i]);
-    struct thread *thread = there.count > 0 ? thread_start(translate_share, &there) : NULL;
+    struct thread *thread = work.count > 0 ? thread_start(translate_beside, &work) : NULL;
     result = commands_wait(renderer->commands, -1.0);
     if (result == WHIT_OK)
-        result = translate_here(&here);
+        result = translate_here(&work);
     thread_join(thread);
-    target->stats.kernels_beside = there.done;
+    target->stats.kernels_beside = work.done_there;
     return result;
 }
