@@ -45,6 +45,13 @@ if [ "$FIGURES" = figures ]; then
         '.moving.quick_ms.median > 0 and .moving.latency_ms.median > 0'
     every "the idle window leaves the machine alone" '.idle_share < 0.5'
 fi
+MODEL=$OUT/corner.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\n' >"$MODEL"
+refuse 2 "looks at nothing" "takes the files of models" bench look --quick --scenes "$SCENES"
+expect 0 "looks, quick" bench look "$MODEL" --quick --scenes "$SCENES" --json "$OUT/looks.json"
+check "at the first picture and the whole one" jq -e '.tables[0].rows | [.[] | .picture, .must] ==
+    ["first", 0.4, "whole", 1.2] and all(.ms.median > 0 and .ms.runs == 2 and .narrowest > 0 and .unit == "s") and
+    .[1].ms.median >= .[0].ms.median' "$OUT/looks.json"
 if [ "$FIGURES" = figures ]; then
     J=$OUT/files/shaders.json
     expect 0 "saves of a shader, quick" bench shaders cube 34k --quick --runs 2 --scenes "$SCENES" --json "$J"
@@ -56,7 +63,7 @@ if [ "$FIGURES" = figures ]; then
     check "fuel beside none" grep -q "^- cube, two loops .* with --trust; the median ratio is [0-9]" "$OUT/stdout"
     check "time to an error" grep -q "^- cube, from a save to its error in the window: p50 [0-9].* of 2\.$" "$OUT/stdout"
     check "what saves must reach" holds '.tables[1].table == "shaders_goals" and
-        [.tables[1].rows[] | [.save, .must]] == ([("shade", "surface", "miss", "aov", "post") | ["34k, \(.): first", 0.15], ["34k, \(.): whole", 0.6]] +
+        [.tables[1].rows[] | [.save, .must]] == ([("shade", "surface", "miss", "aov", "post", "shade, lit") | ["34k, \(.): first", 0.15], ["34k, \(.): whole", 0.6]] +
         [["34k, shade, visible: first", 0.35], ["34k, shade, visible: whole", 0.6], ["34k, intersect: first", 0.35], ["34k, intersect: whole", 1.2], ["34k: error", 0.05], ["34k: fuel, median", 1.02], ["34k: 1000 checks", 2]])'
     check "a thousand checks" grep -q "^- cube, 1000 checks of 4096 seeds, .* of 2\.$" "$OUT/stdout"
     check "with verdicts of 95 of 100" holds '[.tables[1].rows[:-3][].figure * 1000 | round] == [.tables[0].rows[] | select(.scene == "34k") | (.first_ms, .whole_ms).p95 | round] and
@@ -69,6 +76,7 @@ expect 3 "no display" bench view --quick --scenes "$SCENES" --json "$OUT/files/n
 for bench in view shaders; do
     refuse 3 "no display for $bench" "this bench needs a window.*xvfb-run" bench $bench --quick --scenes "$SCENES"
 done
+refuse 3 "no display for look" "this bench needs a window.*xvfb-run" bench look "$MODEL" --quick --scenes "$SCENES"
 check "and why" grep -q "DISPLAY environment variable is missing" "$OUT/stderr"
 check "in one error" test "$(grep -c . "$OUT/stderr")" -eq 1
 check "and no file" test "$(ls -A "$OUT/files")" = figures.json

@@ -13,7 +13,7 @@
 static whit_result (*const benches[BENCH_COUNT])(struct bench *) = {
     [BENCH_REPORT] = bench_report,   [BENCH_BUILD] = bench_build, [BENCH_VIEW] = bench_view,
     [BENCH_RAYS] = bench_rays,       [BENCH_FRAME] = bench_frame, [BENCH_START] = bench_start,
-    [BENCH_SHADERS] = bench_shaders, [BENCH_VIEWS] = bench_views,
+    [BENCH_SHADERS] = bench_shaders, [BENCH_VIEWS] = bench_views, [BENCH_LOOK] = bench_look,
 };
 
 /* ---- What benches share ---- */

@@ -47,5 +47,6 @@ whit_result bench_frame(struct bench *bench);
 whit_result bench_start(struct bench *bench);
 whit_result bench_shaders(struct bench *bench);
 whit_result bench_views(struct bench *bench);
+whit_result bench_look(struct bench *bench);
 
 #endif

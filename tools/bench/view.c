@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "bench/process.h"
+#include "bench/states.h"
 #include "bench/table.h"
 #include "whit/whit_program.h"
 
@@ -63,22 +64,6 @@ static whit_result run_viewer(const struct bench *bench, const struct view_case 
     return process_run(&process, NULL);
 }
 
-/* The "measure" of the state with this name, NULL: none. */
-static json_t *find_measure(const char *path, const char *name)
-{
-    json_t *found = NULL, *state = NULL;
-    FILE *from = fopen(path, "r");
-    while (from && !found && (state = json_loadf(from, JSON_DISABLE_EOF_CHECK, NULL)) != NULL) {
-        const char *at = json_string_value(json_object_get(state, "at"));
-        if (at && strcmp(at, name) == 0)
-            found = json_incref(json_object_get(state, "measure"));
-        json_decref(state);
-    }
-    if (from)
-        fclose(from);
-    return found;
-}
-
 static double number_of(const json_t *measure, const char *key, const char *part)
 {
     const json_t *value = json_object_get(measure, key);
@@ -101,11 +86,11 @@ static whit_result measure(const struct bench *bench, struct view_case *c)
         result = run_viewer(bench, c, replay, out);
     if (result != WHIT_OK)
         return result;
-    json_t *first = find_measure(out, "first");
+    json_t *first = states_find(out, "first", "measure");
     c->first_ms = number_of(first, "first_ms", NULL) - start_ms;
-    c->whole = find_measure(out, "whole");
-    c->moving = find_measure(out, "moving");
-    c->idle = find_measure(out, "idle");
+    c->whole = states_find(out, "whole", "measure");
+    c->moving = states_find(out, "moving", "measure");
+    c->idle = states_find(out, "idle", "measure");
     if (!first || !c->whole || !c->moving || !c->idle) {
         cli_error("`whit view` did not tell its figures");
         result = WHIT_ERROR_FAILED;

@@ -29,6 +29,9 @@ const struct bench_kind bench_kinds[BENCH_COUNT] = {
         {"views",
          "[SCENE...]: 4096 views of 64 x 64 drawn together beside one picture of as many pixels",
          4096, 4096, .has_goals = true, .takes_names = true},
+    [BENCH_LOOK] = {"look",
+                    "MODEL...: how soon the window shows a model that is new to it; on a display",
+                    1280, 720, .has_goals = true, .takes_names = true},
 };
 
 const struct setting bench_options[] = {
@@ -43,7 +46,7 @@ const struct setting bench_options[] = {
     {"naive-limit", 0, NULL, "is gone: `--build sweep` builds the same tree as sweep-naive",
      .kind = SETTING_GONE},
     {"plot", 0, "FILE.svg",
-     "rays, frame, start, view, views: also draw how far each row is from what it must",
+     "rays, frame, start, view, views, look: also draw how far each row is from what it must",
      SETTING_AT_NAME(struct bench_request, plot)},
     {"against", 0, "PROGRAM", "frame, start: another whit, timed in turns",
      SETTING_AT_NAME(struct bench_request, against)},

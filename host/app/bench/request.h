@@ -14,6 +14,7 @@ enum bench_which {
     BENCH_START,
     BENCH_SHADERS,
     BENCH_VIEWS,
+    BENCH_LOOK,
     BENCH_COUNT
 };
 struct bench_kind {
