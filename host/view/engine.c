@@ -177,8 +177,6 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     lane->timed = task->session->time_stages;
     lane->last = task->settings;
     lane->shown = frame->divisor;
-    if (task->brief)
-        lane->pace.divisor = task->divisor;
     task->session->last_use = ++engine->uses;
     frame->number = ++lane->frames;
     if (task->brief)

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "view/input.h"
 #include "view/keys.h"
 #include "view/pick.h"
@@ -156,6 +157,7 @@ static void on_size(struct view *view, const struct view_event *event)
 
 void input_event(struct view *view, const struct view_event *event)
 {
+    view->measure.input_ms = clock_ms();
     if (event->kind != EVENT_REFRESH)
         engine_stop_reload(view->engine);
     switch (event->kind) {

@@ -6,6 +6,9 @@
 #include "view/measure.h"
 #include "view/view_private.h"
 
+/* Without input for longer than this, nobody waits for the window to be drawn. */
+static const double INPUT_MS = 50.0;
+
 static void note(struct view_figures *figures, double value)
 {
     if (figures->count < FIGURES_MAX)
@@ -58,7 +61,7 @@ void measure_shown(struct view *view)
     swapchain_get_info(view->swapchain, &chain);
     if (measure->first_ms <= 0.0)
         measure->first_ms = now_ms;
-    if (measure->shown_ms > 0.0)
+    if (measure->shown_ms > 0.0 && now_ms - measure->input_ms < INPUT_MS)
         note(&measure->between, now_ms - measure->shown_ms);
     measure->shown_ms = now_ms;
     ++measure->drawn;

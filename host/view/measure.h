@@ -18,6 +18,7 @@ struct view_measure {
     double first_ms; /* clock_ms() when the first picture was shown; 0: none yet */
     double last_ms;  /* when the last picture was shown, if something moved then; else 0 */
     double shown_ms; /* when the window was drawn last; 0: not yet */
+    double input_ms; /* when the last input was taken */
     double cpu_ms;   /* processor time of the process at start_ms */
     double start_ms; /* when measuring began */
     uint32_t drawn;  /* how often the window was drawn */
@@ -26,7 +27,7 @@ struct view_measure {
     struct view_figures quick;   /* ms of drawing pictures while something moves */
     struct view_figures size;    /* divisors of the pictures in `quick` */
     struct view_figures gap;     /* ms from one new picture to the next, while something moves */
-    struct view_figures between; /* ms from one drawing of the window to the next */
+    struct view_figures between; /* ms from one drawing of the window to the next, with input */
     struct view_figures latency; /* ms from the input to the picture that shows it */
     struct view_figures present; /* ms in the call that presents */
 };

@@ -12,14 +12,17 @@ struct pace {
     double ms[PACE_SIZES];     /* expected time; 0: not known */
     bool measured[PACE_SIZES]; /* a picture of this size was drawn since the last whole one */
     double off[2];             /* the last two pictures' times as parts of what was expected */
-    uint32_t divisor;          /* by which the sides of the last small picture were divided */
+    uint32_t divisor;          /* by which the sides of the last small picture were divided; 0:
+                                  none since the last whole one */
+    uint32_t calm;             /* pictures since they last became smaller */
 };
 
 /* Notes a picture whose sides are those of the window divided by `divisor`. */
 void pace_note(struct pace *pace, uint32_t divisor, double ms);
 
 /* The divisor of the largest picture that takes at most budget_ms. A larger picture than the last
-   has to fit with a margin, so that sizes do not flicker. */
+   has to fit with a margin, and comes a while after pictures became smaller, so that sizes do not
+   flicker. */
 uint32_t pace_divisor(const struct pace *pace, double budget_ms);
 
 #endif
