@@ -60,6 +60,15 @@ END
     drawn=$(value dragged measure.drawn) pictures=$(value dragged measure.gap_ms.count)
     check "each move has a picture ($pictures)" test "$pictures" -ge 8
     check "the window is drawn once a picture ($drawn)" test "$drawn" -le "$((pictures + 4))"
+
+    # Small pictures leave out rays of little weight, which the window says; at rest nothing is left out.
+    play "a drag that is too fast" "$SCENES/balls.json" $SMALL --fps-goal 1000 <<END
+start: move 40 30, button left down
+move 45 30
+picture
+small! | quality has of the size, 1 sample, bailout 1/64
+rest: button left up | quality = full size, 1 sample
+END
 fi
 
 # ---- Time ----
