@@ -35,7 +35,7 @@ static double pixels_of(const struct settings *settings)
 void engine_note_time(struct engine_lane *lane, const struct engine_frame *frame)
 {
     double samples = frame->samples > 0 ? frame->samples : ADAPTIVE_SAMPLES;
-    pace_note(&lane->pace, frame->divisor,
+    pace_note(&lane->pace, frame->divisor, frame->moving,
               frame->draw_ms / (samples * pixels_of(&frame->settings)));
 }
 

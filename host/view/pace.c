@@ -22,7 +22,7 @@ static double median(double a, double b, double c)
     return fmax(fmin(a, b), fmin(fmax(a, b), c));
 }
 
-/* Takes the time of the whole picture. Others are expected to take their parts of it. */
+/* Takes the time of a whole picture. Others are expected to take their parts of it. */
 static void begin(struct pace *pace, double ms)
 {
     *pace = (struct pace){.off = {1.0, 1.0}, .calm = CALM_PICTURES};
@@ -30,12 +30,12 @@ static void begin(struct pace *pace, double ms)
         pace->ms[i] = ms / ((double)divisors[i] * divisors[i]);
 }
 
-void pace_note(struct pace *pace, uint32_t divisor, double ms)
+void pace_note(struct pace *pace, uint32_t divisor, bool moving, double ms)
 {
     int drawn = size_of(divisor);
     pace->calm = divisor > pace->divisor ? 0 : pace->calm + 1;
     pace->divisor = divisor;
-    if (divisor == 1 || pace->ms[0] <= 0.0)
+    if (!moving || pace->ms[0] <= 0.0)
         begin(pace, ms * divisor * divisor);
     if (!pace->measured[drawn]) {
         double overhead_ms = fmin(fmax(ms - pace->ms[drawn], 0.0), OVERHEAD_MAX * pace->ms[drawn]);

@@ -10,15 +10,16 @@ enum { PACE_SIZES = 6 };
    0: nothing was drawn yet. */
 struct pace {
     double ms[PACE_SIZES];     /* expected time; 0: not known */
-    bool measured[PACE_SIZES]; /* a picture of this size was drawn since the last whole one */
+    bool measured[PACE_SIZES]; /* a picture of this size was drawn since the last rest */
     double off[2];             /* the last two pictures' times as parts of what was expected */
-    uint32_t divisor;          /* by which the sides of the last small picture were divided; 0:
-                                  none since the last whole one */
+    uint32_t divisor;          /* by which the sides of the last picture were divided; 0: none
+                                  since the last rest */
     uint32_t calm;             /* pictures since they last became smaller */
 };
 
-/* Notes a picture whose sides are those of the window divided by `divisor`. */
-void pace_note(struct pace *pace, uint32_t divisor, double ms);
+/* Notes a picture whose sides are those of the window divided by `divisor`. One at rest, not
+   `moving`, is the base of what is expected anew. */
+void pace_note(struct pace *pace, uint32_t divisor, bool moving, double ms);
 
 /* The divisor of the largest picture that takes at most budget_ms. A larger picture than the last
    has to fit with a margin, and comes a while after pictures became smaller, so that sizes do not

@@ -14,7 +14,7 @@ static uint32_t draw(struct pace *pace, int pictures, double overhead_ms, double
         uint32_t divisor = pace_divisor(pace, BUDGET_MS);
         *changes += divisor != last;
         last = divisor;
-        pace_note(pace, divisor, overhead_ms + whole_ms / (divisor * divisor));
+        pace_note(pace, divisor, true, overhead_ms + whole_ms / (divisor * divisor));
     }
     return last;
 }
@@ -23,7 +23,7 @@ static uint32_t draw(struct pace *pace, int pictures, double overhead_ms, double
 static struct pace whole(double ms)
 {
     struct pace pace = {0};
-    pace_note(&pace, 1, ms);
+    pace_note(&pace, 1, false, ms);
     return pace;
 }
 
@@ -63,13 +63,24 @@ TEST(a_picture_that_was_held_up_changes_nothing)
     struct pace pace = whole(800);
     assert_int_equal(draw(&pace, 5, 5, 800, &changes), 6);
     for (int i = 0; i < 20; ++i) {
-        pace_note(&pace, 6, 90);
+        pace_note(&pace, 6, true, 90);
         assert_int_equal(draw(&pace, 4, 5, 800, &changes), 6);
     }
     assert_int_equal(changes, 1);
     for (int i = 0; i < 3; ++i)
-        pace_note(&pace, 6, 90);
+        pace_note(&pace, 6, true, 90);
     assert_int_equal(pace_divisor(&pace, BUDGET_MS), 8);
+}
+
+TEST(a_whole_picture_that_was_held_up_changes_nothing)
+{
+    int changes = 0;
+    struct pace pace = whole(20);
+    assert_int_equal(draw(&pace, 5, 1, 20, &changes), 1);
+    for (int i = 0; i < 20; ++i) {
+        pace_note(&pace, 1, true, 90);
+        assert_int_equal(draw(&pace, 4, 1, 20, &changes), 1);
+    }
 }
 
 TEST(sizes_follow_the_view)
