@@ -60,7 +60,8 @@ bool replay_is_over(const struct view *view)
 
 /* ---- What is waited for ---- */
 
-/* Whether the window has its size, and shows the engine's latest status. */
+/* Whether the window has its size and shows the engine's latest status, and the engine knows what
+   is to be drawn. */
 static bool is_settled(const struct view *view, const struct engine_status *status)
 {
     uint32_t width, height;
@@ -70,7 +71,8 @@ static bool is_settled(const struct view *view, const struct engine_status *stat
     return window_is_settled(view->window) && width == chain.width && height == chain.height &&
            status->stage == view->status.stage &&
            status->change.number == view->status.change.number &&
-           strcmp(status->error, view->status.error) == 0 && !view->dirty && !view->shot[0];
+           strcmp(status->error, view->status.error) == 0 && !view->unasked && !view->dirty &&
+           !view->shot[0];
 }
 
 /* Whether no prices are being measured, and all that were measured are drawn. */

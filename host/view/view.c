@@ -72,6 +72,7 @@ void view_moved(struct view *view)
     camera_to_text(&view->camera, view->settings.camera, sizeof view->settings.camera);
     view->file_camera = -1;
     view->moved_ms = view_now_ms(view);
+    view->unasked = true;
 }
 
 bool view_bounds(const struct view *view, double lo[3], double hi[3])
@@ -355,6 +356,7 @@ static void ask(struct view *view)
 {
     if (view->settings.picture.width > 0 && !is_hidden(view))
         engine_ask(view->engine, &view->settings, view_is_moving(view));
+    view->unasked = false;
     engine_time_stages(view->engine, view->hud == HUD_FULL);
     /* Refining takes all cores, so measurements in the background come first. Replays ask for it
        themselves. */

@@ -84,6 +84,7 @@ struct view {
     struct view_measure measure;
     struct view_time time;
     double moved_ms; /* when the picture was last changed by hand */
+    bool unasked;    /* since then, the engine was not asked for a picture */
     double drawn_ms; /* when the window was last drawn */
     double escape_ms;
     enum view_hud hud;
