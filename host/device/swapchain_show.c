@@ -49,7 +49,7 @@ static whit_result write_pixels(const struct swapchain *swapchain, const uint8_t
 }
 
 /* Writes the picture at the size of the window. By the device, lavapipe takes 4 times as long, and
-   80 ms to compile the code when the first picture is shown. */
+   some 40 ms to compile the code when the first picture is shown. */
 static whit_result write_stretched(const struct swapchain *swapchain, const uint8_t *rgba,
                                    uint32_t width, uint32_t height)
 {

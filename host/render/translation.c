@@ -173,7 +173,7 @@ static bool keeps_machine_code(const struct renderer *renderer)
 }
 
 /* Dispatches kernels, the smallest first, until one takes longer than the cache allows, or none is
-   left. The device is still translating that one, WHIT_ERROR_TIME_LIMIT. */
+   left. WHIT_ERROR_TIME_LIMIT: the device is still translating that kernel. */
 static whit_result find_slow(struct work *work)
 {
     whit_result result = WHIT_OK;

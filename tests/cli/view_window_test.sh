@@ -55,7 +55,7 @@ if part 0 2; then
     play "a drag" "$SCENES/spin.json" $SMALL <<END
 start: move 40 30, button left down
 $(for i in 1 2 3 4 5 6 7 8 9 10 11 12; do echo "move $((40 + i)) $((40 - i))"; echo picture; done)
-dragged! | frame.whole as start
+dragged!
 END
     drawn=$(value dragged measure.drawn) pictures=$(value dragged measure.gap_ms.count)
     check "each move has a picture ($pictures)" test "$pictures" -ge 8
