@@ -1,7 +1,7 @@
 #!/bin/sh
-# sh bench_speed_test.sh WHIT SCENES [all]: `whit bench rays` and `frame`, with `all` also `start`: rows, verdicts,
-# JSON, the drawing, ray files and hits, peers that are not installed, refusals. No figure is judged, because figures
-# depend on the machine.
+# sh bench_speed_test.sh WHIT SCENES [all | second DRIVER.json]: `whit bench rays` and `frame`, with `all` also `start`:
+# rows, verdicts, JSON, the drawing, ray files and hits, peers that are not installed, refusals. No figure is judged,
+# because figures depend on the machine. second: `rays` beside the ray tracing of another driver.
 . "$(dirname "$0")/common.sh"
 needs jq
 needs xmllint
@@ -31,6 +31,25 @@ schema='(.whit | type == "string") and (.device | has("name") and has("driver"))
     (.tables | length == 1) and (.tables[0] | .table == $bench and (.sentences | length > 2) and
         (.left_out | all(has("name") and has("why"))) and (.rows | all('$row_schema')))'
 times='has("median") and has("spread") and .runs == 1'
+# Rays by the driver's own ray tracing have times and the same hits, or it is left out by name.
+pipeline=".tables[0] | if .left_out | any(.name | startswith(\"the driver\"))
+    then .rows | all(.tiles.pipeline_ms == null and .pipeline_hits.compared == 0)
+    else .rows | length > 2 and all((.tiles.pipeline_ms | $times) and (.shuffled.pipeline_ms | $times) and
+        (.pipeline_hits | .compared > 1000 and .met_by_one_alone <= .compared / 1000 and .other_t == 0 and
+            .other_ids <= .compared / 1000)) end"
+
+# `second DRIVER.json`: on a driver that may have ray tracing of its own, under the validation layers, whose messages
+# would spoil the answers of whit-ray-pipeline.
+if [ "${3:-}" = second ]; then
+    [ -f "${4:-}" ] || { echo "SKIPPED: no second driver (tools/second-driver)"; exit 77; }
+    J=$OUT/files/second.json
+    VK_DRIVER_FILES=$4 VK_ICD_FILENAMES=$4 VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
+    export VK_DRIVER_FILES VK_ICD_FILENAMES VK_INSTANCE_LAYERS
+    expect 0 "rays, on the second driver" bench rays "$SCENES/8k.json" --quick --runs 1 --json "$J"
+    check "beside the driver's own ray tracing" holds "$pipeline"
+    grep "^- Left out: the driver" "$OUT/stdout"
+    finish
+fi
 
 # `all`: every row of `whit bench frame`, with all peers, and the figure that each must reach.
 if [ "${3:-}" = all ]; then
@@ -99,6 +118,7 @@ if part 1 2; then
     check "the JSON is as documented" jq -e --arg bench rays "$schema" "$J"
     check "rows of each model" test "$(jq -r '.tables[0].rows[] | .model + " " + .rays' "$J" | tr '\n' ,)" \
         = "t316 camera,t316 shadow,t316 bounce,t317 camera,t317 shadow,t317 bounce,"
+    check "the driver's own ray tracing" holds "$pipeline"
     check "whit's times in both orders" \
         holds ".tables[0].rows | all((.tiles.whit_ms | $times) and (.shuffled.whit_ms | $times))"
     check "verdicts at the ends of rows alone" verdicts
@@ -211,7 +231,7 @@ if part 1 2; then
     for name in "another whit" Embree "glass, wine, flake, hollow, mesh: povray"; do
         check "$name is left out by name" grep -q "^- Left out: $name" "$OUT/stdout"
     done
-    printf '#!/bin/sh\necho embree 0 1\nexit 7\n' >"$OUT/alone/whit-embree"
+    printf '#!/bin/sh\necho ready 0\nexit 7\n' >"$OUT/alone/whit-embree"
     chmod +x "$OUT/alone/whit-embree"
     refuse 1 "an Embree that dies" "whit-embree. ended with exit code 7" bench rays "$CUBE" --quick
     WHIT=$PEERED

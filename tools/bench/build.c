@@ -169,7 +169,7 @@ static void put_row(struct table *table, const struct building *b, uint32_t inde
 /* A quick run keeps a few of the builders. */
 static void choose(struct building *b, const char *name, const struct bench_scene *loaded)
 {
-    bool quick = b->bench->ask.quick, has_embree = !peer_why_not(&loaded->info);
+    bool quick = b->bench->ask.quick, has_embree = !peer_why_not(PEER_EMBREE, &loaded->info);
     for (uint32_t i = 0; i < BUILDERS; ++i) {
         const struct builder *builder = &builders[i];
         if ((quick && !builder->in_quick) || (builder->quality && !has_embree))
@@ -193,9 +193,9 @@ static whit_result measure(struct building *b, struct table *table)
               "time, bytes a triangle. Frames are drawn of up to %d triangles.",
               LARGE);
     if (b->count == b->own_count) {
-        table_leave_out(table, "Embree", peer_why_not(&loaded->info));
+        table_leave_out(table, "Embree", peer_why_not(PEER_EMBREE, &loaded->info));
     } else {
-        result = peer_begin(&b->peer, b->bench, loaded->scene, "triangles");
+        result = peer_begin(&b->peer, PEER_EMBREE, b->bench, loaded->scene, "triangles");
         table_say(table, "Beside Embree %s.", b->peer.version);
     }
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {

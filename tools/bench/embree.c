@@ -1,48 +1,26 @@
-/* whit-embree TRIANGLES: Embree's side of `whit bench`, a program of its own, so that whit needs no
-   Embree. TRIANGLES, rays and hits are records of `whit scene --triangles` and `whit trace`. It
-   answers each line of standard input by one line:
-
-       rays FILE closest|any     `rays COUNT`: loads the rays that the next lines trace
-       trace WAY forth|back coherent|scattered
-                                 `time CPU_MS WALL_MS`, of all threads; WAY: single, packets or
-                                 stream; `none`: this build of Embree lacks it. back: traces from
-                                 the end of each ray, which must have one, to its origin. coherent:
-                                 tells Embree that neighbouring rays are coherent
-       build QUALITY THREADS     `built WALL_MS BYTES`: builds a tree of medium or high quality;
-                                 BYTES: peak memory by Embree's own monitor
-       hits FILE                 `hits COUNT`: writes the hits of the last trace. Only t, primitive
-                                 and instance have a meaning; for any-hit rays only whether there is
-                                 a hit
-
-   The first line that it prints is `embree VERSION THREADS`. Errors are printed on standard error,
-   and end it with exit code 2. Scenes are ROBUST, of medium quality. */
+/* whit-embree TRIANGLES: Embree's side of `whit bench` (peer_side.h), a program of its own, so that
+   whit needs no Embree. Ways to trace: single, packets or stream. Scenes are ROBUST, of medium
+   quality. */
 #include <embree3/rtcore.h>
-#include <math.h>
 #include <pthread.h>
-#include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "whit/whit.h"
+#include "bench/peer_side.h"
 
-enum { CHUNK = 4096, STREAM = 256, THREADS_MAX = 64, LINE = 4200 };
+enum { CHUNK = 4096, STREAM = 256, THREADS_MAX = 64 };
 enum way { WAY_SINGLE, WAY_PACKETS, WAY_STREAM, WAYS };
 static const char *const ways[WAYS] = {"single", "packets", "stream"};
 
 struct peer {
+    struct peer_side side;
     RTCDevice device;
     RTCScene scene;
-    whit_triangle *triangles;
-    uint64_t triangle_count;
-    whit_ray *rays, *turned; /* as in the file; turned: from their ends back */
-    whit_hit *hits;
-    uint64_t count;
-    bool any, wide; /* wide: packets have 16 rays */
+    whit_ray *turned; /* the rays from their ends back */
+    bool wide;        /* packets have 16 rays */
     int threads;
     /* The trace that is running: */
     const whit_ray *traced;
@@ -50,40 +28,6 @@ struct peer {
     bool coherent;
     _Atomic uint64_t next;
 };
-
-_Noreturn static void WHIT_PRINTF(1, 2) fail(const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    fputs("whit-embree: ", stderr);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
-    va_end(args);
-    exit(2);
-}
-
-static double clock_of(clockid_t clock)
-{
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
-
-/* Reads all records of a file into one block. */
-static void *read_records(const char *path, size_t record, uint64_t *count)
-{
-    struct stat info;
-    FILE *from = fopen(path, "rb");
-    if (!from || fstat(fileno(from), &info) != 0 || (uint64_t)info.st_size % record != 0)
-        fail("%s: cannot read, or no whole number of records", path);
-    size_t bytes = (size_t)info.st_size;
-    void *records = malloc(bytes ? bytes : 1);
-    if (!records || fread(records, 1, bytes, from) != bytes)
-        fail("%s: cannot read", path);
-    fclose(from);
-    *count = bytes / record;
-    return records;
-}
 
 /* ---- The scene ---- */
 
@@ -99,15 +43,15 @@ static RTCScene make_scene(const struct peer *peer, RTCDevice device, enum RTCBu
 {
     RTCScene scene = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    size_t count = (size_t)peer->triangle_count;
+    size_t count = (size_t)peer->side.triangle_count;
     float *positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                RTC_FORMAT_FLOAT3, 12, 3 * count);
     uint32_t *indices =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, count);
     if (!positions || !indices)
-        fail("out of memory");
+        peer_fail(&peer->side, "out of memory");
     for (size_t i = 0; i < count; ++i) {
-        memcpy(&positions[9 * i], peer->triangles[i].vertices, sizeof peer->triangles[i].vertices);
+        memcpy(&positions[9 * i], peer->side.triangles[i].vertices, 9 * sizeof *positions);
         for (size_t k = 0; k < 3; ++k)
             indices[3 * i + k] = (uint32_t)(3 * i + k);
     }
@@ -127,7 +71,7 @@ static void build(struct peer *peer)
     rtcSetSceneFlags(peer->scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(peer->scene);
     if (rtcGetDeviceError(peer->device) != RTC_ERROR_NONE)
-        fail("Embree cannot build the scene");
+        peer_fail(&peer->side, "Embree cannot build the scene");
 }
 
 /* Memory of a build, counted by Embree's monitor, which is called from its threads. */
@@ -145,9 +89,10 @@ static bool on_memory(void *user, ssize_t bytes, bool post)
     return true;
 }
 
-static void build_anew(const struct peer *peer, const char *quality, int threads)
+static void build_anew(void *user, const char *quality, int threads, double *ms, double *bytes)
 {
     static struct memory memory;
+    const struct peer *peer = user;
     bool is_high = strcmp(quality, "high") == 0;
     RTCDevice device = open_device(threads);
     rtcSetDeviceMemoryMonitorFunction(device, on_memory, &memory);
@@ -155,29 +100,23 @@ static void build_anew(const struct peer *peer, const char *quality, int threads
         make_scene(peer, device, is_high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
     int64_t before = memory.now;
     memory.peak = before;
-    double wall = clock_of(CLOCK_MONOTONIC);
+    double wall = peer_wall_ms();
     rtcCommitScene(scene);
-    printf("built %.6f %lld\n", clock_of(CLOCK_MONOTONIC) - wall,
-           (long long)(memory.peak - before));
+    *ms = peer_wall_ms() - wall;
+    *bytes = (double)(memory.peak - before);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
 }
 
 /* ---- Rays ---- */
 
-static void load_rays(struct peer *peer, const char *path, bool any)
+static void turn_rays(void *user)
 {
-    free(peer->rays);
+    struct peer *peer = user;
     free(peer->turned);
-    free(peer->hits);
-    peer->rays = read_records(path, sizeof *peer->rays, &peer->count);
-    peer->turned = malloc((size_t)(peer->count ? peer->count : 1) * sizeof *peer->turned);
-    peer->hits = calloc((size_t)(peer->count ? peer->count : 1), sizeof *peer->hits);
-    peer->any = any;
-    if (!peer->turned || !peer->hits)
-        fail("out of memory");
-    for (uint64_t i = 0; i < peer->count; ++i) {
-        const whit_ray *ray = &peer->rays[i];
+    peer->turned = peer_alloc(&peer->side, peer->side.count, sizeof *peer->turned);
+    for (uint64_t i = 0; i < peer->side.count; ++i) {
+        const whit_ray *ray = &peer->side.rays[i];
         whit_ray *to = &peer->turned[i];
         *to = (whit_ray){.t_min = 1.0f - ray->t_max, .t_max = 1.0f - ray->t_min};
         for (int k = 0; k < 3; ++k) {
@@ -203,16 +142,10 @@ static struct RTCRayHit query_of(const whit_ray *ray)
 }
 
 /* For any-hit queries Embree marks a hit by a negative tfar. */
-static void keep_hit(const struct peer *peer, uint64_t i, float t, uint32_t primitive)
+static void keep_hit(const struct peer *peer, uint64_t i, float t, uint32_t triangle)
 {
-    whit_hit *hit = &peer->hits[i];
-    bool met = peer->any ? t < 0.0f : primitive != RTC_INVALID_GEOMETRY_ID;
-    hit->t = met ? t : INFINITY;
-    hit->primitive = hit->instance = met ? 0 : WHIT_NONE;
-    if (met && !peer->any) {
-        hit->primitive = peer->triangles[primitive].primitive;
-        hit->instance = peer->triangles[primitive].instance;
-    }
+    _Static_assert((uint32_t)RTC_INVALID_GEOMETRY_ID == WHIT_NONE, "both are the largest number");
+    peer_keep_hit(&peer->side, i, t, !peer->side.any ? triangle : t < 0.0f ? 0 : WHIT_NONE);
 }
 
 static void trace_single(const struct peer *peer, struct RTCIntersectContext *context,
@@ -220,7 +153,7 @@ static void trace_single(const struct peer *peer, struct RTCIntersectContext *co
 {
     for (uint64_t i = begin; i < end; ++i) {
         struct RTCRayHit query = query_of(&peer->traced[i]);
-        if (peer->any)
+        if (peer->side.any)
             rtcOccluded1(peer->scene, context, &query.ray);
         else
             rtcIntersect1(peer->scene, context, &query);
@@ -248,7 +181,7 @@ static void trace_single(const struct peer *peer, struct RTCIntersectContext *co
                 query.hit.geomID[k] = query.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;               \
                 query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;                                  \
             }                                                                                      \
-            if (peer->any)                                                                         \
+            if (peer->side.any)                                                                    \
                 rtcOccluded##N(valid, peer->scene, context, &query.ray);                           \
             else                                                                                   \
                 rtcIntersect##N(valid, peer->scene, context, &query);                              \
@@ -267,7 +200,7 @@ static void trace_stream(const struct peer *peer, struct RTCIntersectContext *co
         uint32_t count = (uint32_t)(end - first < STREAM ? end - first : STREAM);
         for (uint32_t k = 0; k < count; ++k)
             queries[k] = query_of(&peer->traced[first + k]);
-        if (peer->any)
+        if (peer->side.any)
             rtcOccluded1M(peer->scene, context, &queries[0].ray, count, sizeof queries[0]);
         else
             rtcIntersect1M(peer->scene, context, queries, count, sizeof queries[0]);
@@ -285,9 +218,9 @@ static void *work(void *user)
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for (;;) {
         uint64_t begin = atomic_fetch_add(&peer->next, CHUNK);
-        if (begin >= peer->count)
+        if (begin >= peer->side.count)
             return NULL;
-        uint64_t end = begin + CHUNK < peer->count ? begin + CHUNK : peer->count;
+        uint64_t end = begin + CHUNK < peer->side.count ? begin + CHUNK : peer->side.count;
         if (peer->way == WAY_SINGLE)
             trace_single(peer, &context, begin, end);
         else if (peer->way == WAY_PACKETS && peer->wide)
@@ -299,88 +232,49 @@ static void *work(void *user)
     }
 }
 
-static void trace(struct peer *peer, enum way way, bool back, bool coherent)
+static bool trace(void *user, const char *name, bool back, bool coherent, double ms[2])
 {
-    pthread_t threads[THREADS_MAX];
     static const enum RTCDeviceProperty needs[WAYS] = {
         [WAY_PACKETS] = RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
         [WAY_STREAM] = RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED};
-    if (way != WAY_SINGLE && !rtcGetDeviceProperty(peer->device, needs[way])) {
-        puts("none");
-        return;
-    }
-    double wall = clock_of(CLOCK_MONOTONIC), cpu = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-    peer->way = way;
+    struct peer *peer = user;
+    pthread_t threads[THREADS_MAX];
+    int way = 0, started = 0;
+    while (way < WAYS && strcmp(name, ways[way]) != 0)
+        ++way;
+    if (way == WAYS)
+        peer_fail(&peer->side, "no such way to trace: %s", name);
+    if (way != WAY_SINGLE && !rtcGetDeviceProperty(peer->device, needs[way]))
+        return false;
+    double wall = peer_wall_ms(), cpu = peer_cpu_ms();
+    peer->way = (enum way)way;
     peer->coherent = coherent;
-    peer->traced = back ? peer->turned : peer->rays;
+    peer->traced = back ? peer->turned : peer->side.rays;
     atomic_store(&peer->next, 0);
-    int started = 0;
     while (started + 1 < peer->threads && pthread_create(&threads[started], NULL, work, peer) == 0)
         ++started;
     work(peer);
     for (int i = 0; i < started; ++i)
         pthread_join(threads[i], NULL);
-    printf("time %.6f %.6f\n", clock_of(CLOCK_PROCESS_CPUTIME_ID) - cpu,
-           clock_of(CLOCK_MONOTONIC) - wall);
-}
-
-static void write_hits(const struct peer *peer, const char *path)
-{
-    FILE *to = fopen(path, "wb");
-    size_t count = (size_t)peer->count;
-    if (!to || fwrite(peer->hits, sizeof *peer->hits, count, to) != count || fclose(to) != 0)
-        fail("%s: cannot write", path);
-    printf("hits %llu\n", (unsigned long long)peer->count);
-}
-
-/* ---- Lines ---- */
-
-static void obey(struct peer *peer, char *line)
-{
-    char *word = strtok(line, " \n"), *argument = strtok(NULL, " \n"), *last = strtok(NULL, " \n"),
-         *order = strtok(NULL, " \n");
-    if (word && strcmp(word, "rays") == 0 && last) {
-        load_rays(peer, argument, strcmp(last, "any") == 0);
-        printf("rays %llu\n", (unsigned long long)peer->count);
-        return;
-    }
-    if (word && strcmp(word, "hits") == 0 && argument) {
-        write_hits(peer, argument);
-        return;
-    }
-    if (word && strcmp(word, "build") == 0 && last && atoi(last) > 0) {
-        build_anew(peer, argument, atoi(last));
-        return;
-    }
-    for (int way = 0; word && strcmp(word, "trace") == 0 && order && way < WAYS; ++way) {
-        if (strcmp(argument, ways[way]) == 0) {
-            trace(peer, (enum way)way, strcmp(last, "back") == 0, strcmp(order, "coherent") == 0);
-            return;
-        }
-    }
-    fail("no such line: %s", word ? word : "");
+    ms[0] = peer_cpu_ms() - cpu;
+    ms[1] = peer_wall_ms() - wall;
+    return true;
 }
 
 int main(int argc, char **argv)
 {
-    static struct peer peer;
-    char line[LINE];
+    static struct peer peer = {
+        .side = {.name = "whit-embree", .load = turn_rays, .trace = trace, .build = build_anew}};
+    peer.side.user = &peer;
     if (argc != 2)
-        fail("usage: whit-embree TRIANGLES, see `whit bench rays --help`");
+        peer_fail(&peer.side, "usage: whit-embree TRIANGLES, see `whit bench rays --help`");
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     peer.threads = cores < 1 ? 1 : cores > THREADS_MAX ? THREADS_MAX : (int)cores;
-    peer.triangles = read_records(argv[1], sizeof *peer.triangles, &peer.triangle_count);
-    if (peer.triangle_count == 0 || peer.triangle_count > UINT32_MAX / 3)
-        fail("%s: no triangles, or too many", argv[1]);
+    peer_read_triangles(&peer.side, argv[1]);
     build(&peer);
-    printf("embree %s %d\n", RTC_VERSION_STRING, peer.threads);
-    while (fflush(stdout) == 0 && fgets(line, sizeof line, stdin))
-        obey(&peer, line);
+    peer_serve(&peer.side, RTC_VERSION_STRING);
     rtcReleaseScene(peer.scene);
     rtcReleaseDevice(peer.device);
-    free(peer.triangles);
-    free(peer.rays);
     free(peer.turned);
-    free(peer.hits);
     return 0;
 }

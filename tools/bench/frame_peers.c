@@ -70,9 +70,9 @@ whit_result peers_find_against(struct peers *peers, struct table *table)
 
 void peers_find(struct peers *peers, struct table *table, bool wants_pov)
 {
-    peers->has_embree = !peer_why_not(NULL);
+    peers->has_embree = !peer_why_not(PEER_EMBREE, NULL);
     if (!peers->has_embree)
-        table_leave_out(table, "Embree", peer_why_not(NULL));
+        table_leave_out(table, "Embree", peer_why_not(PEER_EMBREE, NULL));
     if (wants_pov)
         find_pov(peers, table);
 }

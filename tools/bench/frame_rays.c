@@ -99,9 +99,9 @@ whit_result frame_prepare_rays(struct frame *frame)
         result = write_rays(frame, shadow_name, &shadow);
     free(closest.rays);
     free(shadow.rays);
-    return result == WHIT_OK
-               ? peer_begin(&frame->peer, frame->bench, frame->loaded.scene, "own.triangles")
-               : result;
+    return result == WHIT_OK ? peer_begin(&frame->peer, PEER_EMBREE, frame->bench,
+                                          frame->loaded.scene, "own.triangles")
+                             : result;
 }
 
 whit_result frame_trace_rays(struct frame *frame, double *ms)

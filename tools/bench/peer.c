@@ -9,32 +9,38 @@
 
 #include "app/scene/listing.h"
 
-static bool find_program(char *path, size_t bytes)
+const char *const peer_names[PEER_KINDS] = {"Embree", "the driver's own ray tracing"};
+static const char *const programs[PEER_KINDS] = {"whit-embree", "whit-ray-pipeline"};
+
+static bool find_program(enum peer_kind kind, char *path, size_t bytes)
 {
     char program[2048];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     program[length > 0 ? length : 0] = 0;
     char *slash = strrchr(program, '/');
     if (slash)
-        snprintf(path, bytes, "%.*s/whit-embree", (int)(slash - program), program);
+        snprintf(path, bytes, "%.*s/%s", (int)(slash - program), program, programs[kind]);
     return slash && access(path, X_OK) == 0;
 }
 
-const char *peer_why_not(const whit_scene_info *scene)
+const char *peer_why_not(enum peer_kind kind, const whit_scene_info *scene)
 {
+    static const char *const missing[PEER_KINDS] = {
+        "`whit-embree` is not beside whit-bench; the build makes it where Embree 3 is installed "
+        "(Debian: libembree-dev)",
+        "`whit-ray-pipeline` is not beside whit-bench"};
     char path[BENCH_PATH];
-    if (!find_program(path, sizeof path))
-        return "`whit-embree` is not beside whit-bench; the build makes it where Embree 3 is "
-               "installed (Debian: libembree-dev)";
+    if (!find_program(kind, path, sizeof path))
+        return missing[kind];
     return scene && scene->sphere_count ? "its side has triangles alone, not spheres" : NULL;
 }
 
-/* Waits until whit-embree ends, and gives the error. */
+/* Waits until the peer ends, and gives the error. */
 static whit_result lost(struct peer *peer)
 {
     whit_result result = process_end(&peer->process, NULL);
     if (result == WHIT_OK)
-        cli_error("`whit-embree` ended too soon");
+        cli_error("`%s` ended too soon", programs[peer->kind]);
     return result == WHIT_OK ? WHIT_ERROR_FAILED : result;
 }
 
@@ -42,9 +48,10 @@ static whit_result read_answer(struct peer *peer, char *answer, size_t bytes, co
 {
     if (!fgets(answer, (int)bytes, peer->answers))
         return lost(peer);
-    if (strncmp(answer, word, strlen(word)) == 0 || strcmp(answer, "none\n") == 0)
+    answer[strcspn(answer, "\n")] = 0;
+    if (strncmp(answer, word, strlen(word)) == 0 || strncmp(answer, "none", 4) == 0)
         return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
-    cli_error("`whit-embree` answers `%s`", cli_shown(answer));
+    cli_error("`%s` answers `%s`", programs[peer->kind], cli_shown(answer));
     return WHIT_ERROR_FAILED;
 }
 
@@ -61,36 +68,44 @@ static whit_result WHIT_PRINTF(4, 5)
     return read_answer(peer, answer, 128, word);
 }
 
-whit_result peer_begin(struct peer *peer, const struct bench *bench, const whit_scene *scene,
-                       const char *triangles)
+static whit_result start(struct peer *peer, const struct bench *bench, const char *triangles)
 {
     int ends[2];
-    char answer[128], path[BENCH_PATH];
-    *peer = (struct peer){.socket = -1};
-    bench_file(bench, triangles, path);
-    whit_result result = triangles_write(scene, 0.0, path);
-    if (result != WHIT_OK)
-        return result;
-    if (!find_program(peer->program, sizeof peer->program) ||
+    if (!find_program(peer->kind, peer->program, sizeof peer->program) ||
         socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        cli_error("no `whit-embree`, or no socket for it: %s", strerror(errno));
+        cli_error("no `%s`, or no socket for it: %s", programs[peer->kind], strerror(errno));
         return WHIT_ERROR_MEMORY;
     }
     peer->process =
         (struct process){.program = peer->program, .folder = bench->folder, .socket = ends[1]};
-    process_add(&peer->process, "whit-embree", triangles, NULL);
+    process_add(&peer->process, programs[peer->kind], triangles,
+                peer->kind == PEER_PIPELINE ? peer->device : NULL, NULL);
     peer->socket = ends[0];
     peer->answers = fdopen(ends[0], "r");
-    result = peer->answers ? process_start(&peer->process) : WHIT_ERROR_MEMORY;
+    whit_result result = peer->answers ? process_start(&peer->process) : WHIT_ERROR_MEMORY;
     close(ends[1]);
-    if (result == WHIT_OK)
-        result = read_answer(peer, answer, sizeof answer, "embree ");
-    if (result == WHIT_OK)
-        sscanf(answer, "embree %31s", peer->version);
     return result;
 }
 
-/* whit-embree ends when its input is closed. */
+whit_result peer_begin(struct peer *peer, enum peer_kind kind, const struct bench *bench,
+                       const whit_scene *scene, const char *triangles)
+{
+    char answer[256] = "", path[BENCH_PATH];
+    *peer = (struct peer){.kind = kind, .socket = -1};
+    snprintf(peer->device, sizeof peer->device, "%u", bench->device_info.index);
+    bench_file(bench, triangles, path);
+    whit_result result = triangles_write(scene, 0.0, path);
+    if (result == WHIT_OK)
+        result = start(peer, bench, triangles);
+    if (result == WHIT_OK)
+        result = read_answer(peer, answer, sizeof answer, "ready ");
+    if (result == WHIT_OK) /* after `ready ` or `none ` */
+        snprintf(answer[0] == 'r' ? peer->version : peer->why_not, sizeof peer->version, "%s",
+                 answer + (answer[0] == 'r' ? 6 : 5));
+    return result;
+}
+
+/* A peer ends when its input is closed. */
 void peer_end(struct peer *peer)
 {
     if (peer->answers)

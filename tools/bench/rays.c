@@ -1,4 +1,5 @@
-/* `whit bench rays`: compares whit's kernels with Embree's on the same files of rays. */
+/* `whit bench rays`: compares whit's kernels with Embree and the driver's own ray tracing on the
+   same files of rays. */
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -31,11 +32,22 @@ static void put_ns(const struct model *model, const struct sample_runs *times)
                    sample_of(times).median * 1e6 / (double)model->count);
 }
 
-static json_t *row_document(const struct model *model, uint32_t kind, const struct batch *batches,
-                            const struct agreement *agreement)
+static json_t *hits_document(const struct agreement *agreement)
 {
-    static const char *const keys[] = {"whit_ms", "single_ms", "packets_ms", "stream_ms"};
-    json_t *row = document_object(), *hits = document_object();
+    json_t *hits = document_object();
+    document_count(hits, "compared", agreement->rays);
+    document_count(hits, "met_by_one_alone", agreement->one_alone);
+    document_count(hits, "other_ids", agreement->other_ids);
+    document_count(hits, "other_t", agreement->other_t);
+    return hits;
+}
+
+static json_t *row_document(const struct model *model, uint32_t kind, const struct batch *batches,
+                            const struct agreement agreement[PEER_KINDS])
+{
+    static const char *const keys[] = {"whit_ms", "single_ms", "packets_ms", "stream_ms",
+                                       "pipeline_ms"};
+    json_t *row = document_object();
     document_text(row, "model", model->name);
     document_text(row, "rays", rays_kind_names[kind]);
     document_count(row, "triangles", model->loaded.info.triangle_count);
@@ -51,16 +63,13 @@ static json_t *row_document(const struct model *model, uint32_t kind, const stru
         }
         document_put(row, order ? "shuffled" : "tiles", times);
     }
-    document_count(hits, "compared", agreement->rays);
-    document_count(hits, "met_by_one_alone", agreement->one_alone);
-    document_count(hits, "other_ids", agreement->other_ids);
-    document_count(hits, "other_t", agreement->other_t);
-    document_put(row, "hits", hits);
+    document_put(row, "hits", hits_document(&agreement[PEER_EMBREE]));
+    document_put(row, "pipeline_hits", hits_document(&agreement[PEER_PIPELINE]));
     return row;
 }
 
 static void put_row(const struct model *model, uint32_t kind, const struct batch *batches,
-                    const struct agreement *agreement)
+                    const struct agreement agreement[PEER_KINDS])
 {
     struct table *table = model->table;
     const struct batch *tiles = &batches[0], *shuffled = &batches[1];
@@ -79,23 +88,25 @@ static void put_row(const struct model *model, uint32_t kind, const struct batch
         put_ns(model, batch_quicker(tiles, (enum rays_side)side));
     table_cell(table, isnan(other.value) ? "-" : "%.2f", other.value);
     table_figure(table, &figure, row_document(model, kind, batches, agreement));
-    if (agreement->one_alone + agreement->other_t > 0)
-        table_say(table,
-                  "%s: of %llu rays whit or Embree alone meets something on %llu, and t differs "
-                  "on %llu.",
-                  figure.name, (unsigned long long)agreement->rays,
-                  (unsigned long long)agreement->one_alone, (unsigned long long)agreement->other_t);
+    for (int peer = 0; peer < PEER_KINDS; ++peer)
+        if (agreement[peer].one_alone + agreement[peer].other_t > 0)
+            table_say(table,
+                      "%s: of %llu rays whit or %s alone meets something on %llu, and t differs "
+                      "on %llu.",
+                      figure.name, (unsigned long long)agreement[peer].rays, peer_names[peer],
+                      (unsigned long long)agreement[peer].one_alone,
+                      (unsigned long long)agreement[peer].other_t);
 }
 
 static whit_result run_kind(struct model *model, uint32_t kind)
 {
     struct batch batches[2] = {0};
-    struct agreement agreement = {0};
+    struct agreement agreement[PEER_KINDS] = {0};
     whit_result result = WHIT_OK;
     for (uint32_t order = 0; result == WHIT_OK && order < 2; ++order)
-        result = batch_run(model, &batches[order], (enum rays_kind)kind, order == 1, &agreement);
+        result = batch_run(model, &batches[order], (enum rays_kind)kind, order == 1, agreement);
     if (result == WHIT_OK)
-        put_row(model, kind, batches, &agreement);
+        put_row(model, kind, batches, agreement);
     return result;
 }
 
@@ -142,35 +153,42 @@ static whit_result prepare(struct model *model, const char *path)
                       model->hits, NULL);
 }
 
-static whit_result begin_peer(struct model *model, char file[96])
+static whit_result begin_peer(struct model *model, enum peer_kind kind, const char *triangles)
 {
-    const char *why_not = peer_why_not(&model->loaded.info);
-    if (why_not && !peer_why_not(NULL)) /* else the table says it once for all models */
-        table_leave_out(model->table, "Embree", why_not);
+    struct peer *peer = &model->peers[kind];
+    const char *why_not = peer_why_not(kind, &model->loaded.info);
+    if (why_not && !peer_why_not(kind, NULL)) /* else the table says it once for all models */
+        table_leave_out(model->table, peer_names[kind], why_not);
     if (why_not)
         return WHIT_OK;
-    snprintf(file, 96, "%s.triangles", model->name);
-    model->has_peer = true;
-    whit_result result = peer_begin(&model->peer, model->bench, model->loaded.scene, file);
-    if (result == WHIT_OK && model->table->row_count == 1)
-        table_say(model->table, "Beside Embree %s.", model->peer.version);
+    whit_result result = peer_begin(peer, kind, model->bench, model->loaded.scene, triangles);
+    model->has_peer[kind] = result == WHIT_OK && !peer->why_not[0];
+    if (result != WHIT_OK ||
+        model->table->row_count > 1) /* rows of a model before, below the head */
+        return result;
+    if (peer->why_not[0])
+        table_leave_out(model->table, peer_names[kind], peer->why_not);
+    else
+        table_say(model->table, "Beside %s (%s).", peer_names[kind], peer->version);
     return result;
 }
 
 static whit_result run_model(struct table *table, const char *path)
 {
-    char file[96];
+    char triangles[96];
     struct model *model = calloc(1, sizeof *model);
     if (!model)
         return WHIT_ERROR_MEMORY;
     model->bench = table->bench;
     model->table = table;
     whit_result result = prepare(model, path);
-    if (result == WHIT_OK)
-        result = begin_peer(model, file);
+    snprintf(triangles, sizeof triangles, "%s.triangles", model->name);
+    for (int kind = 0; result == WHIT_OK && kind < PEER_KINDS; ++kind)
+        result = begin_peer(model, (enum peer_kind)kind, triangles);
     for (uint32_t kind = 0; result == WHIT_OK && kind < RAYS_KINDS; ++kind)
         result = run_kind(model, kind);
-    peer_end(&model->peer);
+    for (int kind = 0; kind < PEER_KINDS; ++kind)
+        peer_end(&model->peers[kind]);
     whit_renderer_destroy(model->renderer);
     whit_accel_destroy(model->accel);
     bench_unload(&model->loaded);
@@ -213,9 +231,11 @@ static void say_how(struct table *table)
         table,
         table->bench->is_cpu
             ? "ns: processor time of all threads a ray, from rays in device memory to hits in "
-              "device memory. Figure: times the speed of Embree's single rays."
+              "device memory. Figure: times the speed of Embree's single rays. driver: the "
+              "driver's own ray-tracing pipeline."
             : "ns: device time a ray, and time by the clock of Embree on all cores. Figure: "
-              "times the speed of Embree's single rays.");
+              "times the speed of Embree's single rays. driver: the driver's own ray-tracing "
+              "pipeline.");
     table_say(table,
               "One camera ray a pixel. Level `watertight` beside Embree ROBUST, on the same files: "
               "in tiles of 8x8, then `shuffled`. Shadow rays start at the light; Embree has them "
@@ -232,8 +252,9 @@ static whit_result look_for(const char *path)
 
 whit_result bench_rays(struct bench *bench)
 {
-    static const char *const heads[] = {"model, triangles", "rays",       "whit, ns", "single, ns",
-                                        "packets, ns",      "stream, ns", "shuffled", NULL};
+    static const char *const heads[] = {"model, triangles", "rays",        "whit, ns",
+                                        "single, ns",       "packets, ns", "stream, ns",
+                                        "driver, ns",       "shuffled",    NULL};
     const struct bench_request *ask = &bench->ask;
     struct table table;
     whit_result result = WHIT_OK;
@@ -244,8 +265,9 @@ whit_result bench_rays(struct bench *bench)
     uint32_t models = ask->name_count ? ask->name_count : 3;
     table_begin(&table, bench, "rays", heads, true, models * RAYS_KINDS * 2 * (ask->runs + 1));
     say_how(&table);
-    if (peer_why_not(NULL))
-        table_leave_out(&table, "Embree", peer_why_not(NULL));
+    for (int kind = 0; kind < PEER_KINDS; ++kind)
+        if (peer_why_not((enum peer_kind)kind, NULL))
+            table_leave_out(&table, peer_names[kind], peer_why_not((enum peer_kind)kind, NULL));
     for (uint32_t i = 0; result == WHIT_OK && i < ask->name_count; ++i)
         result = run_model(&table, ask->names[i]);
     if (result == WHIT_OK && ask->name_count == 0)

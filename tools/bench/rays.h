@@ -1,4 +1,4 @@
-/* Batches of rays of one kind in one order, traced by whit and Embree in turns. */
+/* Batches of rays of one kind in one order, traced by whit and its peers in turns. */
 #ifndef BENCH_RAYS_H
 #define BENCH_RAYS_H
 
@@ -6,7 +6,16 @@
 #include "bench/peer.h"
 #include "bench/table.h"
 
-enum rays_side { RAYS_WHIT, RAYS_SINGLE, RAYS_PACKETS, RAYS_STREAM, RAYS_BACK, RAYS_SIDES = 7 };
+/* RAYS_BACK and the next two: as from RAYS_SINGLE on, from the ends of rays back. */
+enum rays_side {
+    RAYS_WHIT,
+    RAYS_SINGLE,
+    RAYS_PACKETS,
+    RAYS_STREAM,
+    RAYS_PIPELINE,
+    RAYS_BACK,
+    RAYS_SIDES = RAYS_BACK + 3
+};
 enum rays_kind { RAYS_CAMERA, RAYS_SHADOW, RAYS_BOUNCE, RAYS_KINDS };
 
 /* One set of rays in one order, and the times of each side in ms. */
@@ -15,8 +24,8 @@ struct batch {
     bool any, coherent; /* any: any-hit rays; coherent: neighbouring rays are coherent */
 };
 
-/* Differences between the hits of both sides, as numbers of rays. Where a ray meets two triangles
-   at an edge, the sides may name different ones. */
+/* Differences between the hits of whit and a peer, as numbers of rays. Where a ray meets two
+   triangles at an edge, the sides may name different ones. */
 struct agreement {
     uint64_t rays, one_alone, other_ids, other_t;
 };
@@ -28,8 +37,8 @@ struct model {
     struct bench_scene loaded;
     whit_accel *accel;
     whit_renderer *renderer;
-    struct peer peer;
-    bool has_peer;
+    struct peer peers[PEER_KINDS];
+    bool has_peer[PEER_KINDS];
     struct study_rays camera;
     whit_hit *hits; /* hits of camera rays, where shadow and bounce rays start */
     /* The batch that is being traced; arrays have room for the number of camera rays: */

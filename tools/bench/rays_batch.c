@@ -67,29 +67,40 @@ static whit_result trace_here(struct model *model, double *ms)
     return result;
 }
 
+static enum peer_kind peer_of(enum rays_side side)
+{
+    return side == RAYS_PIPELINE ? PEER_PIPELINE : PEER_EMBREE;
+}
+
+static whit_result trace_by_peer(struct model *model, enum rays_side side, double ms[2])
+{
+    bool back = side >= RAYS_BACK;
+    const char *way =
+        side == RAYS_PIPELINE ? ways[0] : ways[side - (back ? RAYS_BACK : RAYS_SINGLE)];
+    return peer_trace(&model->peers[peer_of(side)], way, back, model->batch->coherent, ms);
+}
+
 /* Round 0 is a warm-up. */
-static whit_result run_side(void *user, uint32_t side, uint32_t round)
+static whit_result run_side(void *user, uint32_t number, uint32_t round)
 {
     struct model *model = user;
+    enum rays_side side = (enum rays_side)number;
     double ms[2] = {0.0}; /* processor time, wall clock */
-    whit_result result = side == RAYS_WHIT
-                             ? trace_here(model, ms)
-                             : peer_trace(&model->peer, ways[(side - RAYS_SINGLE) % 3],
-                                          side >= RAYS_BACK, model->batch->coherent, ms);
+    if (side != RAYS_WHIT && !model->has_peer[peer_of(side)])
+        return WHIT_OK;
+    whit_result result = side == RAYS_WHIT ? trace_here(model, ms) : trace_by_peer(model, side, ms);
     double time_ms = side == RAYS_WHIT || model->bench->is_cpu ? ms[0] : ms[1];
     if (result == WHIT_OK && round > 0 && time_ms >= 0.0)
         sample_add(&model->batch->sides[side], time_ms);
     return result == WHIT_OK && side == RAYS_WHIT ? bench_step(model->bench) : result;
 }
 
-static uint32_t count_sides(const struct model *model)
-{
-    return !model->has_peer ? 1 : model->batch->any ? RAYS_SIDES : RAYS_BACK;
-}
-
 const struct sample_runs *batch_quicker(const struct batch *batch, enum rays_side side)
 {
-    const struct sample_runs *forth = &batch->sides[side], *back = &batch->sides[side + 3];
+    if (side == RAYS_PIPELINE)
+        return &batch->sides[side];
+    const struct sample_runs *forth = &batch->sides[side],
+                             *back = &batch->sides[side - RAYS_SINGLE + RAYS_BACK];
     return batch->any && back->count && sample_of(back).median < sample_of(forth).median ? back
                                                                                          : forth;
 }
@@ -98,10 +109,12 @@ static whit_result run_sides(struct model *model, const char *file)
 {
     whit_result result =
         bench_write(model->bench, file, model->rays, (size_t)model->count * sizeof(whit_ray));
-    if (result == WHIT_OK && model->has_peer)
-        result = peer_rays(&model->peer, file, model->batch->any);
+    for (int kind = 0; result == WHIT_OK && kind < PEER_KINDS; ++kind)
+        if (model->has_peer[kind])
+            result = peer_rays(&model->peers[kind], file, model->batch->any);
     if (result == WHIT_OK)
-        result = sample_in_turns(count_sides(model), model->bench->ask.runs + 1, run_side, model);
+        result = sample_in_turns(model->batch->any ? RAYS_SIDES : RAYS_BACK,
+                                 model->bench->ask.runs + 1, run_side, model);
     return result;
 }
 
@@ -138,23 +151,19 @@ static whit_result read_hits(const char *path, whit_hit *hits, uint64_t count)
     return WHIT_ERROR_INPUT;
 }
 
-/* Writes the hits of both sides to files, and compares them. */
-static whit_result keep_hits(struct model *model, const char *own, const char *other,
-                             struct agreement *agreement)
+/* Lets a peer write its hits to a file, and compares them. */
+static whit_result compare_peer(struct model *model, struct peer *peer, const char *file,
+                                struct agreement *agreement)
 {
     char path[BENCH_PATH];
     double ms[2];
-    whit_result result =
-        bench_write(model->bench, own, model->traced, (size_t)model->count * sizeof(whit_hit));
-    if (result != WHIT_OK || !model->has_peer)
-        return result;
     whit_hit *theirs = malloc((size_t)(model->count + 1) * sizeof *theirs);
     if (!theirs)
         return WHIT_ERROR_MEMORY;
-    result = peer_trace(&model->peer, ways[0], false, false, ms);
+    whit_result result = peer_trace(peer, ways[0], false, false, ms);
     if (result == WHIT_OK)
-        result = peer_hits(&model->peer, other);
-    bench_file(model->bench, other, path);
+        result = peer_hits(peer, file);
+    bench_file(model->bench, file, path);
     if (result == WHIT_OK)
         result = read_hits(path, theirs, model->count);
     if (result == WHIT_OK)
@@ -164,11 +173,12 @@ static whit_result keep_hits(struct model *model, const char *own, const char *o
 }
 
 whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind kind, bool shuffled,
-                      struct agreement *agreement)
+                      struct agreement agreement[PEER_KINDS])
 {
-    static const char *const ends[] = {"rays", "whit.hits", "embree.hits"};
-    char files[3][96], path[BENCH_PATH];
-    for (int i = 0; i < 3; ++i)
+    static const char *const ends[] = {"rays", "whit.hits", "embree.hits", "pipeline.hits"};
+    enum { FILES = sizeof ends / sizeof *ends };
+    char files[FILES][96], path[BENCH_PATH];
+    for (int i = 0; i < FILES; ++i)
         snprintf(files[i], sizeof files[i], "%s-%s%s.%s", model->name, rays_kind_names[kind],
                  shuffled ? "-shuffled" : "", ends[i]);
     model->batch = batch;
@@ -179,8 +189,12 @@ whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind k
         shuffle(model->rays, model->count);
     whit_result result = run_sides(model, files[0]);
     if (result == WHIT_OK)
-        result = keep_hits(model, files[1], files[2], agreement);
-    for (int i = 0; i < 3 && !model->bench->ask.keep; ++i) {
+        result = bench_write(model->bench, files[1], model->traced,
+                             (size_t)model->count * sizeof(whit_hit));
+    for (int peer = 0; result == WHIT_OK && peer < PEER_KINDS; ++peer)
+        if (model->has_peer[peer])
+            result = compare_peer(model, &model->peers[peer], files[2 + peer], &agreement[peer]);
+    for (int i = 0; i < FILES && !model->bench->ask.keep; ++i) {
         bench_file(model->bench, files[i], path);
         remove(path);
     }
