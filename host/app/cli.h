@@ -47,6 +47,13 @@ void cli_error(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_warning(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
 
+/* Prints that memory ran out. It is inline so that compilers see that the result is an error. */
+static inline whit_result cli_no_memory(void)
+{
+    cli_error("out of memory");
+    return WHIT_ERROR_MEMORY;
+}
+
 /* From this call on errors begin with `where`, as "FILE:LINE: NAME"; NULL: without a prefix.
    `where` is borrowed. */
 void cli_errors_of(const char *where);

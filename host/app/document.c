@@ -187,10 +187,8 @@ char *document_lines(json_t *value)
 
 whit_result document_save_text(char *text, const char *path)
 {
-    if (!text) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!text)
+        return cli_no_memory();
     cli_set_saving();
     whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
     free(text);

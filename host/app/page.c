@@ -58,11 +58,8 @@ whit_result page_save(const char *html, json_t *document, const char *path)
         put_report(to, line);
         fputs(at + strlen(mark), to);
     }
-    whit_result result = WHIT_ERROR_MEMORY;
-    if (to && fclose(to) == 0)
-        result = whit_file_write(path, text, bytes, &cli_log);
-    else
-        cli_error("out of memory");
+    whit_result result =
+        to && fclose(to) == 0 ? whit_file_write(path, text, bytes, &cli_log) : cli_no_memory();
     free(text);
     free(line);
     return result;

@@ -100,14 +100,11 @@ whit_result table_plot(const struct table *table, const char *title, const char 
     char *text = NULL;
     size_t bytes;
     FILE *to = open_memstream(&text, &bytes);
-    whit_result result = WHIT_ERROR_MEMORY;
     if (to)
         put_drawing(to, table, title);
     cli_set_saving();
-    if (to && fclose(to) == 0)
-        result = whit_file_write(path, text, bytes, &cli_log);
-    else
-        cli_error("out of memory");
+    whit_result result =
+        to && fclose(to) == 0 ? whit_file_write(path, text, bytes, &cli_log) : cli_no_memory();
     free(text);
     return result;
 }

@@ -114,8 +114,7 @@ static whit_result find_places(struct lines *lines)
         if (is_blank(text, place.bytes) ||
             ARRAY_PUSH(lines->places, lines->count, lines->capacity, place))
             continue;
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
+        return cli_no_memory();
     }
     return WHIT_OK;
 }

@@ -75,10 +75,8 @@ whit_result study_build(struct study *study)
 {
     uint32_t runs = study->run_count, lists = study->row_count * study->thread_count;
     double *times_ms = calloc((size_t)lists * runs, sizeof *times_ms);
-    if (!times_ms) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!times_ms)
+        return cli_no_memory();
     struct building building = {.study = study, .times_ms = times_ms};
     whit_result result = sample_in_turns(lists, runs, build_list, &building);
     for (uint32_t list = 0; result == WHIT_OK && list < lists; ++list)

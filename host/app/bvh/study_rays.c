@@ -23,8 +23,7 @@ static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
     rays->count = count;
     if (rays->rays)
         return WHIT_OK;
-    cli_error("out of memory");
-    return WHIT_ERROR_MEMORY;
+    return cli_no_memory();
 }
 
 /* ---- Primary ---- */

@@ -7,12 +7,6 @@
 
 enum { WORDS_BYTES = 1024 };
 
-static whit_result out_of_memory(void)
-{
-    cli_error("out of memory");
-    return WHIT_ERROR_MEMORY;
-}
-
 /* ---- What is other ---- */
 
 static bool add_change(struct cause *cause, struct cause_change change)
@@ -66,7 +60,7 @@ static whit_result add_parts(struct cause *cause)
         const whit_part *is = find_part(now, count, &cause->parts[i]);
         if (is && is->hash != cause->parts[i].hash &&
             !add_change(cause, (struct cause_change){CAUSE_PART, i, NULL}))
-            result = out_of_memory();
+            result = cli_no_memory();
     }
     whit_memory_destroy(now);
     return result;
@@ -80,7 +74,7 @@ static whit_result find_changes(struct cause *cause)
     bool functions = shader_hash(cause->before.shader) != shader_hash(cause->after.shader);
     if (!add_settings(cause) ||
         (functions && !add_change(cause, (struct cause_change){CAUSE_FUNCTIONS, 0, NULL})))
-        return out_of_memory();
+        return cli_no_memory();
     return WHIT_OK;
 }
 
@@ -121,7 +115,7 @@ static whit_result draw(void *user, const bool *back, bool *same)
     whit_scene *mixed = NULL;
     bool *parts = array_alloc_zeroed(cause->part_count, sizeof *parts);
     if (!parts)
-        return out_of_memory();
+        return cli_no_memory();
     whit_result result = WHIT_OK;
     cli_hush(true);
     if (take_back(cause, back, &input, parts)) {

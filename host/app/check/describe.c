@@ -122,7 +122,6 @@ whit_result drawing_describe(const struct drawing *drawing, const struct check_c
     *found = (struct golden){.exists = true};
     if (fill(drawing, item, found))
         return WHIT_OK;
-    cli_error("out of memory");
     golden_finish(found);
-    return WHIT_ERROR_MEMORY;
+    return cli_no_memory();
 }

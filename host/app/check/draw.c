@@ -87,12 +87,6 @@ static void drop_scenes(struct studio *studio, uint32_t from)
     }
 }
 
-static whit_result out_of_memory(void)
-{
-    cli_error("out of memory");
-    return WHIT_ERROR_MEMORY;
-}
-
 /* Gives the job its scene, which is loaded unless an earlier case did so. */
 static whit_result take_scene(struct studio *studio, struct job *job, struct studio_scene **out)
 {
@@ -111,7 +105,7 @@ static whit_result take_scene(struct studio *studio, struct job *job, struct stu
     if (scene.scene &&
         !ARRAY_PUSH(studio->scenes, studio->scene_count, studio->scene_capacity, scene)) {
         finish_scene(&scene);
-        return out_of_memory();
+        return cli_no_memory();
     }
     *out = studio->scenes + studio->scene_count - 1;
     return result;
@@ -131,7 +125,7 @@ static whit_result take_trees(struct job *job, struct studio_scene *scene)
     if (!tree.accel || ARRAY_PUSH(scene->trees, scene->tree_count, scene->tree_capacity, tree))
         return result;
     whit_accel_destroy(tree.accel);
-    return out_of_memory();
+    return cli_no_memory();
 }
 
 /* Compiles the case's functions, unless those of the case before are the same. */

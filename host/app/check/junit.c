@@ -63,11 +63,9 @@ whit_result check_save_junit(const struct check *check)
     FILE *to = open_memstream(&text, &bytes);
     if (to)
         put_all(to, check);
-    whit_result result = WHIT_ERROR_MEMORY;
-    if (to && fclose(to) == 0)
-        result = whit_file_write(check->junit, text, bytes, &cli_log);
-    else
-        cli_error("out of memory");
+    whit_result result = to && fclose(to) == 0
+                             ? whit_file_write(check->junit, text, bytes, &cli_log)
+                             : cli_no_memory();
     free(text);
     return result;
 }

@@ -71,8 +71,7 @@ whit_result check_save_page(const struct check *check, int status)
     json_t **objects = calloc(check->suite.count, sizeof *objects);
     if (!objects) {
         json_decref(document);
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
+        return cli_no_memory();
     }
     find_objects(check, json_object_get(document, "cases"), objects);
     char *line = document_line(json_incref(document));

@@ -18,12 +18,6 @@ static char *thumbnail_path(const struct check *check, const char *name)
                          name ? name : "", name ? ".png" : "");
 }
 
-static whit_result out_of_memory(void)
-{
-    cli_error("out of memory");
-    return WHIT_ERROR_MEMORY;
-}
-
 whit_result check_compare_thumbnail(const struct check *check, const struct drawing *drawing,
                                     struct check_result *result)
 {
@@ -34,7 +28,7 @@ whit_result check_compare_thumbnail(const struct check *check, const struct draw
     whit_result compared = WHIT_OK;
     load.cancel = &cli_cancel;
     if (!path)
-        return out_of_memory();
+        return cli_no_memory();
     if (file_exists(path) && whit_image_load(path, &load, NULL, &before) == WHIT_OK)
         compared = check_pictures_compare(&result->pictures, drawing, before);
     else if (file_exists(path))
@@ -51,7 +45,7 @@ whit_result check_save_thumbnail(const struct check *check, const struct check_r
     char *path = thumbnail_path(check, result->item->name);
     whit_result saved = WHIT_OK;
     if (!folder || !path)
-        saved = out_of_memory();
+        saved = cli_no_memory();
     else if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
         cli_error("%s: cannot make it: %s", folder, strerror(errno));
         saved = WHIT_ERROR_OUTPUT;

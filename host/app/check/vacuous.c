@@ -94,10 +94,8 @@ whit_result drawing_refuse(const struct drawing *drawing, const char **why)
 {
     bool one_color;
     *why = NULL;
-    if (!has_one_color(drawing, &one_color)) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!has_one_color(drawing, &one_color))
+        return cli_no_memory();
     if (is_behind(drawing))
         *why = "the model is behind the camera";
     else if (hits_nothing(drawing))

@@ -164,10 +164,8 @@ whit_result worktree_add(struct worktree *tree, const char *folder, const char *
     if (!make_holder(tree))
         return WHIT_ERROR_OUTPUT;
     char *path = string_format("%s" TREE, tree->holder);
-    if (!path) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!path)
+        return cli_no_memory();
     const char *const add[] = {"git",     "-C",       folder, "worktree", "add",
                                "--quiet", "--detach", path,   revision,   NULL};
     whit_result result = WHIT_OK;

@@ -230,10 +230,8 @@ whit_result render_choose(struct job *job, const struct render_request *request,
 {
     char name[COST_KEPT_NAME];
     struct cost_kept *kept = calloc(1, sizeof *kept);
-    if (!kept) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!kept)
+        return cli_no_memory();
     const struct choosing choosing = {.job = job,
                                       .report = &kept->report,
                                       .request = request,

@@ -369,12 +369,8 @@ static whit_result save(const struct cost *cost, const char *path,
     FILE *to = open_memstream(&text, &bytes);
     if (to)
         write(cost, to);
-    if (!to || fclose(to) != 0) {
-        cli_error("out of memory");
-        free(text);
-        return WHIT_ERROR_MEMORY;
-    }
-    whit_result result = whit_file_write(path, text, bytes, &cli_log);
+    whit_result result =
+        to && fclose(to) == 0 ? whit_file_write(path, text, bytes, &cli_log) : cli_no_memory();
     free(text);
     return result;
 }

@@ -39,10 +39,8 @@ whit_result merge_read(struct merge *merge, const char *const *paths, uint32_t c
 {
     whit_result result = WHIT_OK;
     *merge = (struct merge){.load = load, .parts = calloc(count, sizeof *merge->parts)};
-    if (!merge->parts) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!merge->parts)
+        return cli_no_memory();
     for (; result == WHIT_OK && merge->count < count; ++merge->count) {
         result = read_part(&merge->parts[merge->count], paths[merge->count], load);
         if (result == WHIT_OK)

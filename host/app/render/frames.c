@@ -235,13 +235,11 @@ static whit_result take_frame(struct job *job, const struct render_request *requ
     enum resume_state state = RESUME_DRAW;
     char *output = frames_path(request->output, frame);
     char *ids = request->ids ? frames_path(request->ids, frame) : NULL;
-    whit_result result = output && (ids || !request->ids) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    whit_result result = output && (ids || !request->ids) ? WHIT_OK : cli_no_memory();
     single.output = output;
     single.ids = ids;
     job->settings.picture.time_s = (double)frame / job->settings.fps;
-    if (result != WHIT_OK)
-        cli_error("out of memory");
-    else if (request->resume)
+    if (result == WHIT_OK && request->resume)
         result = resume_begin(job, &single, &state, &lock);
     if (result == WHIT_OK && state == RESUME_DRAW)
         result = render_frame(job, &single, renderer, frame, sequence);
@@ -291,10 +289,8 @@ whit_result frames_render(struct job *job, const struct render_request *request,
 {
     bool *left = malloc(progress->count * sizeof *left);
     *sequence = (struct sequence){0};
-    if (!left) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!left)
+        return cli_no_memory();
     whit_renderer_get_stats(renderer, &sequence->stats);
     sequence->stats.compile_ms = 0.0; /* kernels are made for the first frame */
     sequence->stats.render_device_ms = sequence->stats.bailout_bound = 0.0;

@@ -81,10 +81,8 @@ static int check_promises(const struct receipt *receipt)
 int receipt_run(struct job *job, bool json)
 {
     struct receipt *receipt = calloc(1, sizeof *receipt);
-    if (!receipt) {
-        cli_error("out of memory");
-        return cli_exit_of(WHIT_ERROR_MEMORY);
-    }
+    if (!receipt)
+        return cli_exit_of(cli_no_memory());
     receipt->job = job;
     whit_result result = job_build(job);
     if (result == WHIT_OK)

@@ -34,10 +34,8 @@ static bool write_triangle(void *user, const whit_triangle *triangle)
 whit_result triangles_write(const whit_scene *scene, double time_s, const char *path)
 {
     struct triangle_writer *writer = calloc(1, sizeof *writer);
-    if (!writer) {
-        cli_error("out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!writer)
+        return cli_no_memory();
     whit_result result = whit_file_begin(path, &cli_log, &writer->file);
     if (result != WHIT_OK)
         goto done;

@@ -52,10 +52,8 @@ static int print_template(struct cli_reader *reader)
         return reader->status;
     }
     char *text = whit_shader_template((whit_hook)hook);
-    if (!text) {
-        cli_error("out of memory");
-        return cli_exit_of(WHIT_ERROR_MEMORY);
-    }
+    if (!text)
+        return cli_exit_of(cli_no_memory());
     fputs(text, stdout);
     whit_memory_destroy(text);
     return EXIT_FINE;

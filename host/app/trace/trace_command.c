@@ -99,8 +99,7 @@ static whit_result allocate(struct trace *trace)
     trace->hits = malloc((size_t)CHUNK * sizeof *trace->hits);
     if (trace->rays && trace->hits)
         return WHIT_OK;
-    cli_error("out of memory");
-    return WHIT_ERROR_MEMORY;
+    return cli_no_memory();
 }
 
 static whit_result prepare(struct job *job, struct trace *trace, whit_renderer **renderer)
