@@ -42,15 +42,6 @@ static bool read_lines(struct golden *found, const char *where, const char *line
     return read;
 }
 
-static struct check_result *find_result(struct check *check, const char *name)
-{
-    for (uint32_t i = 0; i < check->suite.count; ++i) {
-        if (strcmp(check->suite.cases[i].name, name) == 0)
-            return &check->results[i];
-    }
-    return NULL;
-}
-
 /* Whether two reports have the same golden lines of a case. */
 static bool agrees(const struct check_result *result, const struct golden *found)
 {
@@ -100,7 +91,8 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
         cli_error("%s: a case of it has no name, verdict or text", path);
         return false;
     }
-    struct check_result *result = find_result(check, name);
+    const struct check_case *of = suite_find(&check->suite, name);
+    struct check_result *result = of ? &check->results[of - check->suite.cases] : NULL;
     snprintf(where, sizeof where, "%.800s: %.100s", path, name);
     if (!result || !check_names_match(&check->accept, name))
         return true;

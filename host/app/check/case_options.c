@@ -59,16 +59,6 @@ static const struct setting refused[] = {
 static const struct cli_command case_command = {
     .name = "render", .arguments = "", .summary = "", .options = refused, .settings = IN_RENDER};
 
-/* Sets `--portable on`, so that pictures are the same on every device. */
-static bool make_portable(struct settings *settings, char why[SETTING_WHY_BYTES])
-{
-    for (const struct setting *row = settings_table; row->name; ++row) {
-        if (strcmp(row->name, "portable") == 0)
-            return settings_read(row, "on", settings, why);
-    }
-    return true;
-}
-
 /* Resolves a file name in the suite into a path relative to the working folder; false, with the
    reason. */
 static bool find_file(const struct suite *suite, const char *option, char *name, size_t name_bytes,
@@ -156,10 +146,12 @@ static bool read_words(struct check_case *item, struct cli_reader *reader)
     return settings_check(settings, why) || cli_misuse(reader, "%s", why);
 }
 
+/* Sets `--portable on`, so that pictures are the same on every device. */
 static bool take_portable(struct check_case *item, struct cli_reader *reader)
 {
     char why[SETTING_WHY_BYTES];
-    return make_portable(item->settings, why) || cli_misuse(reader, "--portable%s", why);
+    return settings_read(settings_row("portable"), "on", item->settings, why) ||
+           cli_misuse(reader, "--portable%s", why);
 }
 
 bool case_options_read(struct check_case *item, const struct suite *suite, const char *where,

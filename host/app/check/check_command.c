@@ -7,6 +7,7 @@
 #include "app/check/lanes.h"
 #include "app/check/strength.h"
 #include "app/check/thumbnails.h"
+#include "app/check/trial.h"
 #include "app/commands.h"
 #include "app/document.h"
 #include "base/array.h"
@@ -269,14 +270,6 @@ static whit_result make_pictures(const struct check *check, const struct drawing
                           : check_compare_thumbnail(check, drawing, result);
 }
 
-/* Whether no other case can be drawn either. */
-static bool ends_all(whit_result result)
-{
-    return result == WHIT_ERROR_NO_DEVICE || result == WHIT_ERROR_DEVICE ||
-           result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_TIME_LIMIT ||
-           result == WHIT_ERROR_CANCELLED;
-}
-
 /* Draws a case and finds its verdict. */
 static whit_result draw_case(struct check *check, struct studio *studio, uint32_t index)
 {
@@ -293,7 +286,7 @@ static whit_result draw_case(struct check *check, struct studio *studio, uint32_
     drawing_finish(&drawing);
     result->time_ms = whit_clock_ms() - start_ms;
     result->error = drawn;
-    if (ends_all(drawn)) { /* the result may be incomplete */
+    if (trial_ends_all(drawn)) { /* the result may be incomplete */
         verdict_finish(result);
         *result = (struct check_result){.item = result->item, .error = drawn};
     }
@@ -310,12 +303,12 @@ static whit_result run_case(struct check *check, struct studio *studio, uint32_t
              result->item->name);
     cli_errors_of(where);
     whit_result drawn = draw_case(check, studio, index);
-    if (drawn != WHIT_OK && !ends_all(drawn)) {
+    if (drawn != WHIT_OK && !trial_ends_all(drawn)) {
         const char *why = cli_said()[0] ? cli_said() : whit_result_name(drawn);
         verdict_set(result, CHECK_BROKEN, string_format("cannot be drawn: %s", why));
     }
     cli_errors_of(NULL);
-    return ends_all(drawn) ? drawn : WHIT_OK;
+    return trial_ends_all(drawn) ? drawn : WHIT_OK;
 }
 
 static void print_result(const struct check *check, const struct check_result *result)

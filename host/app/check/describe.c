@@ -34,26 +34,53 @@ uint64_t drawing_hash_ids(const whit_image *image)
     return hash_bytes(HASH_START, whit_image_words(image), count * sizeof(uint32_t));
 }
 
-/* Finds the mean colour of the pixels that are finite. An image of one channel is grey: its three
-   means are equal. */
-static void find_mean(const whit_image *image, double mean[3])
+/* Gives red, green and blue; a single channel is repeated three times. */
+static void get_color(const float *pixel, uint32_t channels, double rgb[3])
+{
+    for (int k = 0; k < 3; ++k)
+        rgb[k] = (double)pixel[channels < 3 ? 0 : k];
+}
+
+void drawing_color_at(const struct drawing *drawing, size_t pixel, double rgb[3])
 {
     whit_image_info info;
-    whit_image_get_info(image, &info);
-    const float *at = whit_image_floats(image);
-    size_t count = 0;
-    double sum[3] = {0.0};
+    whit_image_get_info(drawing->color, &info);
+    get_color(whit_image_floats(drawing->color) + pixel * info.channels, info.channels, rgb);
+}
+
+size_t drawing_find_colors(const struct drawing *drawing, int pick, double rgb[3])
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->color, &info);
+    const float *at = whit_image_floats(drawing->color);
+    size_t used = 0;
+    rgb[0] = rgb[1] = rgb[2] = 0.0;
     for (size_t i = 0; i < (size_t)info.width * info.height; ++i, at += info.channels) {
-        bool grey = info.channels < 3;
-        const float rgb[3] = {at[0], grey ? at[0] : at[1], grey ? at[0] : at[2]};
-        if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+        double color[3];
+        get_color(at, info.channels, color);
+        if (!isfinite(color[0]) || !isfinite(color[1]) || !isfinite(color[2]))
             continue;
         for (int k = 0; k < 3; ++k)
-            sum[k] += (double)rgb[k];
-        ++count;
+            rgb[k] = pick == 0   ? rgb[k] + color[k]
+                     : used == 0 ? color[k]
+                     : pick < 0  ? fmin(rgb[k], color[k])
+                                 : fmax(rgb[k], color[k]);
+        ++used;
     }
-    for (int k = 0; k < 3; ++k)
-        mean[k] = count ? sum[k] / (double)count : 0.0;
+    for (int k = 0; k < 3 && pick == 0 && used; ++k)
+        rgb[k] /= (double)used;
+    return used;
+}
+
+size_t drawing_count_hits(const struct drawing *drawing)
+{
+    whit_image_info info;
+    whit_image_get_info(drawing->ids, &info);
+    const uint32_t *ids = whit_image_words(drawing->ids);
+    size_t hits = 0;
+    for (size_t i = 0; i < (size_t)info.width * info.height; ++i)
+        hits += ids[2 * i] != WHIT_NONE;
+    return hits;
 }
 
 /* ---- Parts ---- */
@@ -109,7 +136,7 @@ static bool fill(const struct drawing *drawing, const struct check_case *item, s
                               .height = info.height,
                               .made_by = string_copy(item->made_by)};
     memcpy(one.rays, rays, sizeof rays);
-    find_mean(drawing->color, one.mean);
+    drawing_find_colors(drawing, 0, one.mean);
     bool put = one.name && one.made_by && golden_put(found, &one);
     golden_case_finish(&one);
     return put && put_scene_parts(found, item, drawing->job.scene) &&

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/check/draw.h"
+#include "app/check/describe.h"
 #include "base/array.h"
 #include "whit/whit_hard.h"
 
@@ -12,91 +12,43 @@
 typedef const struct drawing drawing_t;
 typedef const struct check_expectation expectation_t;
 
-static const float *pixels_of(drawing_t *drawing, size_t *count, uint32_t *channels)
-{
-    whit_image_info info;
-    whit_image_get_info(drawing->color, &info);
-    *count = (size_t)info.width * info.height;
-    *channels = info.channels;
-    return whit_image_floats(drawing->color);
-}
-
-/* Gives red, green and blue; a single channel is repeated three times. */
-static void get_color(const float *pixel, uint32_t channels, double rgb[3])
-{
-    for (int k = 0; k < 3; ++k)
-        rgb[k] = (double)pixel[channels < 3 ? 0 : k];
-}
-
-static bool is_finite(const double rgb[3])
-{
-    return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
-}
-
 static whit_result read_nonfinite(drawing_t *drawing, expectation_t *one,
                                   struct expect_value *value)
 {
-    size_t count;
-    uint32_t channels;
-    const float *at = pixels_of(drawing, &count, &channels);
+    double mean[3];
+    whit_image_info info;
     (void)one;
-    for (size_t i = 0; i < count; ++i, at += channels) {
-        double rgb[3];
-        get_color(at, channels, rgb);
-        value->numbers[0] += !is_finite(rgb);
-    }
-    return WHIT_OK;
-}
-
-/* `pick`: below 0 the smallest of each channel, above 0 the largest, 0 the mean. */
-static whit_result read_colors(drawing_t *drawing, int pick, struct expect_value *value)
-{
-    size_t count, used = 0;
-    uint32_t channels;
-    const float *at = pixels_of(drawing, &count, &channels);
-    for (size_t i = 0; i < count; ++i, at += channels) {
-        double rgb[3], *out = value->numbers;
-        get_color(at, channels, rgb);
-        if (!is_finite(rgb))
-            continue;
-        for (int k = 0; k < 3; ++k)
-            out[k] = pick == 0   ? out[k] + rgb[k]
-                     : used == 0 ? rgb[k]
-                     : pick < 0  ? fmin(out[k], rgb[k])
-                                 : fmax(out[k], rgb[k]);
-        ++used;
-    }
-    for (int k = 0; k < 3 && pick == 0 && used; ++k)
-        value->numbers[k] /= (double)used;
+    whit_image_get_info(drawing->color, &info);
+    size_t finite = drawing_find_colors(drawing, 0, mean);
+    value->numbers[0] = (double)((size_t)info.width * info.height - finite);
     return WHIT_OK;
 }
 
 static whit_result read_mean(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
     (void)one;
-    return read_colors(drawing, 0, value);
+    drawing_find_colors(drawing, 0, value->numbers);
+    return WHIT_OK;
 }
 
 static whit_result read_min(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
     (void)one;
-    return read_colors(drawing, -1, value);
+    drawing_find_colors(drawing, -1, value->numbers);
+    return WHIT_OK;
 }
 
 static whit_result read_max(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
     (void)one;
-    return read_colors(drawing, 1, value);
+    drawing_find_colors(drawing, 1, value->numbers);
+    return WHIT_OK;
 }
 
 static whit_result read_hits(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
-    whit_image_info info;
-    whit_image_get_info(drawing->ids, &info);
-    const uint32_t *ids = whit_image_words(drawing->ids);
     (void)one;
-    for (size_t i = 0; i < (size_t)info.width * info.height; ++i)
-        value->numbers[0] += ids[2 * i] != WHIT_NONE;
+    value->numbers[0] = (double)drawing_count_hits(drawing);
     return WHIT_OK;
 }
 
@@ -183,21 +135,22 @@ static whit_result read_leaks(drawing_t *drawing, expectation_t *one, struct exp
 
 /* ---- Of a pixel ---- */
 
-static whit_result read_pixel(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+static size_t pixel_of(drawing_t *drawing, expectation_t *one)
 {
     whit_image_info info;
-    whit_image_get_info(drawing->color, &info);
-    const float *pixel =
-        whit_image_floats(drawing->color) + ((size_t)one->y * info.width + one->x) * info.channels;
-    get_color(pixel, info.channels, value->numbers);
+    whit_image_get_info(drawing->ids, &info);
+    return (size_t)one->y * info.width + one->x;
+}
+
+static whit_result read_pixel(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+{
+    drawing_color_at(drawing, pixel_of(drawing, one), value->numbers);
     return WHIT_OK;
 }
 
 static const uint32_t *ids_of(drawing_t *drawing, expectation_t *one)
 {
-    whit_image_info info;
-    whit_image_get_info(drawing->ids, &info);
-    return whit_image_words(drawing->ids) + 2 * ((size_t)one->y * info.width + one->x);
+    return whit_image_words(drawing->ids) + 2 * pixel_of(drawing, one);
 }
 
 static whit_result read_instance(drawing_t *drawing, expectation_t *one, struct expect_value *value)

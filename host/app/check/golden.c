@@ -50,6 +50,15 @@ uint32_t golden_part_hash(const char *key, uint64_t content)
     return (uint32_t)(hash ^ hash >> 32);
 }
 
+bool golden_case_has_part(const struct golden_case *item, uint32_t hash)
+{
+    for (uint32_t i = 0; i < item->part_count; ++i) {
+        if (item->parts[i] == hash)
+            return true;
+    }
+    return false;
+}
+
 bool golden_case_add_part(struct golden_case *item, uint32_t hash)
 {
     uint32_t at = 0;
@@ -419,14 +428,6 @@ static void put_case(FILE *to, const struct golden_case *item)
     fputc('\n', to);
 }
 
-static bool names_part(const struct golden_case *item, uint32_t hash)
-{
-    uint32_t i = 0;
-    while (i < item->part_count && item->parts[i] != hash)
-        ++i;
-    return i < item->part_count;
-}
-
 /* Writes the parts that one of the `count` cases names. Each, also the last, is followed by an
    empty line, which never changes: git merges changes that have such a line between them. */
 static void put_parts(FILE *to, const struct golden *golden, const struct golden_case *cases,
@@ -436,7 +437,7 @@ static void put_parts(FILE *to, const struct golden *golden, const struct golden
     for (uint32_t i = 0; i < golden->part_count; ++i) {
         const struct golden_part *part = &golden->parts[i];
         uint32_t c = 0;
-        while (c < count && !names_part(&cases[c], part->hash))
+        while (c < count && !golden_case_has_part(&cases[c], part->hash))
             ++c;
         if (c == count)
             continue;

@@ -80,6 +80,8 @@ WHIT_CHECK whit_result golden_save(const struct golden *golden, const char *path
 uint32_t golden_part_hash(const char *key, uint64_t content);
 /* Inserts the hash of a part into the case's sorted list. False: out of memory. */
 bool golden_case_add_part(struct golden_case *item, uint32_t hash);
+/* Whether the case lists that hash of a part. */
+bool golden_case_has_part(const struct golden_case *item, uint32_t hash);
 void golden_case_finish(struct golden_case *item);
 
 #endif

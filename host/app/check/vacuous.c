@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/check/draw.h"
+#include "app/check/describe.h"
 #include "base/array.h"
 
 /* Whether all pixels are equal: for colours as displayed, because people do not see differences
@@ -25,18 +25,6 @@ static bool has_one_color(const struct drawing *drawing, bool *one)
     size_t pixel_bytes = shown ? 4 : info.channels * sizeof(float);
     *one = memcmp(first, first + pixel_bytes, (count - 1) * pixel_bytes) == 0;
     free(bytes);
-    return true;
-}
-
-static bool hits_nothing(const struct drawing *drawing)
-{
-    whit_image_info info;
-    whit_image_get_info(drawing->ids, &info);
-    const uint32_t *ids = whit_image_words(drawing->ids);
-    for (size_t i = 0; i < (size_t)info.width * info.height; ++i) {
-        if (ids[2 * i] != WHIT_NONE)
-            return false;
-    }
     return true;
 }
 
@@ -98,7 +86,7 @@ whit_result drawing_refuse(const struct drawing *drawing, const char **why)
         return cli_no_memory();
     if (is_behind(drawing))
         *why = "the model is behind the camera";
-    else if (hits_nothing(drawing))
+    else if (drawing_count_hits(drawing) == 0)
         *why = "no pixel hits anything";
     else if (one_color)
         *why = "every pixel has the same colour";

@@ -50,15 +50,6 @@ void verdict_finish(struct check_result *result)
 
 /* ---- What it is made of ---- */
 
-static bool has_part(const struct golden_case *item, uint32_t hash)
-{
-    for (uint32_t i = 0; i < item->part_count; ++i) {
-        if (item->parts[i] == hash)
-            return true;
-    }
-    return false;
-}
-
 static void put_part(FILE *to, uint32_t *count, const char *key, const char *what)
 {
     if (++*count <= PARTS_NAMED)
@@ -84,12 +75,12 @@ static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
     uint32_t count = 0;
     for (uint32_t i = 0; i < found->part_count; ++i) {
         const struct golden_part *part = &found->parts[i];
-        if (!has_part(old, part->hash))
+        if (!golden_case_has_part(old, part->hash))
             put_part(to, &count, part->key, knows_key(golden, old, part->key) ? "" : " (new)");
     }
     for (uint32_t i = 0; i < old->part_count; ++i) {
         const char *key = golden_part_key(golden, old->parts[i]);
-        if (!has_part(now, old->parts[i]) && key && !knows_key(found, now, key))
+        if (!golden_case_has_part(now, old->parts[i]) && key && !knows_key(found, now, key))
             put_part(to, &count, key, " (gone)");
     }
     if (count > PARTS_NAMED)
