@@ -61,9 +61,11 @@ static void say_aov(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, "%s", view->settings.aov[0] ? view->settings.aov : "colours");
 }
 
-/* Multiplies the scale of the difference if that is shown, else the scale of costs. */
-static void scale_by(struct view *view, double factor)
+/* Doubles the scale of the difference if that is shown, else the scale of costs; halves it where
+   `by` is below 0. */
+static void turn_scale(struct view *view, int by)
 {
+    double factor = by < 0 ? 0.5 : 2.0;
     struct compare *compare = &view->compare;
     bool costs = view->settings.paint != PAINT_COLOR;
     double *scale = &view->settings.paint_scale, shown = costs ? view->frame.scale : 0.0;
@@ -74,16 +76,6 @@ static void scale_by(struct view *view, double factor)
     double now = *scale > 0.0 ? *scale : shown;
     if (now > 0.0)
         *scale = compare->mode == COMPARE_DIFFERENCE ? now * factor : fmax(1.0, now * factor);
-}
-
-static void less_scale(struct view *view)
-{
-    scale_by(view, 0.5);
-}
-
-static void more_scale(struct view *view)
-{
-    scale_by(view, 2.0);
 }
 
 static void own_scale(struct view *view)
@@ -156,42 +148,13 @@ static void say_effects(const struct view *view, char *text, size_t bytes)
 
 /* ---- Cameras ---- */
 
-static void look_along(struct view *view, int axis, int from)
+/* Puts the eye on an axis through the target: 1 is x, 2 is y, 3 is z; below 0 on the other side. */
+static void look_along(struct view *view, int axis)
 {
     if (!view->camera_known)
         return;
-    camera_along(&view->camera, axis, from);
+    camera_along(&view->camera, abs(axis) - 1, axis < 0 ? -1 : 1);
     view_moved(view);
-}
-
-static void look_front(struct view *view)
-{
-    look_along(view, 2, 1);
-}
-
-static void look_right(struct view *view)
-{
-    look_along(view, 0, 1);
-}
-
-static void look_top(struct view *view)
-{
-    look_along(view, 1, 1);
-}
-
-static void look_back(struct view *view)
-{
-    look_along(view, 2, -1);
-}
-
-static void look_left(struct view *view)
-{
-    look_along(view, 0, -1);
-}
-
-static void look_bottom(struct view *view)
-{
-    look_along(view, 1, -1);
 }
 
 /* Takes the camera that whit chooses for files without a camera. */
@@ -282,16 +245,6 @@ static void step_time(struct view *view, int by)
     view->settings.picture.time_s = frame / fps;
 }
 
-static void step_back(struct view *view)
-{
-    step_time(view, -1);
-}
-
-static void step_forward(struct view *view)
-{
-    step_time(view, 1);
-}
-
 static void switch_loop(struct view *view)
 {
     view->clock.once = !view->clock.once;
@@ -302,14 +255,10 @@ static void say_loop(const struct view *view, char *text, size_t bytes)
     snprintf(text, bytes, view->clock.once ? "once" : "again and again");
 }
 
-static void slower(struct view *view)
+static void turn_speed(struct view *view, int by)
 {
-    view->clock.speed = fmax(view->clock.speed * 0.5, 1.0 / 16.0);
-}
-
-static void faster(struct view *view)
-{
-    view->clock.speed = fmin(view->clock.speed * 2.0, 16.0);
+    double speed = view->clock.speed * (by < 0 ? 0.5 : 2.0);
+    view->clock.speed = fmin(fmax(speed, 1.0 / 16.0), 16.0);
 }
 
 static void say_speed(const struct view *view, char *text, size_t bytes)
@@ -328,16 +277,6 @@ static void turn_scene(struct view *view, int by)
     }
     view->scene_index = (view->scene_index + count + (uint32_t)by) % count;
     view_open(view, view->params->scenes[view->scene_index]);
-}
-
-static void next_scene(struct view *view)
-{
-    turn_scene(view, 1);
-}
-
-static void last_scene(struct view *view)
-{
-    turn_scene(view, -1);
 }
 
 static void say_scene(const struct view *view, char *text, size_t bytes)
@@ -448,14 +387,18 @@ static const struct key_binding bindings[] = {
     {KEY_HOME, 0, "Home", NULL, "all objects", fit_scene, .group = KEYS_CAMERA},
     {'F', 0, "F", "frame what is there", "frame what is under the mouse", pick_focus,
      .group = KEYS_CAMERA},
-    {'1', 0, "1 2 3", "from front right above", "from the front", look_front, .shows_name = true,
+    {'1', 0, "1 2 3", "from front right above", "from the front", .turn = look_along, .by = 3,
+     .shows_name = true, .group = KEYS_CAMERA},
+    {'2', 0, NULL, NULL, "from the right", .turn = look_along, .by = 1, .shows_name = true,
      .group = KEYS_CAMERA},
-    {'2', 0, NULL, NULL, "from the right", look_right, .shows_name = true, .group = KEYS_CAMERA},
-    {'3', 0, NULL, NULL, "from above", look_top, .shows_name = true, .group = KEYS_CAMERA},
-    {'4', 0, "4 5 6", "from back left below", "from behind", look_back, .shows_name = true,
+    {'3', 0, NULL, NULL, "from above", .turn = look_along, .by = 2, .shows_name = true,
      .group = KEYS_CAMERA},
-    {'5', 0, NULL, NULL, "from the left", look_left, .shows_name = true, .group = KEYS_CAMERA},
-    {'6', 0, NULL, NULL, "from below", look_bottom, .shows_name = true, .group = KEYS_CAMERA},
+    {'4', 0, "4 5 6", "from back left below", "from behind", .turn = look_along, .by = -3,
+     .shows_name = true, .group = KEYS_CAMERA},
+    {'5', 0, NULL, NULL, "from the left", .turn = look_along, .by = -1, .shows_name = true,
+     .group = KEYS_CAMERA},
+    {'6', 0, NULL, NULL, "from below", .turn = look_along, .by = -2, .shows_name = true,
+     .group = KEYS_CAMERA},
     {'0', 0, "0", "cameras: file's, whit's", "next camera", next_camera, .state = say_camera,
      .group = KEYS_CAMERA},
     {KEY_TAB, 0, "Tab", "settings, light, up", "settings by mouse", switch_settings,
@@ -466,21 +409,23 @@ static const struct key_binding bindings[] = {
      .state = say_prices, .group = KEYS_PICTURE},
     {KEY_SPACE, 0, "Space", NULL, "animation", switch_playing, .state = say_playing,
      .group = KEYS_PICTURE},
-    {',', 0, ", .", "frame before, after", "a frame back", step_back, .group = KEYS_PICTURE},
-    {'.', 0, NULL, NULL, "a frame on", step_forward, .group = KEYS_PICTURE},
-    {'L', 0, "L", NULL, "animation runs", switch_loop, .state = say_loop, .group = KEYS_PICTURE},
-    {'9', 0, "9 Shift+9", "slower, faster", "half speed", slower, .state = say_speed,
+    {',', 0, ", .", "frame before, after", "a frame back", .turn = step_time, .by = -1,
      .group = KEYS_PICTURE},
-    {'9', EVENT_SHIFT, NULL, NULL, "double speed", faster, .state = say_speed,
+    {'.', 0, NULL, NULL, "a frame on", .turn = step_time, .by = 1, .group = KEYS_PICTURE},
+    {'L', 0, "L", NULL, "animation runs", switch_loop, .state = say_loop, .group = KEYS_PICTURE},
+    {'9', 0, "9 Shift+9", "slower, faster", "half speed", .turn = turn_speed, .by = -1,
+     .state = say_speed, .group = KEYS_PICTURE},
+    {'9', EVENT_SHIFT, NULL, NULL, "double speed", .turn = turn_speed, .by = 1, .state = say_speed,
      .group = KEYS_PICTURE},
     {KEY_F12, 0, "F12", NULL, "save the picture", save_picture, .group = KEYS_FILES},
     {'C', EVENT_CTRL, "Ctrl+C", "copy command", "copy the `whit render` line", copy_line,
      .group = KEYS_FILES},
     {'S', EVENT_CTRL, "Ctrl+S", "save settings", "save these settings", panels_save,
      .group = KEYS_FILES},
-    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", last_scene, .state = say_scene,
+    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", .turn = turn_scene, .by = -1,
+     .state = say_scene, .group = KEYS_FILES},
+    {KEY_RIGHT, 0, NULL, NULL, "scene after", .turn = turn_scene, .by = 1, .state = say_scene,
      .group = KEYS_FILES},
-    {KEY_RIGHT, 0, NULL, NULL, "scene after", next_scene, .state = say_scene, .group = KEYS_FILES},
     {'R', 0, "R", "read it again", "read the scene again", scenes_read_again, .group = KEYS_FILES},
     {'H', 0, "H F1", NULL, "this list", switch_help, .group = KEYS_FILES},
     {KEY_F1, 0, NULL, NULL, "this list", switch_help, .group = KEYS_FILES},
@@ -497,9 +442,10 @@ static const struct key_binding bindings[] = {
     {'B', EVENT_SHIFT, NULL, NULL, "next cost view", next_cost_view, .group = KEYS_EXPERTS},
     {KEY_F1 + 2, 0, "F3", NULL, "aov of the shader", next_aov, .state = say_aov,
      .group = KEYS_PICTURE},
-    {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", less_scale, .state = say_scale,
+    {'[', 0, "[ ] \\", "scale of costs", "half the scale of costs", .turn = turn_scale, .by = -1,
+     .state = say_scale, .group = KEYS_EXPERTS},
+    {']', 0, NULL, NULL, "twice the scale", .turn = turn_scale, .by = 1, .state = say_scale,
      .group = KEYS_EXPERTS},
-    {']', 0, NULL, NULL, "twice the scale", more_scale, .state = say_scale, .group = KEYS_EXPERTS},
     {'\\', 0, NULL, NULL, "scale by the picture", own_scale, .group = KEYS_EXPERTS},
     {'G', 0, "G", NULL, "trees", switch_trees, .state = say_trees, .group = KEYS_EXPERTS},
 };
@@ -573,6 +519,8 @@ bool key_act(struct view *view, int key, unsigned mods)
             continue;
         if (keys[i].setting)
             choice_turn(&view->settings, keys[i].setting, keys[i].by);
+        else if (keys[i].turn)
+            keys[i].turn(view, keys[i].by);
         else
             keys[i].act(view);
         if (keys[i].shows_name && view->camera_known)

@@ -22,7 +22,8 @@ struct key_binding {
     void (*act)(struct view *view);
     void (*state)(const struct view *view, char *text, size_t bytes); /* NULL: it has no state */
     const struct setting *setting; /* stepped through by the key, instead of `act`; NULL: none */
-    int by;
+    void (*turn)(struct view *view, int by); /* called instead of `act`; NULL: none */
+    int by;                                  /* for `setting` and `turn` */
     enum key_group group;
     bool shows_name; /* a message shows the name when the key is pressed */
 };
