@@ -61,6 +61,8 @@ struct expect_field {
        no such value. */
     whit_result (*read)(const struct drawing *drawing, const struct check_expectation *one,
                         struct expect_value *value);
+    int pick;    /* of colours: below 0 the smallest, 0 the mean, above 0 the largest */
+    size_t stat; /* of counts: the offset of a uint64_t in whit_stats */
 };
 extern const struct expect_field expect_fields[]; /* ends with one without a name */
 

@@ -1,5 +1,6 @@
 /* The fields that suites may have expectations of, and the check of these. */
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,24 +25,9 @@ static whit_result read_nonfinite(drawing_t *drawing, expectation_t *one,
     return WHIT_OK;
 }
 
-static whit_result read_mean(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+static whit_result read_colors(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
-    (void)one;
-    drawing_find_colors(drawing, 0, value->numbers);
-    return WHIT_OK;
-}
-
-static whit_result read_min(drawing_t *drawing, expectation_t *one, struct expect_value *value)
-{
-    (void)one;
-    drawing_find_colors(drawing, -1, value->numbers);
-    return WHIT_OK;
-}
-
-static whit_result read_max(drawing_t *drawing, expectation_t *one, struct expect_value *value)
-{
-    (void)one;
-    drawing_find_colors(drawing, 1, value->numbers);
+    drawing_find_colors(drawing, expect_fields[one->field].pick, value->numbers);
     return WHIT_OK;
 }
 
@@ -54,17 +40,10 @@ static whit_result read_hits(drawing_t *drawing, expectation_t *one, struct expe
 
 /* ---- Rays ---- */
 
-static whit_result read_rays(drawing_t *drawing, expectation_t *one, struct expect_value *value)
+static whit_result read_count(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
-    static const char prefix[] = "rays.";
-    const whit_stats *stats = &drawing->stats;
-    const uint64_t rays[WHIT_RAY_KINDS] = {stats->rays_primary, stats->rays_shadow,
-                                           stats->rays_reflected, stats->rays_refracted};
-    const char *name = expect_fields[one->field].name + strlen(prefix);
-    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
-        if (strcmp(value_word(values_rays, kind), name) == 0)
-            value->numbers[0] = (double)rays[kind];
-    }
+    const char *stats = (const char *)&drawing->stats;
+    value->numbers[0] = (double)*(const uint64_t *)(stats + expect_fields[one->field].stat);
     return WHIT_OK;
 }
 
@@ -74,22 +53,6 @@ static whit_result read_all_rays(drawing_t *drawing, expectation_t *one, struct 
     (void)one;
     value->numbers[0] = (double)(stats->rays_primary + stats->rays_shadow + stats->rays_reflected +
                                  stats->rays_refracted);
-    return WHIT_OK;
-}
-
-static whit_result read_cut_depth(drawing_t *drawing, expectation_t *one,
-                                  struct expect_value *value)
-{
-    (void)one;
-    value->numbers[0] = (double)drawing->stats.rays_cut_depth;
-    return WHIT_OK;
-}
-
-static whit_result read_cut_bailout(drawing_t *drawing, expectation_t *one,
-                                    struct expect_value *value)
-{
-    (void)one;
-    value->numbers[0] = (double)drawing->stats.rays_cut_bailout;
     return WHIT_OK;
 }
 
@@ -191,25 +154,29 @@ static whit_result read_material(drawing_t *drawing, expectation_t *one, struct 
 }
 
 const struct expect_field expect_fields[] = {
-    {"nonfinite", EXPECT_NUMBER, false, false, read_nonfinite},
-    {"hits", EXPECT_NUMBER, false, false, read_hits},
-    {"leaks", EXPECT_NUMBER, false, false, read_leaks},
-    {"rays", EXPECT_NUMBER, false, false, read_all_rays},
-    {"rays.primary", EXPECT_NUMBER, false, false, read_rays},
-    {"rays.shadow", EXPECT_NUMBER, false, false, read_rays},
-    {"rays.reflected", EXPECT_NUMBER, false, false, read_rays},
-    {"rays.refracted", EXPECT_NUMBER, false, false, read_rays},
-    {"rays.cut_by_depth", EXPECT_NUMBER, false, false, read_cut_depth},
-    {"rays.cut_by_bailout", EXPECT_NUMBER, false, false, read_cut_bailout},
-    {"max_stack", EXPECT_NUMBER, false, true, read_max_stack},
-    {"mean", EXPECT_COLOR, false, false, read_mean},
-    {"min", EXPECT_COLOR, false, false, read_min},
-    {"max", EXPECT_COLOR, false, false, read_max},
-    {"pixel", EXPECT_COLOR, true, false, read_pixel},
-    {"pixel.instance", EXPECT_NAME, true, false, read_instance},
-    {"pixel.primitive", EXPECT_NUMBER, true, false, read_primitive},
-    {"pixel.material", EXPECT_NAME, true, false, read_material},
-    {"pixel.t", EXPECT_NUMBER, true, false, read_t},
+    {"nonfinite", EXPECT_NUMBER, .read = read_nonfinite},
+    {"hits", EXPECT_NUMBER, .read = read_hits},
+    {"leaks", EXPECT_NUMBER, .read = read_leaks},
+    {"rays", EXPECT_NUMBER, .read = read_all_rays},
+    {"rays.primary", EXPECT_NUMBER, .read = read_count, .stat = offsetof(whit_stats, rays_primary)},
+    {"rays.shadow", EXPECT_NUMBER, .read = read_count, .stat = offsetof(whit_stats, rays_shadow)},
+    {"rays.reflected", EXPECT_NUMBER, .read = read_count,
+     .stat = offsetof(whit_stats, rays_reflected)},
+    {"rays.refracted", EXPECT_NUMBER, .read = read_count,
+     .stat = offsetof(whit_stats, rays_refracted)},
+    {"rays.cut_by_depth", EXPECT_NUMBER, .read = read_count,
+     .stat = offsetof(whit_stats, rays_cut_depth)},
+    {"rays.cut_by_bailout", EXPECT_NUMBER, .read = read_count,
+     .stat = offsetof(whit_stats, rays_cut_bailout)},
+    {"max_stack", EXPECT_NUMBER, .counts = true, .read = read_max_stack},
+    {"mean", EXPECT_COLOR, .read = read_colors, .pick = 0},
+    {"min", EXPECT_COLOR, .read = read_colors, .pick = -1},
+    {"max", EXPECT_COLOR, .read = read_colors, .pick = 1},
+    {"pixel", EXPECT_COLOR, .of_pixel = true, .read = read_pixel},
+    {"pixel.instance", EXPECT_NAME, .of_pixel = true, .read = read_instance},
+    {"pixel.primitive", EXPECT_NUMBER, .of_pixel = true, .read = read_primitive},
+    {"pixel.material", EXPECT_NAME, .of_pixel = true, .read = read_material},
+    {"pixel.t", EXPECT_NUMBER, .of_pixel = true, .read = read_t},
     {0},
 };
 
