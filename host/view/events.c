@@ -36,58 +36,34 @@ static const struct key_name {
     {KEY_SHIFT, "Shift"},
     {KEY_CTRL, "Ctrl"},
     {KEY_ALT, "Alt"},
-    {KEY_F1, "F1"},
-    {KEY_F1 + 1, "F2"},
-    {KEY_F1 + 2, "F3"},
-    {KEY_F1 + 3, "F4"},
-    {KEY_F1 + 4, "F5"},
-    {KEY_F1 + 5, "F6"},
-    {KEY_F1 + 6, "F7"},
-    {KEY_F1 + 7, "F8"},
-    {KEY_F1 + 8, "F9"},
-    {KEY_F1 + 9, "F10"},
-    {KEY_F1 + 10, "F11"},
-    {KEY_F12, "F12"},
 };
-enum { KEY_NAMES = sizeof key_names / sizeof *key_names, REPLAY_BYTES_MAX = 1 << 28 };
+enum { KEY_NAMES = sizeof key_names / sizeof *key_names };
+enum { KEY_NAME = 16, REPLAY_BYTES_MAX = 1 << 28 };
 static const char *const button_names[] = {"left", "right", "middle"};
 
-static bool is_own_name(int key)
+/* Writes the name of a key, as "T", "Left", "F12", "Comma"; false: it has none. */
+static bool key_to_name(int key, char name[KEY_NAME])
 {
-    return (key >= 'A' && key <= 'Z') || (key >= '0' && key <= '9');
-}
-
-/* The name of a key, as "T", "Left", "F12", "Comma"; "?": it has none. */
-static const char *key_name(int key)
-{
-    static const char letters[26][2] = {"A", "B", "C", "D", "E", "F", "G", "H", "I",
-                                        "J", "K", "L", "M", "N", "O", "P", "Q", "R",
-                                        "S", "T", "U", "V", "W", "X", "Y", "Z"};
-    static const char digits[10][2] = {"0", "1", "2", "3", "4", "5", "6", "7", "8", "9"};
-    if (key >= 'A' && key <= 'Z')
-        return letters[key - 'A'];
-    if (key >= '0' && key <= '9')
-        return digits[key - '0'];
+    name[0] = '\0';
+    if ((key >= 'A' && key <= 'Z') || (key >= '0' && key <= '9'))
+        snprintf(name, KEY_NAME, "%c", key);
+    if (key >= KEY_F1 && key <= KEY_F12)
+        snprintf(name, KEY_NAME, "F%d", key - KEY_F1 + 1);
     for (int i = 0; i < KEY_NAMES; ++i) {
         if (key_names[i].key == key)
-            return key_names[i].name;
+            snprintf(name, KEY_NAME, "%s", key_names[i].name);
     }
-    return "?";
+    return name[0] != '\0';
 }
 
 /* ---- Lines ---- */
 
 static bool key_from_name(const char *name, int *key)
 {
-    if (name[0] && !name[1] && is_own_name(name[0])) {
-        *key = name[0];
-        return true;
-    }
-    for (int i = 0; i < KEY_NAMES; ++i) {
-        if (strcmp(key_names[i].name, name) == 0) {
-            *key = key_names[i].key;
+    char own[KEY_NAME];
+    for (*key = 0; *key <= KEY_ALT; ++*key) {
+        if (key_to_name(*key, own) && strcmp(own, name) == 0)
             return true;
-        }
     }
     return false;
 }
@@ -179,16 +155,19 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
     static const struct {
         const char *verb;
         enum view_event_kind kind;
-    } bare[] = {{"still", EVENT_STILL},       {"picture", EVENT_PICTURE},
-                {"priced", EVENT_PRICED},     {"refined", EVENT_REFINED},
-                {"minimise", EVENT_MINIMISE}, {"restore", EVENT_RESTORE},
-                {"close", EVENT_CLOSE}};
+        bool has_path;
+    } plain[] = {{"still", EVENT_STILL, false},       {"picture", EVENT_PICTURE, false},
+                 {"priced", EVENT_PRICED, false},     {"refined", EVENT_REFINED, false},
+                 {"minimise", EVENT_MINIMISE, false}, {"restore", EVENT_RESTORE, false},
+                 {"close", EVENT_CLOSE, false},       {"drop", EVENT_DROP, true},
+                 {"shot", EVENT_SHOT, true},          {"until", EVENT_UNTIL, true},
+                 {"await", EVENT_AWAIT, true},        {"choose", EVENT_CHOOSE, true}};
     struct view_event *event = &events[0];
     *count = 1;
-    for (size_t i = 0; i < sizeof bare / sizeof *bare; ++i) {
-        if (strcmp(bare[i].verb, verb) == 0) {
-            event->kind = bare[i].kind;
-            return true;
+    for (size_t i = 0; i < sizeof plain / sizeof *plain; ++i) {
+        if (strcmp(plain[i].verb, verb) == 0) {
+            event->kind = plain[i].kind;
+            return !plain[i].has_path || parse_path(rest, event->kind, event);
         }
     }
     if (strcmp(verb, "state") == 0) {
@@ -207,16 +186,6 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
         return parse_pair(rest, EVENT_MOVE, event);
     if (strcmp(verb, "wheel") == 0)
         return parse_pair(rest, EVENT_WHEEL, event);
-    if (strcmp(verb, "drop") == 0)
-        return parse_path(rest, EVENT_DROP, event);
-    if (strcmp(verb, "shot") == 0)
-        return parse_path(rest, EVENT_SHOT, event);
-    if (strcmp(verb, "until") == 0)
-        return parse_path(rest, EVENT_UNTIL, event);
-    if (strcmp(verb, "await") == 0)
-        return parse_path(rest, EVENT_AWAIT, event);
-    if (strcmp(verb, "choose") == 0)
-        return parse_path(rest, EVENT_CHOOSE, event);
     event->kind = EVENT_CLOCK;
     if (strcmp(verb, "clock") == 0)
         return strcmp(rest, "real") == 0;
@@ -249,12 +218,13 @@ bool events_from_line(const whit_log *log, const char *file, uint32_t line, cons
 void event_to_line(const struct view_event *event, FILE *to)
 {
     const char *state = event->down ? "down" : "up";
+    char name[KEY_NAME];
     switch (event->kind) {
     case EVENT_KEY:
-        if (strcmp(key_name(event->key), "?") != 0)
+        if (key_to_name(event->key, name))
             fprintf(to, "key %s%s%s%s %s\n", event->mods & EVENT_SHIFT ? "Shift+" : "",
                     event->mods & EVENT_CTRL ? "Ctrl+" : "", event->mods & EVENT_ALT ? "Alt+" : "",
-                    key_name(event->key), state);
+                    name, state);
         break;
     case EVENT_CHAR:
         fprintf(to, "char %u\n", event->code);
