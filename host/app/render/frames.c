@@ -2,12 +2,14 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/arguments.h"
 #include "app/render/render_command.h"
 #include "app/render/resume.h"
+#include "base/array.h"
 #include "base/sample.h"
 
 enum { FRAME_MAX = 1000000000 };
@@ -135,42 +137,30 @@ void frames_progress_update(void *user, double done)
 
 static whit_result keep_times(struct sequence *sequence, const struct frame_times *times)
 {
-    if (sequence->count == sequence->capacity) {
-        uint32_t capacity = sequence->capacity ? 2 * sequence->capacity : 64;
-        struct frame_times *each = realloc(sequence->each, capacity * sizeof *each);
-        if (!each) {
-            cli_error("out of memory for the times of %u frames", capacity);
-            return WHIT_ERROR_MEMORY;
-        }
-        sequence->each = each;
-        sequence->capacity = capacity;
-    }
-    sequence->each[sequence->count++] = *times;
-    return WHIT_OK;
+    if (ARRAY_PUSH(sequence->each, sequence->count, sequence->capacity, *times))
+        return WHIT_OK;
+    cli_error("out of memory for the times of %u frames", sequence->count + 1);
+    return WHIT_ERROR_MEMORY;
 }
 
 static whit_result find_medians(struct sequence *sequence)
 {
+    static const size_t fields[] = {
+        offsetof(struct frame_times, instances_ms), offsetof(struct frame_times, upload_ms),
+        offsetof(struct frame_times, render_ms), offsetof(struct frame_times, save_ms)};
     uint32_t count = sequence->count;
     if (count == 0)
         return WHIT_OK;
-    double *values = malloc(4 * (size_t)count * sizeof *values);
+    double *values = malloc((size_t)count * sizeof *values);
     if (!values) {
         cli_error("out of memory for the times of %u frames", count);
         return WHIT_ERROR_MEMORY;
     }
-    double *instances = values, *upload = values + count, *render = upload + count,
-           *save = render + count;
-    for (uint32_t i = 0; i < count; ++i) {
-        instances[i] = sequence->each[i].instances_ms;
-        upload[i] = sequence->each[i].upload_ms;
-        render[i] = sequence->each[i].render_ms;
-        save[i] = sequence->each[i].save_ms;
+    for (size_t f = 0; f < sizeof fields / sizeof *fields; ++f) {
+        for (uint32_t i = 0; i < count; ++i)
+            values[i] = *(const double *)((const char *)&sequence->each[i] + fields[f]);
+        *(double *)((char *)&sequence->median + fields[f]) = sample_sum_up(values, count).median;
     }
-    sequence->median = (struct frame_times){.instances_ms = sample_sum_up(instances, count).median,
-                                            .upload_ms = sample_sum_up(upload, count).median,
-                                            .render_ms = sample_sum_up(render, count).median,
-                                            .save_ms = sample_sum_up(save, count).median};
     free(values);
     return WHIT_OK;
 }

@@ -8,6 +8,7 @@
 #include "app/arguments.h"
 #include "app/render/recipe.h"
 #include "app/render/render_command.h"
+#include "base/array.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/path.h"
@@ -272,11 +273,8 @@ bool part_is_pfm(const char *path)
 
 static char *beside(const char *path)
 {
-    size_t bytes = strlen(path) + sizeof ".part";
-    char *name = malloc(bytes);
-    if (name)
-        snprintf(name, bytes, "%s.part", path);
-    else
+    char *name = string_format("%s.part", path);
+    if (!name)
         cli_error("out of memory");
     return name;
 }

@@ -71,11 +71,10 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
                                         : ray_file_read(&trace->input, trace->rays, CHUNK, &count);
         if (result != WHIT_OK || count == 0)
             return result;
-        if (cli_time_over()) {
-            cli_error("the time limit has passed");
-            return WHIT_ERROR_TIME_LIMIT;
-        }
-        if (trace->exact && (result = check_exact(trace, count)) != WHIT_OK)
+        result = job_still_wanted();
+        if (result == WHIT_OK && trace->exact)
+            result = check_exact(trace, count);
+        if (result != WHIT_OK)
             return result;
         double start_ms = whit_clock_ms();
         result = whit_trace(renderer, (whit_trace_on)trace->on, trace->rays, count, trace->any,
