@@ -461,9 +461,9 @@ void cli_progress_update(void *user, double done)
     fflush(stderr);
 }
 
-void cli_progress_tell(struct cli_progress *progress, double done, double seconds_left,
-                       const char *what)
+void cli_progress_tell(void *user, double done, double seconds_left, const char *what)
 {
+    struct cli_progress *progress = user;
     progress->last_ms = 0.0; /* draws at once: every step is shown */
     if (!is_time_to_draw(progress))
         return;

@@ -139,9 +139,9 @@ struct cli_progress {
 };
 void cli_progress_init(struct cli_progress *progress, bool quiet);
 void cli_progress_update(void *progress, double done); /* whit_renderer_params.progress */
-/* Draws the bar with the caller's own estimate of the seconds left, and `what` is being done. */
-void cli_progress_tell(struct cli_progress *progress, double done, double seconds_left,
-                       const char *what);
+/* Draws the bar with the caller's own estimate of the seconds left, and `what` is being done:
+   cost_request.progress. */
+void cli_progress_tell(void *progress, double done, double seconds_left, const char *what);
 void cli_progress_finish(struct cli_progress *progress);
 
 #endif

@@ -65,7 +65,7 @@ static void use(struct view *view, const struct cost_row *row)
     uint32_t count;
     const struct knob *knob = &knob_table(&count)[row->knob_index];
     knob_apply(knob, row->setting_index, &view->settings);
-    view_changed(view);
+    view->dirty = true;
 }
 
 /* The time of a row, as a multiple of the usual row's. */

@@ -30,7 +30,7 @@ bool skies_drop(struct view *view, const char *path)
     }
     settings->load.has_background = false; /* a background colour would hide the environment */
     view_say(view, "environment: %s", path_name(path));
-    view_changed(view);
+    view->dirty = true;
     return true;
 }
 

@@ -61,11 +61,6 @@ void view_log_failure(const struct view *view)
     }
 }
 
-void view_changed(struct view *view)
-{
-    view->dirty = true;
-}
-
 /* The window is drawn again with the picture of the new camera. */
 void view_moved(struct view *view)
 {

@@ -117,8 +117,6 @@ struct view {
 double view_now_ms(const struct view *view);
 /* Shows a message for some seconds. */
 void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
-/* Call it when the settings changed. */
-void view_changed(struct view *view);
 /* Call it when the camera was moved by hand: updates its text, and asks for quick pictures for a
    while. */
 void view_moved(struct view *view);

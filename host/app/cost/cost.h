@@ -21,9 +21,6 @@ struct cost {
     struct cost_report *report;
 };
 
-/* A cost_request.progress whose `user` is a cli_progress. */
-void cost_on_progress(void *user, double done, double seconds_left, const char *what);
-
 /* Default time limits: of `whit cost`, and of `whit cost --quick` and the choices of `whit
    render`. */
 #define COST_SECONDS       150.0

@@ -26,7 +26,7 @@ static whit_result measure(struct job *job, struct cost_report **report)
         .knobs = knobs_of_light(),
         .seconds = COST_SECONDS_QUICK,
         .samples_max = SAMPLES,
-        .progress = cost_on_progress,
+        .progress = cli_progress_tell,
         .progress_user = &progress,
         .hush = cli_hush,
         .log = &cli_log,

@@ -139,11 +139,6 @@ static bool check_request(struct cli_reader *reader, struct cost *cost)
 
 /* ---- Work ---- */
 
-void cost_on_progress(void *user, double done, double seconds_left, const char *what)
-{
-    cli_progress_tell(user, done, seconds_left, what);
-}
-
 static whit_result find_out(struct cost *cost)
 {
     struct job *job = &cost->job;
@@ -165,7 +160,7 @@ static whit_result find_out(struct cost *cost)
     request->settings = &job->settings;
     request->cancel = &cli_cancel;
     request->time_limit_s = cli_time_left_s();
-    request->progress = cost_on_progress;
+    request->progress = cli_progress_tell;
     request->progress_user = &cost->progress;
     request->hush = cli_hush;
     request->log = &cli_log;

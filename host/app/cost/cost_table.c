@@ -8,12 +8,21 @@
 #include "app/cost/cost_table.h"
 #include "whit/whit_program.h"
 
-const struct cost_column cost_columns[COST_COLUMNS] = {
+/* `is_number`: the column is right-aligned. */
+struct cost_column {
+    const char *head;
+    bool is_number;
+};
+enum { COST_COLUMNS = 11, COST_HIT_COLUMNS = 13, COST_CELL = 64, COST_COLUMNS_MAX = 13 };
+struct cost_cells {
+    char text[COST_COLUMNS_MAX][COST_CELL];
+};
+static const struct cost_column cost_columns[COST_COLUMNS] = {
     {"knob", false},    {"setting", false}, {"ms", true},   {"95 %", true},
     {"of usual", true}, {"RMSE", true},     {"FLIP", true}, {"over 1/255", true},
     {"largest", true},  {"alone", true},    {"", false},
 };
-const struct cost_column cost_hit_columns[COST_HIT_COLUMNS] = {
+static const struct cost_column cost_hit_columns[COST_HIT_COLUMNS] = {
     {"knob", false},  {"setting", false}, {"rays", false}, {"N", true},     {"wrong", true},
     {"leaks", true},  {"misses", true},   {"false", true}, {"other", true}, {"ulp, half", true},
     {"99.9 %", true}, {"most", true},     {"ms", true},
@@ -59,8 +68,8 @@ static void put_remark(const struct cost_report *report, const struct cost_row *
                  (unsigned long long)row->ids_changed);
 }
 
-void cost_row_cells(const struct cost_report *report, const struct cost_row *row,
-                    struct cost_cells *cells)
+static void fill_row(const struct cost_report *report, const struct cost_row *row,
+                     struct cost_cells *cells)
 {
     const struct sample_median *ratio = &row->price.ratio[report->clock];
     const whit_difference *error = &row->error;
@@ -84,7 +93,7 @@ void cost_row_cells(const struct cost_report *report, const struct cost_row *row
         put(cells->text[9], "-");
 }
 
-void cost_hit_cells(const struct cost_row *row, enum cost_set set, struct cost_cells *cells)
+static void fill_hits(const struct cost_row *row, enum cost_set set, struct cost_cells *cells)
 {
     const struct cost_hits *hits = &row->hits[set];
     const whit_judgement *judged = &hits->judged;
@@ -317,7 +326,7 @@ static void put_tables(const struct cost_report *report, FILE *to, put_row *put_
     table->put = put_one;
     add_head(table, cost_columns, COST_COLUMNS);
     for (uint32_t i = 0; i < report->row_count; ++i) {
-        cost_row_cells(report, &report->rows[i], &cells);
+        fill_row(report, &report->rows[i], &cells);
         if (report->rows[i].measured || report->rows[i].note[0])
             add(table, &cells);
     }
@@ -325,7 +334,7 @@ static void put_tables(const struct cost_report *report, FILE *to, put_row *put_
     add_head(table, cost_hit_columns, COST_HIT_COLUMNS);
     for (uint32_t i = 0; i < report->row_count; ++i) {
         for (uint32_t set = 0; set < COST_SETS && has_hits(&report->rows[i]); ++set) {
-            cost_hit_cells(&report->rows[i], (enum cost_set)set, &cells);
+            fill_hits(&report->rows[i], (enum cost_set)set, &cells);
             if (report->rows[i].hits[set].traced)
                 add(table, &cells);
         }
