@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "settings/quote.h"
 
 enum { OPTIONS_MAX = 96, ID_FIRST = 256, HELP_COLUMN = 27 };
 
@@ -385,4 +386,22 @@ char *cli_next_word(char **at, bool *whole)
     *at = *from ? from + 1 : from;
     *to = '\0';
     return word;
+}
+
+char *cli_line(int argc, char **argv)
+{
+    char *line = NULL;
+    size_t bytes;
+    FILE *to = open_memstream(&line, &bytes);
+    if (!to)
+        return NULL;
+    fputs("whit", to);
+    for (int i = 0; i < argc; ++i) {
+        fputc(' ', to);
+        quote_print(argv[i], to);
+    }
+    if (fclose(to) == 0)
+        return line;
+    free(line);
+    return NULL;
 }

@@ -42,6 +42,8 @@ bool cli_read(struct cli_reader *reader, void *own, struct settings *settings);
    only in the form that quote_word writes. NULL at the end; *whole: false where a quote is not
    closed. */
 char *cli_next_word(char **at, bool *whole);
+/* The command line of a run, quoted for a shell; free() it. NULL: out of memory. */
+char *cli_line(int argc, char **argv);
 /* Says what is wrong with the usage and how to get help; false, so that parsers can return it.
    Sets `status`. */
 bool cli_misuse(struct cli_reader *reader, const char *format, ...) WHIT_PRINTF(2, 3);

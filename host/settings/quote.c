@@ -1,7 +1,6 @@
 #include "settings/quote.h"
 
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "whit/whit.h"
@@ -42,4 +41,14 @@ void quote_word(const char *word, void (*put)(void *user, const char *part), voi
             put_bytes(word, length, put, user);
     }
     put(user, "'");
+}
+
+static void print_part(void *user, const char *part)
+{
+    fputs(part, user);
+}
+
+void quote_print(const char *word, FILE *to)
+{
+    quote_word(word, print_part, to);
 }

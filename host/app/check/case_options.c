@@ -100,11 +100,6 @@ static bool take_files(struct check_case *item, const struct suite *suite,
             find_file(suite, "--shader ", settings->shader, sizeof settings->shader, reader));
 }
 
-static void put_text(void *user, const char *part)
-{
-    fputs(part, user);
-}
-
 /* Writes the scene and options of these settings as words. NULL: out of memory, or they are too
    long. */
 static char *words_of(const struct settings *settings)
@@ -114,7 +109,7 @@ static char *words_of(const struct settings *settings)
     FILE *to = used < sizeof options ? open_memstream(&text, &size) : NULL;
     if (!to)
         return NULL;
-    quote_word(settings->scene, put_text, to);
+    quote_print(settings->scene, to);
     fprintf(to, "%s%s", options[0] ? " " : "", options);
     return fclose(to) == 0 ? text : NULL;
 }

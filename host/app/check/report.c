@@ -32,11 +32,6 @@ static json_t *picture_document(const struct golden_case *item)
     return out;
 }
 
-static void put_text(void *user, const char *part)
-{
-    fputs(part, user);
-}
-
 /* The command that checks one case again, for pictures of the reference, which `whit render` cannot
    draw. NULL: out of memory. */
 static char *check_command(const struct check *check, const struct check_case *item)
@@ -47,10 +42,10 @@ static char *check_command(const struct check *check, const struct check_case *i
     if (!to)
         return NULL;
     fputs("whit check ", to);
-    quote_word(check->suite.path, put_text, to);
+    quote_print(check->suite.path, to);
     if (check->root) {
         fputs(" --root ", to);
-        quote_word(check->root, put_text, to);
+        quote_print(check->root, to);
     }
     fprintf(to, " --on %s --only %s", golden_kind_word((enum golden_kind)check->on), item->name);
     return fclose(to) == 0 ? text : NULL;

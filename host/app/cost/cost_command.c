@@ -8,7 +8,6 @@
 #include "app/cost/cost_json.h"
 #include "app/cost/cost_table.h"
 #include "base/text.h"
-#include "settings/quote.h"
 
 enum { RAYS_QUICK = 2000, RAYS_USUAL = 20000, RAYS_MAX = 1 << 22, SAMPLES_QUICK = 16 };
 /* Smallest sizes in pixels; the second pair is for --quick, and has room for 16:9. */
@@ -236,30 +235,6 @@ static int work(struct cost *cost)
     return status == EXIT_FINE ? job_check_validation(&cost->job) : status;
 }
 
-static void put_part(void *user, const char *part)
-{
-    fputs(part, user);
-}
-
-/* The command line, quoted for a shell; NULL: no memory. */
-static char *command_line(int argc, char **argv)
-{
-    char *line = NULL;
-    size_t bytes;
-    FILE *to = open_memstream(&line, &bytes);
-    if (!to)
-        return NULL;
-    fputs("whit", to);
-    for (int i = 0; i < argc; ++i) {
-        fputc(' ', to);
-        quote_word(argv[i], put_part, to);
-    }
-    if (fclose(to) == 0)
-        return line;
-    free(line);
-    return NULL;
-}
-
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
@@ -272,7 +247,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return cost_compare_files(reader.positional, reader.second);
     complete(&cost);
     job_start(&cost.job);
-    cost.command = command_line(argc, argv);
+    cost.command = cli_line(argc, argv);
     int status = cost.command ? work(&cost) : cli_exit_of(WHIT_ERROR_MEMORY);
     cost_report_destroy(cost.report);
     free(cost.command);

@@ -8,7 +8,6 @@
 #include "app/render/recipe.h"
 #include "app/render/render_command.h"
 #include "base/file.h"
-#include "settings/quote.h"
 
 /* ---- Options ---- */
 
@@ -131,20 +130,6 @@ whit_result resume_wait(void)
 
 /* ---- The line that goes on ---- */
 
-struct line {
-    char text[4096];
-    size_t used;
-};
-
-static void put(void *user, const char *part)
-{
-    struct line *line = user;
-    size_t left = sizeof line->text - line->used, length = strlen(part);
-    if (length < left)
-        memcpy(line->text + line->used, part, length + 1);
-    line->used += length < left ? length : left;
-}
-
 bool resume_leaves_files(const struct render_request *request)
 {
     bool parts = (request->frames.given && !request->cameras.file) ||
@@ -154,14 +139,10 @@ bool resume_leaves_files(const struct render_request *request)
 
 void resume_keep_line(bool resumed, int argc, char **argv)
 {
-    static struct line line;
-    line.used = 0;
-    put(&line, "whit");
-    for (int i = 0; i < argc; ++i) {
-        put(&line, " ");
-        quote_word(argv[i], put, &line);
-    }
-    put(&line, resumed ? "\n" : " --resume\n");
-    if (line.used < sizeof line.text)
-        cli_set_next(line.text);
+    static char line[4096];
+    char *words = cli_line(argc, argv);
+    const char *more = resumed ? "" : " --resume";
+    if (words && snprintf(line, sizeof line, "%s%s\n", words, more) < (int)sizeof line)
+        cli_set_next(line);
+    free(words);
 }
