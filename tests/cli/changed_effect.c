@@ -4,10 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../wrapped.h"
 #include "whit.h"
-
-whit_result __real_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
-whit_result __wrap_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 
 static bool has_changed_effect(const whit_renderer *renderer)
 {
@@ -19,7 +17,7 @@ static bool has_changed_effect(const whit_renderer *renderer)
     return false;
 }
 
-whit_result __wrap_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
+WRAPPED(whit_result, whit_renderer_image, whit_renderer *renderer, whit_aov aov, whit_image **out)
 {
     whit_result result = __real_whit_renderer_image(renderer, aov, out);
     if (result == WHIT_OK && aov == WHIT_AOV_COLOR && has_changed_effect(renderer))

@@ -7,21 +7,11 @@
 #include <string.h>
 #include <time.h>
 
+#include "../wrapped.h"
 #include "accel/accel.h"
 #include "api/handles.h"
 
 enum { SMALL_PIXELS = 1024, SMALL_TILE = 16 };
-
-whit_result __real_whit_renderer_create(whit_device *device, whit_accel *accel,
-                                        const whit_renderer_params *params, whit_renderer **out);
-whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
-                                        const whit_renderer_params *params, whit_renderer **out);
-whit_result __real_whit_renderer_set_view(whit_renderer *renderer,
-                                          const whit_renderer_params *params);
-whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
-                                          const whit_renderer_params *params);
-void __real_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out);
-void __wrap_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out);
 
 static whit_renderer_params asked; /* params of the renderer without trees */
 static uint64_t pixels;            /* number of pixels that a window asked it for; 0: none yet */
@@ -45,8 +35,8 @@ static void note_part(void *user, double done)
         wait_until_cancelled();
 }
 
-whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
-                                        const whit_renderer_params *params, whit_renderer **out)
+WRAPPED(whit_result, whit_renderer_create, whit_device *device, whit_accel *accel,
+        const whit_renderer_params *params, whit_renderer **out)
 {
     if (!accel->accel->no_trees)
         return __real_whit_renderer_create(device, accel, params, out);
@@ -60,15 +50,15 @@ whit_result __wrap_whit_renderer_create(whit_device *device, whit_accel *accel,
     return __real_whit_renderer_create(device, accel, &own, out);
 }
 
-whit_result __wrap_whit_renderer_set_view(whit_renderer *renderer,
-                                          const whit_renderer_params *params)
+WRAPPED(whit_result, whit_renderer_set_view, whit_renderer *renderer,
+        const whit_renderer_params *params)
 {
     if (renderer->accel->no_trees)
         pixels = (uint64_t)params->width * params->height;
     return __real_whit_renderer_set_view(renderer, params);
 }
 
-void __wrap_whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *out)
+WRAPPED(void, whit_renderer_get_stats, const whit_renderer *renderer, whit_stats *out)
 {
     __real_whit_renderer_get_stats(renderer, out);
     if (strcmp(slow(), "told") == 0)

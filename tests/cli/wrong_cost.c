@@ -12,22 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../wrapped.h"
 #include "api/handles.h"
 #include "render/renderer.h"
 #include "whit_program.h"
-
-whit_result __real_whit_renderer_render(whit_renderer *renderer);
-whit_result __wrap_whit_renderer_render(whit_renderer *renderer);
-whit_result __real_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
-whit_result __wrap_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
-whit_result __real_whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
-                                     whit_accel **out);
-whit_result __wrap_whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
-                                     whit_accel **out);
-double __real_whit_clock_ms(void);
-double __wrap_whit_clock_ms(void);
-double __real_whit_clock_cpu_ms(void);
-double __wrap_whit_clock_cpu_ms(void);
 
 /* A sample takes SAMPLE_MS, of which TENTH_MS is 10 %: sums of such times are exact in floating
    point. */
@@ -48,12 +36,12 @@ static bool clock_is_real(void)
     return clock && strcmp(clock, "real") == 0;
 }
 
-double __wrap_whit_clock_ms(void)
+WRAPPED(double, whit_clock_ms, void)
 {
     return clock_is_real() ? __real_whit_clock_ms() : turned_ms;
 }
 
-double __wrap_whit_clock_cpu_ms(void)
+WRAPPED(double, whit_clock_cpu_ms, void)
 {
     return clock_is_real() ? __real_whit_clock_cpu_ms() : turned_ms;
 }
@@ -63,7 +51,7 @@ static bool by_medians(const struct accel *accel)
     return accel->params.build == WHIT_BUILD_MEDIAN;
 }
 
-whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
+WRAPPED(whit_result, whit_renderer_render, whit_renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->renderer->params;
     bool slow = (is_wrong("slow") && params->depth >= 16) ||
@@ -81,7 +69,7 @@ whit_result __wrap_whit_renderer_render(whit_renderer *renderer)
     return result;
 }
 
-whit_result __wrap_whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
+WRAPPED(whit_result, whit_renderer_image, whit_renderer *renderer, whit_aov aov, whit_image **out)
 {
     whit_result result = __real_whit_renderer_image(renderer, aov, out);
     if (result != WHIT_OK || aov != WHIT_AOV_COLOR || !is_wrong("schlick") ||
@@ -93,8 +81,8 @@ whit_result __wrap_whit_renderer_image(whit_renderer *renderer, whit_aov aov, wh
     return result;
 }
 
-whit_result __wrap_whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
-                                     whit_accel **out)
+WRAPPED(whit_result, whit_accel_create, const whit_scene *scene, const whit_accel_params *params,
+        whit_accel **out)
 {
     whit_result result = __real_whit_accel_create(scene, params, out);
     if (result == WHIT_OK && !clock_is_real())

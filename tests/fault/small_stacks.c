@@ -3,12 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../wrapped.h"
 #include "accel/accel.h"
-
-uint32_t __real_accel_stack_size(const struct accel *accel);
-uint32_t __wrap_accel_stack_size(const struct accel *accel);
-uint32_t __real_accel_packet_stack_size(const struct accel *accel);
-uint32_t __wrap_accel_packet_stack_size(const struct accel *accel);
 
 static bool is_small(const char *which)
 {
@@ -16,13 +12,13 @@ static bool is_small(const char *which)
     return value && strcmp(value, which) == 0;
 }
 
-uint32_t __wrap_accel_stack_size(const struct accel *accel)
+WRAPPED(uint32_t, accel_stack_size, const struct accel *accel)
 {
     uint32_t size = __real_accel_stack_size(accel);
     return is_small("nodes") ? 1 : size;
 }
 
-uint32_t __wrap_accel_packet_stack_size(const struct accel *accel)
+WRAPPED(uint32_t, accel_packet_stack_size, const struct accel *accel)
 {
     uint32_t size = __real_accel_packet_stack_size(accel);
     return is_small("packets") ? 1 : size;

@@ -16,13 +16,7 @@
 #include "fuzz.h"
 
 #include "../child_in_place.h"
-
-const struct aiScene *__wrap_aiImportFileExWithProperties(const char *name, unsigned flags,
-                                                          struct aiFileIO *io,
-                                                          const struct aiPropertyStore *wants);
-const struct aiScene *__wrap_aiApplyPostProcessing(const struct aiScene *scene, unsigned flags);
-void __wrap_aiReleaseImport(const struct aiScene *scene);
-const char *__wrap_aiGetErrorString(void);
+#include "../wrapped.h"
 
 /* --- the bytes of the fuzzer, which decide what is imported --------------------------------- */
 
@@ -168,7 +162,7 @@ static void mesh_free(struct aiMesh *mesh)
     free(mesh);
 }
 
-void __wrap_aiReleaseImport(const struct aiScene *scene)
+WRAPPED(void, aiReleaseImport, const struct aiScene *scene)
 {
     for (uint32_t i = 0; i < scene->mNumMeshes; i++)
         mesh_free(scene->mMeshes[i]);
@@ -183,16 +177,15 @@ void __wrap_aiReleaseImport(const struct aiScene *scene)
     free((void *)(uintptr_t)scene);
 }
 
-const char *__wrap_aiGetErrorString(void)
+WRAPPED(const char *, aiGetErrorString, void)
 {
     static const char *const texts[] = {"", "model.obj: line 3\n is no line", "std::bad_alloc"};
     return texts[take() % 2];
 }
 
 /* Each refusal by assimp is one byte in 16. */
-const struct aiScene *__wrap_aiImportFileExWithProperties(const char *name, unsigned flags,
-                                                          struct aiFileIO *io,
-                                                          const struct aiPropertyStore *wants)
+WRAPPED(const struct aiScene *, aiImportFileExWithProperties, const char *name, unsigned flags,
+        struct aiFileIO *io, const struct aiPropertyStore *wants)
 {
     (void)flags, (void)wants;
     if (!open_stream(name, io) || take() % 16 == 15)
@@ -210,7 +203,7 @@ const struct aiScene *__wrap_aiImportFileExWithProperties(const char *name, unsi
 }
 
 /* Faces of more than three corners are damaged ones here. */
-const struct aiScene *__wrap_aiApplyPostProcessing(const struct aiScene *scene, unsigned flags)
+WRAPPED(const struct aiScene *, aiApplyPostProcessing, const struct aiScene *scene, unsigned flags)
 {
     (void)flags;
     return scene;

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include "../wrapped.h"
 #include "base/foreign.h"
 #include "folder_fixture.h"
 #include "whit.h"
@@ -68,18 +69,10 @@ TEST_IN(the_host_is_left_as_it_was, folder_begin, folder_end)
 }
 
 /* Wrapped at link time: the limits of the last child. */
-enum child_end __real_child_run(const struct child_limits *limits,
-                                int (*fn)(void *user, void *to, child_write write), void *user,
-                                struct child_reply *reply);
-enum child_end __wrap_child_run(const struct child_limits *limits,
-                                int (*fn)(void *user, void *to, child_write write), void *user,
-                                struct child_reply *reply);
-
 static struct child_limits allowed;
 
-enum child_end __wrap_child_run(const struct child_limits *limits,
-                                int (*fn)(void *user, void *to, child_write write), void *user,
-                                struct child_reply *reply)
+WRAPPED(enum child_end, child_run, const struct child_limits *limits,
+        int (*fn)(void *user, void *to, child_write write), void *user, struct child_reply *reply)
 {
     allowed = *limits;
     return __real_child_run(limits, fn, user, reply);

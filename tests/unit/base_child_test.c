@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "../wrapped.h"
 #include "base/child.h"
 #include "base/threads.h"
 #include "unit.h"
@@ -25,18 +26,8 @@
 static const struct child_limits ordinary = {
     .who = "test", .cpu_s = 20.0, .memory_bytes = 256u << 20, .reply_bytes = 64u << 20};
 
-/* Functions that are wrapped at link time: the clocks by which a child's time is measured, which
-   these tests advance, and fork, to see whether a child is started while forks are held. */
-double __wrap_clock_ms(void);
-double __real_clock_of_process_ms(pid_t pid);
-double __wrap_clock_of_process_ms(pid_t pid);
-pid_t __real_fork(void);
-pid_t __wrap_fork(void);
-int __real_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit);
-int __wrap_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit);
-int __real_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
-int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock);
-
+/* Functions are wrapped at link time: the clocks by which a child's time is measured, which these
+   tests advance, and fork, to see whether a child is started while forks are held. */
 static double now_ms, step_ms;       /* the clock, which each reading advances by a step */
 static double used_ms, used_step_ms; /* likewise the child's processor time */
 static uint32_t reading_count, cancel_at;
@@ -53,7 +44,7 @@ static void set_clock(double step)
     cancelled = false;
 }
 
-double __wrap_clock_ms(void)
+WRAPPED(double, clock_ms, void)
 {
     if (++reading_count == cancel_at)
         cancelled = true;
@@ -63,13 +54,13 @@ double __wrap_clock_ms(void)
     return now_ms;
 }
 
-double __wrap_clock_of_process_ms(pid_t pid)
+WRAPPED(double, clock_of_process_ms, pid_t pid)
 {
     (void)pid;
     return used_ms += used_step_ms;
 }
 
-pid_t __wrap_fork(void)
+WRAPPED(pid_t, fork, void)
 {
     if (atomic_load(&forks_are_held))
         atomic_store(&forked_while_held, true);
@@ -79,7 +70,7 @@ pid_t __wrap_fork(void)
     return pid;
 }
 
-int __wrap_pthread_rwlock_wrlock(pthread_rwlock_t *lock)
+WRAPPED(int, pthread_rwlock_wrlock, pthread_rwlock_t *lock)
 {
     atomic_store(&child_is_wanted, true);
     return __real_pthread_rwlock_wrlock(lock);
@@ -293,7 +284,7 @@ TEST(cancel_ends_it_soon)
 
 static uint64_t processor_limit_s; /* as the child set it */
 
-int __wrap_setrlimit(__rlimit_resource_t resource, const struct rlimit *limit)
+WRAPPED(int, setrlimit, __rlimit_resource_t resource, const struct rlimit *limit)
 {
     if (resource == RLIMIT_CPU)
         processor_limit_s = limit->rlim_cur;

@@ -19,18 +19,16 @@
 
 #include <seccomp.h>
 
+#include "../wrapped.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "base/foreign.h"
 #include "base/sandbox.h"
 #include "folder_fixture.h"
 
-int __real_seccomp_load(const scmp_filter_ctx filter);
-int __wrap_seccomp_load(const scmp_filter_ctx filter);
-
 static bool no_filter; /* makes loading of the seccomp filter fail */
 
-int __wrap_seccomp_load(const scmp_filter_ctx filter)
+WRAPPED(int, seccomp_load, const scmp_filter_ctx filter)
 {
     return no_filter ? -EPERM : __real_seccomp_load(filter);
 }

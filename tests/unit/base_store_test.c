@@ -6,6 +6,7 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 
+#include "../wrapped.h"
 #include "base/array.h"
 #include "base/store.h"
 #include "folder_fixture.h"
@@ -18,14 +19,7 @@ static int64_t disk_bytes = -1; /* free bytes on the simulated disk; < 0: enough
 static pid_t dies_at_write;     /* id of a process that ends in its next large write */
 static int opened;              /* how often a file named "a" was opened to be read */
 
-int __real_openat(int at, const char *name, int flags, ...);
-int __wrap_openat(int at, const char *name, int flags, ...);
-int __real_fstat(int fd, struct stat *info);
-int __wrap_fstat(int fd, struct stat *info);
-ssize_t __real_write(int fd, const void *data, size_t bytes);
-ssize_t __wrap_write(int fd, const void *data, size_t bytes);
-
-int __wrap_openat(int at, const char *name, int flags, ...)
+WRAPPED(int, openat, int at, const char *name, int flags, ...)
 {
     va_list args;
     va_start(args, flags);
@@ -35,7 +29,7 @@ int __wrap_openat(int at, const char *name, int flags, ...)
     return __real_openat(at, name, flags, mode);
 }
 
-int __wrap_fstat(int fd, struct stat *info)
+WRAPPED(int, fstat, int fd, struct stat *info)
 {
     int result = __real_fstat(fd, info);
     if (foreign_from && --foreign_from == 0) {
@@ -45,7 +39,7 @@ int __wrap_fstat(int fd, struct stat *info)
     return result;
 }
 
-ssize_t __wrap_write(int fd, const void *data, size_t bytes)
+WRAPPED(ssize_t, write, int fd, const void *data, size_t bytes)
 {
     if (dies_at_write == getpid() && bytes > 100) {
         (void)!__real_write(fd, data, bytes / 2);

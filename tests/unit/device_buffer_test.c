@@ -1,3 +1,4 @@
+#include "../wrapped.h"
 #include "device/vulkan.h"
 #include "one_device_fixture.h"
 #include "unit.h"
@@ -8,24 +9,15 @@ enum { LARGE_BYTES = (33 << 20) + 12345 };
 /* Sizes in the last calls of Vulkan. */
 static VkDeviceSize created_bytes, viewed_bytes;
 
-VkResult __real_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
-                               const VkAllocationCallbacks *allocator, VkBuffer *buffer);
-VkResult __wrap_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
-                               const VkAllocationCallbacks *allocator, VkBuffer *buffer);
-VkResult __real_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *info,
-                                   const VkAllocationCallbacks *allocator, VkBufferView *view);
-VkResult __wrap_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *info,
-                                   const VkAllocationCallbacks *allocator, VkBufferView *view);
-
-VkResult __wrap_vkCreateBuffer(VkDevice vk, const VkBufferCreateInfo *info,
-                               const VkAllocationCallbacks *allocator, VkBuffer *buffer)
+WRAPPED(VkResult, vkCreateBuffer, VkDevice vk, const VkBufferCreateInfo *info,
+        const VkAllocationCallbacks *allocator, VkBuffer *buffer)
 {
     created_bytes = info->size;
     return __real_vkCreateBuffer(vk, info, allocator, buffer);
 }
 
-VkResult __wrap_vkCreateBufferView(VkDevice vk, const VkBufferViewCreateInfo *info,
-                                   const VkAllocationCallbacks *allocator, VkBufferView *view)
+WRAPPED(VkResult, vkCreateBufferView, VkDevice vk, const VkBufferViewCreateInfo *info,
+        const VkAllocationCallbacks *allocator, VkBufferView *view)
 {
     viewed_bytes = info->range;
     return __real_vkCreateBufferView(vk, info, allocator, view);

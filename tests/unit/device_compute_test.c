@@ -4,6 +4,7 @@
 #include "affine_fixture.h"
 #include "one_device_fixture.h"
 
+#include "../wrapped.h"
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "device/pipeline.h"
@@ -15,13 +16,8 @@
 /* Makes spirv_evaluate fail, so that kernels cannot be specialized (-Wl,--wrap). */
 static bool cannot_specialize;
 
-whit_result __real_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                                  uint32_t spec_count, uint32_t **out, size_t *out_words);
-whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                                  uint32_t spec_count, uint32_t **out, size_t *out_words);
-
-whit_result __wrap_spirv_evaluate(const uint32_t *words, size_t word_count, const uint32_t *spec,
-                                  uint32_t spec_count, uint32_t **out, size_t *out_words)
+WRAPPED(whit_result, spirv_evaluate, const uint32_t *words, size_t word_count, const uint32_t *spec,
+        uint32_t spec_count, uint32_t **out, size_t *out_words)
 {
     *out = NULL;
     return cannot_specialize
@@ -198,22 +194,8 @@ static void spin(struct commands *commands, const struct kernel_run *run, uint32
 /* Time stamps that replace those of the device, if not NULL (-Wl,--wrap). */
 static const uint64_t *stamps;
 
-VKAPI_ATTR VkResult VKAPI_CALL __real_vkGetQueryPoolResults(VkDevice vk, VkQueryPool pool,
-                                                            uint32_t first, uint32_t count,
-                                                            size_t bytes, void *data,
-                                                            VkDeviceSize stride,
-                                                            VkQueryResultFlags flags);
-VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkGetQueryPoolResults(VkDevice vk, VkQueryPool pool,
-                                                            uint32_t first, uint32_t count,
-                                                            size_t bytes, void *data,
-                                                            VkDeviceSize stride,
-                                                            VkQueryResultFlags flags);
-
-VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkGetQueryPoolResults(VkDevice vk, VkQueryPool pool,
-                                                            uint32_t first, uint32_t count,
-                                                            size_t bytes, void *data,
-                                                            VkDeviceSize stride,
-                                                            VkQueryResultFlags flags)
+WRAPPED(VkResult, vkGetQueryPoolResults, VkDevice vk, VkQueryPool pool, uint32_t first,
+        uint32_t count, size_t bytes, void *data, VkDeviceSize stride, VkQueryResultFlags flags)
 {
     VkResult result =
         __real_vkGetQueryPoolResults(vk, pool, first, count, bytes, data, stride, flags);
@@ -277,16 +259,8 @@ TEST(spans_are_timed)
 static bool is_busy;
 static uint64_t limit_ns; /* the timeout that the call was given */
 
-VKAPI_ATTR VkResult VKAPI_CALL __real_vkWaitForFences(VkDevice vk, uint32_t count,
-                                                      const VkFence *fences, VkBool32 all,
-                                                      uint64_t timeout);
-VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkWaitForFences(VkDevice vk, uint32_t count,
-                                                      const VkFence *fences, VkBool32 all,
-                                                      uint64_t timeout);
-
-VKAPI_ATTR VkResult VKAPI_CALL __wrap_vkWaitForFences(VkDevice vk, uint32_t count,
-                                                      const VkFence *fences, VkBool32 all,
-                                                      uint64_t timeout)
+WRAPPED(VkResult, vkWaitForFences, VkDevice vk, uint32_t count, const VkFence *fences, VkBool32 all,
+        uint64_t timeout)
 {
     limit_ns = timeout;
     return is_busy ? VK_TIMEOUT : __real_vkWaitForFences(vk, count, fences, all, timeout);

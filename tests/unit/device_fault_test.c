@@ -1,6 +1,7 @@
 /* Every checked Vulkan call is made to fail in turn; and the pipeline cache's file is damaged. */
 #include <dirent.h>
 
+#include "../wrapped.h"
 #include "affine_fixture.h"
 #include "device/buffer.h"
 #include "device/commands.h"
@@ -242,9 +243,8 @@ TEST_IN(damaged_cache_files_are_replaced, folder_begin, folder_end)
 }
 
 static bool is_short;
-bool __real_threads_have_room(uint32_t count);
-bool __wrap_threads_have_room(uint32_t count);
-bool __wrap_threads_have_room(uint32_t count)
+
+WRAPPED(bool, threads_have_room, uint32_t count)
 {
     return !is_short && __real_threads_have_room(count);
 }

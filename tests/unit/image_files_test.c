@@ -6,6 +6,7 @@
 
 #include <OpenEXR/openexr.h>
 
+#include "../wrapped.h"
 #include "image/formats.h"
 #include "image/image_reply.h"
 
@@ -456,9 +457,7 @@ TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)
 
 static uint64_t malloc_bytes;
 
-void *__real_malloc(size_t size_bytes);
-void *__wrap_malloc(size_t size_bytes);
-void *__wrap_malloc(size_t size_bytes)
+WRAPPED(void *, malloc, size_t size_bytes)
 {
     malloc_bytes += size_bytes;
     return __real_malloc(size_bytes);

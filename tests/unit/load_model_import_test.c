@@ -3,6 +3,7 @@
 #include <math.h>
 #include <unistd.h>
 
+#include "../wrapped.h"
 #include "load/importer.h"
 #include "load/model.h"
 #include "load/ply.h"
@@ -10,20 +11,15 @@
 #include "unit.h"
 
 /* Wrapped at link time: an importer that never ends, and a clock that each reading advances. */
-double __real_clock_ms(void);
-double __wrap_clock_ms(void);
-int __real_importer_assimp_run(void *user, void *to, child_write write);
-int __wrap_importer_assimp_run(void *user, void *to, child_write write);
-
 static bool importer_hangs, importer_opens;
 
-double __wrap_clock_ms(void)
+WRAPPED(double, clock_ms, void)
 {
     static double now_ms;
     return importer_hangs ? now_ms += 1.0 : __real_clock_ms();
 }
 
-int __wrap_importer_assimp_run(void *user, void *to, child_write write)
+WRAPPED(int, importer_assimp_run, void *user, void *to, child_write write)
 {
     while (importer_hangs)
         for (volatile unsigned i = 0; i < 1000; ++i)

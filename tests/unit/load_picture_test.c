@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 
 #include "../random.h"
+#include "../wrapped.h"
 #include "base/sandbox.h"
 #include "image/formats.h"
 #include "load/jpeg.h"
@@ -230,9 +231,7 @@ TEST(greedy_jpegs_are_refused)
 
 static size_t largest_block;
 
-void *__real_realloc(void *block, size_t size_bytes);
-void *__wrap_realloc(void *block, size_t size_bytes);
-void *__wrap_realloc(void *block, size_t size_bytes)
+WRAPPED(void *, realloc, void *block, size_t size_bytes)
 {
     largest_block = size_bytes > largest_block ? size_bytes : largest_block;
     return __real_realloc(block, size_bytes);
@@ -277,33 +276,24 @@ TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
 /* --- decoders that reach out ---------------------------------------------------------------- */
 
 /* Wrapped at link time: replacements of decoders, and a system that refuses the sandbox. */
-whit_result __real_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
-                               const char **reason);
-whit_result __wrap_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
-                               const char **reason);
-whit_result __real_image_decode(const struct image_source *source, struct image *image);
-whit_result __wrap_image_decode(const struct image_source *source, struct image *image);
-int __real_sandbox_enter(void);
-int __wrap_sandbox_enter(void);
-
 static bool decoders_connect, sandbox_is_refused;
 
-whit_result __wrap_jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
-                               const char **reason)
+WRAPPED(whit_result, jpeg_decode, const uint8_t *data, size_t size_bytes, struct picture *out,
+        const char **reason)
 {
     if (decoders_connect && socket(AF_INET, SOCK_STREAM, 0) >= 0)
         *reason = "it is out";
     return __real_jpeg_decode(data, size_bytes, out, reason);
 }
 
-whit_result __wrap_image_decode(const struct image_source *source, struct image *image)
+WRAPPED(whit_result, image_decode, const struct image_source *source, struct image *image)
 {
     if (decoders_connect)
         (void)socket(AF_INET, SOCK_STREAM, 0);
     return __real_image_decode(source, image);
 }
 
-int __wrap_sandbox_enter(void)
+WRAPPED(int, sandbox_enter, void)
 {
     return sandbox_is_refused ? EPERM : __real_sandbox_enter();
 }

@@ -1,6 +1,7 @@
 /* References in foreign files cannot lead out of their folder: each trick to name a file is tried
    with each kind of reference, and every file that is opened is checked. */
 #define _GNU_SOURCE
+#include "../wrapped.h"
 #include "base/array.h"
 #include "load/model.h"
 #include "messages_fixture.h"
@@ -31,15 +32,6 @@ static const char
     *swapped;          /* a folder that is replaced by a link after its path was resolved ... */
 static int swap_after; /* ... this many times */
 
-int __real_open(const char *path, int flags, ...);
-int __wrap_open(const char *path, int flags, ...);
-int __real_openat(int folder, const char *path, int flags, ...);
-int __wrap_openat(int folder, const char *path, int flags, ...);
-DIR *__real_opendir(const char *path);
-DIR *__wrap_opendir(const char *path);
-char *__real_realpath(const char *path, char *resolved);
-char *__wrap_realpath(const char *path, char *resolved);
-
 static int look_at(int fd, int flags)
 {
     char link[64], path[PATH_MAX] = "";
@@ -52,26 +44,17 @@ static int look_at(int fd, int flags)
     return fd;
 }
 
-int __wrap_open(const char *path, int flags, ...)
+WRAPPED(int, open, const char *path, int flags, ...)
 {
     return look_at(__real_open(path, flags, 0666), flags);
 }
 
-int __wrap_openat(int folder, const char *path, int flags, ...)
+WRAPPED(int, openat, int folder, const char *path, int flags, ...)
 {
     return look_at(__real_openat(folder, path, flags, 0666), flags);
 }
 
-DIR *__wrap_opendir(const char *path)
-{
-    DIR *folder = __real_opendir(path);
-    char resolved[PATH_MAX];
-    if (folder && outside[0] && __real_realpath(path, resolved))
-        leak_count += strncmp(resolved, outside, strlen(outside)) == 0;
-    return folder;
-}
-
-char *__wrap_realpath(const char *path, char *resolved)
+WRAPPED(char *, realpath, const char *path, char *resolved)
 {
     char *result = __real_realpath(path, resolved);
     if (result && swapped && strstr(result, "/swapped/") && --swap_after == 0) {
@@ -82,6 +65,15 @@ char *__wrap_realpath(const char *path, char *resolved)
         swapped = NULL;
     }
     return result;
+}
+
+WRAPPED(DIR *, opendir, const char *path)
+{
+    DIR *folder = __real_opendir(path);
+    char resolved[PATH_MAX];
+    if (folder && outside[0] && __real_realpath(path, resolved))
+        leak_count += strncmp(resolved, outside, strlen(outside)) == 0;
+    return folder;
 }
 
 /* ---- Folders: `in` has the model, `out` has secrets ---- */

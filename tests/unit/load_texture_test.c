@@ -1,20 +1,15 @@
 /* Equal pictures are decoded and kept once, whatever their names. */
 #include "load_model_fixture.h"
 
+#include "../wrapped.h"
 #include "load/picture.h"
 #include "unit.h"
 
 static uint32_t decoded, file_reads;
 
-whit_result __real_picture_read(const whit_log *log, const struct foreign_params *params,
-                                uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
-                                struct picture *out, char reason[FOREIGN_REASON_BYTES]);
-whit_result __wrap_picture_read(const whit_log *log, const struct foreign_params *params,
-                                uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
-                                struct picture *out, char reason[FOREIGN_REASON_BYTES]);
-whit_result __wrap_picture_read(const whit_log *log, const struct foreign_params *params,
-                                uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
-                                struct picture *out, char reason[FOREIGN_REASON_BYTES])
+WRAPPED(whit_result, picture_read, const whit_log *log, const struct foreign_params *params,
+        uint64_t pixels_max, const uint8_t *data, size_t size_bytes, struct picture *out,
+        char reason[FOREIGN_REASON_BYTES])
 {
     whit_result result =
         __real_picture_read(log, params, pixels_max, data, size_bytes, out, reason);
@@ -23,12 +18,8 @@ whit_result __wrap_picture_read(const whit_log *log, const struct foreign_params
     return result;
 }
 
-whit_result __real_file_read(const whit_log *log, const struct roots *roots, const char *path,
-                             uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
-whit_result __wrap_file_read(const whit_log *log, const struct roots *roots, const char *path,
-                             uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
-whit_result __wrap_file_read(const whit_log *log, const struct roots *roots, const char *path,
-                             uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
+WRAPPED(whit_result, file_read, const whit_log *log, const struct roots *roots, const char *path,
+        uint64_t limit_bytes, uint8_t **data, size_t *size_bytes)
 {
     file_reads++;
     return __real_file_read(log, roots, path, limit_bytes, data, size_bytes);

@@ -3,16 +3,12 @@
    below in place of thread_start and thread_join, so that the test says when the thread begins. */
 #include <semaphore.h>
 
+#include "../wrapped.h"
 #include "base/threads.h"
 #include "picture_fixture.h"
 #include "render/variants.h"
 #include "render_scenes.h"
 #include "unit.h"
-
-struct thread *__real_thread_start(void (*fn)(void *context), void *context);
-struct thread *__wrap_thread_start(void (*fn)(void *context), void *context);
-void __real_thread_join(struct thread *thread);
-void __wrap_thread_join(struct thread *thread);
 
 /* The thread that compiles, of which there is never more than one: what it runs, and the signals
    that let it begin and that say that it has ended. */
@@ -30,7 +26,7 @@ static void compile_when_told(void *context)
     assert_int_equal(sem_post(&compiling.ended), 0);
 }
 
-struct thread *__wrap_thread_start(void (*fn)(void *context), void *context)
+WRAPPED(struct thread *, thread_start, void (*fn)(void *context), void *context)
 {
     compiling.fn = fn;
     compiling.context = context;
@@ -50,7 +46,7 @@ static void await_thread(void)
 }
 
 /* Tells the compiling thread to begin before it joins it, so that callers need not do so. */
-void __wrap_thread_join(struct thread *thread)
+WRAPPED(void, thread_join, struct thread *thread)
 {
     let_thread_begin();
     __real_thread_join(thread);

@@ -1,5 +1,6 @@
 /* Settings that must not change a picture, and errors that end one. The tests of light, shadows,
    refraction and energy compare radiance with formulas. */
+#include "../wrapped.h"
 #include "picture_fixture.h"
 #include "render/pixels.h"
 #include "render/renderer.h"
@@ -222,9 +223,8 @@ TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
 /* The clock of this program moves only where the test sets it (-Wl,--wrap=clock_ms). */
 static double now_ms;
 static bool *cancelled_by_clock; /* set to true at the next reading of the clock; NULL: none */
-double __wrap_clock_ms(void);
 
-double __wrap_clock_ms(void)
+WRAPPED(double, clock_ms, void)
 {
     if (cancelled_by_clock)
         *cancelled_by_clock = true;

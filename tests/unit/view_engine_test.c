@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "../wrapped.h"
 #include "base/clock.h"
 #include "device_fixture.h"
 #include "unit.h"
@@ -201,9 +202,7 @@ TEST(whoever_moves_on_does_not_wait_for_refining)
 static pthread_t window_thread;
 static atomic_uint fail_at, asked_for; /* fail_at: number of the allocation that fails; 0: none */
 
-void *__real_malloc(size_t bytes);
-void *__wrap_malloc(size_t bytes);
-void *__wrap_malloc(size_t bytes)
+WRAPPED(void *, malloc, size_t bytes)
 {
     unsigned at = atomic_load(&fail_at);
     if (at > 0 && !pthread_equal(pthread_self(), window_thread) &&
