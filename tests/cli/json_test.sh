@@ -96,8 +96,21 @@ END
 }
 # The driver chooses the names of its figures of kernels. Documents of parts that are not built have no keys here.
 sort -u found | grep -v '^kernels kernels\.driver\.' >have
-awk -v absent=" $absent " '!/^#/ && index(absent, " " $1 " ") == 0 { at = $2 == ".:" ? "" : substr($2, 1, length($2) - 1) "."
-    for (i = 3; i <= NF; ++i) print $1, at $i }' "$KEYS" | sort -u >want
+# A row for each choice of the braces.
+awk 'function expand(row, first, rest, choices, count, i) {
+        if (!match(row, /[{][^}]*[}]/)) {
+            print row
+            return
+        }
+        first = substr(row, 1, RSTART - 1)
+        rest = substr(row, RSTART + RLENGTH)
+        count = split(substr(row, RSTART + 1, RLENGTH - 2), choices, ",")
+        for (i = 1; i <= count; ++i)
+            expand(first choices[i] rest)
+    }
+    !/^#/ { expand($0) }' "$KEYS" >rows
+awk -v absent=" $absent " 'index(absent, " " $1 " ") == 0 { at = $2 == ".:" ? "" : substr($2, 1, length($2) - 1) "."
+    for (i = 3; i <= NF; ++i) print $1, at $i }' rows | sort -u >want
 comm -13 have want >gone
 comm -23 have want >new
 check "no key is gone: $(tr '\n' ',' <gone)" test ! -s gone
