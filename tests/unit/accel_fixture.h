@@ -4,7 +4,6 @@
 #define ACCEL_FIXTURE_H
 
 #include <float.h>
-#include <math.h>
 
 #include "../cases.h"
 #include "../scenes.h"

@@ -1,7 +1,6 @@
 /* In every scene of scenes/ the error falls with more samples and with more bounces; each rise is
    printed, and must have the one known reason. Errors are RMSE against the reference in double. */
 #include <glob.h>
-#include <math.h>
 
 #include "scene_fixture.h"
 

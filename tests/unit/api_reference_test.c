@@ -1,6 +1,4 @@
 /* The reference through the public header: no device. */
-#include <math.h>
-
 #include "scene_fixture.h"
 
 enum { WIDTH = 16, HEIGHT = 12 };

@@ -1,7 +1,6 @@
 /* Refined pictures equal those with the same number of samples at once, and the estimated error is
    compared with the reference in double, pixel by pixel. */
 #include <glob.h>
-#include <math.h>
 
 #include "../cases.h"
 #include "scene_fixture.h"

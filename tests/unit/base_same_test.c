@@ -1,7 +1,6 @@
 /* Tests host/base/same.h against libm's long doubles, where these have more digits than doubles,
    and by a hash of result bits that must be the same with every compiler and machine. */
 #include <float.h>
-#include <math.h>
 
 #include "base/hash.h"
 #include "base/same.h"

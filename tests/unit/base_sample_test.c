@@ -1,6 +1,4 @@
 /* Tests medians, their intervals, and which differences count as more than chance. */
-#include <math.h>
-
 #include "base/sample.h"
 #include "random_fixture.h"
 #include "unit.h"

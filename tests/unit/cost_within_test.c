@@ -1,6 +1,4 @@
 /* Which settings `whit cost` and --budget-ms give up for time, tested with invented reports. */
-#include <math.h>
-
 #include "cost/within.h"
 #include "unit.h"
 

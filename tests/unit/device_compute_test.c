@@ -1,4 +1,3 @@
-#include <math.h>
 #include <vulkan/vulkan_core.h>
 
 #include "affine_fixture.h"

@@ -1,7 +1,5 @@
 /* shaders/lib/optics.glsl on the device, compared with double precision. The oracles use other
    formulas than the shader, with the exact angle instead of its rounded cosine. */
-#include <math.h>
-
 #include "one_device_fixture.h"
 #include "random_fixture.h"
 

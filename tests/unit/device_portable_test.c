@@ -7,8 +7,6 @@
    to float is rounded correctly: 53 >= 2 * 24 + 2 (Figueroa 1995, "When is double rounding
    innocuous?"). The other functions have an error of 1e-8 ulp of float in double, which is small
    compared with the errors measured here. */
-#include <math.h>
-
 #include "device_fixture.h"
 #include "random_fixture.h"
 

@@ -1,8 +1,4 @@
 /* Pictures stretched to the size of a window, beside bilinear filtering in double. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "device/stretch.h"
 #include "unit.h"
 

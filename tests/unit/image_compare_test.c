@@ -1,7 +1,6 @@
 #include "image_fixture.h"
 
 #include "image/compare.h"
-#include <math.h>
 
 static whit_difference compare(const struct image *a, const struct image *b)
 {

@@ -1,8 +1,6 @@
 /* The parts of the error estimate, with values by hand. */
 #include "image_fixture.h"
 
-#include <math.h>
-
 #include "image/estimate.h"
 
 enum { WIDTH = 5, HEIGHT = 4, COUNT = WIDTH * HEIGHT };

@@ -1,5 +1,4 @@
 #include "image_fixture.h"
-#include <math.h>
 #include <sys/stat.h>
 
 #include <png.h>

@@ -3,8 +3,6 @@
    one colour, with distances computed by hand. */
 #include "image_fixture.h"
 
-#include <math.h>
-
 #include "image/flip.h"
 
 static const double PI = 3.14159265358979323846;

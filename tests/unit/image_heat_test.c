@@ -1,8 +1,6 @@
 /* Heat maps: the colours, the automatic scale, and a legend that fits any picture. */
 #include "image_fixture.h"
 
-#include <math.h>
-
 #include "image/heat.h"
 #include "image/image_reply.h"
 

@@ -1,6 +1,4 @@
 /* Triangles of glTF: every kind of accessor, every mode, and Draco. */
-#include <math.h>
-
 #include "load_model_fixture.h"
 #include "unit.h"
 

@@ -1,6 +1,4 @@
 /* glTF: nodes, cameras, lights, materials and animation from the JSON. */
-#include <math.h>
-
 #include "load/model.h"
 #include "load_model_fixture.h"
 #include "unit.h"

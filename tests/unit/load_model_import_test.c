@@ -1,6 +1,5 @@
 /* The importer's child process, and the checks of its reply. */
 #include <fcntl.h>
-#include <math.h>
 #include <unistd.h>
 
 #include "../wrapped.h"

@@ -1,6 +1,4 @@
 /* whit's own scene files: their meaning, and the places that errors name. */
-#include <math.h>
-
 #include "folder_fixture.h"
 #include "load/load.h"
 #include "scene/pose.h"

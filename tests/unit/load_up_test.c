@@ -1,6 +1,4 @@
 /* Guessing which axis is up, for models whose files do not state it. */
-#include <math.h>
-
 #include "../scenes.h"
 #include "load/up.h"
 #include "unit.h"

@@ -1,7 +1,5 @@
 /* FBX, COLLADA, 3MF and OFF: units, up axis, nodes, materials and textures are imported; notes name
    the things that are not. */
-#include <math.h>
-
 #include "../random.h"
 #include "base/file.h"
 #include "load_model_fixture.h"

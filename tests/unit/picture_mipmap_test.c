@@ -1,6 +1,4 @@
 /* Mipmap levels of textures, and which of them a pixel uses. */
-#include <math.h>
-
 #include "../random.h"
 #include "../scenes.h"
 #include "base/color.h"

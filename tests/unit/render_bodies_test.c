@@ -1,6 +1,4 @@
 /* The distance found between the surfaces of bodies of media is never more than the true one. */
-#include <math.h>
-
 #include "../cases.h"
 #include "../random.h"
 #include "../scenes.h"

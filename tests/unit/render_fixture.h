@@ -2,8 +2,6 @@
 #ifndef TESTS_RENDER_FIXTURE_H
 #define TESTS_RENDER_FIXTURE_H
 
-#include <math.h>
-
 #include "../random.h"
 #include "../scenes.h"
 #include "accel/validate.h"

@@ -1,6 +1,4 @@
 /* The grid on the ground: the places of its lines, and the distances of rays to them. */
-#include <math.h>
-
 #include "picture/grid.h"
 #include "unit.h"
 

@@ -1,7 +1,5 @@
 /* The sum of samples is pairwise by index, so that parts of the samples merge to the bytes of the
    whole picture. */
-#include <math.h>
-
 #include "device/buffer.h"
 #include "picture_fixture.h"
 #include "render/renderer.h"

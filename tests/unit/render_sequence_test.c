@@ -1,6 +1,4 @@
 /* The sequence of sample points: its distribution, alone and in pairs of dimensions. */
-#include <math.h>
-
 #include "picture/sequence.h"
 #include "unit.h"
 

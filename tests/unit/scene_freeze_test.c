@@ -1,6 +1,4 @@
 /* scene_freeze drops or repairs invalid parts of a scene, refuses some, and adds missing ones. */
-#include <math.h>
-
 #include "../scenes.h"
 #include "base/array.h"
 #include "scene/effects.h"

@@ -1,6 +1,4 @@
 /* Animation against values worked out by hand, and the effects that a scene calls for. */
-#include <math.h>
-
 #include "../scenes.h"
 #include "base/array.h"
 #include "scene/effects.h"

@@ -1,6 +1,4 @@
 /* Shapes made by formula: exact counts, closed surfaces, outward faces, normals that agree. */
-#include <math.h>
-
 #include "scene/shapes.h"
 #include "unit.h"
 

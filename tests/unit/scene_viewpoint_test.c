@@ -1,6 +1,4 @@
 /* The camera that whit makes for a file without one, and the intensity of the lights of models. */
-#include <math.h>
-
 #include "../scenes.h"
 #include "base/array.h"
 #include "base/vec.h"

@@ -1,7 +1,5 @@
 /* Aovs: values that functions of a shader give for hits of camera rays, kept beside the colour.
    They are means over samples, and change nothing else. */
-#include <math.h>
-
 #include "hooks_fixture.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT, AOVS = 3 };

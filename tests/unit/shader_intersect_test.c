@@ -1,6 +1,4 @@
 /* A user's shape is drawn as a mesh is, and invalid answers of intersect() are reported. */
-#include <math.h>
-
 #include "hooks_fixture.h"
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };

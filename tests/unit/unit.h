@@ -9,6 +9,7 @@
 #ifndef UNIT_H
 #define UNIT_H
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>

@@ -1,6 +1,4 @@
 /* The camera that the user moves. */
-#include <math.h>
-
 #include "unit.h"
 #include "view/camera.h"
 
