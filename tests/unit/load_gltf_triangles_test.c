@@ -20,12 +20,12 @@ static const char *write_gltf(const void *data, size_t size_bytes, const char *v
     return path;
 }
 
-static const struct scene_mesh *load(struct fixture *fixture, const char *path)
+static const struct scene_mesh *load(const char *path)
 {
-    whit_result result = fixture_load(fixture, path);
+    whit_result result = fixture_load(path);
     if (result != WHIT_OK)
         fail_msg("%s", messages.last_error);
-    return &fixture->scene->meshes[fixture->scene->mesh_count - 1];
+    return &fixture.scene->meshes[fixture.scene->mesh_count - 1];
 }
 
 static void assert_floats(const float *found, const double *wanted, size_t count, const char *what)
@@ -84,10 +84,10 @@ TEST_IN(components_become_floats, fixture_begin, fixture_end)
                       "'count':3,'type':'VEC%d'}",
             rows[i].component, rows[i].normalized, rows[i].count);
         const struct scene_mesh *mesh =
-            load(*state, write_gltf(&data, sizeof data,
-                                    "{'buffer':0,'byteLength':36},"
-                                    "{'buffer':0,'byteOffset':36,'byteLength':64,'byteStride':20}",
-                                    accessors, "{'attributes':{'POSITION':0,'COLOR_0':1}}"));
+            load(write_gltf(&data, sizeof data,
+                            "{'buffer':0,'byteLength':36},"
+                            "{'buffer':0,'byteOffset':36,'byteLength':64,'byteStride':20}",
+                            accessors, "{'attributes':{'POSITION':0,'COLOR_0':1}}"));
         assert_int_equal(mesh->indices[1], 1);
         assert_floats(mesh->colors + 4, rows[i].wanted, 4, accessors);
         free(accessors);
@@ -120,11 +120,11 @@ TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
                       "'values':{'bufferView':1,'byteOffset':8}}}",
             rows[i].view, rows[i].component);
         const struct scene_mesh *mesh =
-            load(*state, write_gltf(&data, sizeof data,
-                                    "{'buffer':0,'byteLength':36},"
-                                    "{'buffer':0,'byteOffset':36,'byteLength':24},"
-                                    "{'buffer':0,'byteOffset':60,'byteLength':24}",
-                                    accessors, "{'attributes':{'POSITION':0,'TEXCOORD_0':1}}"));
+            load(write_gltf(&data, sizeof data,
+                            "{'buffer':0,'byteLength':36},"
+                            "{'buffer':0,'byteOffset':36,'byteLength':24},"
+                            "{'buffer':0,'byteOffset':60,'byteLength':24}",
+                            accessors, "{'attributes':{'POSITION':0,'TEXCOORD_0':1}}"));
         double wanted[6];
         for (int k = 0; k < 6; k++)
             wanted[k] = k % 2 && rows[i].wanted[k] > 4 ? 1 - rows[i].wanted[k] : rows[i].wanted[k];
@@ -165,9 +165,8 @@ TEST_IN(modes_and_indices, fixture_begin, fixture_end)
             rows[i].component, rows[i].corners);
         char *primitive = string_format("{'mode':%d,'attributes':{'POSITION':0}%s}", rows[i].mode,
                                         rows[i].component ? ",'indices':1" : "");
-        const struct scene_mesh *mesh =
-            load(*state, write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':72}", accessors,
-                                    primitive));
+        const struct scene_mesh *mesh = load(
+            write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':72}", accessors, primitive));
         assert_int_equal(mesh->triangle_count, rows[i].triangles);
         for (uint32_t k = 0; k < 3 * rows[i].triangles; k++)
             if (mesh->indices[k] != rows[i].wanted[k])
@@ -175,7 +174,7 @@ TEST_IN(modes_and_indices, fixture_begin, fixture_end)
         free(accessors);
         free(primitive);
     }
-    assert_true(fixture_noted(*state, "meshes[0].primitives[0]: 1 of 2 triangles are damaged and"));
+    assert_true(fixture_noted("meshes[0].primitives[0]: 1 of 2 triangles are damaged and"));
 }
 
 /* Invalid normals, and those of a part without any, are replaced by the normals of faces. */
@@ -184,11 +183,11 @@ TEST_IN(normals_that_are_missing, fixture_begin, fixture_end)
     const float normals[9] = {NAN, 0, 0, 1, 0, 0, 0, 0, 0};
     struct data data = triangle_data(normals, sizeof normals);
     const struct scene_mesh *mesh =
-        load(*state, write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':100}",
-                                POSITIONS ",{'bufferView':0,'byteOffset':36,'componentType':5126,"
-                                          "'count':3,'type':'VEC3'}",
-                                "{'attributes':{'POSITION':0,'NORMAL':1}},{'attributes':"
-                                "{'POSITION':0}}"));
+        load(write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':100}",
+                        POSITIONS ",{'bufferView':0,'byteOffset':36,'componentType':5126,"
+                                  "'count':3,'type':'VEC3'}",
+                        "{'attributes':{'POSITION':0,'NORMAL':1}},{'attributes':"
+                        "{'POSITION':0}}"));
     const double wanted[18] = {0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
     assert_int_equal(mesh->triangle_count, 2);
     for (size_t i = 0; i < 6; i++)
@@ -237,14 +236,13 @@ TEST_IN(bad_accessors_are_refused, fixture_begin, fixture_end)
     };
     static const uint8_t nines[64] = {0, 0, 0, 9, 9, 9};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        struct fixture *fixture = *state;
         struct data data = triangle_data(nines, sizeof nines);
         const char *path = write_gltf(&data, sizeof data,
                                       "{'buffer':0,'byteLength':36},"
                                       "{'buffer':0,'byteOffset':36,'byteLength':35}",
                                       rows[i].accessors, rows[i].primitive);
         messages.errors = 0;
-        fixture_refused(fixture, path, rows[i].reason);
+        fixture_refused(path, rows[i].reason);
     }
 }
 
@@ -252,17 +250,16 @@ TEST_IN(bad_accessors_are_refused, fixture_begin, fixture_end)
    zeros. */
 TEST_IN(small_files_stay_small, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     struct data data = triangle_data("", 0);
-    fixture->scene->memory_limit = UINT64_C(1) << 28;
+    fixture.scene->memory_limit = UINT64_C(1) << 28;
     const char *path =
         write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':36}",
                    "{'componentType':5126,'count':10000000,'type':'VEC3','sparse':{'count':1,"
                    "'indices':{'bufferView':0,'componentType':5121},'values':{'bufferView':0}}}",
                    "{'attributes':{'POSITION':0}},{'attributes':{'POSITION':0}}");
-    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
     assert_non_null(strstr(messages.last_error, "meshes[0].primitives[1] of 10000000 vertices"));
-    assert_int_equal(fixture->scene->memory_taken, 0);
+    assert_int_equal(fixture.scene->memory_taken, 0);
 }
 
 /* --- Draco ---------------------------------------------------------------------------------- */
@@ -314,7 +311,6 @@ TEST_IN(draco_is_unpacked, fixture_begin, fixture_end)
     const double colors[16] = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0.2, 0.4, 0.8, 1};
     const uint32_t indices[6] = {0, 1, 2, 2, 1, 3};
     const struct scene_mesh *mesh = load(
-        *state,
         write_packed(packed, 4, "'componentType':5126",
                      PACKED_PRIMITIVE(",'NORMAL':4", "'POSITION':0,'TEXCOORD_0':1,'COLOR_0':2")));
     assert_int_equal(mesh->vertex_count, 4);
@@ -342,13 +338,12 @@ TEST_IN(bad_draco_is_refused, fixture_begin, fixture_end)
          "accessors[0]: has neither a bufferView nor"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        struct fixture *fixture = *state;
         uint8_t bytes[sizeof packed];
         memcpy(bytes, packed, sizeof packed);
         bytes[0] = rows[i].first;
         const char *path =
             write_packed(bytes, rows[i].vertices, rows[i].uv_type, rows[i].primitive);
         messages.errors = 0;
-        fixture_refused(fixture, path, rows[i].reason);
+        fixture_refused(path, rows[i].reason);
     }
 }

@@ -6,19 +6,17 @@
 #include "folder_fixture.h"
 #include "load/model.h"
 
-struct fixture {
+static struct {
     whit_log log;
     struct scene *scene;
-};
+} fixture;
 
 static inline int fixture_begin(void **state)
 {
-    static struct fixture fixture;
     if (folder_begin(state) != 0)
         return -1;
     fixture.log = messages_log(&messages);
     fixture.scene = scene_create(&fixture.log, "test");
-    *state = &fixture;
     return fixture.scene && roots_allow(&fixture.log, &fixture.scene->roots, folder) == WHIT_OK
                ? 0
                : -1;
@@ -26,30 +24,29 @@ static inline int fixture_begin(void **state)
 
 static inline int fixture_end(void **state)
 {
-    struct fixture *fixture = *state;
-    scene_destroy(fixture->scene);
+    scene_destroy(fixture.scene);
     return folder_end(state);
 }
 
-static inline whit_result fixture_load(struct fixture *fixture, const char *path)
+static inline whit_result fixture_load(const char *path)
 {
-    return load_model(fixture->scene, path, SCENE_NONE, true, true, NULL);
+    return load_model(fixture.scene, path, SCENE_NONE, true, true, NULL);
 }
 
 /* Checks that loading fails with one error, which names the file and contains `reason`. */
-static inline void fixture_refused(struct fixture *fixture, const char *path, const char *reason)
+static inline void fixture_refused(const char *path, const char *reason)
 {
-    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, path));
     if (!strstr(messages.last_error, reason))
         fail_msg("`%s` is not in `%s`", reason, messages.last_error);
 }
 
-static inline bool fixture_noted(const struct fixture *fixture, const char *text)
+static inline bool fixture_noted(const char *text)
 {
-    for (uint32_t i = 0; i < fixture->scene->note_count; i++)
-        if (strstr(fixture->scene->notes[i].text, text))
+    for (uint32_t i = 0; i < fixture.scene->note_count; i++)
+        if (strstr(fixture.scene->notes[i].text, text))
             return true;
     return false;
 }

@@ -63,17 +63,16 @@ static const char *write_gltf(const char *members)
     return path;
 }
 
-static const struct scene *load(void **state, const char *members)
+static const struct scene *load(const char *members)
 {
-    struct fixture *fixture = *state;
-    assert_int_equal(fixture_load(fixture, write_gltf(members)), WHIT_OK);
+    assert_int_equal(fixture_load(write_gltf(members)), WHIT_OK);
     assert_int_equal(messages.errors, 0);
-    return fixture->scene;
+    return fixture.scene;
 }
 
-static void refused(void **state, const char *members, const char *reason)
+static void refused(const char *members, const char *reason)
 {
-    fixture_refused(*state, write_gltf(members), reason);
+    fixture_refused(write_gltf(members), reason);
 }
 
 #define ONE_NODE "\"nodes\":[{\"mesh\":0}]"
@@ -83,9 +82,9 @@ static void refused(void **state, const char *members, const char *reason)
 TEST_IN(nodes_share_a_mesh, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, "\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
-                    "{\"name\":\"a\",\"children\":[0,2],\"scale\":[2,2,2]},{\"mesh\":0}],"
-                    "\"scene\":0,\"scenes\":[{\"nodes\":[1]}]");
+        load("\"nodes\":[{\"name\":\"b\",\"mesh\":0,\"translation\":[1,2,3]},"
+             "{\"name\":\"a\",\"children\":[0,2],\"scale\":[2,2,2]},{\"mesh\":0}],"
+             "\"scene\":0,\"scenes\":[{\"nodes\":[1]}]");
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->meshes[0].triangle_count, 1);
     assert_string_equal(scene->meshes[0].name, "tri");
@@ -104,7 +103,7 @@ TEST_IN(nodes_share_a_mesh, fixture_begin, fixture_end)
 TEST_IN(matrices_are_columns, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, "\"nodes\":[{\"mesh\":0,\"matrix\":[1,2,3,0,4,5,6,0,7,8,9,0,10,11,12,1]}]");
+        load("\"nodes\":[{\"mesh\":0,\"matrix\":[1,2,3,0,4,5,6,0,7,8,9,0,10,11,12,1]}]");
     const double rows[12] = {1, 4, 7, 10, 2, 5, 8, 11, 3, 6, 9, 12};
     assert_true(scene->nodes[0].has_matrix);
     assert_memory_equal(scene->nodes[0].matrix.m, rows, sizeof rows);
@@ -112,23 +111,22 @@ TEST_IN(matrices_are_columns, fixture_begin, fixture_end)
 
 TEST_IN(nodes_hang_below_the_given_one, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     struct scene_node node;
     scene_node_init(&node, "placed", SCENE_NONE);
-    assert_int_equal(scene_add_node(fixture->scene, node), 0);
+    assert_int_equal(scene_add_node(fixture.scene, node), 0);
     const char *path = write_gltf("\"nodes\":[{\"mesh\":0,\"camera\":0}],"
                                   "\"cameras\":[{\"type\":\"perspective\","
                                   "\"perspective\":{\"yfov\":1,\"znear\":1}}]");
-    assert_int_equal(load_model(fixture->scene, path, 0, true, false, NULL), WHIT_OK);
-    assert_int_equal(fixture->scene->nodes[1].parent, 0);
-    assert_int_equal(fixture->scene->camera_count, 0);
+    assert_int_equal(load_model(fixture.scene, path, 0, true, false, NULL), WHIT_OK);
+    assert_int_equal(fixture.scene->nodes[1].parent, 0);
+    assert_int_equal(fixture.scene->camera_count, 0);
 }
 
 TEST_IN(only_the_default_scene_is_drawn, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, "\"nodes\":[{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}],\"scene\":1,"
-                    "\"scenes\":[{\"nodes\":[0,1]},{\"nodes\":[2]}]");
+        load("\"nodes\":[{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}],\"scene\":1,"
+             "\"scenes\":[{\"nodes\":[0,1]},{\"nodes\":[2]}]");
     assert_int_equal(scene->instance_count, 1);
     assert_int_equal(scene->node_count, 1);
 }
@@ -136,9 +134,9 @@ TEST_IN(only_the_default_scene_is_drawn, fixture_begin, fixture_end)
 TEST_IN(instances_on_the_gpu, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
-                    "{\"attributes\":{\"TRANSLATION\":3}}}}],"
-                    "\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]");
+        load("\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":"
+             "{\"attributes\":{\"TRANSLATION\":3}}}}],"
+             "\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]");
     assert_int_equal(scene->instance_count, 3);
     assert_true(scene->instances[1].has_local);
     assert_float_equal(scene->instances[1].local.m[3], 4, 0);
@@ -147,52 +145,51 @@ TEST_IN(instances_on_the_gpu, fixture_begin, fixture_end)
 
 TEST_IN(bad_trees_are_refused, fixture_begin, fixture_end)
 {
-    refused(state, "\"nodes\":[{\"children\":[1]},{\"children\":[0]}]", "nodes[0]: is its own");
+    refused("\"nodes\":[{\"children\":[1]},{\"children\":[0]}]", "nodes[0]: is its own");
 }
 
 TEST_IN(second_parents_are_refused, fixture_begin, fixture_end)
 {
-    refused(state, "\"nodes\":[{\"children\":[2]},{\"children\":[2]},{\"mesh\":0}]",
+    refused("\"nodes\":[{\"children\":[2]},{\"children\":[2]},{\"mesh\":0}]",
             "nodes[1].children[0]: node 2 is already");
 }
 
 TEST_IN(indices_out_of_range_are_refused, fixture_begin, fixture_end)
 {
-    refused(state, "\"nodes\":[{\"mesh\":7}]", "nodes[0].mesh: index 7 is out of range");
+    refused("\"nodes\":[{\"mesh\":7}]", "nodes[0].mesh: index 7 is out of range");
 }
 
 TEST_IN(wrong_types_are_refused, fixture_begin, fixture_end)
 {
-    refused(state, "\"nodes\":[{\"mesh\":0,\"translation\":\"up\"}]",
+    refused("\"nodes\":[{\"mesh\":0,\"translation\":\"up\"}]",
             "nodes[0]: `translation` should be an array and is a string");
 }
 
 TEST_IN(unknown_extensions_are_refused_by_name, fixture_begin, fixture_end)
 {
-    refused(state, ONE_NODE ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\",\"EXT_moon\"]",
+    refused(ONE_NODE ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\",\"EXT_moon\"]",
             "`EXT_moon`");
 }
 
 TEST_IN(old_versions_are_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, put_text("a.gltf", "{\"asset\":{\"version\":\"1.0\"}}"),
-                    "version `1.0`");
+    fixture_refused(put_text("a.gltf", "{\"asset\":{\"version\":\"1.0\"}}"), "version `1.0`");
 }
 
 TEST_IN(syntax_errors_have_a_line, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, put_text("a.gltf", "{\n\"asset\":\n}"), "a.gltf:3:");
+    fixture_refused(put_text("a.gltf", "{\n\"asset\":\n}"), "a.gltf:3:");
 }
 
 /* --- cameras and lights --------------------------------------------------------------------- */
 
 TEST_IN(camera_angles_are_exact, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(
-        state, "\"nodes\":[{\"camera\":0,\"translation\":[0,0,5]},{\"camera\":1},{\"mesh\":0}],"
-               "\"cameras\":[{\"name\":\"c\",\"type\":\"perspective\",\"perspective\":"
-               "{\"yfov\":0.7,\"aspectRatio\":1.5,\"znear\":0.1}},{\"type\":\"orthographic\","
-               "\"orthographic\":{\"xmag\":3,\"ymag\":2,\"zfar\":9,\"znear\":0}}]");
+    const struct scene *scene =
+        load("\"nodes\":[{\"camera\":0,\"translation\":[0,0,5]},{\"camera\":1},{\"mesh\":0}],"
+             "\"cameras\":[{\"name\":\"c\",\"type\":\"perspective\",\"perspective\":"
+             "{\"yfov\":0.7,\"aspectRatio\":1.5,\"znear\":0.1}},{\"type\":\"orthographic\","
+             "\"orthographic\":{\"xmag\":3,\"ymag\":2,\"zfar\":9,\"znear\":0}}]");
     assert_int_equal(scene->camera_count, 2);
     const struct scene_camera *camera = &scene->cameras[0];
     assert_string_equal(camera->name, "c");
@@ -210,10 +207,10 @@ TEST_IN(camera_angles_are_exact, fixture_begin, fixture_end)
 TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, "\"nodes\":[{\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":"
-                    "0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\","
-                    "\"color\":[1,0.5,0],\"intensity\":40,\"range\":7,\"spot\":"
-                    "{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}}]}}");
+        load("\"nodes\":[{\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":"
+             "0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\","
+             "\"color\":[1,0.5,0],\"intensity\":40,\"range\":7,\"spot\":"
+             "{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}}]}}");
     assert_int_equal(scene->light_count, 1);
     const struct scene_light *light = &scene->lights[0];
     assert_int_equal(light->kind, WHIT_LIGHT_SPOT);
@@ -230,18 +227,17 @@ TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
 
 TEST_IN(materials_and_extensions, fixture_begin, fixture_end)
 {
-    const struct scene *scene =
-        load(state, ONE_NODE
-             ",\"materials\":[{\"name\":\"m\",\"emissiveFactor\":[0.5,1,0.25],"
-             "\"doubleSided\":true,\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25,"
-             "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.1,0.2,0.3,0.4],"
-             "\"metallicFactor\":0.5,\"roughnessFactor\":0.75},"
-             "\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8},"
-             "\"KHR_materials_specular\":{\"specularFactor\":0.5},"
-             "\"KHR_materials_transmission\":{\"transmissionFactor\":0.5},"
-             "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
-             "\"attenuationColor\":[0.5,1,1]},"
-             "\"KHR_materials_ior\":{\"ior\":1.25},\"KHR_materials_clearcoat\":{}}}]");
+    const struct scene *scene = load(
+        ONE_NODE ",\"materials\":[{\"name\":\"m\",\"emissiveFactor\":[0.5,1,0.25],"
+                 "\"doubleSided\":true,\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25,"
+                 "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.1,0.2,0.3,0.4],"
+                 "\"metallicFactor\":0.5,\"roughnessFactor\":0.75},"
+                 "\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8},"
+                 "\"KHR_materials_specular\":{\"specularFactor\":0.5},"
+                 "\"KHR_materials_transmission\":{\"transmissionFactor\":0.5},"
+                 "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+                 "\"attenuationColor\":[0.5,1,1]},"
+                 "\"KHR_materials_ior\":{\"ior\":1.25},\"KHR_materials_clearcoat\":{}}}]");
     const struct scene_material *m = &scene->materials[scene->meshes[0].materials[0]];
     assert_string_equal(m->name, "m");
     assert_int_equal(m->model, WHIT_MODEL_METAL_ROUGH);
@@ -260,15 +256,15 @@ TEST_IN(materials_and_extensions, fixture_begin, fixture_end)
     assert_float_equal(m->absorption[1], 0, 0);
     assert_false(m->thin_walled);
     assert_true(m->two_sided);
-    assert_true(fixture_noted(*state, "KHR_materials_clearcoat is not drawn"));
+    assert_true(fixture_noted("KHR_materials_clearcoat is not drawn"));
 }
 
 TEST_IN(faces_have_one_side_unless_said, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, ONE_NODE ",\"materials\":[{\"name\":\"plain\"},{\"doubleSided\":true},"
-                             "{\"extensions\":{\"KHR_materials_transmission\":"
-                             "{\"transmissionFactor\":0.5}}}]");
+        load(ONE_NODE ",\"materials\":[{\"name\":\"plain\"},{\"doubleSided\":true},"
+                      "{\"extensions\":{\"KHR_materials_transmission\":"
+                      "{\"transmissionFactor\":0.5}}}]");
     assert_true(scene->materials[0].one_sided);
     assert_false(scene->materials[1].one_sided);
     /* Refracted rays leave through the faces by which they entered. */
@@ -278,10 +274,10 @@ TEST_IN(faces_have_one_side_unless_said, fixture_begin, fixture_end)
 TEST_IN(unlit_is_the_base_color_alone, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, ONE_NODE ",\"materials\":[{\"emissiveFactor\":[1,1,1],"
-                             "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1]},"
-                             "\"extensions\":{\"KHR_materials_unlit\":{},"
-                             "\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}]");
+        load(ONE_NODE ",\"materials\":[{\"emissiveFactor\":[1,1,1],"
+                      "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1]},"
+                      "\"extensions\":{\"KHR_materials_unlit\":{},"
+                      "\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}]");
     const struct scene_material *m = &scene->materials[0];
     assert_int_equal(m->model, WHIT_MODEL_UNLIT);
     assert_float_equal(m->diffuse[1], 0.25, 0);
@@ -291,17 +287,17 @@ TEST_IN(unlit_is_the_base_color_alone, fixture_begin, fixture_end)
 
 TEST_IN(what_is_not_drawn_is_noted_once, fixture_begin, fixture_end)
 {
-    load(state, ONE_NODE ",\"materials\":[{\"name\":\"a\",\"extensions\":{\"KHR_x\":{}}},{},"
-                         "{\"name\":\"b\",\"extensions\":{\"KHR_x\":{}}}]");
-    assert_true(fixture_noted(*state, "KHR_x is not drawn: 2 materials, the first is `a`"));
-    assert_false(fixture_noted(*state, "`b`"));
+    load(ONE_NODE ",\"materials\":[{\"name\":\"a\",\"extensions\":{\"KHR_x\":{}}},{},"
+                  "{\"name\":\"b\",\"extensions\":{\"KHR_x\":{}}}]");
+    assert_true(fixture_noted("KHR_x is not drawn: 2 materials, the first is `a`"));
+    assert_false(fixture_noted("`b`"));
 }
 
 TEST_IN(glass_without_a_volume_is_thin, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, ONE_NODE ",\"materials\":[{\"extensions\":{\"KHR_materials_transmission\":"
-                             "{\"transmissionFactor\":1}}}]");
+        load(ONE_NODE ",\"materials\":[{\"extensions\":{\"KHR_materials_transmission\":"
+                      "{\"transmissionFactor\":1}}}]");
     assert_true(scene->materials[0].thin_walled);
     assert_true(scene->materials[0].fresnel);
 }
@@ -309,12 +305,12 @@ TEST_IN(glass_without_a_volume_is_thin, fixture_begin, fixture_end)
 TEST_IN(texture_transforms, fixture_begin, fixture_end)
 {
     const struct scene *scene =
-        load(state, ONE_NODE ",\"images\":[{\"uri\":\"no%20such.png\"}],\"samplers\":[{\"wrapS\":"
-                             "33071,\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":"
-                             "0,\"sampler\":0}],\"materials\":[{\"pbrMetallicRoughness\":{"
-                             "\"baseColorTexture\":{\"index\":0,\"extensions\":{"
-                             "\"KHR_texture_transform\":{\"offset\":[0.1,0.2],\"scale\":[2,4],"
-                             "\"rotation\":1.5707963267948966,\"texCoord\":1}}}}}]");
+        load(ONE_NODE ",\"images\":[{\"uri\":\"no%20such.png\"}],\"samplers\":[{\"wrapS\":"
+                      "33071,\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":"
+                      "0,\"sampler\":0}],\"materials\":[{\"pbrMetallicRoughness\":{"
+                      "\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+                      "\"KHR_texture_transform\":{\"offset\":[0.1,0.2],\"scale\":[2,4],"
+                      "\"rotation\":1.5707963267948966,\"texCoord\":1}}}}}]");
     const struct scene_texture_use *use = &scene->materials[0].textures[SCENE_SLOT_DIFFUSE];
     const float expected[6] = {0, 4, 0.1f, -2, 0, 0.2f};
     for (int i = 0; i < 6; i++)
@@ -323,12 +319,12 @@ TEST_IN(texture_transforms, fixture_begin, fixture_end)
     assert_int_equal(use->wrap_u, SCENE_WRAP_CLAMP);
     assert_int_equal(use->wrap_v, SCENE_WRAP_MIRROR);
     assert_true(use->nearest);
-    assert_true(fixture_noted(*state, "no such.png"));
+    assert_true(fixture_noted("no such.png"));
 }
 
 TEST_IN(texture_coordinates_grow_downwards, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(state, ONE_NODE);
+    const struct scene *scene = load(ONE_NODE);
     const struct scene_mesh *mesh = &scene->meshes[0];
     assert_non_null(mesh->uvs[0]);
     assert_float_equal(mesh->uvs[0][2 * mesh->indices[0]], 0.25, 1e-6);
@@ -338,7 +334,6 @@ TEST_IN(texture_coordinates_grow_downwards, fixture_begin, fixture_end)
 /* Normalized shorts, which assimp would read as floats. */
 TEST_IN(quantized_attributes, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const uint16_t uvs[6] = {0, 65535, 32768, 0, 65535, 65535};
     uint8_t bytes[48];
     memcpy(bytes, data, 36);
@@ -353,18 +348,17 @@ TEST_IN(quantized_attributes, fixture_begin, fixture_end)
         "{\"bufferView\":1,\"componentType\":5123,\"normalized\":true,\"count\":3,\"type\":"
         "\"VEC2\"}],\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{\"POSITION\":0}},"
         "{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1}}]}],\"nodes\":[{\"mesh\":0}]}");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
     assert_int_equal(mesh->triangle_count, 1);
     const float expected[6] = {0, 1, 32768.0f / 65535, 0, 1, 1};
     for (uint32_t i = 0; i < 6; i++)
         assert_float_equal(mesh->uvs[0][2 * mesh->indices[i / 2] + i % 2], expected[i], 1e-6);
-    assert_true(fixture_noted(fixture, "1 primitives of points or lines"));
+    assert_true(fixture_noted("1 primitives of points or lines"));
 }
 
 TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     put_data("b.bin", data, 48);
     const char *path = put_text(
         "q.gltf",
@@ -373,13 +367,12 @@ TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
         "\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":4000000000,\"type\":"
         "\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
         "\"nodes\":[{\"mesh\":0}]}");
-    fixture_refused(fixture, path, "accessors[0]: runs past the end of bufferViews[0]");
+    fixture_refused(path, "accessors[0]: runs past the end of bufferViews[0]");
 }
 
 TEST_IN(missing_buffers_are_named, fixture_begin, fixture_end)
 {
-    fixture_refused(*state,
-                    put_text("q.gltf",
+    fixture_refused(put_text("q.gltf",
                              "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":4,"
                              "\"uri\":\"gone.bin\"}]}"),
                     "buffers[0]: its file `gone.bin`: there is no such file");
@@ -389,11 +382,11 @@ TEST_IN(missing_buffers_are_named, fixture_begin, fixture_end)
 
 TEST_IN(steps_stay_steps, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(
-        state, ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
-                        "\"path\":\"translation\"}},{\"sampler\":1,\"target\":{\"node\":0,"
-                        "\"path\":\"rotation\"}}],\"samplers\":[{\"input\":1,\"output\":2,"
-                        "\"interpolation\":\"STEP\"},{\"input\":1,\"output\":4}]}]");
+    const struct scene *scene =
+        load(ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+                      "\"path\":\"translation\"}},{\"sampler\":1,\"target\":{\"node\":0,"
+                      "\"path\":\"rotation\"}}],\"samplers\":[{\"input\":1,\"output\":2,"
+                      "\"interpolation\":\"STEP\"},{\"input\":1,\"output\":4}]}]");
     assert_int_equal(scene->channel_count, 2);
     const struct scene_channel *channel = &scene->channels[0];
     assert_int_equal(channel->interpolation, SCENE_STEP);
@@ -407,8 +400,7 @@ TEST_IN(steps_stay_steps, fixture_begin, fixture_end)
 
 TEST_IN(too_few_keys_are_refused, fixture_begin, fixture_end)
 {
-    refused(state,
-            ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+    refused(ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
                      "\"path\":\"scale\"}}],\"samplers\":[{\"input\":1,\"output\":2,"
                      "\"interpolation\":\"CUBICSPLINE\"}]}]",
             "animations[0].channels[0]: has 3 values where 9 are needed");

@@ -185,11 +185,10 @@ TEST(reasons_are_one_line)
 
 TEST_IN(colors_of_scans, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path =
         put_text("a.ply", PLY_HEADER "0 0 0 255 0 0\n1 0 0 0 128 0\n0 1 0 0 0 255\n3 0 1 2\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
     assert_non_null(mesh->colors);
     assert_float_equal(mesh->colors[4 * mesh->indices[0]], 1, 1e-6);
     assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.2158605, 1e-5); /* sRGB 128 */
@@ -198,7 +197,6 @@ TEST_IN(colors_of_scans, fixture_begin, fixture_end)
 /* A binary PLY whose first data byte is that of a line end. */
 TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     static const char header[] =
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
         "property float y\nproperty float z\nelement face 1\n"
@@ -212,8 +210,8 @@ TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
     memcpy(file + sizeof header - 1, positions, sizeof positions);
     memcpy(file + sizeof header - 1 + sizeof positions, face, sizeof face);
     const char *path = put_data("a.ply", file, sizeof file - 1);
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
     assert_int_equal(mesh->triangle_count, 1);
     assert_memory_equal(mesh->positions + 3 * mesh->indices[0], positions, sizeof *positions);
 }
@@ -259,7 +257,6 @@ TEST_IN(strips_become_triangles, fixture_begin, fixture_end)
                 {"big", STRIPS_HEADER("binary_big_endian", 4)}};
     const uint32_t wanted[9] = {0, 1, 2, 2, 1, 3, 3, 1, 0};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        struct fixture *fixture = *state;
         char *bytes = NULL;
         size_t size;
         FILE *file = open_memstream(&bytes, &size);
@@ -269,9 +266,9 @@ TEST_IN(strips_become_triangles, fixture_begin, fixture_end)
         assert_int_equal(fclose(file), 0);
         const char *path = put_data("strip.ply", bytes, size);
         free(bytes);
-        if (fixture_load(fixture, path) != WHIT_OK)
+        if (fixture_load(path) != WHIT_OK)
             fail_msg("%s: %s", rows[i].format, messages.last_error);
-        const struct scene_mesh *mesh = &fixture->scene->meshes[i];
+        const struct scene_mesh *mesh = &fixture.scene->meshes[i];
         assert_int_equal(mesh->triangle_count, 3);
         assert_memory_equal(mesh->indices, wanted, sizeof wanted);
     }
@@ -287,23 +284,21 @@ TEST_IN(damaged_strips_are_refused, fixture_begin, fixture_end)
         STRIPS_HEADER("binary_little_endian", 1) "\1\1\1\1\1\1\1\1\1\1\1\1\1\1",
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        struct fixture *fixture = *state;
         messages.errors = 0;
-        fixture_refused(fixture, put_text("strip.ply", files[i]),
+        fixture_refused(put_text("strip.ply", files[i]),
                         "strip.ply: its triangle strips are cut short, are no whole numbers");
     }
 }
 
 TEST_IN(facets_are_welded, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text(
         "a.stl",
         "solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
         "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 1 1 0\n"
         "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = &fixture->scene->meshes[0];
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
     assert_int_equal(mesh->triangle_count, 2);
     assert_int_equal(mesh->vertex_count, 4);
     assert_null(mesh->normals);
@@ -314,11 +309,10 @@ TEST_IN(facets_are_welded, fixture_begin, fixture_end)
 /* Errors name the file by its real path, not by the name under which assimp gets it. */
 TEST_IN(refusals_name_the_file, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     char rubbish[401] = "";
     memset(rubbish, 'x', sizeof rubbish - 1);
     const char *path = put_text("lamp.stl", rubbish);
-    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, ": assimp: "));
     assert_non_null(strstr(strstr(messages.last_error, ": assimp: "), "lamp.stl"));
@@ -327,23 +321,20 @@ TEST_IN(refusals_name_the_file, fixture_begin, fixture_end)
 
 TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text(
         "a.ply",
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
         "property float y\nproperty float z\nelement face 4000000000\n"
         "property list uchar int vertex_indices\nend_header\n0123456789");
-    fixture_refused(fixture, path,
-                    ".ply:3: 4000000000 elements, but only 10 bytes behind the header");
+    fixture_refused(path, ".ply:3: 4000000000 elements, but only 10 bytes behind the header");
 }
 
 /* Headers without an end are refused, since assimp would read until its time limit. */
 TEST_IN(headers_without_an_end_are_refused, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.ply", "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\n"
                                          "property float x\r\nend_heade");
-    fixture_refused(fixture, path, ".ply:6: the file ends within its header");
+    fixture_refused(path, ".ply:6: the file ends within its header");
 }
 
 /* `count` corners on a circle, as lines "`word` x y z"; free() it. */
@@ -379,16 +370,14 @@ static const char *write_round_obj(const char *name, unsigned count)
 /* assimp takes cubic time in a face's number of corners. */
 TEST_IN(faces_of_very_many_corners_are_refused, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
-    fixture_refused(fixture, write_round_obj("a.obj", 1025),
+    fixture_refused(write_round_obj("a.obj", 1025),
                     "a.obj:1027: a face has 1025 corners, at most 1024 are possible");
-    assert_int_equal(fixture_load(fixture, write_round_obj("b.obj", 1024)), WHIT_OK);
-    assert_int_equal(fixture->scene->meshes[0].triangle_count, 1024);
+    assert_int_equal(fixture_load(write_round_obj("b.obj", 1024)), WHIT_OK);
+    assert_int_equal(fixture.scene->meshes[0].triangle_count, 1024);
 }
 
 TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     char *corners = circle("", 1025), *text = NULL;
     size_t bytes;
     FILE *file = open_memstream(&text, &bytes);
@@ -402,7 +391,7 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
         fprintf(file, " %u", i);
     fputc('\n', file);
     assert_int_equal(fclose(file), 0);
-    fixture_refused(fixture, put_text("a.ply", text),
+    fixture_refused(put_text("a.ply", text),
                     "a.ply: face 1 has 1025 corners, at most 1024 are possible");
     free(corners);
     free(text);
@@ -411,24 +400,22 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
 /* assimp 5.2 crashes on a face index far out of range; whit must not. */
 TEST_IN(crashes_stay_in_the_child, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text(
         "a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
                  "property float y\nproperty float z\nelement face 1\n"
                  "property list uchar int vertex_indices\nend_header\n\1\1\1\1\1\1\1\1\1\1\1\1"
                  "\377\377\377\377\377\377\377\377\377\377\377\377\377");
-    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, path));
 }
 
 TEST_IN(time_limits_are_kept, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const whit_load_params params = {.time_limit_s = 2.5e-3};
     const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     importer_hangs = true;
-    whit_result result = load_model(fixture->scene, path, SCENE_NONE, true, true, &params);
+    whit_result result = load_model(fixture.scene, path, SCENE_NONE, true, true, &params);
     importer_hangs = false;
     assert_int_equal(result, WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
@@ -437,30 +424,28 @@ TEST_IN(time_limits_are_kept, fixture_begin, fixture_end)
 
 TEST_IN(importers_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     importer_opens = true;
-    fixture_refused(fixture, path, "the importer tried on this file what it may not");
+    fixture_refused(path, "the importer tried on this file what it may not");
     importer_opens = false;
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
+    assert_int_equal(fixture_load(path), WHIT_OK);
 }
 
 TEST_IN(cancelling_is_not_the_files_fault, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const bool cancel = true;
     const whit_load_params params = {.cancel = &cancel};
     const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    assert_int_equal(load_model(fixture->scene, path, SCENE_NONE, true, true, &params),
+    assert_int_equal(load_model(fixture.scene, path, SCENE_NONE, true, true, &params),
                      WHIT_ERROR_CANCELLED);
 }
 
 TEST_IN(unknown_kinds_are_named, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, put_text("a.blend", "x"), "`.blend`");
+    fixture_refused(put_text("a.blend", "x"), "`.blend`");
 }
 
 TEST_IN(missing_files_are_named, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, in_folder("gone.obj"), "gone.obj");
+    fixture_refused(in_folder("gone.obj"), "gone.obj");
 }

@@ -5,55 +5,53 @@
 
 #define QUAD "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
-static const struct scene_material *material(const struct fixture *fixture, const char *name)
+static const struct scene_material *material(const char *name)
 {
-    for (uint32_t i = 0; i < fixture->scene->material_count; i++)
-        if (strcmp(fixture->scene->materials[i].name, name) == 0)
-            return &fixture->scene->materials[i];
+    for (uint32_t i = 0; i < fixture.scene->material_count; i++)
+        if (strcmp(fixture.scene->materials[i].name, name) == 0)
+            return &fixture.scene->materials[i];
     fail_msg("no material `%s`", name);
     return NULL;
 }
 
-static const struct scene_mesh *only_mesh(const struct fixture *fixture)
+static const struct scene_mesh *only_mesh(void)
 {
-    assert_int_equal(fixture->scene->mesh_count, 1);
-    assert_int_equal(fixture->scene->instance_count, 1);
-    assert_int_equal(fixture->scene->instances[0].mesh, 0);
-    return &fixture->scene->meshes[0];
+    assert_int_equal(fixture.scene->mesh_count, 1);
+    assert_int_equal(fixture.scene->instance_count, 1);
+    assert_int_equal(fixture.scene->instances[0].mesh, 0);
+    return &fixture.scene->meshes[0];
 }
 
 /* Loads a quad with the material of an MTL with this text. */
-static const struct scene_material *load_material(struct fixture *fixture, const char *mtl)
+static const struct scene_material *load_material(const char *mtl)
 {
     put_text("a.mtl", mtl);
     const char *path = put_text("a.obj", "mtllib a.mtl\n" QUAD "usemtl m\nf 1 2 3 4\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    return material(fixture, "m");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    return material("m");
 }
 
 TEST_IN(quads_and_negative_indices, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", QUAD "f -4 -3 -2\nf -4 -2 -1\n"
                                               "v 2 0 0\nv 3 0 0\nv 3.5 1 0\nv 2.5 2 0\nv 2 1 0\n"
                                               "f 5 6 7 8 9\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
     assert_int_equal(mesh->triangle_count, 2 + 3);
     /* Vertices were merged: one for each position instead of one for each corner of the file. */
     assert_int_equal(mesh->vertex_count, 4 + 5);
     assert_null(mesh->normals);
     for (uint32_t i = 0; i < 6; i++)
         assert_true(mesh->indices[i] < 4);
-    assert_int_equal(fixture->scene->instances[0].node, SCENE_NONE);
+    assert_int_equal(fixture.scene->instances[0].node, SCENE_NONE);
 }
 
 TEST_IN(odd_material_lines_lose_nothing, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const struct scene_material *m = load_material(
-        fixture, "# comment\r\nnewmtl m\r\n\taniso 0.5 none\r\n  Kd 0.25 \\\r\n 0.5 0.75 # tail\r\n"
-                 "d -halo 0.5\r\nKs spectral x.rfl\r\nrubbish\r\nrubbish again\r\nNs 12\r\n");
+        "# comment\r\nnewmtl m\r\n\taniso 0.5 none\r\n  Kd 0.25 \\\r\n 0.5 0.75 # tail\r\n"
+        "d -halo 0.5\r\nKs spectral x.rfl\r\nrubbish\r\nrubbish again\r\nNs 12\r\n");
     assert_float_equal(m->diffuse[0], 0.25, 0);
     assert_float_equal(m->diffuse[1], 0.5, 0);
     assert_float_equal(m->diffuse[2], 0.75, 0);
@@ -61,63 +59,59 @@ TEST_IN(odd_material_lines_lose_nothing, fixture_begin, fixture_end)
     assert_float_equal(m->opacity, 0.5, 0);
     assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
     assert_int_equal(m->origin.line, 2);
-    assert_true(fixture_noted(fixture, "a.mtl:3: `aniso`"));
-    assert_true(fixture_noted(fixture, "a.mtl:7: `Ks`"));
-    assert_true(fixture_noted(fixture, "a.mtl:8: `rubbish`"));
-    assert_false(fixture_noted(fixture, "a.mtl:9"));
+    assert_true(fixture_noted("a.mtl:3: `aniso`"));
+    assert_true(fixture_noted("a.mtl:7: `Ks`"));
+    assert_true(fixture_noted("a.mtl:8: `rubbish`"));
+    assert_false(fixture_noted("a.mtl:9"));
     assert_int_equal(messages.errors, 0);
 }
 
 TEST_IN(several_libraries_and_missing_ones, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     put_text("b.mtl", "newmtl b\nKd 0 1 0\n");
     put_text("with blank.mtl", "newmtl c\nKd 0 0 1\n");
     const char *path =
         put_text("a.obj", "mtllib gone.mtl b.mtl\nmtllib with blank.mtl\n" QUAD
                           "usemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\nusemtl nobody\nf 2 3 4\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    assert_float_equal(material(fixture, "b")->diffuse[1], 1, 0);
-    assert_float_equal(material(fixture, "c")->diffuse[2], 1, 0);
-    assert_int_equal(material(fixture, "nobody")->illum, -1);
-    assert_true(fixture_noted(fixture, "`gone.mtl`: there is no such file"));
-    assert_true(fixture_noted(fixture, "`nobody` is not defined"));
-    assert_int_equal(only_mesh(fixture)->group_count, 3);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_float_equal(material("b")->diffuse[1], 1, 0);
+    assert_float_equal(material("c")->diffuse[2], 1, 0);
+    assert_int_equal(material("nobody")->illum, -1);
+    assert_true(fixture_noted("`gone.mtl`: there is no such file"));
+    assert_true(fixture_noted("`nobody` is not defined"));
+    assert_int_equal(only_mesh()->group_count, 3);
 }
 
 TEST_IN(missing_library_is_grey, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", "mtllib gone.mtl\n" QUAD "usemtl b\nf 1 2 3\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_material *m = material(fixture, "b");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_material *m = material("b");
     assert_float_equal(m->diffuse[0], m->diffuse[1], 0);
     assert_int_equal(messages.errors, 0);
 }
 
 TEST_IN(groups_keep_their_materials, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     put_text("a.mtl", "newmtl r\nKd 1 0 0\nnewmtl g\nKd 0 1 0\n");
     const char *path =
         put_text("a.obj", QUAD "g left\nusemtl g\nf 1 2 3\ng right\nusemtl r\nf 1 3 4\nf 2 3 4\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
     assert_int_equal(mesh->group_count, 2);
     assert_string_equal(mesh->groups[0].name, "left");
     assert_int_equal(mesh->groups[1].first_triangle, 1);
     assert_int_equal(mesh->groups[1].triangle_count, 2);
-    const struct scene_material *materials = fixture->scene->materials;
+    const struct scene_material *materials = fixture.scene->materials;
     assert_string_equal(materials[mesh->materials[0]].name, "g");
     assert_string_equal(materials[mesh->materials[2]].name, "r");
 }
 
 TEST_IN(uvs_grow_downwards, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", QUAD "vt 0.25 0.25\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
     assert_non_null(mesh->uvs[0]);
     assert_float_equal(mesh->uvs[0][2 * mesh->indices[0]], 0.25, 0);
     assert_float_equal(mesh->uvs[0][2 * mesh->indices[0] + 1], 0.75, 0);
@@ -125,10 +119,9 @@ TEST_IN(uvs_grow_downwards, fixture_begin, fixture_end)
 
 TEST_IN(numbers_without_a_leading_digit, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", "v .5 0 -.25\nv 1 .125e1 0\nv 0 1 0\nf 1 2 3\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
     const float *a = mesh->positions + 3 * mesh->indices[0];
     const float *b = mesh->positions + 3 * mesh->indices[1];
     assert_float_equal(a[0], 0.5, 0);
@@ -138,22 +131,20 @@ TEST_IN(numbers_without_a_leading_digit, fixture_begin, fixture_end)
 
 TEST_IN(vertex_colors, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path =
         put_text("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
     assert_non_null(mesh->colors);
     assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.5, 1e-6);
-    assert_float_equal(fixture->scene->materials[mesh->materials[0]].diffuse[0], 1, 0);
+    assert_float_equal(fixture.scene->materials[mesh->materials[0]].diffuse[0], 1, 0);
 }
 
 TEST_IN(flat_group_beside_a_smooth_one, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", QUAD "vn 0 1 0\ng a\nf 1//1 2//1 3//1\ng b\nf 1 3 4\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    const struct scene_mesh *mesh = only_mesh(fixture);
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
     assert_non_null(mesh->normals);
     assert_float_equal(mesh->normals[3 * mesh->indices[0] + 1], 1, 0);
     assert_float_equal(mesh->normals[3 * mesh->indices[3] + 2], 1, 1e-6);
@@ -161,35 +152,33 @@ TEST_IN(flat_group_beside_a_smooth_one, fixture_begin, fixture_end)
 
 TEST_IN(wide_text, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     uint8_t wide[256] = {0xfe, 0xff};
     size_t size = 2;
     for (const char *c = text; *c; c++, size += 2)
         wide[size + 1] = (uint8_t)*c;
-    assert_int_equal(fixture_load(fixture, put_data("a.obj", wide, size)), WHIT_OK);
-    assert_int_equal(only_mesh(fixture)->triangle_count, 1);
+    assert_int_equal(fixture_load(put_data("a.obj", wide, size)), WHIT_OK);
+    assert_int_equal(only_mesh()->triangle_count, 1);
 }
 
 TEST_IN(lines_and_points_are_noted, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", QUAD "f 1 2 3\nl 1 2 3\np 4\n");
-    assert_int_equal(fixture_load(fixture, path), WHIT_OK);
-    assert_int_equal(only_mesh(fixture)->triangle_count, 1);
-    assert_true(fixture_noted(fixture, "2 lines are not drawn"));
-    assert_true(fixture_noted(fixture, "1 points are not drawn"));
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_int_equal(only_mesh()->triangle_count, 1);
+    assert_true(fixture_noted("2 lines are not drawn"));
+    assert_true(fixture_noted("1 points are not drawn"));
 }
 
 TEST_IN(nothing_to_draw_is_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, put_text("a.obj", QUAD "l 1 2\nl 3 4\n"),
+    fixture_refused(put_text("a.obj", QUAD "l 1 2\nl 3 4\n"),
                     "no triangles in it (0 points, 2 lines");
 }
 
 TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, put_text("a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
+    fixture_refused(put_text("a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
 }
 
 /* --- classes -------------------------------------------------------------------------------- */
@@ -197,7 +186,7 @@ TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
 TEST_IN(class_of_mirrors, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
-        load_material(*state, "newmtl m\nKd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\nTf 1 1 1\n");
+        load_material("newmtl m\nKd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\nTf 1 1 1\n");
     assert_float_equal(m->reflection[1], 0.8, 1e-6);
     assert_float_equal(m->transmission[0], 0, 0);
     assert_false(m->fresnel);
@@ -207,7 +196,7 @@ TEST_IN(class_of_mirrors, fixture_begin, fixture_end)
 TEST_IN(class_of_glass, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
-        load_material(*state, "newmtl m\nKs 1 1 1\nNi 1.33\nTf 0.25 1 0.5\nillum 7\n");
+        load_material("newmtl m\nKs 1 1 1\nNi 1.33\nTf 0.25 1 0.5\nillum 7\n");
     assert_float_equal(m->transmission[0], 0.25, 0);
     assert_float_equal(m->transmission[1], 1, 0);
     assert_float_equal(m->ior, 1.33, 1e-6);
@@ -219,7 +208,7 @@ TEST_IN(class_of_glass, fixture_begin, fixture_end)
 TEST_IN(glass_refracts_what_it_does_not_reflect, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
-        load_material(*state, "newmtl m\nKs 0.25 0.5 0\nTf 1 0.5 0.5\nillum 6\n");
+        load_material("newmtl m\nKs 0.25 0.5 0\nTf 1 0.5 0.5\nillum 6\n");
     assert_float_equal(m->transmission[0], 0.75, 0);
     assert_float_equal(m->transmission[1], 0.25, 0);
     assert_float_equal(m->transmission[2], 0.5, 0);
@@ -229,50 +218,49 @@ TEST_IN(glass_refracts_what_it_does_not_reflect, fixture_begin, fixture_end)
 TEST_IN(dissolve_decides_what_glass_passes, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
-        load_material(*state, "newmtl m\nd 0.1\nTf 0.9 0.9 0.9\nNi 1.5\nillum 6\n");
+        load_material("newmtl m\nd 0.1\nTf 0.9 0.9 0.9\nNi 1.5\nillum 6\n");
     assert_float_equal(m->transmission[0], 0.9, 1e-6);
     assert_false(m->fresnel);
 }
 
 TEST_IN(dark_filters_are_read_as_held_back, fixture_begin, fixture_end)
 {
-    const struct scene_material *m =
-        load_material(*state, "newmtl m\nTf 0.1 0.1 0.1\nNi 2.5\nillum 7\n");
+    const struct scene_material *m = load_material("newmtl m\nTf 0.1 0.1 0.1\nNi 2.5\nillum 7\n");
     assert_float_equal(m->transmission[0], 0.9, 1e-6);
-    assert_true(fixture_noted(*state, "held back"));
+    assert_true(fixture_noted("held back"));
 }
 
 TEST_IN(transparency_the_other_way_round, fixture_begin, fixture_end)
 {
-    const struct scene_material *m = load_material(*state, "newmtl m\nTr 0.25\nillum 2\n");
+    const struct scene_material *m = load_material("newmtl m\nTr 0.25\nillum 2\n");
     assert_float_equal(m->opacity, 0.75, 0);
     assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
 }
 
 TEST_IN(transparency_of_one_is_meant_as_opaque, fixture_begin, fixture_end)
 {
-    const struct scene_material *m = load_material(*state, "newmtl m\nTr 1.0\nillum 2\n");
+    const struct scene_material *m = load_material("newmtl m\nTr 1.0\nillum 2\n");
     assert_float_equal(m->opacity, 1, 0);
     assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
-    assert_true(fixture_noted(*state, "Tr 1 is drawn as opaque"));
+    assert_true(fixture_noted("Tr 1 is drawn as opaque"));
 }
 
 TEST_IN(transparency_of_one_is_clear_glass, fixture_begin, fixture_end)
 {
-    const struct scene_material *m = load_material(*state, "newmtl m\nTr 1.0\nillum 7\n");
+    const struct scene_material *m = load_material("newmtl m\nTr 1.0\nillum 7\n");
     assert_float_equal(m->transmission[0], 1, 0);
 }
 
 TEST_IN(class_10_catches_shadows, fixture_begin, fixture_end)
 {
-    const struct scene_material *m = load_material(*state, "newmtl m\nillum 10\n");
+    const struct scene_material *m = load_material("newmtl m\nillum 10\n");
     assert_true(m->shadow_catcher);
-    assert_false(fixture_noted(*state, "shadow"));
+    assert_false(fixture_noted("shadow"));
 }
 
 TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 {
-    const struct scene_material *m = load_material(*state, "newmtl m\nKs 1 1 1\nillum 1\n");
+    const struct scene_material *m = load_material("newmtl m\nKs 1 1 1\nillum 1\n");
     assert_float_equal(m->specular[0], 0, 0);
     assert_int_equal(m->model, WHIT_MODEL_PHONG);
 }
@@ -280,7 +268,7 @@ TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 /* --- maps ----------------------------------------------------------------------------------- */
 
 /* Writes a 4x4 picture whose left half has alpha `left_alpha`. */
-static void write_picture(struct fixture *fixture, const char *name, float left_alpha)
+static void write_picture(const char *name, float left_alpha)
 {
     struct image image;
     const char *path = put_data(name, "", 0);
@@ -288,20 +276,19 @@ static void write_picture(struct fixture *fixture, const char *name, float left_
     for (uint32_t i = 0; i < 16; i++)
         for (uint32_t k = 0; k < 4; k++)
             image.pixels[4 * i + k] = k == 3 && i % 4 < 2 ? left_alpha : 1.0f;
-    assert_int_equal(image_save(&fixture->log, &image, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_save(&fixture.log, &image, path, NULL, 0), WHIT_OK);
     image_finish(&image);
 }
 
 TEST_IN(maps_with_options, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
-    write_picture(fixture, "a b.png", 1);
+    write_picture("a b.png", 1);
     const struct scene_material *m =
-        load_material(fixture, "newmtl m\nmap_Kd -s 2 4 1 -o 0.25 -clamp on a b.png\n"
-                               "map_Bump -imfchan r a b.png -bm 1.5\nmap_Ks gone.png\n");
+        load_material("newmtl m\nmap_Kd -s 2 4 1 -o 0.25 -clamp on a b.png\n"
+                      "map_Bump -imfchan r a b.png -bm 1.5\nmap_Ks gone.png\n");
     const struct scene_texture_use *use = &m->textures[SCENE_SLOT_DIFFUSE];
     /* The picture, and its red channel alone for -imfchan. */
-    assert_int_equal(fixture->scene->texture_count, 2);
+    assert_int_equal(fixture.scene->texture_count, 2);
     assert_int_equal(use->texture, 0);
     assert_int_equal(use->wrap_u, SCENE_WRAP_CLAMP);
     assert_float_equal(use->transform[0], 2, 0);
@@ -312,64 +299,61 @@ TEST_IN(maps_with_options, fixture_begin, fixture_end)
     assert_int_equal(m->textures[SCENE_SLOT_BUMP].texture, 1);
     assert_float_equal(m->normal_scale, 1.5, 0);
     assert_int_equal(m->textures[SCENE_SLOT_SPECULAR].texture, SCENE_NONE);
-    assert_true(fixture_noted(fixture, "a.mtl:4: texture `gone.png`: there is no such file"));
+    assert_true(fixture_noted("a.mtl:4: texture `gone.png`: there is no such file"));
 }
 
 /* The red 8-bit code of a map's first texel. */
-static int first_texel(const struct fixture *fixture, const struct scene_material *m,
-                       enum scene_slot slot)
+static int first_texel(const struct scene_material *m, enum scene_slot slot)
 {
-    assert_true(m->textures[slot].texture < fixture->scene->texture_count);
-    return fixture->scene->textures[m->textures[slot].texture].rgba[0];
+    assert_true(m->textures[slot].texture < fixture.scene->texture_count);
+    return fixture.scene->textures[m->textures[slot].texture].rgba[0];
 }
 
 TEST_IN(channels_and_ranges_of_maps, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     struct image image;
     const char *path = put_data("t.png", "", 0);
     assert_int_equal(image_init(&image, 1, 1, 4, false), WHIT_OK);
     for (int k = 0; k < 4; k++)
         image.pixels[k] = k == 3 ? 0.6f : image_linear_from_srgb((float)(50 * (k + 1)) / 255.0f);
-    assert_int_equal(image_save(&fixture->log, &image, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_save(&fixture.log, &image, path, NULL, 0), WHIT_OK);
     image_finish(&image);
     const struct scene_material *m = load_material(
-        fixture, "newmtl m\nillum 2\nKd 1 1 1\nmap_Kd -mm 0.2 0.5 t.png\n"
-                 "map_Ns -imfchan m t.png\nmap_d -imfchan g t.png\nbump -imfchan l t.png\n"
-                 "map_Ks -t 1 1 1 -cc on -imfchan z -boost 2 t.png\nmap_Ke -imfchan b t.png\n");
-    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_DIFFUSE), 51 + 25);
-    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_METAL_ROUGH), 153);
-    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_OPACITY), 100);
-    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_BUMP), 93);
-    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_EMISSION), 150);
-    assert_int_equal(first_texel(fixture, m, SCENE_SLOT_SPECULAR), 50);
+        "newmtl m\nillum 2\nKd 1 1 1\nmap_Kd -mm 0.2 0.5 t.png\n"
+        "map_Ns -imfchan m t.png\nmap_d -imfchan g t.png\nbump -imfchan l t.png\n"
+        "map_Ks -t 1 1 1 -cc on -imfchan z -boost 2 t.png\nmap_Ke -imfchan b t.png\n");
+    assert_int_equal(first_texel(m, SCENE_SLOT_DIFFUSE), 51 + 25);
+    assert_int_equal(first_texel(m, SCENE_SLOT_METAL_ROUGH), 153);
+    assert_int_equal(first_texel(m, SCENE_SLOT_OPACITY), 100);
+    assert_int_equal(first_texel(m, SCENE_SLOT_BUMP), 93);
+    assert_int_equal(first_texel(m, SCENE_SLOT_EMISSION), 150);
+    assert_int_equal(first_texel(m, SCENE_SLOT_SPECULAR), 50);
     assert_float_equal(m->textures[SCENE_SLOT_SPECULAR].transform[2], 0, 0);
-    assert_true(fixture_noted(fixture, "`-t` (turbulence) was ignored"));
-    assert_true(fixture_noted(fixture, "`-cc` (colour correction) was ignored"));
-    assert_true(fixture_noted(fixture, "`-imfchan` of that channel was ignored"));
-    assert_false(fixture_noted(fixture, "-boost"));
+    assert_true(fixture_noted("`-t` (turbulence) was ignored"));
+    assert_true(fixture_noted("`-cc` (colour correction) was ignored"));
+    assert_true(fixture_noted("`-imfchan` of that channel was ignored"));
+    assert_false(fixture_noted("-boost"));
 }
 
 TEST_IN(zeros_that_nobody_means, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const struct scene_material *m =
-        load_material(fixture, "newmtl m\nKa 0 0 0\nKd 0 0 0\nKs 0.9 0.9 0.9\nNs 0\nillum 3\n"
-                               "map_Kd gone.png\nnewmtl other\nKa 1 1 1\nKd 0 0 0\n");
+        load_material("newmtl m\nKa 0 0 0\nKd 0 0 0\nKs 0.9 0.9 0.9\nNs 0\nillum 3\n"
+                      "map_Kd gone.png\nnewmtl other\nKa 1 1 1\nKd 0 0 0\n");
     for (int k = 0; k < 3; k++) {
         assert_float_equal(m->diffuse[k], 1, 0);
         assert_float_equal(m->ambient[k], 1, 0);
         assert_float_equal(m->specular[k], 0, 0);
         assert_float_equal(m->reflection[k], 0.9f, 0);
     }
-    assert_true(fixture_noted(fixture, "map_Kd is drawn as with a Kd of 1"));
-    assert_true(fixture_noted(fixture, "Ns 0 makes no highlight"));
+    assert_true(fixture_noted("map_Kd is drawn as with a Kd of 1"));
+    assert_true(fixture_noted("Ns 0 makes no highlight"));
 }
 
 TEST_IN(zeros_that_are_meant, fixture_begin, fixture_end)
 {
     const struct scene_material *m =
-        load_material(*state, "newmtl m\nKa 0.2 0 0\nKd 0 0 0\nKs 1 1 1\nNs 1\n");
+        load_material("newmtl m\nKa 0.2 0 0\nKd 0 0 0\nKs 1 1 1\nNs 1\n");
     assert_float_equal(m->ambient[0], 0.2f, 0);
     assert_float_equal(m->ambient[1], 0, 0);
     assert_float_equal(m->diffuse[0], 0, 0);
@@ -378,21 +362,19 @@ TEST_IN(zeros_that_are_meant, fixture_begin, fixture_end)
 
 TEST_IN(unused_maps_are_named, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
-    load_material(fixture, "newmtl m\ndisp d.png\ndecal d.png\nrefl -type sphere d.png\n"
-                           "map_Ka a.png\nmap_Kd k.png\n");
-    assert_true(fixture_noted(fixture, "a.mtl:2: `disp` is not used"));
-    assert_true(fixture_noted(fixture, "a.mtl:3: `decal` is not used"));
-    assert_true(fixture_noted(fixture, "a.mtl:4: `refl` is not used"));
-    assert_true(fixture_noted(fixture, "`a.png` of map_Ka"));
+    load_material("newmtl m\ndisp d.png\ndecal d.png\nrefl -type sphere d.png\n"
+                  "map_Ka a.png\nmap_Kd k.png\n");
+    assert_true(fixture_noted("a.mtl:2: `disp` is not used"));
+    assert_true(fixture_noted("a.mtl:3: `decal` is not used"));
+    assert_true(fixture_noted("a.mtl:4: `refl` is not used"));
+    assert_true(fixture_noted("`a.png` of map_Ka"));
 }
 
 TEST_IN(alpha_cuts_out_once, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
-    write_picture(fixture, "leaf.png", 0);
+    write_picture("leaf.png", 0);
     const struct scene_material *m =
-        load_material(fixture, "newmtl m\nmap_Kd leaf.png\nmap_d .\\leaf.png\n");
+        load_material("newmtl m\nmap_Kd leaf.png\nmap_d .\\leaf.png\n");
     assert_int_equal(m->alpha, SCENE_ALPHA_MASK);
     assert_float_equal(m->alpha_cutoff, 0.5, 0);
     assert_int_equal(m->textures[SCENE_SLOT_DIFFUSE].texture, 0);
@@ -401,18 +383,16 @@ TEST_IN(alpha_cuts_out_once, fixture_begin, fixture_end)
 
 TEST_IN(whole_pictures_cut_out_nothing, fixture_begin, fixture_end)
 {
-    write_picture(*state, "wall.png", 1);
-    assert_int_equal(load_material(*state, "newmtl m\nmap_Kd wall.png\n")->alpha,
-                     SCENE_ALPHA_OPAQUE);
+    write_picture("wall.png", 1);
+    assert_int_equal(load_material("newmtl m\nmap_Kd wall.png\n")->alpha, SCENE_ALPHA_OPAQUE);
 }
 
 TEST_IN(models_too_large_are_refused, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *path = put_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    fixture->scene->memory_limit = 200;
-    assert_int_equal(fixture_load(fixture, path), WHIT_ERROR_INPUT);
+    fixture.scene->memory_limit = 200;
+    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, "mesh `a.obj` of 1 triangles would take"));
-    assert_int_equal(fixture->scene->mesh_count, 0);
+    assert_int_equal(fixture.scene->mesh_count, 0);
 }

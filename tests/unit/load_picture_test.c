@@ -258,16 +258,15 @@ TEST(pngs_take_what_their_header_tells_of)
 
 TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     struct bytes file = write_stb(95);
     const char *path = put_data("cut.jpg", file.data, file.count / 2);
     uint32_t index;
-    assert_int_equal(load_texture(fixture->scene, path, NULL, 0, NULL, &index, NULL), WHIT_OK);
-    assert_memory_equal(fixture->scene->textures[index].rgba, "\377\0\377\377", 4);
-    assert_true(fixture_noted(fixture, "texture `cut.jpg`: "));
-    assert_true(fixture_noted(fixture, "magenta takes its place"));
+    assert_int_equal(load_texture(fixture.scene, path, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_memory_equal(fixture.scene->textures[index].rgba, "\377\0\377\377", 4);
+    assert_true(fixture_noted("texture `cut.jpg`: "));
+    assert_true(fixture_noted("magenta takes its place"));
     assert_int_equal(messages.errors, 0);
-    assert_int_equal(load_environment(fixture->scene, path, NULL), WHIT_ERROR_INPUT);
+    assert_int_equal(load_environment(fixture.scene, path, NULL), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, path));
     free(file.data);
@@ -302,36 +301,34 @@ static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80
 
 TEST_IN(environments_too_large_are_refused, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const char *sky = put_data("a.hdr", hdr, sizeof hdr - 1);
-    fixture->scene->memory_limit = 23; /* three floats, on host and device */
-    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_ERROR_INPUT);
+    fixture.scene->memory_limit = 23; /* three floats, on host and device */
+    assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, "a.hdr` of 1x1 pixels would take"));
-    fixture->scene->memory_limit = 24;
-    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_OK);
+    fixture.scene->memory_limit = 24;
+    assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_OK);
 }
 
 TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     static const char why[] = "the decoder tried on this file what it may not, and was stopped";
     struct bytes file = write_stb(95);
     const char *jpeg = put_data("a.jpg", file.data, file.count);
     const char *sky = put_data("a.hdr", hdr, sizeof hdr - 1);
     uint32_t index;
     decoders_connect = true;
-    assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
-    assert_memory_equal(fixture->scene->textures[index].rgba, "\377\0\377\377", 4);
-    assert_true(fixture_noted(fixture, why));
-    assert_int_equal(load_environment(fixture->scene, jpeg, NULL), WHIT_ERROR_INPUT);
-    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_ERROR_INPUT);
+    assert_int_equal(load_texture(fixture.scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_memory_equal(fixture.scene->textures[index].rgba, "\377\0\377\377", 4);
+    assert_true(fixture_noted(why));
+    assert_int_equal(load_environment(fixture.scene, jpeg, NULL), WHIT_ERROR_INPUT);
+    assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 2);
     assert_non_null(strstr(messages.last_error, sky));
     assert_non_null(strstr(messages.last_error, why));
     decoders_connect = false;
-    assert_int_equal(load_environment(fixture->scene, jpeg, NULL), WHIT_OK);
-    assert_int_equal(load_environment(fixture->scene, sky, NULL), WHIT_OK);
+    assert_int_equal(load_environment(fixture.scene, jpeg, NULL), WHIT_OK);
+    assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_OK);
     free(file.data);
 }
 
@@ -339,19 +336,18 @@ TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
    error. */
 TEST_IN(a_sandbox_that_is_required_is_an_error, fixture_begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const whit_load_params params = {.require_sandbox = true};
     struct bytes file = write_stb(95);
     const char *jpeg = put_data("a.jpg", file.data, file.count);
     const char *sky = put_data("a.hdr", hdr, sizeof hdr - 1);
     uint32_t index;
     sandbox_is_refused = true;
-    assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, &params, &index, NULL),
+    assert_int_equal(load_texture(fixture.scene, jpeg, NULL, 0, &params, &index, NULL),
                      WHIT_ERROR_USAGE);
-    assert_int_equal(load_environment(fixture->scene, sky, &params), WHIT_ERROR_USAGE);
+    assert_int_equal(load_environment(fixture.scene, sky, &params), WHIT_ERROR_USAGE);
     assert_int_equal(messages.errors, 2);
     assert_non_null(strstr(messages.last_error, "the decoder cannot be locked in"));
-    assert_int_equal(load_texture(fixture->scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture.scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
     sandbox_is_refused = false;
     free(file.data);
 }

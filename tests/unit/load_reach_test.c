@@ -78,9 +78,9 @@ WRAPPED(DIR *, opendir, const char *path)
 
 /* ---- Folders: `in` has the model, `out` has secrets ---- */
 
-struct place {
+static struct {
     char top[PATH_MAX], in[PATH_MAX];
-};
+} place;
 
 static void write_file(const char *folder, const char *name, const void *data, size_t bytes)
 {
@@ -118,18 +118,18 @@ static void make_link(const char *folder, const char *name, const char *to)
 
 static const char *const extensions[] = {"mtl", "obj", "tga", "bin"};
 
-static void make_links(const struct place *place)
+static void make_links(void)
 {
-    make_link(place->in, "link", "../out");
-    make_link(place->in, "absolute", outside);
-    make_link(place->in, "chain", "link");
-    make_link(place->in, "sub/up", "../../out");
-    make_link(place->in, "loop", "loop");
+    make_link(place.in, "link", "../out");
+    make_link(place.in, "absolute", outside);
+    make_link(place.in, "chain", "link");
+    make_link(place.in, "sub/up", "../../out");
+    make_link(place.in, "loop", "loop");
     for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++) {
         char name[32], to[PATH_MAX];
         snprintf(name, sizeof name, "link.%s", extensions[i]);
         print_path(to, "../out/secret.%s", extensions[i]);
-        make_link(place->in, name, to);
+        make_link(place.in, name, to);
     }
 }
 
@@ -141,7 +141,7 @@ static void make_folder(char *to, const char *folder, const char *name)
 
 static int begin(void **state)
 {
-    static struct place place;
+    (void)state;
     char sub[PATH_MAX], top[] = "/tmp/whit-reach-XXXXXX", *resolved;
     resolved = mkdtemp(top) ? __real_realpath(top, NULL) : NULL;
     assert_non_null(resolved);
@@ -151,17 +151,16 @@ static int begin(void **state)
     make_folder(outside, place.top, "out");
     make_folder(sub, place.in, "sub");
     write_secrets(outside);
-    make_links(&place);
+    make_links();
     leak_count = odd_count = 0;
-    *state = &place;
     return 0;
 }
 
 static int end(void **state)
 {
-    struct place *place = *state;
+    (void)state;
     char command[PATH_MAX + 16];
-    snprintf(command, sizeof command, "rm -r %s", place->top);
+    snprintf(command, sizeof command, "rm -r %s", place.top);
     outside[0] = 0;
     return system(command);
 }
@@ -259,8 +258,7 @@ static void spell(const char *name, const char *extension, char *to, size_t byte
 }
 
 /* Writes a model with the reference; an MTL gets an OBJ that refers to it. */
-static void write_model(const struct place *place, const struct kind *kind, const char *reference,
-                        char *path)
+static void write_model(const struct kind *kind, const char *reference, char *path)
 {
     char text[4096];
     snprintf(text, sizeof text, "mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n",
@@ -268,12 +266,12 @@ static void write_model(const struct place *place, const struct kind *kind, cons
     bool library = strstr(kind->file, ".mtl") != NULL;
     const char *named = library ? "m.obj" : kind->file;
     if (library)
-        write_text(place->in, named, text);
+        write_text(place.in, named, text);
     const char *gap = strstr(kind->text, "%s");
     snprintf(text, sizeof text, "%.*s%s%s", (int)(gap - kind->text), kind->text, reference,
              gap + 2);
-    write_text(place->in, kind->file, text);
-    print_path(path, "%s/%s", place->in, named);
+    write_text(place.in, kind->file, text);
+    print_path(path, "%s/%s", place.in, named);
 }
 
 struct outcome {
@@ -318,7 +316,6 @@ static void load(const char *path, const char *allowed, struct outcome *out)
 
 TEST_IN(nothing_outside_is_read, begin, end)
 {
-    struct place *place = *state;
     struct outcome out;
     uint32_t count = 0;
     for (size_t k = 0; k < KIND_COUNT; k++) {
@@ -328,7 +325,7 @@ TEST_IN(nothing_outside_is_read, begin, end)
             if ((tricks[t].flags & PERCENT) && !kind->percent)
                 continue;
             spell(tricks[t].name, kind->extension, reference, sizeof reference);
-            write_model(place, kind, reference, path);
+            write_model(kind, reference, path);
             load(path, NULL, &out);
             count++;
             bool told = strstr(out.text, "--allow-path") != NULL;
@@ -347,14 +344,13 @@ TEST_IN(nothing_outside_is_read, begin, end)
 /* Shows that the test above can fail: every kind reads the secret if its folder is allowed. */
 TEST_IN(an_allowed_folder_is_read, begin, end)
 {
-    struct place *place = *state;
     static const char *const names[] = {"../out/secret.%E", "%O/secret.%E", "link/secret.%E"};
     struct outcome out;
     for (size_t k = 0; k < KIND_COUNT; k++) {
         for (size_t t = 0; t < sizeof names / sizeof *names; t++) {
             char reference[PATH_MAX], path[PATH_MAX], folder[PATH_MAX];
             spell(names[t], kinds[k].extension, reference, sizeof reference);
-            write_model(place, &kinds[k], reference, path);
+            write_model(&kinds[k], reference, path);
             load(path, NULL, &out);
             assert_string_equal(out.refused.folder, outside);
             leak_count = 0;
@@ -369,11 +365,10 @@ TEST_IN(an_allowed_folder_is_read, begin, end)
 
 TEST_IN(the_model_itself_may_be_a_link, begin, end)
 {
-    struct place *place = *state;
     struct outcome out;
     char path[PATH_MAX];
-    make_link(place->in, "model.obj", "../out/secret.obj");
-    print_path(path, "%s/model.obj", place->in);
+    make_link(place.in, "model.obj", "../out/secret.obj");
+    print_path(path, "%s/model.obj", place.in);
     load(path, NULL, &out);
     assert_int_equal(out.result, WHIT_OK);
     assert_int_equal(out.refused.count, 0);
@@ -382,10 +377,9 @@ TEST_IN(the_model_itself_may_be_a_link, begin, end)
 
 TEST_IN(a_folder_that_is_not_there_cannot_be_allowed, begin, end)
 {
-    struct place *place = *state;
     struct outcome out;
     char path[PATH_MAX], file[PATH_MAX];
-    write_model(place, &kinds[0], "x.mtl", path);
+    write_model(&kinds[0], "x.mtl", path);
     load(path, "/tmp/no such folder", &out);
     assert_int_equal(out.result, WHIT_ERROR_INPUT);
     assert_non_null(strstr(out.text, "/tmp/no such folder: cannot be allowed: No such file"));
@@ -398,15 +392,14 @@ TEST_IN(a_folder_that_is_not_there_cannot_be_allowed, begin, end)
    so also between the check and the opening. */
 TEST_IN(a_folder_that_is_swapped_is_not_followed, begin, end)
 {
-    struct place *place = *state;
     struct outcome out;
     char path[PATH_MAX], folder[PATH_MAX];
-    make_folder(folder, place->in, "swapped");
+    make_folder(folder, place.in, "swapped");
     write_secrets(folder);
     for (size_t k = 0; k < KIND_COUNT; k++) {
         char reference[64], kept[PATH_MAX];
         snprintf(reference, sizeof reference, "swapped/secret.%s", kinds[k].extension);
-        write_model(place, &kinds[k], reference, path);
+        write_model(&kinds[k], reference, path);
         print_path(kept, "%s.kept", folder);
         int times = 0;
         for (bool more = true; more; times++) {
@@ -428,22 +421,21 @@ TEST_IN(a_folder_that_is_swapped_is_not_followed, begin, end)
 /* Entries inside of the folder that are no regular files are neither opened nor waited for. */
 TEST_IN(what_is_no_file_is_not_opened, begin, end)
 {
-    struct place *place = *state;
     static const char *const names[] = {"pipe", "socket", "zero", "sub", "."};
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     struct outcome out;
     char path[PATH_MAX];
-    print_path(path, "%s/pipe", place->in);
+    print_path(path, "%s/pipe", place.in);
     assert_int_equal(mkfifo(path, 0666), 0);
     int socket_fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    snprintf(address.sun_path, sizeof address.sun_path, "%.90s/socket", place->in);
+    snprintf(address.sun_path, sizeof address.sun_path, "%.90s/socket", place.in);
     assert_int_equal(bind(socket_fd, (struct sockaddr *)&address, sizeof address), 0);
-    make_link(place->in, "zero", "/dev/zero");
+    make_link(place.in, "zero", "/dev/zero");
     for (size_t k = 0; k < KIND_COUNT; k++) {
         for (size_t t = 0; t < sizeof names / sizeof *names; t++) {
             if (strstr(kinds[k].file, "model.json"))
                 continue; /* its names end in those of models */
-            write_model(place, &kinds[k], names[t], path);
+            write_model(&kinds[k], names[t], path);
             load(path, NULL, &out);
             assert_int_equal(odd_count, 0);
             bool link = strcmp(names[t], "zero") == 0;
@@ -457,15 +449,14 @@ TEST_IN(what_is_no_file_is_not_opened, begin, end)
 /* The option in a message can be pasted into a shell, whatever characters the folder's name has. */
 TEST_IN(the_option_can_be_pasted, begin, end)
 {
-    struct place *place = *state;
     struct outcome out;
     char path[PATH_MAX];
-    write_model(place, &kinds[2], "../a folder/x.png", path);
+    write_model(&kinds[2], "../a folder/x.png", path);
     load(path, NULL, &out);
     char wanted[PATH_MAX];
-    print_path(wanted, "--allow-path '%s/a folder' lets", place->top);
+    print_path(wanted, "--allow-path '%s/a folder' lets", place.top);
     assert_non_null(strstr(out.text, wanted));
-    write_model(place, &kinds[2], "../a'$(reboot)'/x.png", path);
+    write_model(&kinds[2], "../a'$(reboot)'/x.png", path);
     load(path, NULL, &out);
     assert_non_null(strstr(out.text, "--allow-path FOLDER lets"));
 }

@@ -79,20 +79,19 @@ static void spell(char spellings[SPELLINGS][112])
 
 TEST_IN(one_file_of_many_names, begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     char spellings[SPELLINGS][112];
     const char *images[SPELLINGS];
     spell(spellings);
     for (uint32_t i = 0; i < SPELLINGS; i++)
         images[i] = spellings[i];
     put_data("a.tga", tga, sizeof tga);
-    assert_int_equal(fixture_load(fixture, write_gltf(images, SPELLINGS)), WHIT_OK);
-    assert_int_equal(fixture->scene->material_count, SPELLINGS);
-    assert_int_equal(fixture->scene->texture_count, 1);
+    assert_int_equal(fixture_load(write_gltf(images, SPELLINGS)), WHIT_OK);
+    assert_int_equal(fixture.scene->material_count, SPELLINGS);
+    assert_int_equal(fixture.scene->texture_count, 1);
     assert_int_equal(decoded, 1);
     assert_int_equal(file_reads, 2); /* the model and the picture */
     for (uint32_t i = 0; i < SPELLINGS; i++)
-        assert_int_equal(fixture->scene->materials[i].textures[SCENE_SLOT_DIFFUSE].texture, 0);
+        assert_int_equal(fixture.scene->materials[i].textures[SCENE_SLOT_DIFFUSE].texture, 0);
 }
 
 TEST_IN(one_picture_in_many_places, begin, fixture_end)
@@ -105,48 +104,45 @@ TEST_IN(one_picture_in_many_places, begin, fixture_end)
         "{\"uri\":\"data:;base64," TGA_BASE64 "\"}",
         "{\"uri\":\"other.tga\"}",
     };
-    struct fixture *fixture = *state;
     uint8_t other[sizeof tga];
     memcpy(other, tga, sizeof tga);
     other[sizeof tga - 1]++;
     put_data("a.tga", tga, sizeof tga);
     put_data("b.tga", tga, sizeof tga);
     put_data("other.tga", other, sizeof other);
-    assert_int_equal(fixture_load(fixture, write_gltf(images, 6)), WHIT_OK);
-    assert_int_equal(fixture->scene->texture_count, 2);
+    assert_int_equal(fixture_load(write_gltf(images, 6)), WHIT_OK);
+    assert_int_equal(fixture.scene->texture_count, 2);
     assert_int_equal(decoded, 2);
-    assert_int_equal(fixture->scene->materials[5].textures[SCENE_SLOT_DIFFUSE].texture, 1);
+    assert_int_equal(fixture.scene->materials[5].textures[SCENE_SLOT_DIFFUSE].texture, 1);
 }
 
 TEST_IN(limits_keep_pictures_apart, begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     const whit_load_params params = {.texture_limit = 1};
     uint32_t whole, halved;
-    assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &whole, NULL),
+    assert_int_equal(load_texture(fixture.scene, "a", tga, sizeof tga, NULL, &whole, NULL),
                      WHIT_OK);
-    assert_int_equal(load_texture(fixture->scene, "b", tga, sizeof tga, &params, &halved, NULL),
+    assert_int_equal(load_texture(fixture.scene, "b", tga, sizeof tga, &params, &halved, NULL),
                      WHIT_OK);
-    assert_int_equal(fixture->scene->textures[whole].width, 2);
-    assert_int_equal(fixture->scene->textures[halved].width, 1);
+    assert_int_equal(fixture.scene->textures[whole].width, 2);
+    assert_int_equal(fixture.scene->textures[halved].width, 1);
 }
 
 /* A damaged picture is decoded once, each of its names gets a note, and in a scene file it is an
    error instead of magenta. */
 TEST_IN(damaged_pictures_are_tried_once, begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     uint32_t index, same;
     const char *reason = NULL;
     const char *a = put_data("a.tga", tga, 12);
     const char *b = put_data("b.tga", tga, 12);
-    assert_int_equal(load_texture(fixture->scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
-    assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &same, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture.scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture.scene, b, NULL, 0, NULL, &same, NULL), WHIT_OK);
     assert_int_equal(same, index);
     assert_int_equal(decoded, 1);
-    assert_true(fixture_noted(fixture, "texture `a.tga`: "));
-    assert_true(fixture_noted(fixture, "texture `b.tga`: the same as `a.tga`; magenta"));
-    assert_int_equal(load_texture(fixture->scene, "c", tga, 12, NULL, &index, &reason),
+    assert_true(fixture_noted("texture `a.tga`: "));
+    assert_true(fixture_noted("texture `b.tga`: the same as `a.tga`; magenta"));
+    assert_int_equal(load_texture(fixture.scene, "c", tga, 12, NULL, &index, &reason),
                      WHIT_ERROR_INPUT);
     assert_non_null(reason);
 }
@@ -154,7 +150,6 @@ TEST_IN(damaged_pictures_are_tried_once, begin, fixture_end)
 /* Notes quote at most 40 characters of folder or name, also within the reason. */
 TEST_IN(notes_quote_little, begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     uint32_t index;
     char k[61] = "", name[96];
     memset(k, 'k', sizeof k - 1);
@@ -164,31 +159,30 @@ TEST_IN(notes_quote_little, begin, fixture_end)
     const char *b = put_data(name, tga, 12);
     const char *large = put_data("\033.tga", tga, 12);
     assert_int_equal(truncate(large, (off_t)1 << 30), 0);
-    assert_int_equal(load_texture(fixture->scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
-    assert_int_equal(load_texture(fixture->scene, b, NULL, 0, NULL, &index, NULL), WHIT_OK);
-    assert_int_equal(load_texture(fixture->scene, large, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture.scene, a, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture.scene, b, NULL, 0, NULL, &index, NULL), WHIT_OK);
+    assert_int_equal(load_texture(fixture.scene, large, NULL, 0, NULL, &index, NULL), WHIT_OK);
     k[40] = 0;
     snprintf(name, sizeof name, "`%s...`: ", k);
-    assert_true(fixture_noted(fixture, name));
+    assert_true(fixture_noted(name));
     snprintf(name, sizeof name, "the same as `%s...`; magenta", k);
-    assert_true(fixture_noted(fixture, name));
-    assert_true(fixture_noted(fixture, "`\033.tga`: 1073741824 bytes, over the limit"));
+    assert_true(fixture_noted(name));
+    assert_true(fixture_noted("`\033.tga`: 1073741824 bytes, over the limit"));
     k[40] = 'k';
-    assert_false(fixture_noted(fixture, k));
-    assert_false(fixture_noted(fixture, folder));
+    assert_false(fixture_noted(k));
+    assert_false(fixture_noted(folder));
 }
 
 TEST_IN(textures_too_large_are_not_decoded, begin, fixture_end)
 {
-    struct fixture *fixture = *state;
     uint32_t index;
-    fixture->scene->memory_limit = 17; /* two texels, on host and device, and smaller levels */
-    assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),
+    fixture.scene->memory_limit = 17; /* two texels, on host and device, and smaller levels */
+    assert_int_equal(load_texture(fixture.scene, "a", tga, sizeof tga, NULL, &index, NULL),
                      WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, "texture `a` of 2x1 pixels would take"));
     assert_int_equal(decoded, 0);
-    fixture->scene->memory_limit = 18;
-    assert_int_equal(load_texture(fixture->scene, "a", tga, sizeof tga, NULL, &index, NULL),
+    fixture.scene->memory_limit = 18;
+    assert_int_equal(load_texture(fixture.scene, "a", tga, sizeof tga, NULL, &index, NULL),
                      WHIT_OK);
 }

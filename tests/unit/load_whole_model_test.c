@@ -5,12 +5,12 @@
 #include "load_model_fixture.h"
 #include "unit.h"
 
-static const struct scene *load(struct fixture *fixture, const char *path)
+static const struct scene *load(const char *path)
 {
-    if (fixture_load(fixture, path) != WHIT_OK)
+    if (fixture_load(path) != WHIT_OK)
         fail_msg("%s", messages.last_error);
     assert_int_equal(messages.errors, 0);
-    return fixture->scene;
+    return fixture.scene;
 }
 
 /* Checks the world position of a vertex of an instance, through all nodes above it. */
@@ -48,7 +48,7 @@ static const char off[] = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 2 0\n0 2 3\n4 0 1 2 3\n";
 
 TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, put_text("a.off", off));
+    const struct scene *scene = load(put_text("a.off", off));
     assert_int_equal(scene->meshes[0].triangle_count, 2);
     assert_int_equal(scene->meshes[0].vertex_count, 4);
     assert_place(scene, 0, 0, 0, 0, 0);
@@ -123,7 +123,7 @@ static const char *write_collada(const char *effect, const char *libraries, cons
 
 TEST_IN(collada_in_half_metres_and_z_up, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada("f", "", ""));
+    const struct scene *scene = load(write_collada("f", "", ""));
     assert_int_equal(scene->instance_count, 2);
     assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
     assert_place(scene, 0, 1, 2, 0, 0);
@@ -135,8 +135,8 @@ TEST_IN(collada_in_half_metres_and_z_up, fixture_begin, fixture_end)
 
 TEST_IN(collada_names_its_textures, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada("e", "", ""));
-    assert_true(fixture_noted(*state, "texture `no such.png`"));
+    const struct scene *scene = load(write_collada("e", "", ""));
+    assert_true(fixture_noted("texture `no such.png`"));
     assert_int_not_equal(material_of(scene)->textures[SCENE_SLOT_DIFFUSE].texture, SCENE_NONE);
     assert_float_equal(material_of(scene)->emission[0], 0.5, 1e-6);
     assert_float_equal(scene->meshes[0].uvs[0][0], 0.25, 1e-6);
@@ -145,7 +145,7 @@ TEST_IN(collada_names_its_textures, fixture_begin, fixture_end)
 
 TEST_IN(collada_with_three_texture_coordinates, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada_uvs("f", three_coordinates, "", ""));
+    const struct scene *scene = load(write_collada_uvs("f", three_coordinates, "", ""));
     assert_float_equal(scene->meshes[0].uvs[0][0], 0.25, 1e-6);
     assert_float_equal(scene->meshes[0].uvs[0][3], 1.0, 1e-6);
 }
@@ -153,15 +153,14 @@ TEST_IN(collada_with_three_texture_coordinates, fixture_begin, fixture_end)
 /* assimp would make a mesh of the nodes. */
 TEST_IN(collada_without_meshes_draws_nothing, fixture_begin, fixture_end)
 {
-    const struct scene *scene =
-        load(*state, put_text("a.dae",
-                              "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/"
-                              "COLLADASchema' version='1.4.1'><library_visual_scenes>"
-                              "<visual_scene id='w'><node id='a'/></visual_scene>"
-                              "</library_visual_scenes><scene><instance_visual_scene url='#w'/>"
-                              "</scene></COLLADA>"));
+    const struct scene *scene = load(
+        put_text("a.dae", "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/"
+                          "COLLADASchema' version='1.4.1'><library_visual_scenes>"
+                          "<visual_scene id='w'><node id='a'/></visual_scene>"
+                          "</library_visual_scenes><scene><instance_visual_scene url='#w'/>"
+                          "</scene></COLLADA>"));
     assert_int_equal(scene->mesh_count, 0);
-    assert_true(fixture_noted(*state, "a.dae: there are no triangles in it"));
+    assert_true(fixture_noted("a.dae: there are no triangles in it"));
 }
 
 #define NAMES(id, names)                                                                           \
@@ -212,17 +211,17 @@ static const char moving_nodes[] =
 
 TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
 {
-    const struct scene *scene = load(*state, write_collada("f", moving, moving_nodes));
+    const struct scene *scene = load(write_collada("f", moving, moving_nodes));
     assert_int_equal(scene->channel_count, 0);
     assert_int_equal(scene->camera_count, 0);
     uint32_t skins = 0;
     for (uint32_t i = 0; i < scene->note_count; i++)
         skins += strstr(scene->notes[i].text, "skins") != NULL;
     assert_int_equal(skins, 1);
-    assert_true(fixture_noted(*state, "a.dae: skins are not animated: 1 drawn in the bind pose"));
-    assert_true(fixture_noted(*state, "a.dae: 1 animation is not played"));
-    assert_true(fixture_noted(*state, "a.dae: 1 light is not read"));
-    assert_true(fixture_noted(*state, "a.dae: 1 camera is not read"));
+    assert_true(fixture_noted("a.dae: skins are not animated: 1 drawn in the bind pose"));
+    assert_true(fixture_noted("a.dae: 1 animation is not played"));
+    assert_true(fixture_noted("a.dae: 1 light is not read"));
+    assert_true(fixture_noted("a.dae: 1 camera is not read"));
 }
 
 /* --- FBX ------------------------------------------------------------------------------------ */
@@ -277,20 +276,19 @@ static const char *write_fbx(int corners)
 
 TEST_IN(faces_of_too_many_corners_are_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(*state, write_fbx(1025),
-                    "a.fbx: face 0 has 1025 corners, at most 1024 are possible");
+    fixture_refused(write_fbx(1025), "a.fbx: face 0 has 1025 corners, at most 1024 are possible");
 }
 
 TEST_IN(fbx_in_two_centimetres_and_z_up, fixture_begin, fixture_end)
 {
     put_text("wood.png", "no picture");
-    const struct scene *scene = load(*state, write_fbx(3));
+    const struct scene *scene = load(write_fbx(3));
     assert_int_equal(scene->instance_count, 1);
     assert_place(scene, 0, 1, 1, 0.5, 0);
     assert_place(scene, 0, 2, 0, 2.5, 0);
     assert_float_equal(material_of(scene)->diffuse[1], 0.5, 1e-6);
-    assert_true(fixture_noted(*state, "texture `wood.png`"));
-    assert_false(fixture_noted(*state, "no such file")); /* it is beside the model */
+    assert_true(fixture_noted("texture `wood.png`"));
+    assert_false(fixture_noted("no such file")); /* it is beside the model */
 }
 
 /* --- 3MF ------------------------------------------------------------------------------------ */
@@ -397,14 +395,14 @@ TEST_IN(units_of_3mf, fixture_begin, fixture_end)
                 {"unit=\"inch\"", true, 2.54},
                 {"unit='meter'", true, 100}};
     for (uint32_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const struct scene *scene = load(*state, write_3mf(rows[i].unit, rows[i].deflated));
+        const struct scene *scene = load(write_3mf(rows[i].unit, rows[i].deflated));
         assert_int_equal(scene->instance_count, i + 1);
         assert_place(scene, i, 1, rows[i].metres, 0, 0);
         assert_place(scene, i, 2, 0, 2 * rows[i].metres, -rows[i].metres / 2);
     }
-    assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[0], 1, 1e-6);
-    assert_float_equal(material_of(((struct fixture *)*state)->scene)->diffuse[2], 0, 1e-6);
-    assert_true(fixture_noted(*state, "a.3mf: 1 picture is not read"));
+    assert_float_equal(material_of(fixture.scene)->diffuse[0], 1, 1e-6);
+    assert_float_equal(material_of(fixture.scene)->diffuse[2], 0, 1e-6);
+    assert_true(fixture_noted("a.3mf: 1 picture is not read"));
 }
 
 /* --- parts that are not read ---------------------------------------------------------------- */
@@ -413,12 +411,11 @@ TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
 {
     static const char *const names[] = {"a.fbx", "a.dae", "a.3mf", "a.off"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        struct fixture *fixture = *state;
         messages.errors = 0;
-        fixture_refused(fixture, put_text(names[i], "no model at all\n"), "assimp: ");
+        fixture_refused(put_text(names[i], "no model at all\n"), "assimp: ");
     }
     messages.errors = 0;
-    fixture_refused(*state, write_3mf("<", false), "assimp: the file has no model");
+    fixture_refused(write_3mf("<", false), "assimp: the file has no model");
 }
 
 /* --- damaged files -------------------------------------------------------------------------- */
@@ -450,13 +447,12 @@ static size_t damage(uint64_t *random, const uint8_t *from, size_t size_bytes, u
 
 /* The importer is a child in its sandbox; this process checks its reply and reads the GLB in it.
    Gives whether there is a scene. */
-static bool load_damaged(struct fixture *fixture, const char *name, const uint8_t *data,
-                         size_t size_bytes)
+static bool load_damaged(const char *name, const uint8_t *data, size_t size_bytes)
 {
     struct scene *scene = NULL;
     const char *path = put_data(name, data, size_bytes);
     messages.errors = 0;
-    whit_result result = load_scene(&fixture->log, path, NULL, &scene);
+    whit_result result = load_scene(&fixture.log, path, NULL, &scene);
     assert_true(result == WHIT_OK || result == WHIT_ERROR_INPUT || result == WHIT_ERROR_MEMORY);
     assert_int_equal(scene != NULL, result == WHIT_OK);
     assert_int_equal(messages.errors, result != WHIT_OK);
@@ -476,7 +472,6 @@ TEST_IN(damaged_files_end_in_a_scene_or_one_error, fixture_begin, fixture_end)
 {
     enum { SAMPLES = 4 };
     static const char *const names[SAMPLES] = {"a.off", "a.dae", "a.fbx", "a.3mf"};
-    struct fixture *fixture = *state;
     uint64_t random = 1;
     for (int i = 0; i < SAMPLES; i++) {
         const char *path = i == 0   ? put_text(names[i], off)
@@ -486,13 +481,13 @@ TEST_IN(damaged_files_end_in_a_scene_or_one_error, fixture_begin, fixture_end)
         uint8_t *data = NULL;
         size_t size_bytes = 0;
         uint32_t loaded = 0;
-        assert_int_equal(file_read(&fixture->log, NULL, path, 0, &data, &size_bytes), WHIT_OK);
-        assert_true(load_damaged(fixture, names[i], data, size_bytes)); /* as it is */
+        assert_int_equal(file_read(&fixture.log, NULL, path, 0, &data, &size_bytes), WHIT_OK);
+        assert_true(load_damaged(names[i], data, size_bytes)); /* as it is */
         uint8_t *damaged = malloc(size_bytes + RUN_MAX);
         assert_non_null(damaged);
         for (uint32_t k = 0; k < DAMAGES; k++) {
             size_t bytes = damage(&random, data, size_bytes, damaged);
-            loaded += load_damaged(fixture, names[i], damaged, bytes);
+            loaded += load_damaged(names[i], damaged, bytes);
         }
         print_message("%s: %u of %u loaded\n", names[i], loaded, DAMAGES);
         assert_in_range(loaded, 1, DAMAGES - 1);
