@@ -446,51 +446,42 @@ TEST(materials_become_bits)
 
 /* ---- Broken trees ---- */
 
+/* Changes one word, and tells whether there is a change of that number. */
+static bool damage(struct accel *accel, size_t number)
+{
+    struct accel_mesh *mesh = &accel->meshes[1];
+    struct gpu_triangle *triangle = &accel->triangles[mesh->first_triangle];
+    struct gpu_instance *instance = &accel->instances[3];
+    const struct {
+        void *word;
+        uint32_t value;
+    } changes[] = {
+        {&triangle->primitive, triangle->primitive + 1},
+        {&triangle->v1[0], float_bits(triangle->v1[0] + 1.0f)},
+        {&triangle->v2[2], float_bits(triangle->v2[2] * 0.999f)},
+        {&mesh->first_node, mesh->first_node + 2},
+        {&mesh->root, mesh->root ^ 1},
+        {&mesh->depth, mesh->depth + 1},
+        {&accel->mesh_depth, accel->mesh_depth + 1},
+        {&instance->root, instance->root ^ 2},
+        {&instance->origin_x, float_bits(instance->origin_x + 3.0f)},
+        {&accel->instance_depth, accel->instance_depth + 1},
+        {&accel->nodes[accel->nodes[0].first].hi[0], float_bits(1e-3f)},
+    };
+    if (number == sizeof changes / sizeof *changes)
+        return false;
+    memcpy(changes[number].word, &changes[number].value, sizeof changes[number].value);
+    return true;
+}
+
 TEST(broken_scenes_are_refused)
 {
-    for (int k = 0; k < 12; ++k) {
+    bool damaged = true;
+    for (size_t k = 0; damaged; ++k) {
         struct world world = world_of(mixed_scene(), by_threads(2));
-        struct accel *accel = world.accel;
-        struct accel_mesh *mesh = &accel->meshes[1];
-        switch (k) {
-        case 0:
-            break;
-        case 1:
-            accel->triangles[mesh->first_triangle].primitive += 1;
-            break;
-        case 2:
-            accel->triangles[mesh->first_triangle].v1[0] += 1.0f;
-            break;
-        case 3:
-            accel->triangles[mesh->first_triangle].v2[2] *= 0.999f;
-            break;
-        case 4:
-            mesh->first_node += 2;
-            break;
-        case 5:
-            mesh->root ^= 1;
-            break;
-        case 6:
-            mesh->depth += 1;
-            break;
-        case 7:
-            accel->mesh_depth += 1;
-            break;
-        case 8:
-            accel->instances[3].root ^= 2;
-            break;
-        case 9:
-            accel->instances[3].origin_x += 3.0f;
-            break;
-        case 10:
-            accel->instance_depth += 1;
-            break;
-        case 11:
-            accel->nodes[accel->nodes[0].first].hi[0] = 1e-3f;
-            break;
-        }
-        if ((accel_validate(accel) == WHIT_OK) != (k == 0))
-            fail_msg("case %d was misjudged", k);
+        damaged = damage(world.accel, k);
+        if ((accel_validate(world.accel) == WHIT_OK) == damaged)
+            fail_msg("case %zu was misjudged", k);
         world_finish(&world);
     }
 }

@@ -235,40 +235,35 @@ TEST(a_pose_builds_anew)
     world_finish(&world);
 }
 
-static void break_record(struct accel *accel, int how)
+/* Changes one word, and tells whether there is a change of that number. */
+static bool damage(struct accel *accel, size_t number)
 {
     struct gpu_triangle *triangle = &accel->triangles[accel->record_count / 2];
-    switch (how) {
-    case 1:
-        triangle->flags += 200u << TRIANGLE_INSTANCE_SHIFT;
-        break;
-    case 2:
-        triangle->flags ^= 2u << TRIANGLE_INSTANCE_SHIFT;
-        break;
-    case 3:
-        triangle->primitive += 100000;
-        break;
-    case 4:
-        triangle->v1[1] = triangle->v1[1] * 0.999f + triangle->v0[1] * 0.001f;
-        break;
-    case 5:
-        accel->meshes[0].depth += 1;
-        break;
-    case 6:
-        accel->nodes[2].hi[0] = accel->nodes[2].lo[0];
-        break;
-    default:
-        break;
-    }
+    const struct {
+        void *word;
+        uint32_t value;
+    } changes[] = {
+        {&triangle->flags, triangle->flags + (200u << TRIANGLE_INSTANCE_SHIFT)},
+        {&triangle->flags, triangle->flags ^ (2u << TRIANGLE_INSTANCE_SHIFT)},
+        {&triangle->primitive, triangle->primitive + 100000},
+        {&triangle->v1[1], float_bits(triangle->v1[1] * 0.999f + triangle->v0[1] * 0.001f)},
+        {&accel->meshes[0].depth, accel->meshes[0].depth + 1},
+        {&accel->nodes[2].hi[0], float_bits(accel->nodes[2].lo[0])},
+    };
+    if (number == sizeof changes / sizeof *changes)
+        return false;
+    memcpy(changes[number].word, &changes[number].value, sizeof changes[number].value);
+    return true;
 }
 
 TEST(broken_records_are_refused)
 {
-    for (int how = 0; how < 7; ++how) {
+    bool damaged = true;
+    for (size_t k = 0; damaged; ++k) {
         struct world world = mixed_world(flatten);
-        break_record(world.accel, how);
-        if ((accel_validate(world.accel) == WHIT_OK) != (how == 0))
-            fail_msg("case %d was misjudged", how);
+        damaged = damage(world.accel, k);
+        if ((accel_validate(world.accel) == WHIT_OK) == damaged)
+            fail_msg("case %zu was misjudged", k);
         world_finish(&world);
     }
 }

@@ -78,56 +78,43 @@ TEST(good_blocks_are_taken)
     assert_true(parse(&block, sizeof block, reason));
 }
 
-TEST(damaged_blocks_are_refused)
+/* A field of the good block, and what it becomes. */
+#define FIELD(name) #name, offsetof(struct block, name), sizeof((struct block *)0)->name
+static const struct {
+    const char *name;
+    size_t at, bytes;
+    uint64_t value;
+} damages[] = {
+    {FIELD(header.magic), IMPORT_MAGIC + 1},
+    {FIELD(header.part_count), 2},
+    {FIELD(header.part_count), UINT32_MAX},
+    {FIELD(indices[1]), 3},
+    {FIELD(record.vertex_count), 64},
+    {FIELD(record.triangle_count), UINT32_MAX},
+    {FIELD(record.arrays[IMPORT_POSITIONS]), UINT64_MAX - 3},
+    {FIELD(record.arrays[IMPORT_POSITIONS]), offsetof(struct block, positions) + 2},
+    {FIELD(record.arrays[IMPORT_POSITIONS]), 0},
+    {FIELD(record.name_bytes), 3},
+    {FIELD(record.material), sizeof(struct block)},
+};
+
+static void assert_damaged(const struct block *block, size_t size, const char *what)
 {
     char reason[128];
-    for (int i = 0; i < 13; i++) {
-        struct block block = good_block();
-        size_t size = sizeof block;
-        switch (i) {
-        case 0:
-            size = 3;
-            break;
-        case 1:
-            size -= 4;
-            break;
-        case 2:
-            block.header.magic++;
-            break;
-        case 3:
-            block.header.part_count = 2;
-            break;
-        case 4:
-            block.header.part_count = UINT32_MAX;
-            break;
-        case 5:
-            block.indices[1] = 3;
-            break;
-        case 6:
-            block.record.vertex_count = 64;
-            break;
-        case 7:
-            block.record.triangle_count = UINT32_MAX;
-            break;
-        case 8:
-            block.record.arrays[IMPORT_POSITIONS] = UINT64_MAX - 3;
-            break;
-        case 9:
-            block.record.arrays[IMPORT_POSITIONS] += 2;
-            break;
-        case 10:
-            block.record.arrays[IMPORT_POSITIONS] = 0;
-            break;
-        case 11:
-            block.record.name_bytes = 3;
-            break;
-        default:
-            block.record.material = sizeof block;
-            break;
-        }
-        if (parse(&block, size, reason))
-            fail_msg("damage %d was not seen", i);
-        assert_string_equal(reason, "the importer's reply is damaged");
+    if (parse(block, size, reason))
+        fail_msg("damage of %s was not seen", what);
+    assert_string_equal(reason, "the importer's reply is damaged");
+}
+
+TEST(damaged_blocks_are_refused)
+{
+    struct block block = good_block();
+    assert_damaged(&block, 3, "the size");
+    assert_damaged(&block, sizeof block - 4, "the size");
+    for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
+        block = good_block();
+        memcpy((uint8_t *)&block + damages[i].at, &damages[i].value, damages[i].bytes);
+        assert_damaged(&block, sizeof block, damages[i].name);
     }
 }
 
