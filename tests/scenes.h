@@ -36,6 +36,13 @@ struct scene_material material_grey(const char *name); /* see scene_material_ini
 /* A grey material without ambient light and highlight. */
 struct scene_material material_plain(const char *name);
 
+static inline void set_rgb(float *rgb, float r, float g, float b)
+{
+    rgb[0] = r;
+    rgb[1] = g;
+    rgb[2] = b;
+}
+
 /* ---- Scenes ---- */
 
 /* Begins an empty scene. `log` may be NULL. */

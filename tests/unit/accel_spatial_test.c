@@ -265,8 +265,7 @@ TEST(filters_are_met_once)
     struct soup soup = soup_rooms(1500);
     struct scene *scene = soup_scene(&soup);
     struct scene_material glass = material_grey("glass");
-    for (int c = 0; c < 3; ++c)
-        glass.transmission[c] = 0.5f;
+    set_rgb(glass.transmission, 0.5f, 0.5f, 0.5f);
     uint32_t index = scene_put_material(scene, glass);
     for (uint32_t i = 0; i < scene->meshes[0].triangle_count; ++i)
         scene->meshes[0].materials[i] = i / 2 % 3 == 0 ? index : 0;

@@ -14,25 +14,15 @@ static void say(void *user, const char *text)
     snprintf(said + used, sizeof said - used, "%s\n", text + strlen(folder) + 1);
 }
 
-static const char *path_of(const char *name)
-{
-    static char path[512];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 static bool read_text(struct suite *suite, const char *text, const char *root)
 {
-    static char path[512];
-    snprintf(path, sizeof path, "%s", path_of("s.whit"));
     said[0] = '\0';
-    put_file(path, text, strlen(text));
-    put_file(path_of("a.json"), "", 0);
-    put_file(path_of("my scene.json"), "", 0);
-    put_file(path_of("sky.hdr"), "", 0);
-    (void)mkdir(path_of("sub"), 0777);
-    put_file(path_of("sub/b.json"), "", 0);
-    return suite_read(suite, path, root, false, say, NULL);
+    put_text("a.json", "");
+    put_text("my scene.json", "");
+    put_text("sky.hdr", "");
+    (void)mkdir(in_folder("sub"), 0777);
+    put_text("sub/b.json", "");
+    return suite_read(suite, put_text("s.whit", text), root, false, say, NULL);
 }
 
 TEST_IN(lines_become_cases, folder_begin, folder_end)
@@ -55,10 +45,10 @@ TEST_IN(lines_become_cases, folder_begin, folder_end)
     assert_int_equal(suite.cases[0].line, 2);
     assert_string_equal(suite.cases[1].made_by, "'my scene.json' --size 64x48");
     assert_string_equal(suite.cases[1].loaded, "'my scene.json'");
-    assert_string_equal(suite.cases[1].settings->scene, path_of("my scene.json"));
-    assert_string_equal(suite.cases[2].settings->scene, path_of("my scene.json"));
+    assert_string_equal(suite.cases[1].settings->scene, in_folder("my scene.json"));
+    assert_string_equal(suite.cases[2].settings->scene, in_folder("my scene.json"));
     assert_int_equal(suite.cases[2].settings->load.background[1], 0x20);
-    assert_string_equal(suite.cases[3].settings->environment, path_of("sky.hdr"));
+    assert_string_equal(suite.cases[3].settings->environment, in_folder("sky.hdr"));
     assert_string_equal(suite.cases[3].loaded, "'my scene.json' --environment sky.hdr");
     assert_string_equal(suite.cases[4].name, "level-fast");
     assert_int_equal(suite.cases[4].settings->picture.numerics, WHIT_NUMERICS_FAST);
@@ -73,10 +63,9 @@ TEST_IN(lines_become_cases, folder_begin, folder_end)
 TEST_IN(names_are_from_the_root, folder_begin, folder_end)
 {
     struct suite suite;
-    char root[512];
-    snprintf(root, sizeof root, "%s", path_of("sub"));
+    const char *root = in_folder("sub");
     assert_true(read_text(&suite, "one b.json", root));
-    assert_string_equal(suite.cases[0].settings->scene, path_of("sub/b.json"));
+    assert_string_equal(suite.cases[0].settings->scene, in_folder("sub/b.json"));
     suite_finish(&suite);
     assert_false(read_text(&suite, "one ../a.json", root));
     assert_non_null(strstr(said, "s.whit:1: the scene `../a.json`: it lies outside"));
@@ -152,7 +141,7 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
     enum { COUNT = sizeof wrong / sizeof *wrong };
     struct suite suite;
     char text[8192] = "fine a.json\n";
-    assert_int_equal(symlink("/etc/passwd", path_of("away.json")), 0);
+    assert_int_equal(symlink("/etc/passwd", in_folder("away.json")), 0);
     for (size_t i = 0; i < COUNT; ++i)
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s\n", wrong[i].line);
     assert_false(read_text(&suite, text, NULL));
@@ -178,9 +167,7 @@ TEST_IN(no_suite_is_told, folder_begin, folder_end)
     assert_false(read_text(&suite, "# nothing\n", NULL));
     assert_string_equal(said, "s.whit: there is no case in it\n");
     suite_finish(&suite);
-    put_file(path_of("z.whit"), zero, sizeof zero);
-    char path[512];
-    snprintf(path, sizeof path, "%s", path_of("z.whit"));
+    const char *path = put_data("z.whit", zero, sizeof zero);
     said[0] = '\0';
     assert_false(suite_read(&suite, path, NULL, false, say, NULL));
     assert_string_equal(said, "z.whit: not a suite: it has bytes that are 0\n");

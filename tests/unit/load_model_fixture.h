@@ -51,4 +51,15 @@ static inline bool fixture_noted(const char *text)
     return false;
 }
 
+static inline const struct scene_material *material_named(const struct scene *scene,
+                                                          const char *name)
+{
+    for (uint32_t i = 0; i < scene->material_count; ++i) {
+        if (strcmp(scene->materials[i].name, name) == 0)
+            return &scene->materials[i];
+    }
+    fail_msg("no material `%s`", name);
+    return NULL;
+}
+
 #endif

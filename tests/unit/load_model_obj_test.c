@@ -5,15 +5,6 @@
 
 #define QUAD "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
-static const struct scene_material *material(const char *name)
-{
-    for (uint32_t i = 0; i < fixture.scene->material_count; i++)
-        if (strcmp(fixture.scene->materials[i].name, name) == 0)
-            return &fixture.scene->materials[i];
-    fail_msg("no material `%s`", name);
-    return NULL;
-}
-
 static const struct scene_mesh *only_mesh(void)
 {
     assert_int_equal(fixture.scene->mesh_count, 1);
@@ -28,7 +19,7 @@ static const struct scene_material *load_material(const char *mtl)
     put_text("a.mtl", mtl);
     const char *path = put_text("a.obj", "mtllib a.mtl\n" QUAD "usemtl m\nf 1 2 3 4\n");
     assert_int_equal(fixture_load(path), WHIT_OK);
-    return material("m");
+    return material_named(fixture.scene, "m");
 }
 
 TEST_IN(quads_and_negative_indices, fixture_begin, fixture_end)
@@ -74,9 +65,9 @@ TEST_IN(several_libraries_and_missing_ones, fixture_begin, fixture_end)
         put_text("a.obj", "mtllib gone.mtl b.mtl\nmtllib with blank.mtl\n" QUAD
                           "usemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\nusemtl nobody\nf 2 3 4\n");
     assert_int_equal(fixture_load(path), WHIT_OK);
-    assert_float_equal(material("b")->diffuse[1], 1, 0);
-    assert_float_equal(material("c")->diffuse[2], 1, 0);
-    assert_int_equal(material("nobody")->illum, -1);
+    assert_float_equal(material_named(fixture.scene, "b")->diffuse[1], 1, 0);
+    assert_float_equal(material_named(fixture.scene, "c")->diffuse[2], 1, 0);
+    assert_int_equal(material_named(fixture.scene, "nobody")->illum, -1);
     assert_true(fixture_noted("`gone.mtl`: there is no such file"));
     assert_true(fixture_noted("`nobody` is not defined"));
     assert_int_equal(only_mesh()->group_count, 3);
@@ -86,7 +77,7 @@ TEST_IN(missing_library_is_grey, fixture_begin, fixture_end)
 {
     const char *path = put_text("a.obj", "mtllib gone.mtl\n" QUAD "usemtl b\nf 1 2 3\n");
     assert_int_equal(fixture_load(path), WHIT_OK);
-    const struct scene_material *m = material("b");
+    const struct scene_material *m = material_named(fixture.scene, "b");
     assert_float_equal(m->diffuse[0], m->diffuse[1], 0);
     assert_int_equal(messages.errors, 0);
 }

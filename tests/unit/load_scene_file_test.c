@@ -1,6 +1,6 @@
 /* whit's own scene files: their meaning, and the places that errors name. */
-#include "folder_fixture.h"
 #include "load/load.h"
+#include "load_model_fixture.h"
 #include "scene/pose.h"
 
 static whit_result load_text(const char *text, struct scene **out)
@@ -311,16 +311,6 @@ TEST_IN(balls_are_spheres, folder_begin, folder_end)
                  "test.json:1:41: objects[0].spheres[0]: 4 numbers in [ ] are expected");
     assert_error("{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0,-1]]}]}",
                  "test.json:1:41: objects[0].spheres[0]: the radius must be from 1e-15 to 1e+15");
-}
-
-static const struct scene_material *material_named(const struct scene *scene, const char *name)
-{
-    for (uint32_t i = 0; i < scene->material_count; ++i) {
-        if (strcmp(scene->materials[i].name, name) == 0)
-            return &scene->materials[i];
-    }
-    fail_msg("no material `%s`", name);
-    return NULL;
 }
 
 TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)

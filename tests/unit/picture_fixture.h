@@ -4,13 +4,6 @@
 
 #include "render_fixture.h"
 
-static inline void set_rgb(float *rgb, float r, float g, float b)
-{
-    rgb[0] = r;
-    rgb[1] = g;
-    rgb[2] = b;
-}
-
 static inline void cross_of(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];

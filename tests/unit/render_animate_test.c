@@ -22,10 +22,8 @@ static struct scene *everything_moves(void)
     static const float times[] = {0, 1, 2};
     struct scene *scene = scene_begin(&fixture_log, "animation");
     struct scene_material glass = material_grey("glass"), glow = material_grey("glow");
-    for (int i = 0; i < 3; ++i) {
-        glass.transmission[i] = 0.9f;
-        glow.emission[i] = 12.0f;
-    }
+    set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
+    set_rgb(glow.emission, 12, 12, 12);
     glass.fresnel = true;
     uint32_t ball = scene_put_node(scene, SCENE_NONE, 0, 1, 0);
     uint32_t light = scene_put_node(scene, SCENE_NONE, 0, 3, 0);

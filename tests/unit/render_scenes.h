@@ -43,10 +43,8 @@ static inline struct scene *glass_scene_of(uint32_t cells, uint32_t sides)
 {
     struct scene *scene = scene_begin(&fixture_log, "glass");
     struct scene_material glass = material_grey("glass");
-    for (int k = 0; k < 3; ++k) {
-        glass.transmission[k] = 0.9f;
-        glass.reflection[k] = 0.3f;
-    }
+    set_rgb(glass.transmission, 0.9f, 0.9f, 0.9f);
+    set_rgb(glass.reflection, 0.3f, 0.3f, 0.3f);
     scene_put_material(scene, material_grey("grey"));
     uint32_t index = scene_put_material(scene, glass);
     uint32_t ring =

@@ -272,8 +272,7 @@ static struct scene *lamp_scene(float emission, const char *file)
 {
     struct scene *scene = empty_scene();
     struct scene_material glowing = material_grey("lamp");
-    for (int i = 0; i < 3; ++i)
-        glowing.emission[i] = emission;
+    set_rgb(glowing.emission, emission, emission, emission);
     glowing.origin.file = string_copy(file);
     scene_put(scene, mesh_plane(4.0), NULL);
     scene_put(scene, mesh_plane(1.0), &(struct put){.material = &glowing, .at = {0, 3, 0}});
@@ -368,8 +367,7 @@ static struct scene *lamp_over_floor(float level, float albedo, bool is_model, w
                                 .cos_outer = 0.5f,
                                 .falloff = true};
     light.origin.file = string_copy("a.glb");
-    for (int i = 0; i < 3; ++i)
-        floor.diffuse[i] = albedo;
+    set_rgb(floor.diffuse, albedo, albedo, albedo);
     scene_put(scene, mesh_plane(100.0), &(struct put){.material = &floor});
     scene_put_light(scene, light);
     scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
@@ -408,8 +406,7 @@ TEST(metal_is_not_taken_for_its_colour)
         struct scene_material m = material_plain("shiny");
         m.model = WHIT_MODEL_METAL_ROUGH;
         m.metallic = 1.0f;
-        for (int i = 0; i < 3; ++i)
-            m.diffuse[i] = 1.0f;
+        set_rgb(m.diffuse, 1, 1, 1);
         m.textures[SCENE_SLOT_METAL_ROUGH].texture =
             scene_put_texture(scene, 1, 1, texels[plastic]);
         scene_put(scene, mesh_plane(4.0), &(struct put){.material = &m});
@@ -455,8 +452,7 @@ static struct scene *block_with_lamp(bool is_model, bool in_front)
 {
     struct scene *scene = empty_scene();
     struct scene_material glow = material_plain("glow");
-    for (int i = 0; i < 3; ++i)
-        glow.emission[i] = 5.0f;
+    set_rgb(glow.emission, 5, 5, 5);
     scene_put(scene, mesh_box(2, 2, 2), NULL);
     scene_put(scene, mesh_box(1, 1, 0.01),
               &(struct put){.material = &glow, .at = {0, 0, in_front ? 3 : -1.1}});
@@ -543,8 +539,7 @@ static struct scene *box_under_sun(unsigned open, bool glass)
 {
     struct scene *scene = empty_scene();
     struct scene_material pane = material_plain("pane");
-    for (int i = 0; i < 3; ++i)
-        pane.transmission[i] = 0.9f;
+    set_rgb(pane.transmission, 0.9f, 0.9f, 0.9f);
     scene_put(scene, walls((const float[]){2, 2, 2}, open | (glass ? 8u : 0u), false), NULL);
     if (glass)
         scene_put(scene, mesh_plane(4), &(struct put){.material = &pane, .at = {0, 2, 0}});
