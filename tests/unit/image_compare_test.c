@@ -40,9 +40,7 @@ TEST(equal_pictures)
 
 TEST(differences_are_measured)
 {
-    struct image a, b;
-    assert_int_equal(image_init(&a, 2, 2, 4, false), WHIT_OK);
-    b = copy_of(&a);
+    struct image a = fixture_flat(2, 2, 4, 0.0f), b = copy_of(&a);
     b.pixels[1] = 0.5f;     /* green of pixel 0 */
     b.pixels[4 + 3] = 1.0f; /* alpha of pixel 1: not part of the error */
     b.pixels[8] = 1e-6f;    /* far below 1/255 */
@@ -58,9 +56,7 @@ TEST(differences_are_measured)
 
 TEST(one_step_of_8_bits_is_not_over)
 {
-    struct image a, b;
-    assert_int_equal(image_init(&a, 255, 1, 1, false), WHIT_OK);
-    b = copy_of(&a);
+    struct image a = fixture_flat(255, 1, 1, 0.0f), b = copy_of(&a);
     for (int i = 0; i < 255; ++i) {
         a.pixels[i] = image_linear_from_srgb((float)i / 255.0f);
         b.pixels[i] = image_linear_from_srgb((float)(i + 1) / 255.0f);
@@ -75,9 +71,7 @@ TEST(one_step_of_8_bits_is_not_over)
 
 TEST(nonfinite_counts_but_does_not_spread)
 {
-    struct image a, b;
-    assert_int_equal(image_init(&a, 3, 1, 3, false), WHIT_OK);
-    b = copy_of(&a);
+    struct image a = fixture_flat(3, 1, 3, 0.0f), b = copy_of(&a);
     a.pixels[0] = NAN;
     b.pixels[3] = INFINITY;
     b.pixels[4] = INFINITY;
@@ -97,9 +91,7 @@ TEST(nonfinite_counts_but_does_not_spread)
 /* Values by hand: errors relative to the reference, and signs of mean differences. */
 TEST(means_are_those_of_the_formulas)
 {
-    struct image a, b, difference_image;
-    assert_int_equal(image_init(&a, 2, 1, 3, false), WHIT_OK);
-    b = copy_of(&a);
+    struct image a = fixture_flat(2, 1, 3, 0.0f), b = copy_of(&a), difference_image;
     const float from[6] = {0.5f, 0.25f, 0.0f, 2.0f, 0.0f, 1.0f};
     const float to[6] = {0.75f, 0.25f, 0.125f, 1.0f, 0.0f, 1.5f};
     memcpy(a.pixels, from, sizeof from);
@@ -128,7 +120,7 @@ TEST(channels_may_differ)
     struct image grey = fixture_floats(5, 4, 1), colours[2];
     for (uint32_t i = 0; i < 2; ++i) {
         uint32_t channels = 3 + i;
-        assert_int_equal(image_init(&colours[i], 5, 4, channels, false), WHIT_OK);
+        colours[i] = fixture_flat(5, 4, channels, 0.0f);
         for (uint32_t at = 0; at < 20 * channels; ++at)
             colours[i].pixels[at] = at % channels == 3 ? 1.0f : grey.pixels[at / channels];
         assert_int_equal(compare(&grey, &colours[i]).differing_pixels, 0);

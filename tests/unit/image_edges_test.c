@@ -9,12 +9,9 @@ enum { WIDTH = 4, HEIGHT = 3, COUNT = WIDTH * HEIGHT };
 static void assert_edges(const char *instances, const char *primitives, bool of_primitives,
                          const char *wanted)
 {
-    struct image color, ids;
-    assert_int_equal(image_init(&color, WIDTH, HEIGHT, 4, false), WHIT_OK);
-    assert_int_equal(image_init(&ids, WIDTH, HEIGHT, 2, true), WHIT_OK);
+    struct image color = fixture_flat(WIDTH, HEIGHT, 4, 2.5f);
+    struct image ids = fixture_words(WIDTH, HEIGHT, 2);
     for (size_t i = 0; i < COUNT; ++i) {
-        for (size_t c = 0; c < 4; ++c)
-            color.pixels[4 * i + c] = 2.5f;
         ids.words[2 * i] = (uint32_t)instances[i];
         ids.words[2 * i + 1] = (uint32_t)primitives[i];
     }

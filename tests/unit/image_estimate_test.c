@@ -7,11 +7,7 @@ enum { WIDTH = 5, HEIGHT = 4, COUNT = WIDTH * HEIGHT };
 
 static struct image image_of(uint32_t channels, float value)
 {
-    struct image image;
-    assert_int_equal(image_init(&image, WIDTH, HEIGHT, channels, false), WHIT_OK);
-    for (size_t i = 0; i < (size_t)COUNT * channels; ++i)
-        image.pixels[i] = value;
-    return image;
+    return fixture_flat(WIDTH, HEIGHT, channels, value);
 }
 
 static void assert_within(double value, double wanted, double relative)

@@ -57,9 +57,7 @@ TEST_IN(integers_keep_every_bit, folder_begin, folder_end)
 
 TEST_IN(pfm_is_bottom_up_little_endian, folder_begin, folder_end)
 {
-    struct image image, loaded;
-    assert_int_equal(image_init(&image, 1, 2, 1, false), WHIT_OK);
-    image.pixels[0] = 1.0f;
+    struct image image = fixture_flat(1, 2, 1, 1.0f), loaded;
     image.pixels[1] = -2.0f;
     save_and_load("a.pfm", &image, &loaded);
     image_finish(&loaded);

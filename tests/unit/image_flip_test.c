@@ -7,13 +7,6 @@
 
 static const double PI = 3.14159265358979323846;
 
-static struct image image_of(uint32_t width, uint32_t height)
-{
-    struct image image;
-    assert_int_equal(image_init(&image, width, height, 3, false), WHIT_OK);
-    return image;
-}
-
 static void put(struct image *image, uint32_t x, uint32_t y, const uint8_t codes[3])
 {
     for (int c = 0; c < 3; ++c)
@@ -23,7 +16,7 @@ static void put(struct image *image, uint32_t x, uint32_t y, const uint8_t codes
 
 static struct image image_of_one(uint32_t width, uint32_t height, const uint8_t codes[3])
 {
-    struct image image = image_of(width, height);
+    struct image image = fixture_flat(width, height, 3, 0.0f);
     for (uint32_t i = 0; i < width * height; ++i)
         put(&image, i % width, i / width, codes);
     return image;
@@ -221,8 +214,8 @@ static void make_pair(struct image pair[2])
 {
     enum { WIDTH = 24, HEIGHT = 18 };
     static const uint8_t white[3] = {255, 255, 255};
-    pair[0] = image_of(WIDTH, HEIGHT);
-    pair[1] = image_of(WIDTH, HEIGHT);
+    pair[0] = fixture_flat(WIDTH, HEIGHT, 3, 0.0f);
+    pair[1] = fixture_flat(WIDTH, HEIGHT, 3, 0.0f);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
         uint32_t x = i % WIDTH, y = i / WIDTH;
         uint8_t codes[3] = {(uint8_t)(7 * x + 3 * y), (uint8_t)(x * x + 5 * y),
@@ -327,13 +320,9 @@ TEST(one_colour_is_as_by_hand)
    64 x 64 pixels of 0.1 and of 0.9, linear half floats, mean and largest are 0.9514. */
 TEST(grey_pair_is_as_published)
 {
-    static const float dark = 0.099975586f, light = 0.89990234f;
-    struct image a = image_of(64, 64), b = image_of(64, 64), map;
+    struct image a = fixture_flat(64, 64, 3, 0.099975586f);
+    struct image b = fixture_flat(64, 64, 3, 0.89990234f), map;
     struct flip_summary summary;
-    for (int i = 0; i < 3 * 64 * 64; ++i) {
-        a.pixels[i] = dark;
-        b.pixels[i] = light;
-    }
     assert_int_equal(image_flip(&a, &b, 0.0, &map, &summary), WHIT_OK);
     print_message("mean %.6f, largest %.6f; published: 0.9514\n", summary.mean, summary.largest);
     assert_true(fabs(summary.mean - 0.9514) <= 0.5e-4);
@@ -366,7 +355,7 @@ TEST(swapping_changes_nothing)
 
 static struct image noisy(const struct image *image, float amplitude)
 {
-    struct image out = image_of(image->width, image->height);
+    struct image out = fixture_flat(image->width, image->height, 3, 0.0f);
     uint64_t seed = 99;
     for (size_t i = 0; i < 3 * (size_t)image->width * image->height; ++i) {
         float noise = random_float(&seed) - 0.5f;

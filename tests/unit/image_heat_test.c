@@ -4,15 +4,6 @@
 #include "image/heat.h"
 #include "image/image_reply.h"
 
-static struct image values_of(uint32_t width, uint32_t height, float value)
-{
-    struct image image;
-    assert_int_equal(image_init(&image, width, height, 1, false), WHIT_OK);
-    for (size_t i = 0; i < (size_t)width * height; ++i)
-        image.pixels[i] = value;
-    return image;
-}
-
 static struct image heat_of(const struct image *values, double scale, const char *title)
 {
     struct image out;
@@ -99,8 +90,7 @@ TEST(signed_colors_have_two_sides)
 
 TEST(signed_pictures_show_the_farthest_channel)
 {
-    struct image values, heat;
-    assert_int_equal(image_init(&values, 200, 2, 3, false), WHIT_OK);
+    struct image values = fixture_flat(200, 2, 3, 0.0f), heat;
     for (int i = 0; i < 400; ++i)
         values.pixels[3 * i + 1] = i == 8 ? 0.5f : -0.25f;
     values.pixels[0] = 0.375f;
@@ -125,7 +115,7 @@ TEST(signed_pictures_show_the_farthest_channel)
 
 TEST(the_scale_ignores_the_brightest_200th)
 {
-    struct image values = values_of(100, 10, 0.0f);
+    struct image values = fixture_flat(100, 10, 1, 0.0f);
     for (int i = 0; i < 1000; ++i)
         values.pixels[(i * 7) % 1000] = (float)(i + 1); /* 1 to 1000 */
     assert_true(image_heat_scale(&values) == 1000.0);   /* 995, rounded up */
@@ -139,7 +129,7 @@ TEST(the_scale_ignores_the_brightest_200th)
 
 TEST(the_scale_of_few_or_no_values)
 {
-    struct image values = values_of(100, 100, 0.0f);
+    struct image values = fixture_flat(100, 100, 1, 0.0f);
     assert_true(image_heat_scale(&values) == 1.0);
     values.pixels[77] = 13.0f; /* far below a 200th of the picture */
     assert_true(image_heat_scale(&values) == 15.0);
@@ -157,7 +147,7 @@ TEST(the_scale_of_few_or_no_values)
 TEST_IN(the_file_has_the_codes_of_the_table, folder_begin, folder_end)
 {
     char *path = in_folder("heat.png");
-    struct image values = values_of(500, 3, 0.0f), back;
+    struct image values = fixture_flat(500, 3, 1, 0.0f), back;
     for (uint32_t i = 0; i < 1500; ++i)
         values.pixels[i] = (float)i;
     struct image heat = heat_of(&values, 1499.0, "all of them");
@@ -196,7 +186,7 @@ TEST(the_legend_fits_any_picture)
         "still on to the edge of the screen, which it does not heed"};
     static const double scales[] = {1.0, 13.0, 37.25, 1e-30, 1e30, 123456789.0};
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; ++s) {
-        struct image values = values_of(sizes[s][0], sizes[s][1], 1.0f);
+        struct image values = fixture_flat(sizes[s][0], sizes[s][1], 1, 1.0f);
         for (size_t t = 0; t < sizeof titles / sizeof titles[0]; ++t) {
             struct image heat = heat_of(&values, scales[(s + t) % 6], titles[t]);
             assert_true(heat.width >= values.width && heat.width >= 120);
@@ -212,7 +202,7 @@ TEST(the_legend_fits_any_picture)
 
 TEST(the_title_is_drawn)
 {
-    struct image values = values_of(400, 4, 0.0f);
+    struct image values = fixture_flat(400, 4, 1, 0.0f);
     struct image with = heat_of(&values, 1.0, "title"), without = heat_of(&values, 1.0, "");
     assert_int_equal(with.height, without.height);
     assert_true(count_ink(&with, 4) > count_ink(&without, 4) + 20);
@@ -223,7 +213,7 @@ TEST(the_title_is_drawn)
 
 TEST(what_is_not_finite_stays_so)
 {
-    struct image values = values_of(200, 1, 3.0f);
+    struct image values = fixture_flat(200, 1, 1, 3.0f);
     values.pixels[5] = NAN;
     values.pixels[6] = INFINITY;
     struct image heat = heat_of(&values, 0.0, NULL);
@@ -234,12 +224,11 @@ TEST(what_is_not_finite_stays_so)
 
 TEST(other_pictures_are_refused)
 {
-    struct image out, colors = fixture_floats(4, 4, 3), words;
+    struct image out, colors = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 1);
     whit_heat_params params = {0};
-    assert_int_equal(image_init(&words, 4, 4, 1, true), WHIT_OK);
     assert_int_equal(image_heat(&colors, &params, &out), WHIT_ERROR_USAGE);
     assert_int_equal(image_heat(&words, &params, &out), WHIT_ERROR_USAGE);
-    struct image values = values_of(4, 4, 1.0f);
+    struct image values = fixture_flat(4, 4, 1, 1.0f);
     params.scale = -1.0;
     assert_int_equal(image_heat(&values, &params, &out), WHIT_ERROR_USAGE);
     params.scale = (double)NAN;
