@@ -5,15 +5,13 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/file.h"
+#include "base/path.h"
 #include "base/text.h"
 #include "load/gltf_buffer.h"
 #include "load/gltf_geometry.h"
 #include "load/gltf_json.h"
 #include "load/gltf_nodes.h"
 #include "scene/afford.h"
-
-#define GLTF_LIMIT (UINT64_C(4) << 30)
 
 enum {
     GLB_MAGIC = 0x46546c67,
@@ -249,19 +247,5 @@ whit_result gltf_load_bytes(struct scene *scene, const struct model_request *req
     if (result == WHIT_OK)
         note_unused(&gltf);
     finish(&gltf);
-    return result;
-}
-
-whit_result gltf_load(struct scene *scene, const struct model_request *request)
-{
-    uint8_t *data = NULL;
-    size_t size = 0;
-    whit_result result =
-        file_read(&scene->log, &scene->roots, request->path, GLTF_LIMIT, &data, &size);
-    if (result != WHIT_OK)
-        return result;
-    scene->file_bytes += size;
-    result = gltf_load_bytes(scene, request, data, size);
-    free(data);
     return result;
 }

@@ -53,9 +53,7 @@ whit_result gltf_texture_use(struct gltf *gltf, const json_t *in, const struct g
                              const char *key, bool visible, struct scene_texture_use *out);
 whit_result gltf_add_animations(struct gltf *gltf);
 
-/* .gltf and .glb */
-WHIT_CHECK whit_result gltf_load(struct scene *scene, const struct model_request *request);
-/* The same for a file in memory; names in it are relative to the request's path. */
+/* Loads the bytes of a .gltf or .glb; names in it are relative to the request's path. */
 WHIT_CHECK whit_result gltf_load_bytes(struct scene *scene, const struct model_request *request,
                                        const uint8_t *data, size_t size_bytes);
 

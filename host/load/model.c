@@ -141,64 +141,6 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
     return result;
 }
 
-static whit_result load_obj(struct scene *scene, const struct model_request *request,
-                            enum import_kind kind)
-{
-    uint8_t *data = NULL;
-    size_t size = 0;
-    struct mtl_library library = {0};
-    struct import_block block = {0};
-    whit_result result =
-        file_read(&scene->log, &scene->roots, request->path, MODEL_LIMIT, &data, &size);
-    if (result != WHIT_OK)
-        return result;
-    scene->file_bytes += size;
-    if (!obj_repair_text(&data, &size)) {
-        result = WHIT_ERROR_MEMORY;
-        goto done;
-    }
-    result = obj_read_libraries(scene, request->path, (const char *)data, &library);
-    if (result == WHIT_OK)
-        result = import(scene, request, kind, data, size, &block);
-    free(data);
-    data = NULL;
-    if (result == WHIT_OK)
-        result = add_block(scene, request, &block, &library, false);
-done:
-    importer_finish(&block);
-    mtl_finish(&library);
-    free(data);
-    return result;
-}
-
-/* Loads a PLY or STL. Vertex colours are taken as sRGB, since scanners take them from photos. */
-static whit_result load_plain(struct scene *scene, const struct model_request *request,
-                              enum import_kind kind)
-{
-    uint8_t *data = NULL;
-    size_t size = 0;
-    const struct mtl_library no_library = {0};
-    struct import_block block = {0};
-    whit_result result =
-        file_read(&scene->log, &scene->roots, request->path, MODEL_LIMIT, &data, &size);
-    if (result != WHIT_OK)
-        return result;
-    scene->file_bytes += size;
-    if (kind == IMPORT_PLY)
-        result = ply_check(&scene->log, request->path, data, size);
-    if (result == WHIT_OK && kind == IMPORT_PLY)
-        result = ply_replace_strips(&scene->log, request->path, &data, &size);
-    if (result == WHIT_OK && kind == IMPORT_PLY && !ply_repair(&data, &size))
-        result = WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK)
-        result = import(scene, request, kind, data, size, &block);
-    free(data);
-    if (result == WHIT_OK)
-        result = add_block(scene, request, &block, &no_library, true);
-    importer_finish(&block);
-    return result;
-}
-
 /* --- FBX, COLLADA, 3MF, OFF ----------------------------------------------------------------- */
 
 static void note_dropped(struct scene *scene, const char *path, const struct import_counts *counts)
@@ -220,47 +162,81 @@ static void note_dropped(struct scene *scene, const char *path, const struct imp
                        unread[i].count == 1 ? unread[i].one : unread[i].several);
 }
 
-static whit_result load_whole(struct scene *scene, const struct model_request *request,
-                              enum import_kind kind)
+static whit_result add_whole(struct scene *scene, const struct model_request *request,
+                             const struct import_block *block)
+{
+    note_dropped(scene, request->path, &block->counts);
+    return gltf_load_bytes(scene, request, block->glb, block->glb_bytes);
+}
+
+/* --- all kinds ------------------------------------------------------------------------------ */
+
+/* Checks and repairs the bytes of a file before assimp gets them, and reads the materials that an
+   OBJ names. */
+static whit_result prepare(struct scene *scene, const struct model_request *request,
+                           enum import_kind kind, uint8_t **data, size_t *size_bytes,
+                           struct mtl_library *library)
+{
+    const char *path = request->path;
+    if (kind == IMPORT_OBJ) {
+        if (!obj_repair_text(data, size_bytes))
+            return WHIT_ERROR_MEMORY;
+        return obj_read_libraries(scene, path, (const char *)*data, library);
+    }
+    if (kind != IMPORT_PLY)
+        return WHIT_OK;
+    whit_result result = ply_check(&scene->log, path, *data, *size_bytes);
+    if (result == WHIT_OK)
+        result = ply_replace_strips(&scene->log, path, data, size_bytes);
+    if (result == WHIT_OK && !ply_repair(data, size_bytes))
+        result = WHIT_ERROR_MEMORY;
+    return result;
+}
+
+/* Frees `data` as soon as it is imported. Vertex colours of PLY and STL are taken as sRGB, since
+   scanners take them from photos. */
+static whit_result load_imported(struct scene *scene, const struct model_request *request,
+                                 enum import_kind kind, uint8_t *data, size_t size_bytes)
+{
+    struct mtl_library library = {0};
+    struct import_block block = {0};
+    whit_result result = prepare(scene, request, kind, &data, &size_bytes, &library);
+    if (result == WHIT_OK)
+        result = import(scene, request, kind, data, size_bytes, &block);
+    free(data);
+    if (result == WHIT_OK && kind >= IMPORT_FBX)
+        result = add_whole(scene, request, &block);
+    else if (result == WHIT_OK)
+        result = add_block(scene, request, &block, &library, kind != IMPORT_OBJ);
+    importer_finish(&block);
+    mtl_finish(&library);
+    return result;
+}
+
+static whit_result load_kind(struct scene *scene, const struct model_request *request,
+                             enum import_kind kind)
 {
     uint8_t *data = NULL;
     size_t size = 0;
-    struct import_block block = {0};
     whit_result result =
         file_read(&scene->log, &scene->roots, request->path, MODEL_LIMIT, &data, &size);
     if (result != WHIT_OK)
         return result;
     scene->file_bytes += size;
-    result = import(scene, request, kind, data, size, &block);
+    if (kind != IMPORT_GLTF)
+        return load_imported(scene, request, kind, data, size);
+    result = gltf_load_bytes(scene, request, data, size);
     free(data);
-    if (result == WHIT_OK)
-        note_dropped(scene, request->path, &block.counts);
-    if (result == WHIT_OK)
-        result = gltf_load_bytes(scene, request, block.glb, block.glb_bytes);
-    importer_finish(&block);
     return result;
-}
-
-/* --- all kinds ------------------------------------------------------------------------------ */
-
-static whit_result load_gltf(struct scene *scene, const struct model_request *request,
-                             enum import_kind kind)
-{
-    (void)kind;
-    return gltf_load(scene, request);
 }
 
 static const struct {
     const char *extension;
-    whit_result (*load)(struct scene *scene, const struct model_request *request,
-                        enum import_kind kind);
     enum import_kind kind;
 } kinds[] = {
-    {"obj", load_obj, IMPORT_OBJ},   {"gltf", load_gltf, IMPORT_GLTF},
-    {"glb", load_gltf, IMPORT_GLTF}, {"ply", load_plain, IMPORT_PLY},
-    {"stl", load_plain, IMPORT_STL}, {"fbx", load_whole, IMPORT_FBX},
-    {"dae", load_whole, IMPORT_DAE}, {"3mf", load_whole, IMPORT_3MF},
-    {"off", load_whole, IMPORT_OFF},
+    {"obj", IMPORT_OBJ}, {"gltf", IMPORT_GLTF}, {"glb", IMPORT_GLTF},
+    {"ply", IMPORT_PLY}, {"stl", IMPORT_STL},   {"fbx", IMPORT_FBX},
+    {"dae", IMPORT_DAE}, {"3mf", IMPORT_3MF},   {"off", IMPORT_OFF},
 };
 
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
@@ -286,7 +262,7 @@ whit_result load_model(struct scene *scene, const char *path, uint32_t parent, b
     const struct model_request request = {path, parent, with_lights, with_cameras, params};
     size_t kind = find_kind(path);
     if (kind < KIND_COUNT)
-        return kinds[kind].load(scene, &request, kinds[kind].kind);
+        return load_kind(scene, &request, kinds[kind].kind);
     char extension[16];
     path_extension(path, extension, sizeof extension);
     log_error(&scene->log, "%s: unknown kind of model `.%s` (known: " LOAD_MODELS ")", path,
