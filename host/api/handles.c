@@ -1,6 +1,8 @@
 /* Checks and steps that several functions of the library share. */
 #include "api/handles.h"
 
+#include <stdlib.h>
+
 #include "accel/flat_choice.h"
 #include "scene/effects.h"
 #include "scene/pose.h"
@@ -18,6 +20,21 @@ whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene
     scene_effects_scan(scene->scene, &scene->effects);
     *out = scene;
     return WHIT_OK;
+}
+
+whit_result api_hand_out(const whit_log *log, struct image *made, whit_result result,
+                         whit_image **out)
+{
+    *out = result == WHIT_OK ? calloc(1, sizeof **out) : NULL;
+    if (*out) {
+        (*out)->image = *made;
+        return WHIT_OK;
+    }
+    image_finish(made);
+    if (result != WHIT_OK)
+        return result;
+    log_error(log, "out of memory");
+    return WHIT_ERROR_MEMORY;
 }
 
 whit_result api_need_device(const whit_renderer *renderer)

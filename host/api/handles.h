@@ -61,6 +61,12 @@ struct whit_image {
     atomic_uint sharers; /* owners besides the first one, see whit_image_share */
 };
 
+/* Hands out `made` behind a handle, and *out = NULL on errors. `result`: of making it. On failure
+   finishes `made`. WHIT_ERROR_MEMORY, logged, where there is no memory for the handle; `log` may be
+   NULL. */
+WHIT_CHECK whit_result api_hand_out(const whit_log *log, struct image *made, whit_result result,
+                                    whit_image **out);
+
 struct whit_file {
     struct file_write write;
     whit_log log;

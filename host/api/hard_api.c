@@ -1,6 +1,4 @@
 /* Runs the hard cases on the caller's device. */
-#include <stdlib.h>
-
 #include "api/handles.h"
 #include "hard/run.h"
 
@@ -82,18 +80,13 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
         log_error(log, "%u x %u: at most %d on a side", own.width, own.height, SIDE_MAX);
         return WHIT_ERROR_USAGE;
     }
-    whit_image *image = calloc(1, sizeof *image);
-    whit_result result =
-        image ? image_init(&image->image, own.width, own.height, 3, false) : WHIT_ERROR_MEMORY;
+    struct image image;
+    whit_result result = image_init(&image, own.width, own.height, 3, false);
     if (result != WHIT_OK)
         log_error(log, "out of memory");
     if (result == WHIT_OK)
         result = hard_view(device ? &hard_device : NULL, scene ? scene->scene : NULL,
-                           scene && api_one_tree(scene, own.instances), &own, log,
-                           image->image.pixels, wrong_pixels, other_pixels);
-    if (result == WHIT_OK)
-        *out = image;
-    else
-        whit_image_destroy(image);
-    return result;
+                           scene && api_one_tree(scene, own.instances), &own, log, image.pixels,
+                           wrong_pixels, other_pixels);
+    return api_hand_out(log, &image, result, out);
 }

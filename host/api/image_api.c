@@ -39,43 +39,29 @@ whit_result whit_image_rows(const whit_image *image, uint32_t first, uint32_t co
     *out = NULL;
     if (count == 0 || first > from->height || count > from->height - first)
         return WHIT_ERROR_USAGE;
-    whit_image *rows = calloc(1, sizeof *rows);
-    if (!rows)
-        return WHIT_ERROR_MEMORY;
-    struct image *to = &rows->image;
-    whit_result result = image_init(to, from->width, count, from->channels, from->words != NULL);
-    if (result != WHIT_OK) {
-        whit_image_destroy(rows);
+    struct image to;
+    whit_result result = image_init(&to, from->width, count, from->channels, from->words != NULL);
+    if (result != WHIT_OK)
         return result;
-    }
-    to->display_scale = from->display_scale;
-    to->display_soft = from->display_soft;
+    to.display_scale = from->display_scale;
+    to.display_soft = from->display_soft;
     size_t row = (size_t)from->width * from->channels, bytes = row * count * sizeof(uint32_t);
     if (from->words)
-        memcpy(to->words, from->words + row * first, bytes);
+        memcpy(to.words, from->words + row * first, bytes);
     else
-        memcpy(to->pixels, from->pixels + row * first, bytes);
-    *out = rows;
-    return WHIT_OK;
+        memcpy(to.pixels, from->pixels + row * first, bytes);
+    return api_hand_out(NULL, &to, WHIT_OK, out);
 }
 
 whit_result whit_image_create_display(uint32_t width, uint32_t height, const uint8_t *rgba,
                                       whit_image **out)
 {
     size_t pixel_count = (size_t)width * height;
-    *out = NULL;
-    whit_image *image = calloc(1, sizeof *image);
-    whit_result result =
-        image ? image_init(&image->image, width, height, 3, false) : WHIT_ERROR_MEMORY;
-    if (result != WHIT_OK) {
-        free(image);
-        return result;
-    }
-    for (size_t i = 0; i < 3 * pixel_count; ++i)
-        image->image.pixels[i] =
-            image_linear_from_srgb((float)rgba[i / 3 * 4 + i % 3] * (1.0f / 255.0f));
-    *out = image;
-    return WHIT_OK;
+    struct image image;
+    whit_result result = image_init(&image, width, height, 3, false);
+    for (size_t i = 0; result == WHIT_OK && i < 3 * pixel_count; ++i)
+        image.pixels[i] = image_linear_from_srgb((float)rgba[i / 3 * 4 + i % 3] * (1.0f / 255.0f));
+    return api_hand_out(NULL, &image, result, out);
 }
 
 void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
@@ -208,17 +194,11 @@ whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels
     *out = NULL;
     if (width == 0 || height == 0 || (channels != 1 && channels != 3 && channels != 4))
         return WHIT_ERROR_USAGE;
-    whit_image *image = calloc(1, sizeof *image);
-    if (!image)
-        return WHIT_ERROR_MEMORY;
-    whit_result result = image_init(&image->image, width, height, channels, false);
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    memcpy(image->image.pixels, pixels, (size_t)width * height * channels * sizeof *pixels);
-    *out = image;
-    return WHIT_OK;
+    struct image image;
+    whit_result result = image_init(&image, width, height, channels, false);
+    if (result == WHIT_OK)
+        memcpy(image.pixels, pixels, (size_t)width * height * channels * sizeof *pixels);
+    return api_hand_out(NULL, &image, result, out);
 }
 
 whit_image *whit_image_share(whit_image *image)
@@ -252,17 +232,9 @@ whit_result whit_image_heat(const whit_image *values, const whit_heat_params *pa
     const whit_heat_params defaults = {0};
     if (!params)
         params = &defaults;
-    *out = NULL;
-    whit_image *image = calloc(1, sizeof *image);
-    if (!image)
-        return WHIT_ERROR_MEMORY;
-    whit_result result = image_heat(&values->image, params, &image->image);
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    *out = image;
-    return WHIT_OK;
+    struct image image = {0};
+    whit_result result = image_heat(&values->image, params, &image);
+    return api_hand_out(NULL, &image, result, out);
 }
 
 static whit_result compare_by_flip(const whit_image *a, const whit_image *b,
@@ -270,17 +242,13 @@ static whit_result compare_by_flip(const whit_image *a, const whit_image *b,
                                    whit_image **flip_map)
 {
     struct flip_summary flip;
-    whit_image *map = calloc(1, sizeof *map);
-    if (!map)
-        return WHIT_ERROR_MEMORY;
-    whit_result result =
-        image_flip(&a->image, &b->image, params->pixels_per_degree, &map->image, &flip);
+    struct image map = {0};
+    whit_result result = image_flip(&a->image, &b->image, params->pixels_per_degree, &map, &flip);
     out->flip_mean = flip.mean;
     out->flip_largest = flip.largest;
-    if (result == WHIT_OK && flip_map)
-        *flip_map = map;
-    else
-        whit_image_destroy(map);
+    if (flip_map)
+        return api_hand_out(NULL, &map, result, flip_map);
+    image_finish(&map);
     return result;
 }
 
@@ -304,15 +272,7 @@ whit_result whit_image_compare(const whit_image *a, const whit_image *b,
 whit_result whit_image_subtract(const whit_image *a, const whit_image *b, const whit_log *log,
                                 whit_image **out)
 {
-    *out = NULL;
-    whit_image *image = calloc(1, sizeof *image);
-    if (!image)
-        return WHIT_ERROR_MEMORY;
-    whit_result result = image_subtract(log, &a->image, &b->image, &image->image);
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    *out = image;
-    return WHIT_OK;
+    struct image image = {0};
+    whit_result result = image_subtract(log, &a->image, &b->image, &image);
+    return api_hand_out(NULL, &image, result, out);
 }

@@ -8,22 +8,27 @@
 #include "image/estimate.h"
 #include "shader/program.h"
 
+/* What a number of samples give. */
+struct part {
+    struct image color;
+    struct image cuts;                  /* WHIT_AOV_CUTS */
+    struct image aovs[SHADER_AOVS_MAX]; /* the shader's AOVs */
+    uint32_t aov_count;                 /* 0 after whit_refine_begin, whose samples have no AOVs */
+    whit_stats stats;
+};
+
 struct whit_refine {
     whit_renderer *renderer; /* borrowed */
     whit_renderer_params params;
     whit_log log;
     uint32_t samples;
-    bool cut;                           /* some rays were cut, by depth or bail-out */
-    bool radiance_known;                /* cut_radiance was measured; needed if `cut` */
-    double cut_radiance;                /* assumed mean radiance of cut rays */
-    struct image color;                 /* mean of all samples */
-    struct image cuts;                  /* WHIT_AOV_CUTS, mean of all samples */
-    struct image aovs[SHADER_AOVS_MAX]; /* the shader's AOVs, mean of all samples */
-    uint32_t aov_count;                 /* 0 after whit_refine_begin, whose samples have no AOVs */
+    bool cut;            /* some rays were cut, by depth or bail-out */
+    bool radiance_known; /* cut_radiance was measured; needed if `cut` */
+    double cut_radiance; /* assumed mean radiance of cut rays */
+    struct part mean;    /* of all samples; its stats are sums */
     struct estimate estimate;
     struct image errors; /* by estimate_error, from 2 samples on */
     double error, error_of_cuts;
-    whit_stats stats;
 };
 
 /* A bail-out larger than the weight of any ray that a material sends on, so that camera rays send
@@ -69,27 +74,6 @@ void whit_refine_move(whit_refine *refine, whit_renderer *renderer,
     refine->params.first_row = refine->params.row_count = 0; /* the whole picture */
 }
 
-void whit_refine_destroy(whit_refine *refine)
-{
-    if (!refine)
-        return;
-    image_finish(&refine->color);
-    image_finish(&refine->cuts);
-    estimate_finish(&refine->estimate);
-    image_finish(&refine->errors);
-    for (uint32_t i = 0; i < SHADER_AOVS_MAX; ++i)
-        image_finish(&refine->aovs[i]);
-    free(refine);
-}
-
-/* ---- Parts ---- */
-
-struct part {
-    struct image color, cuts, aovs[SHADER_AOVS_MAX];
-    uint32_t aov_count;
-    whit_stats stats;
-};
-
 static void part_finish(struct part *part)
 {
     image_finish(&part->color);
@@ -97,6 +81,18 @@ static void part_finish(struct part *part)
     for (uint32_t i = 0; i < part->aov_count; ++i)
         image_finish(&part->aovs[i]);
 }
+
+void whit_refine_destroy(whit_refine *refine)
+{
+    if (!refine)
+        return;
+    part_finish(&refine->mean);
+    estimate_finish(&refine->estimate);
+    image_finish(&refine->errors);
+    free(refine);
+}
+
+/* ---- Parts ---- */
 
 static whit_result draw_part(const whit_refine *refine, uint32_t first, uint32_t count,
                              double bailout, struct part *part)
@@ -152,15 +148,10 @@ static whit_result begin(whit_refine *refine, uint32_t samples, struct part *par
         estimate_finish(&refine->estimate);
         return result;
     }
-    refine->color = part->color;
-    refine->cuts = part->cuts;
-    part->color = part->cuts = (struct image){0};
-    memcpy(refine->aovs, part->aovs, sizeof refine->aovs);
-    refine->aov_count = part->aov_count;
-    part->aov_count = 0;
-    refine->stats = part->stats;
+    refine->mean = *part;
+    *part = (struct part){0};
     refine->samples = samples;
-    refine->cut = is_any_cut(&refine->cuts);
+    refine->cut = is_any_cut(&refine->mean.cuts);
     return WHIT_OK;
 }
 
@@ -188,25 +179,25 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
 
 static void add_part(whit_refine *refine, const struct part *part)
 {
-    const struct image *const halves[2] = {&refine->color, &part->color};
+    const struct image *const halves[2] = {&refine->mean.color, &part->color};
     estimate_note_change(&refine->estimate, halves);
-    add_half(&refine->color, &part->color);
-    add_half(&refine->cuts, &part->cuts);
-    for (uint32_t i = 0; i < refine->aov_count; ++i)
-        add_half(&refine->aovs[i], &part->aovs[i]);
-    whit_stats_add(&part->stats, &refine->stats);
+    add_half(&refine->mean.color, &part->color);
+    add_half(&refine->mean.cuts, &part->cuts);
+    for (uint32_t i = 0; i < refine->mean.aov_count; ++i)
+        add_half(&refine->mean.aovs[i], &part->aovs[i]);
+    whit_stats_add(&part->stats, &refine->mean.stats);
     refine->samples *= 2;
 }
 
 static void take_radiance(whit_refine *refine, const struct part *part)
 {
-    refine->cut_radiance = estimate_cut_radiance(&refine->color, &part->color, &part->cuts);
+    refine->cut_radiance = estimate_cut_radiance(&refine->mean.color, &part->color, &part->cuts);
     refine->radiance_known = true;
-    refine->stats.render_ms += part->stats.render_ms;
-    if (refine->stats.render_device_ms >= 0.0 && part->stats.render_device_ms >= 0.0)
-        refine->stats.render_device_ms += part->stats.render_device_ms;
-    refine->stats.rays_of_estimate = whit_stats_rays(&part->stats);
-    api_set_rate(&refine->stats);
+    refine->mean.stats.render_ms += part->stats.render_ms;
+    if (refine->mean.stats.render_device_ms >= 0.0 && part->stats.render_device_ms >= 0.0)
+        refine->mean.stats.render_device_ms += part->stats.render_device_ms;
+    refine->mean.stats.rays_of_estimate = whit_stats_rays(&part->stats);
+    api_set_rate(&refine->mean.stats);
 }
 
 static bool is_last(const whit_refine *refine)
@@ -241,9 +232,9 @@ whit_result whit_refine_step(whit_refine *refine)
     part_finish(&part);
     if (result != WHIT_OK)
         return result;
-    refine->cut = is_any_cut(&refine->cuts);
+    refine->cut = is_any_cut(&refine->mean.cuts);
     if (is_told(refine))
-        refine->error = estimate_error(&refine->estimate, &refine->cuts, refine->cut_radiance,
+        refine->error = estimate_error(&refine->estimate, &refine->mean.cuts, refine->cut_radiance,
                                        &refine->errors, &refine->error_of_cuts);
     return WHIT_OK;
 }
@@ -275,7 +266,7 @@ whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
         log_error(&refine->log, "no picture was rendered yet");
         return WHIT_ERROR_USAGE;
     }
-    whit_result result = copy(refine, &refine->color, out);
+    whit_result result = copy(refine, &refine->mean.color, out);
     if (result == WHIT_OK)
         whit_image_display_as(*out, &refine->params);
     return result;
@@ -284,8 +275,8 @@ whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
 whit_result whit_refine_aov(const whit_refine *refine, uint32_t index, whit_image **out)
 {
     *out = NULL;
-    if (index < refine->aov_count)
-        return copy(refine, &refine->aovs[index], out);
+    if (index < refine->mean.aov_count)
+        return copy(refine, &refine->mean.aovs[index], out);
     log_error(&refine->log, "there is no function %u of the shader in all samples", index);
     return WHIT_ERROR_USAGE;
 }
@@ -313,17 +304,18 @@ static double largest(const struct image *cuts, size_t channel)
    large, since each step may have its largest weight in another pixel. */
 void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats)
 {
-    *stats = refine->stats;
+    *stats = refine->mean.stats;
     if (refine->samples == 0)
         return;
-    double bailout = largest(&refine->cuts, 1);
+    double bailout = largest(&refine->mean.cuts, 1);
     if (stats->bailout_bound > 0.0 && stats->weight_cut_bailout > 0.0)
         stats->bailout_bound *= bailout / stats->weight_cut_bailout;
     stats->weight_cut_bailout = bailout;
-    stats->weight_cut_depth = largest(&refine->cuts, 0);
+    stats->weight_cut_depth = largest(&refine->mean.cuts, 0);
     memset(stats->pixels_by_samples, 0, sizeof stats->pixels_by_samples);
     uint32_t level = 0;
     while (1u << (2 * level) < refine->samples)
         ++level;
-    stats->pixels_by_samples[level] = (uint64_t)refine->color.width * refine->color.height;
+    stats->pixels_by_samples[level] =
+        (uint64_t)refine->mean.color.width * refine->mean.color.height;
 }

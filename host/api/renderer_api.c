@@ -219,21 +219,13 @@ static whit_result make_image(whit_renderer *renderer, whit_aov aov, bool borrow
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
-    whit_image *image = calloc(1, sizeof *image);
-    if (!image) {
-        log_error(&renderer->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
-    result = borrow ? renderer_borrow_color(renderer->renderer, &image->image)
-                    : read_aov(renderer->renderer, aov, &image->image);
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    if (aov == WHIT_AOV_COLOR)
-        whit_image_display_as(image, &renderer->params);
-    *out = image;
-    return WHIT_OK;
+    struct image image = {0};
+    result = borrow ? renderer_borrow_color(renderer->renderer, &image)
+                    : read_aov(renderer->renderer, aov, &image);
+    result = api_hand_out(&renderer->log, &image, result, out);
+    if (result == WHIT_OK && aov == WHIT_AOV_COLOR)
+        whit_image_display_as(*out, &renderer->params);
+    return result;
 }
 
 whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out)
@@ -297,21 +289,12 @@ whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, wh
         log_error(&renderer->log, "there is no such view of costs");
         return WHIT_ERROR_USAGE;
     }
-    whit_image *image = calloc(1, sizeof *image);
-    if (!image) {
-        log_error(&renderer->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    struct image image = {0};
     for (uint32_t k = 0; result == WHIT_OK && k < RAY_KIND_COUNT; ++k) {
         if (kind == WHIT_RAY_KINDS || (uint32_t)kind == k)
-            result = add_costs(renderer, view, k, &image->image);
+            result = add_costs(renderer, view, k, &image);
     }
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    *out = image;
-    return WHIT_OK;
+    return api_hand_out(&renderer->log, &image, result, out);
 }
 
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats)
