@@ -3,7 +3,6 @@
 #define API_HANDLES_H
 
 #include "accel/accel.h"
-#include "base/file.h"
 #include "device/device.h"
 #include "image/image.h"
 #include "load/load.h"
@@ -66,10 +65,5 @@ struct whit_image {
    NULL. */
 WHIT_CHECK whit_result api_hand_out(const whit_log *log, struct image *made, whit_result result,
                                     whit_image **out);
-
-struct whit_file {
-    struct file_write write;
-    whit_log log;
-};
 
 #endif

@@ -1,5 +1,5 @@
 whit_module(api
-  SOURCES handles.c scene_api.c parts_api.c accel_api.c device_api.c renderer_api.c shader_api.c probe_api.c probe_rows.c probe_why.c reference_api.c refine_api.c stats_api.c hard_api.c judge_api.c image_api.c file_api.c
+  SOURCES handles.c scene_api.c parts_api.c accel_api.c device_api.c renderer_api.c shader_api.c probe_api.c probe_rows.c probe_why.c reference_api.c refine_api.c stats_api.c hard_api.c judge_api.c image_api.c library_api.c
   LINK whit_base whit_image whit_scene whit_load whit_hard whit_picture whit_device whit_render whit_reference)
 
 # libwhit: the objects of all modules in one archive. Its users link `whit`; its headers are found

@@ -177,21 +177,12 @@ whit_result whit_renderer_get_kernel(const whit_renderer *renderer, whit_kernel_
 }
 
 whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
-                              const whit_renderer_params *params, whit_kernel *kernels,
+                              const whit_renderer_params *params, bool make, whit_kernel *kernels,
                               uint32_t *count)
 {
     const whit_renderer_params defaults = whit_renderer_defaults();
     return render_list_kernels(&device->log, device->device, accel->accel,
-                               params ? params : &defaults, true, kernels, count);
-}
-
-whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
-                               const whit_renderer_params *params, whit_kernel *kernels,
-                               uint32_t *count)
-{
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    return render_list_kernels(&device->log, device->device, accel->accel,
-                               params ? params : &defaults, false, kernels, count);
+                               params ? params : &defaults, make, kernels, count);
 }
 
 static whit_result read_aov(struct renderer *renderer, whit_aov aov, struct image *out)

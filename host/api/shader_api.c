@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "api/handles.h"
+#include "base/path.h"
 #include "image/image_reply.h"
 #include "shader/disassemble.h"
 #include "shader/pack.h"

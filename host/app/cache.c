@@ -10,8 +10,8 @@
 
 #include "app/cli.h"
 #include "app/document.h"
+#include "base/store.h"
 #include "cost/cost.h"
-#include "whit/whit_program.h"
 
 /* whit keeps at most this many folders of Mesa's cache; Mesa's size limit applies to each. */
 enum { MESA_FOLDERS = 4, MESA_IN_USE_S = 3600 };
@@ -150,12 +150,12 @@ void cache_prepare(bool off)
         (void)setenv("WHIT_NO_CACHE", "1", 1);
     if (getenv(mesa_place) && !off)
         return;
-    char *folder = whit_cache_folder();
+    char *folder = store_folder(NULL);
     if (folder)
         choose_folder(folder);
     else
         (void)setenv(mesa_off, "true", 0);
-    whit_memory_destroy(folder);
+    free(folder);
 }
 
 /* ---- For `whit devices` ---- */
@@ -168,8 +168,8 @@ static uint64_t mesa_bytes(void)
 
 json_t *cache_document(void)
 {
-    whit_cache_info info;
-    whit_cache_get_info(&info);
+    struct store_info info;
+    store_get_info(&info);
     json_t *cache = document_object();
     document_text(cache, "folder", info.folder[0] ? info.folder : NULL);
     document_text(cache, "why_not", info.why_not[0] ? info.why_not : NULL);
@@ -183,8 +183,8 @@ json_t *cache_document(void)
 
 void cache_print(void)
 {
-    whit_cache_info info;
-    whit_cache_get_info(&info);
+    struct store_info info;
+    store_get_info(&info);
     const char *place = getenv(mesa_place), *limit = getenv(mesa_size);
     fputs("\ncache  ", stdout);
     if (info.why_not[0]) {

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "app/document.h"
+#include "base/file.h"
 #include "whit/whit_program.h"
 
 /* Time in which interrupted work must stop by itself, so that Ctrl+C takes at most 0.2 s. */
@@ -262,7 +263,7 @@ __attribute__((no_sanitize_address)) void cli_leave(int code)
 static void on_alarm(int number)
 {
     (void)number;
-    whit_file_abandon_all();
+    file_abandon_all();
     cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
                 interrupt_signal ? "interrupted" : "the time limit has passed");
     cli_leave(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
@@ -281,12 +282,12 @@ static void on_interrupt(int number)
     int reason = errno;
     cli_cancel = true;
     if (interrupt_signal) {
-        whit_file_abandon_all();
+        file_abandon_all();
         cli_leave(128 + number);
     }
     interrupt_signal = number;
     if (!set_timer(grace_ms)) {
-        whit_file_abandon_all();
+        file_abandon_all();
         cli_leave(128 + number);
     }
     errno = reason;
@@ -369,13 +370,13 @@ bool cli_time_over(void)
 bool cli_can_write(const char *path)
 {
     struct stat info;
-    whit_file *file;
+    struct file_write file;
     /* The test below opens and closes the file, which would end the reader of a pipe. */
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
         return true;
-    if (whit_file_begin(path, &cli_log, &file) != WHIT_OK)
+    if (file_write_begin(&cli_log, path, &file) != WHIT_OK)
         return false;
-    whit_file_abandon(file);
+    file_write_abandon(&file);
     return true;
 }
 

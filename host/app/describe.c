@@ -6,7 +6,7 @@
 
 #include "app/arguments.h"
 #include "app/describe.h"
-#include "whit/whit_program.h"
+#include "base/file.h"
 
 /* ---- Completion ---- */
 
@@ -208,7 +208,7 @@ int describe_manual(const struct cli_command *const *commands, uint32_t count, c
         else if (to)
             put_program(to, commands, count);
         whit_result result = !to || fclose(to) != 0 ? WHIT_ERROR_MEMORY
-                                                    : whit_file_write(path, text, size, &cli_log);
+                                                    : file_write_whole(&cli_log, path, text, size);
         free(text);
         if (result != WHIT_OK)
             return cli_exit_of(result);

@@ -7,11 +7,12 @@
 #include <string.h>
 
 #include "app/cli.h"
+#include "base/file.h"
 #include "whit/whit_program.h"
 
 static void out_of_memory(void)
 {
-    whit_file_abandon_all();
+    file_abandon_all();
     cli_error("out of memory");
     exit(EXIT_USAGE);
 }
@@ -190,7 +191,7 @@ whit_result document_save_text(char *text, const char *path)
     if (!text)
         return cli_no_memory();
     cli_set_saving();
-    whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
+    whit_result result = file_write_whole(&cli_log, path, text, strlen(text));
     free(text);
     return result;
 }

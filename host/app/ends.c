@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "app/cli.h"
+#include "base/file.h"
 #include "whit/whit_program.h"
 
 enum { STACK_BYTES = 64 << 10 };
@@ -18,7 +19,7 @@ static struct sigaction before[CRASH_COUNT];
 
 static void on_pipe(int number)
 {
-    whit_file_abandon_all();
+    file_abandon_all();
     signal(number, SIG_DFL);
     raise(number); /* delivered when the handler returns */
 }
@@ -28,7 +29,7 @@ static void on_crash(int number, siginfo_t *info, void *context)
     (void)context;
     const char *lacks = whit_shortage(CRASH_ROOM_BYTES);
     if (lacks) {
-        whit_file_abandon_all();
+        file_abandon_all();
         cli_put_end("whit: error: ", lacks);
         cli_leave(EXIT_USAGE);
     }

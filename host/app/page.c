@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/cli.h"
+#include "base/file.h"
 
 /* Appends base64 (RFC 4648) to `to`. */
 static void put_base64(FILE *to, const uint8_t *data, size_t size_bytes)
@@ -59,7 +60,7 @@ whit_result page_save(const char *html, json_t *document, const char *path)
         fputs(at + strlen(mark), to);
     }
     whit_result result =
-        to && fclose(to) == 0 ? whit_file_write(path, text, bytes, &cli_log) : cli_no_memory();
+        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
     free(text);
     free(line);
     return result;

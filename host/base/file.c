@@ -387,6 +387,30 @@ void file_write_abandon(struct file_write *file)
     *file = (struct file_write){0};
 }
 
+whit_result file_write_append(const whit_log *log, struct file_write *file, const void *data,
+                              size_t size_bytes)
+{
+    errno = 0;
+    if (size_bytes == 0 || fwrite(data, 1, size_bytes, file->stream) == size_bytes)
+        return WHIT_OK;
+    log_error(log, "%s: cannot write: %s", file->path, strerror(errno ? errno : EIO));
+    return WHIT_ERROR_OUTPUT;
+}
+
+whit_result file_write_whole(const whit_log *log, const char *path, const void *data,
+                             size_t size_bytes)
+{
+    struct file_write file;
+    whit_result result = file_write_begin(log, path, &file);
+    if (result != WHIT_OK)
+        return result;
+    result = file_write_append(log, &file, data, size_bytes);
+    if (result == WHIT_OK)
+        return file_write_commit(log, &file);
+    file_write_abandon(&file);
+    return result;
+}
+
 bool file_exists(const char *path)
 {
     return access(path, F_OK) == 0;

@@ -33,7 +33,12 @@ struct file_write {
 WHIT_CHECK whit_result file_write_begin(const whit_log *log, const char *path,
                                         struct file_write *file);
 WHIT_CHECK whit_result file_write_commit(const whit_log *log, struct file_write *file);
+WHIT_CHECK whit_result file_write_append(const whit_log *log, struct file_write *file,
+                                         const void *data, size_t size_bytes);
 void file_write_abandon(struct file_write *file);
+/* Begins the file, appends all of `data` and commits. */
+WHIT_CHECK whit_result file_write_whole(const whit_log *log, const char *path, const void *data,
+                                        size_t size_bytes);
 void file_abandon_all(void);
 
 bool file_exists(const char *path);

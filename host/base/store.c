@@ -299,11 +299,11 @@ void store_write(const whit_log *log, const char *name, const void *data, size_t
     close(folder);
 }
 
-void store_get_info(whit_cache_info *info)
+void store_get_info(struct store_info *info)
 {
     const whit_log silent = {0};
     const char *why;
-    *info = (whit_cache_info){.limit_bytes = limit_bytes()};
+    *info = (struct store_info){.limit_bytes = limit_bytes()};
     char *path = make_folder();
     int folder = open_folder(&silent, path, &why);
     snprintf(info->folder, sizeof info->folder, "%s", path ? path : "");

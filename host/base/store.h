@@ -11,7 +11,6 @@
 #include <stdint.h>
 
 #include "base/log.h"
-#include "whit/whit_program.h"
 
 /* The folder, created if it does not exist; free() it. NULL: it cannot be used, or WHIT_NO_CACHE is
    set. A folder that others own or may write to gives a warning, once in a process. */
@@ -26,6 +25,11 @@ bool store_read(const whit_log *log, const char *name, uint8_t **data, size_t *s
    512 MiB, or $WHIT_CACHE_LIMIT MiB. */
 void store_write(const whit_log *log, const char *name, const void *data, size_t size_bytes);
 
-void store_get_info(whit_cache_info *info);
+struct store_info {
+    char folder[4096]; /* "": there is no cache folder */
+    char why_not[128]; /* the reason where nothing is kept; "" where files are kept */
+    uint64_t used_bytes, limit_bytes;
+};
+void store_get_info(struct store_info *info);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/store.h"
 #include "cost/reference.h"
 #include "whit/whit_program.h"
 
@@ -64,14 +65,14 @@ static whit_image *read_kept(const struct measure *measure, const whit_renderer_
     size_t bytes;
     size_t pixels = (size_t)params->width * params->height;
     kept_name(measure, params, name);
-    if (whit_cache_read(name, measure->request->log, &data, &bytes) &&
+    if (store_read(measure->request->log, name, &data, &bytes) &&
         bytes == pixels * KEPT_CHANNELS * sizeof(float) &&
         whit_image_create(params->width, params->height, KEPT_CHANNELS, (const float *)data,
                           &image) != WHIT_OK)
         image = NULL;
     if (image)
         whit_image_display_as(image, params);
-    whit_memory_destroy(data);
+    free(data);
     return image;
 }
 
@@ -83,9 +84,8 @@ static void keep(const struct measure *measure, const whit_renderer_params *para
     whit_image_get_info(image, &info);
     kept_name(measure, params, name);
     if (info.channels == KEPT_CHANNELS && !info.integers)
-        whit_cache_write(name, whit_image_floats(image),
-                         (size_t)info.width * info.height * KEPT_CHANNELS * sizeof(float),
-                         measure->request->log);
+        store_write(measure->request->log, name, whit_image_floats(image),
+                    (size_t)info.width * info.height * KEPT_CHANNELS * sizeof(float));
 }
 
 static bool is_kept(const struct measure *measure, uint32_t shrink)

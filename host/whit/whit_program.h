@@ -1,7 +1,6 @@
-/* Functions of libwhit for whit's own programs, beside whit.h: files that appear whole or not at
-   all, clocks, pictures in strips, kernels as drivers make them, parts of scenes for `whit check`,
-   the cache folder. This header is not installed, the shared library does not export these
-   functions, and they may change with every commit. */
+/* Functions of libwhit for whit's own programs, beside whit.h: clocks, pictures in strips, kernels
+   as drivers make them, parts of scenes for `whit check`. This header is not installed, the shared
+   library does not export these functions, and they may change with every commit. */
 #ifndef WHIT_PROGRAM_H
 #define WHIT_PROGRAM_H
 
@@ -9,24 +8,8 @@
 #include "whit_image.h"
 #include "whit_renderer.h"
 
-/* ---- Files and clocks ---- */
+/* ---- Shortage and clocks ---- */
 
-/* A file under construction, hidden beside `path`: commit renames it over `path`, abandon removes
-   it. Exactly one of the two ends it. */
-typedef struct whit_file whit_file;
-/* WHIT_ERROR_OUTPUT where the file cannot be written. */
-WHIT_CHECK whit_result whit_file_begin(const char *path, const whit_log *log, whit_file **out);
-WHIT_CHECK whit_result whit_file_append(whit_file *file, const void *data, size_t size_bytes);
-WHIT_CHECK whit_result whit_file_commit(whit_file *file);
-void whit_file_abandon(whit_file *file);
-
-/* Writes a whole file beside `path` and renames it. WHIT_ERROR_OUTPUT where it cannot be written.
- */
-WHIT_CHECK whit_result whit_file_write(const char *path, const void *data, size_t size_bytes,
-                                       const whit_log *log);
-/* Removes unfinished output; safe in a signal handler. */
-void whit_file_abandon_all(void);
-uint64_t whit_peak_memory_bytes(void);
 /* Tells whether this process has run out of something at this moment, by its own limit (`ulimit
    -v`, `ulimit -n`) or the system's: "out of memory" where `room_bytes` cannot be had, "too many
    open files" where a few more descriptors cannot; NULL: neither. It names the cause where drivers
@@ -142,17 +125,12 @@ WHIT_CHECK whit_result whit_renderer_get_kernel(const whit_renderer *renderer,
                                                 whit_kernel_info *info);
 
 /* Makes the kernels of a picture with these params one after the other, without drawing and without
-   allocating memory of the device. `kernels`: room for WHIT_KERNELS_MAX; `params` may be NULL.
-   WHIT_ERROR_USAGE for params that a renderer refuses too, WHIT_ERROR_DEVICE or _MEMORY where a
-   kernel cannot be made. */
+   allocating memory of the device; without `make` only counts their instructions, and other figures
+   are 0. `kernels`: room for WHIT_KERNELS_MAX; `params` may be NULL. WHIT_ERROR_USAGE for params
+   that a renderer refuses too, WHIT_ERROR_DEVICE or _MEMORY where a kernel cannot be made. */
 WHIT_CHECK whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
-                                         const whit_renderer_params *params, whit_kernel *kernels,
-                                         uint32_t *count);
-/* Counts the instructions of these kernels without making them: other figures are 0.
-   WHIT_ERROR_USAGE and others as of whit_kernels_list. */
-WHIT_CHECK whit_result whit_kernels_count(whit_device *device, whit_accel *accel,
-                                          const whit_renderer_params *params, whit_kernel *kernels,
-                                          uint32_t *count);
+                                         const whit_renderer_params *params, bool make,
+                                         whit_kernel *kernels, uint32_t *count);
 
 /* Gives the name of a kernel that contains functions of the shader, by index; NULL past the last.
    `words`: its SPIR-V. */
@@ -241,29 +219,5 @@ typedef struct whit_fault {
    that one of the faults could change; other errors as of whit_scene_mix. */
 WHIT_CHECK whit_result whit_scene_fault(const whit_scene *scene, const whit_fault *faults,
                                         uint32_t count, whit_scene **out);
-
-/* ---- What can be made again, kept from one run to the next ---- */
-
-/* The cache folder is $XDG_CACHE_HOME/whit or ~/.cache/whit, closed to other users. Nothing is kept
-   where the folder cannot be made, belongs to somebody else or is writable by others (one warning),
-   or where WHIT_NO_CACHE is set. Files have a checksum; beyond 512 MiB, or $WHIT_CACHE_LIMIT MiB,
-   the least recently used are removed. libwhit keeps pipelines there. */
-
-/* Reads the file kept under `name`. *data is followed by one zero byte that *size_bytes does not
-   count; release it by whit_memory_destroy. False: there is no such file, or it was damaged and has
-   been removed. */
-bool whit_cache_read(const char *name, const whit_log *log, uint8_t **data, size_t *size_bytes);
-/* `name`: says what the data is and its version; no slash, at most 200 bytes. Fails silently where
-   the data cannot be kept. */
-void whit_cache_write(const char *name, const void *data, size_t size_bytes, const whit_log *log);
-/* The path of the cache folder, which is created where it is missing; to be released by
-   whit_memory_destroy. NULL: nothing is kept. */
-char *whit_cache_folder(void);
-typedef struct whit_cache_info {
-    char folder[4096]; /* "": there is no cache folder */
-    char why_not[128]; /* the reason where nothing is kept; "" where files are kept */
-    uint64_t used_bytes, limit_bytes;
-} whit_cache_info;
-void whit_cache_get_info(whit_cache_info *info);
 
 #endif

@@ -278,7 +278,7 @@ static bool store_is_used(void)
 /* A folder of another user is not used, which is logged once per process. */
 TEST_IN(folders_of_others_are_not_used, begin, folder_end)
 {
-    whit_cache_info info;
+    struct store_info info;
     struct stat about;
     owner_of_next = geteuid() + 1;
     assert_true(store_is_used());
@@ -327,7 +327,7 @@ TEST_IN(without_a_folder_nothing_is_kept, begin, folder_end)
         assert_false(store_is_used());
         assert_int_equal(messages.count, 0);
         assert_null(store_folder(&silent));
-        whit_cache_info info;
+        struct store_info info;
         store_get_info(&info);
         assert_true(info.why_not[0] != '\0');
         if (i < 2)
@@ -351,7 +351,7 @@ TEST_IN(without_a_folder_nothing_is_kept, begin, folder_end)
 
 static uint64_t used_bytes(void)
 {
-    whit_cache_info info;
+    struct store_info info;
     store_get_info(&info);
     return info.used_bytes;
 }
@@ -468,7 +468,7 @@ TEST_IN(the_oldest_go_first, begin, folder_end)
     assert_false(exists("much"));
     assert_true(is_kept("c", 5));
     setenv("WHIT_CACHE_LIMIT", "all", 1);
-    whit_cache_info info;
+    struct store_info info;
     store_get_info(&info);
     assert_int_equal(info.limit_bytes, 512 * mib);
 }

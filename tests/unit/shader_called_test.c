@@ -32,7 +32,7 @@ static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *com
     whit_renderer_destroy(renderer);
     *kernels = 0;
     uint32_t count;
-    assert_int_equal(whit_kernels_list(device, accel, &params, list, &count), WHIT_OK);
+    assert_int_equal(whit_kernels_list(device, accel, &params, true, list, &count), WHIT_OK);
     for (uint32_t i = 0; i < count; ++i)
         *kernels += strncmp(list[i].name, "shadow", 6) == 0;
     return color;

@@ -202,7 +202,7 @@ TEST(a_picture_has_nothing_of_it)
     uint32_t counts[2];
     for (int i = 0; i < 2; ++i) {
         params.shader = i ? plain : shader;
-        assert_int_equal(whit_kernels_count(device, accel, &params, kernels[i], &counts[i]),
+        assert_int_equal(whit_kernels_list(device, accel, &params, false, kernels[i], &counts[i]),
                          WHIT_OK);
     }
     assert_int_equal(counts[0], counts[1]);

@@ -138,7 +138,7 @@ static uint32_t instructions_of(const whit_renderer_params *params)
 {
     whit_kernel list[WHIT_KERNELS_MAX];
     uint32_t count, instructions = 0;
-    assert_int_equal(whit_kernels_list(device, accel, params, list, &count), WHIT_OK);
+    assert_int_equal(whit_kernels_list(device, accel, params, true, list, &count), WHIT_OK);
     for (uint32_t i = 0; i < count; ++i)
         instructions += strcmp(list[i].name, "hit") == 0 ? list[i].instructions : 0;
     return instructions;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/arguments.h"
+#include "base/file.h"
 #include "bench/process.h"
 #include "whit/whit_program.h"
 
@@ -34,7 +35,7 @@ whit_result bench_write(const struct bench *bench, const char *name, const void 
 {
     char path[BENCH_PATH];
     bench_file(bench, name, path);
-    return whit_file_write(path, data, bytes, &cli_log);
+    return file_write_whole(&cli_log, path, data, bytes);
 }
 
 whit_result bench_find(const struct bench *bench, const char *name, char path[BENCH_PATH])
@@ -115,7 +116,7 @@ static whit_result write_json(struct bench *bench)
     document_put(root, "tables", json_incref(bench->tables));
     char *text = document_line(root);
     whit_result result =
-        text ? whit_file_write(ask->json, text, strlen(text), &cli_log) : WHIT_ERROR_MEMORY;
+        text ? file_write_whole(&cli_log, ask->json, text, strlen(text)) : WHIT_ERROR_MEMORY;
     free(text);
     return result;
 }

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "bench/process.h"
 #include "bench/table.h"
 
@@ -104,7 +105,7 @@ static whit_result save(struct saves *s, const char *form)
     double number = 1.0 + 1e-6 * ++s->number + 1e-10 * (double)((uint64_t)whit_clock_ms() % 9973);
     snprintf(text, sizeof text, form, number); /* the format is from the tables above */
     s->start_ms = whit_clock_ms();
-    return whit_file_write(s->path, text, strlen(text), &cli_log);
+    return file_write_whole(&cli_log, s->path, text, strlen(text));
 }
 
 static whit_renderer_params params_of(struct saves *s, const whit_shader *shader)
@@ -480,7 +481,7 @@ static whit_result write_tests(struct saves *s)
     }
     fprintf(to, "vec3 miss(vec3 dir) { return dir; }\n");
     whit_result result =
-        fclose(to) == 0 ? whit_file_write(s->path, text, bytes, &cli_log) : WHIT_ERROR_MEMORY;
+        fclose(to) == 0 ? file_write_whole(&cli_log, s->path, text, bytes) : WHIT_ERROR_MEMORY;
     free(text);
     return result;
 }

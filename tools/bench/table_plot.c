@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/file.h"
 #include "bench/table.h"
-#include "whit/whit_program.h"
 
 static const double WIDTH = 760.0, LEFT = 230.0, RIGHT = 150.0, TOP = 34.0, ROW = 22.0,
                     BOTTOM = 44.0;
@@ -104,7 +104,7 @@ whit_result table_plot(const struct table *table, const char *title, const char 
         put_drawing(to, table, title);
     cli_set_saving();
     whit_result result =
-        to && fclose(to) == 0 ? whit_file_write(path, text, bytes, &cli_log) : cli_no_memory();
+        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
     free(text);
     return result;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/check/check.h"
+#include "base/file.h"
 
 /* Writes text as the value of an XML attribute. Characters that XML cannot hold become escapes. */
 static void put_text(FILE *to, const char *text)
@@ -64,7 +65,7 @@ whit_result check_save_junit(const struct check *check)
     if (to)
         put_all(to, check);
     whit_result result = to && fclose(to) == 0
-                             ? whit_file_write(check->junit, text, bytes, &cli_log)
+                             ? file_write_whole(&cli_log, check->junit, text, bytes)
                              : cli_no_memory();
     free(text);
     return result;

@@ -50,7 +50,7 @@ whit_result check_save_thumbnail(const struct check *check, const struct check_r
         cli_error("%s: cannot make it: %s", folder, strerror(errno));
         saved = WHIT_ERROR_OUTPUT;
     } else {
-        saved = whit_file_write(path, png->data, png->size_bytes, &cli_log);
+        saved = file_write_whole(&cli_log, path, png->data, png->size_bytes);
     }
     free(folder);
     free(path);

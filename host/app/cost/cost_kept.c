@@ -8,6 +8,7 @@
 
 #include "app/cost/cost_json.h"
 #include "app/cost/cost_kept.h"
+#include "base/store.h"
 
 enum { KEPT_VERSION = 5 };
 
@@ -81,7 +82,7 @@ void cost_kept_save(const struct cost_kept *kept, const char *name)
     document_put(root, "choices", choices);
     char *text = document_line(root);
     if (text && kept->report.complete)
-        whit_cache_write(name, text, strlen(text), &cli_log);
+        store_write(&cli_log, name, text, strlen(text));
     free(text);
 }
 
@@ -135,9 +136,9 @@ bool cost_kept_load(const struct cost_place *place, const char *name, struct cos
 {
     uint8_t *data;
     size_t bytes;
-    bool good = whit_cache_read(name, &cli_log, &data, &bytes) &&
+    bool good = store_read(&cli_log, name, &data, &bytes) &&
                 read_kept(json_loadb((const char *)data, bytes, 0, NULL), kept);
-    whit_memory_destroy(data);
+    free(data);
     return good && kept->report.scene_hash == place->scene.hash &&
            kept->report.width == place->settings->picture.width &&
            kept->report.height == place->settings->picture.height &&

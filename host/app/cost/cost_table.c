@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/cost/cost_table.h"
+#include "base/file.h"
 #include "whit/whit_program.h"
 
 /* `is_number`: the column is right-aligned. */
@@ -379,7 +380,7 @@ static whit_result save(const struct cost *cost, const char *path,
     if (to)
         write(cost, to);
     whit_result result =
-        to && fclose(to) == 0 ? whit_file_write(path, text, bytes, &cli_log) : cli_no_memory();
+        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
     free(text);
     return result;
 }

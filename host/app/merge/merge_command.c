@@ -6,6 +6,7 @@
 #include "app/merge/merge.h"
 #include "app/render/recipe.h"
 #include "base/path.h"
+#include "base/platform.h"
 
 struct merge_request {
     const char *output;
@@ -71,7 +72,7 @@ static int print_stats(const struct merge *merge, const struct merge_request *re
     document_count(root, "samples_parts", merge->sets);
     document_put(root, "rays", recipe_rays(&merge->stats));
     json_t *memory = document_object();
-    document_count(memory, "host_peak_bytes", whit_peak_memory_bytes());
+    document_count(memory, "host_peak_bytes", platform_peak_memory_bytes());
     document_put(root, "memory", memory);
     return cli_print_json(root);
 }

@@ -10,6 +10,7 @@
 #include "app/render/render_command.h"
 #include "app/render/resume.h"
 #include "app/render/stats.h"
+#include "base/file.h"
 #include "base/text.h"
 
 enum { CAMERA_NAMES_MAX = 4096 };
@@ -226,7 +227,7 @@ static whit_result save_thumbnail(const whit_image *image, const char *path)
     size_t size_bytes;
     whit_result result = whit_image_encode_png(image, NULL, 0, &cli_log, &data, &size_bytes);
     if (result == WHIT_OK)
-        result = whit_file_write(path, data, size_bytes, &cli_log);
+        result = file_write_whole(&cli_log, path, data, size_bytes);
     whit_memory_destroy(data);
     return result;
 }

@@ -4,6 +4,7 @@
 #include "app/render/costs.h"
 #include "app/render/stats.h"
 #include "app/settings_json.h"
+#include "base/platform.h"
 
 struct figures {
     whit_scene_info scene;
@@ -264,7 +265,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     document_flag(work, "packets", figures->render->packets);
     document_put(root, "work", work);
     json_t *memory = document_object();
-    document_count(memory, "host_peak_bytes", whit_peak_memory_bytes());
+    document_count(memory, "host_peak_bytes", platform_peak_memory_bytes());
     document_count(memory, "device_bytes", figures->render->device_bytes);
     document_put(root, "memory", memory);
     return cli_print_json(root);
@@ -445,7 +446,7 @@ static int print_text(const struct job *job, const struct render_request *reques
     if (figures->render->deferred > 0)
         printf("  %u steps of pixels' rays took more than floats\n", figures->render->deferred);
     printf("memory\n  host %.1f MiB at most, device %.1f MiB\n",
-           (double)whit_peak_memory_bytes() / 1048576.0,
+           (double)platform_peak_memory_bytes() / 1048576.0,
            (double)figures->render->device_bytes / 1048576.0);
     return cli_finish_stdout(EXIT_FINE);
 }

@@ -81,7 +81,7 @@ int kernels_run(struct job *job, bool json)
     if (result == WHIT_OK) {
         whit_renderer_params params = job_picture(job);
         params.color_only = true; /* as `whit render` */
-        result = whit_kernels_list(job->device, job->accel, &params, kernels, &count);
+        result = whit_kernels_list(job->device, job->accel, &params, true, kernels, &count);
     }
     if (result != WHIT_OK)
         return cli_exit_of(result);

@@ -2,13 +2,14 @@
 #include <stdlib.h>
 
 #include "app/scene/listing.h"
+#include "base/file.h"
 #include "whit/whit_program.h"
 
 enum { TRIANGLE_BATCH = 4096 };
 _Static_assert(sizeof(whit_triangle) == 44, "records of --triangles have no padding");
 
 struct triangle_writer {
-    whit_file *file;
+    struct file_write file;
     whit_triangle batch[TRIANGLE_BATCH];
     uint32_t used;
     whit_result result;
@@ -16,8 +17,8 @@ struct triangle_writer {
 
 static bool write_batch(struct triangle_writer *writer)
 {
-    writer->result =
-        whit_file_append(writer->file, writer->batch, writer->used * sizeof writer->batch[0]);
+    writer->result = file_write_append(&cli_log, &writer->file, writer->batch,
+                                       writer->used * sizeof writer->batch[0]);
     writer->used = 0;
     return writer->result == WHIT_OK;
 }
@@ -36,7 +37,7 @@ whit_result triangles_write(const whit_scene *scene, double time_s, const char *
     struct triangle_writer *writer = calloc(1, sizeof *writer);
     if (!writer)
         return cli_no_memory();
-    whit_result result = whit_file_begin(path, &cli_log, &writer->file);
+    whit_result result = file_write_begin(&cli_log, path, &writer->file);
     if (result != WHIT_OK)
         goto done;
     result = whit_scene_triangles(scene, time_s, write_triangle, writer);
@@ -46,9 +47,9 @@ whit_result triangles_write(const whit_scene *scene, double time_s, const char *
         result = writer->result;
     if (result == WHIT_OK) {
         cli_set_saving();
-        result = whit_file_commit(writer->file);
+        result = file_write_commit(&cli_log, &writer->file);
     } else {
-        whit_file_abandon(writer->file);
+        file_write_abandon(&writer->file);
     }
 done:
     free(writer);

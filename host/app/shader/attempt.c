@@ -37,13 +37,13 @@ static whit_result list_kernels(const struct job *job, struct attempt *attempt)
 {
     whit_renderer_params params = params_of(job);
     params.classes = WHIT_CLASSES_MANY;
-    whit_result result = whit_kernels_list(job->device, job->accel, &params, attempt->kernels,
+    whit_result result = whit_kernels_list(job->device, job->accel, &params, true, attempt->kernels,
                                            &attempt->kernel_count);
     params.shader = NULL;
     params.sliders = NULL;
     if (result == WHIT_OK)
-        result = whit_kernels_count(job->device, job->accel, &params, attempt->base,
-                                    &attempt->base_count);
+        result = whit_kernels_list(job->device, job->accel, &params, false, attempt->base,
+                                   &attempt->base_count);
     return result;
 }
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "app/render/repeat.h"
+#include "base/file.h"
 #include "base/path.h"
 
 enum { PATH_BYTES = 4096 };
@@ -69,7 +70,7 @@ static bool write_files(const char *root, const whit_shader_file *files, uint32_
     char path[PATH_BYTES];
     for (uint32_t i = 0; i < count; ++i) {
         if (!make_folders(root, files[i].name, path) ||
-            whit_file_write(path, files[i].text, files[i].bytes, &cli_log) != WHIT_OK)
+            file_write_whole(&cli_log, path, files[i].text, files[i].bytes) != WHIT_OK)
             return false;
     }
     return true;

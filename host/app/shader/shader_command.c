@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/shader/attempt.h"
 #include "app/shader/extract.h"
+#include "base/file.h"
 
 struct shader_options {
     struct job job;
@@ -200,7 +201,7 @@ static whit_result dump_text(const char *folder, const char *name, const char *e
         return WHIT_ERROR_MEMORY;
     }
     snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
-    whit_result result = whit_file_write(path, text, strlen(text), &cli_log);
+    whit_result result = file_write_whole(&cli_log, path, text, strlen(text));
     whit_memory_destroy(text);
     return result;
 }
@@ -216,7 +217,7 @@ static whit_result dump_kernel(const whit_shader *shader, uint32_t index, const 
     if (!name)
         return WHIT_OK;
     snprintf(path, sizeof path, "%s/%s.spv", folder, name);
-    whit_result result = whit_file_write(path, words, bytes, &cli_log);
+    whit_result result = file_write_whole(&cli_log, path, words, bytes);
     if (result == WHIT_OK)
         result = dump_text(folder, name, ".comp", whit_shader_kernel_text(shader, index));
     if (result == WHIT_OK)

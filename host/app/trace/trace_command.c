@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/job.h"
 #include "app/trace/ray_file.h"
+#include "base/file.h"
 
 /* Number of rays in memory at a time. */
 enum { CHUNK = 1 << 20 };
@@ -23,7 +24,7 @@ struct trace {
     double trace_ms;
     whit_ray *rays;
     whit_hit *hits;
-    whit_file *file;
+    struct file_write file;
 };
 
 static const struct setting options[] = {
@@ -81,7 +82,8 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
                             trace->hits, NULL);
         trace->trace_ms += whit_clock_ms() - start_ms;
         if (result == WHIT_OK)
-            result = whit_file_append(trace->file, trace->hits, count * sizeof(whit_hit));
+            result =
+                file_write_append(&cli_log, &trace->file, trace->hits, count * sizeof(whit_hit));
         if (result != WHIT_OK)
             return result;
         trace->done_count += count;
@@ -141,16 +143,16 @@ static int work(struct job *job, struct trace *trace)
     whit_result result = prepare(job, trace, &renderer);
     cli_progress_init(&progress, job->settings.quiet);
     if (result == WHIT_OK)
-        result = whit_file_begin(trace->output, &cli_log, &trace->file);
+        result = file_write_begin(&cli_log, trace->output, &trace->file);
     if (result == WHIT_OK) {
         result = trace_chunks(trace, renderer, &progress);
         if (result == WHIT_OK && cli_cancel)
             result = WHIT_ERROR_CANCELLED;
         if (result == WHIT_OK) {
             cli_set_saving();
-            result = whit_file_commit(trace->file);
+            result = file_write_commit(&cli_log, &trace->file);
         } else {
-            whit_file_abandon(trace->file);
+            file_write_abandon(&trace->file);
         }
     }
     cli_progress_finish(&progress);
