@@ -1,10 +1,9 @@
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "api/handles.h"
+#include "base/text.h"
 #include "render/probe.h"
 #include "shader/program.h"
 
@@ -166,32 +165,20 @@ static whit_probe_call *calls_from(const whit_shader *shader, const struct probe
     return calls;
 }
 
-/* Appends to `text`, a buffer of `bytes` of which *used are used; cuts what does not fit. */
-static void add_text(char *text, size_t bytes, size_t *used, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    int count = vsnprintf(text + *used, bytes - *used, format, arguments);
-    va_end(arguments);
-    *used += count > 0 ? (size_t)count : 0;
-    *used = *used < bytes ? *used : bytes - 1;
-}
-
 void whit_probe_value_text(const whit_probe_value *value, int digits, char *text, size_t bytes)
 {
-    size_t used = 0;
     if (bytes == 0)
         return;
     text[0] = 0;
     for (uint32_t i = 0; i < value->size && i < 4; ++i) {
-        add_text(text, bytes, &used, i ? ", " : value->size > 1 ? "(" : "");
+        text_add(text, bytes, i ? ", " : value->size > 1 ? "(" : "");
         if (value->kind == WHIT_VALUE_BOOL)
-            add_text(text, bytes, &used, value->v[i] != 0.0 ? "true" : "false");
+            text_add(text, bytes, value->v[i] != 0.0 ? "true" : "false");
         else
-            add_text(text, bytes, &used, "%.*g", value->kind == WHIT_VALUE_FLOAT ? digits : 10,
+            text_add(text, bytes, "%.*g", value->kind == WHIT_VALUE_FLOAT ? digits : 10,
                      value->v[i]);
     }
-    add_text(text, bytes, &used, value->size > 1 ? ")" : "");
+    text_add(text, bytes, value->size > 1 ? ")" : "");
 }
 
 /* ---- Reports ---- */

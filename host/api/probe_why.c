@@ -1,8 +1,7 @@
 /* Explains a pixel's brightness in one sentence, by the rays of its first sample. */
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "whit/whit_probe.h"
 #include "whit/whit_scene.h"
 
@@ -11,19 +10,10 @@ static const double PART_MIN = 0.005; /* smaller shares of the light are not men
 
 struct sentence {
     char *text;
-    size_t bytes, used;
+    size_t bytes;
 };
 
-static WHIT_PRINTF(2, 3) void put(struct sentence *to, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    int length = vsnprintf(to->text + to->used, to->bytes - to->used, format, args);
-    va_end(args);
-    to->used += length > 0 ? (size_t)length : 0;
-    if (to->used >= to->bytes)
-        to->used = to->bytes - 1; /* the text was cut */
-}
+#define put(to, ...) text_add((to)->text, (to)->bytes, __VA_ARGS__)
 
 static double sum_of(const float v[3])
 {

@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include <ctype.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -105,6 +106,15 @@ struct text_token text_token(const char *text)
     memcpy(token.text, text ? text : "", used);
     strcpy(token.text + used, text && text[used] ? "..." : "");
     return token;
+}
+
+void text_add(char *text, size_t bytes, const char *format, ...)
+{
+    size_t used = strlen(text);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text + used, bytes - used, format, args);
+    va_end(args);
 }
 
 /* ---- Words that are near ---- */

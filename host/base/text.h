@@ -16,6 +16,9 @@ struct text_token {
    which the log does. NULL is as "". Use it in the same expression: "%s", text_token(name).text */
 struct text_token text_token(const char *text);
 
+/* Appends to `text`, which lies in a buffer of `bytes`. What does not fit is cut. */
+void text_add(char *text, size_t bytes, const char *format, ...) WHIT_PRINTF(3, 4);
+
 /* The name with the fewest changed letters from `word`; NULL when none is near. */
 const char *text_nearest(const char *word, const char *const *names, uint32_t count);
 

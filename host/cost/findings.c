@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "cost/cost.h"
 
 enum {
@@ -166,10 +167,9 @@ static bool find_exact(const struct cost_report *report, struct cost_finding *fi
     else
         find(finding, "exact hits cost nothing that can be measured");
     if (aimed->traced && !aimed->unanswered && aimed->judged.tally.wrong) {
-        size_t used = strlen(finding->text);
         add_value(finding, (double)aimed->judged.tally.wrong);
         add_value(finding, (double)aimed->judged.tally.rays);
-        snprintf(finding->text + used, sizeof finding->text - used,
+        text_add(finding->text, sizeof finding->text,
                  " (without them %llu of %llu aimed rays are wrong)",
                  (unsigned long long)aimed->judged.tally.wrong,
                  (unsigned long long)aimed->judged.tally.rays);

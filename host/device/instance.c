@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 #include "whit/whit_program.h"
 
 static const char *const validation_layer = "VK_LAYER_KHRONOS_validation";
@@ -478,13 +479,10 @@ whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t 
 
 static void describe_all(const whit_device_info *infos, uint32_t count, char *text, size_t bytes)
 {
-    size_t used = 0;
-    for (uint32_t i = 0; i < count && used < bytes; ++i) {
-        int more = snprintf(text + used, bytes - used, "%s%u: %s (%s%s%s)", i ? ", " : "", i,
-                            infos[i].name, whit_device_kind_name(infos[i].kind),
-                            infos[i].usable ? "" : "; not usable: ", infos[i].why_not);
-        used += more > 0 ? (size_t)more : 0;
-    }
+    for (uint32_t i = 0; i < count; ++i)
+        text_add(text, bytes, "%s%u: %s (%s%s%s)", i ? ", " : "", i, infos[i].name,
+                 whit_device_kind_name(infos[i].kind),
+                 infos[i].usable ? "" : "; not usable: ", infos[i].why_not);
 }
 
 whit_result instance_select(struct device *device, const char *selector)

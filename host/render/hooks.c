@@ -226,9 +226,8 @@ static uint32_t read_status(const struct target *target, uint64_t at)
 void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes)
 {
     const whit_shader *shader = renderer->params.shader;
-    size_t used = strlen(text);
     if (shader && shader->text.file_count > 0)
-        snprintf(text + used, text_bytes - used, "; %s has functions of this picture",
+        text_add(text, text_bytes, "; %s has functions of this picture",
                  shader->text.files[0].name);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/text.h"
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "render/adaptive_samples.h"
@@ -77,9 +78,8 @@ whit_result status_check(struct target *target)
     if (word & (STATUS_FUEL | STATUS_SHAPE))
         result = hooks_clear_status(target); /* or the next picture would name the same place */
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
-        size_t used = strlen(text);
         if (word & reasons[i].bit)
-            snprintf(text + used, sizeof text - used, "%s%s%s", used ? "; " : "", reasons[i].text,
+            text_add(text, sizeof text, "%s%s%s", text[0] ? "; " : "", reasons[i].text,
                      reasons[i].bit == STATUS_NON_FINITE ? where
                      : reasons[i].bit == STATUS_FUEL     ? loop
                      : reasons[i].bit == STATUS_SHAPE    ? shape

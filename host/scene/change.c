@@ -1,11 +1,11 @@
 #include "scene/change.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "base/vec.h"
 #include "scene/fields.h"
 
@@ -14,20 +14,11 @@ enum { TOLD_MAX = 4 };
 
 struct words {
     char *text;
-    size_t bytes, used;
+    size_t bytes;
     uint32_t told, left_out;
 };
 
-static void WHIT_PRINTF(2, 3) put(struct words *words, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    size_t room = words->bytes - words->used;
-    int length = vsnprintf(words->text + words->used, room, format, args);
-    va_end(args);
-    if (length > 0)
-        words->used += (size_t)length < room ? (size_t)length : room - 1;
-}
+#define put(words, ...) text_add((words)->text, (words)->bytes, __VA_ARGS__)
 
 /* Begins one more difference; false where TOLD_MAX are described already. */
 static bool begin(struct words *words)

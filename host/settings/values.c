@@ -1,4 +1,5 @@
 #include "settings/values.h"
+#include "base/text.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -112,9 +113,7 @@ const char *value_list(const struct setting_value *values, const char *separator
                        size_t text_bytes)
 {
     text[0] = '\0';
-    for (uint32_t i = 0; values[i].word; ++i) {
-        size_t used = strlen(text);
-        snprintf(text + used, text_bytes - used, "%s%s", i ? separator : "", values[i].word);
-    }
+    for (uint32_t i = 0; values[i].word; ++i)
+        text_add(text, text_bytes, "%s%s", i ? separator : "", values[i].word);
     return text;
 }

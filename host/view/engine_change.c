@@ -1,31 +1,13 @@
 /* The effect of a change of settings on the picture. */
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/sample.h"
+#include "base/text.h"
 #include "view/choices.h"
 #include "view/difference.h"
 #include "view/engine_change.h"
 #include "view/engine_private.h"
-
-struct text {
-    char *at;
-    size_t bytes;
-};
-
-WHIT_PRINTF(2, 3)
-static void add(struct text *text, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    int n = vsnprintf(text->at, text->bytes, format, args);
-    va_end(args);
-    size_t used = n < 0 ? 0 : (size_t)n < text->bytes ? (size_t)n : text->bytes - 1;
-    text->at += used;
-    text->bytes -= used;
-}
 
 /* Whether `b` is `a` with another remark, as "live.glsl, read again" after "live.glsl". */
 static bool is_of_same_file(const char *a, const char *b)
@@ -39,13 +21,12 @@ static void describe(const struct settings *a, const struct settings *b, char *o
 {
     struct choice_change changes[CHOICE_CHANGES_MAX];
     uint32_t count = choice_changes(a, b, changes);
-    struct text text = {out, bytes};
     out[0] = '\0';
     for (uint32_t i = 0; i < count; ++i) {
         bool same = is_of_same_file(changes[i].a, changes[i].b);
         if (!changes[i].painted)
-            add(&text, "%s%s %s%s%s", out[0] ? ", " : "", changes[i].name, same ? "" : changes[i].a,
-                same ? "" : " -> ", changes[i].b);
+            text_add(out, bytes, "%s%s %s%s%s", out[0] ? ", " : "", changes[i].name,
+                     same ? "" : changes[i].a, same ? "" : " -> ", changes[i].b);
     }
 }
 

@@ -1,7 +1,6 @@
 #include "view/shaders.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -120,16 +119,6 @@ static void write_count(uint64_t count, char text[32])
     *text = '\0';
 }
 
-WHIT_PRINTF(2, 3)
-static void add(char line[SHADERS_LINE], const char *format, ...)
-{
-    va_list args;
-    size_t used = strlen(line);
-    va_start(args, format);
-    vsnprintf(line + used, SHADERS_LINE - used, format, args);
-    va_end(args);
-}
-
 void shaders_say(const struct engine_reload *reload, const struct shaders_wait *wait,
                  char line[SHADERS_LINE])
 {
@@ -137,23 +126,24 @@ void shaders_say(const struct engine_reload *reload, const struct shaders_wait *
     char count[32];
     line[0] = '\0';
     if (reload->ms.count > 0)
-        add(line, "%+.2f ms [%.2f, %.2f]", reload->ms.median, reload->ms.low, reload->ms.high);
+        text_add(line, SHADERS_LINE, "%+.2f ms [%.2f, %.2f]", reload->ms.median, reload->ms.low,
+                 reload->ms.high);
     else
-        add(line, "time not measured: %s", reload->why);
+        text_add(line, SHADERS_LINE, "time not measured: %s", reload->why);
     write_count(difference->other_colors, count);
     if (reload->compared && reload->has_colors)
-        add(line, "  %s pixels other", count);
+        text_add(line, SHADERS_LINE, "  %s pixels other", count);
     if (reload->has_flip)
-        add(line, "  FLIP %.3f", reload->flip);
+        text_add(line, SHADERS_LINE, "  FLIP %.3f", reload->flip);
     write_count(difference->other_ids, count);
     if (reload->compared)
-        add(line, "  %s", difference->other_ids == 0 ? "ids equal" : "");
+        text_add(line, SHADERS_LINE, "  %s", difference->other_ids == 0 ? "ids equal" : "");
     if (reload->compared && difference->other_ids > 0)
-        add(line, "%s ids other", count);
+        text_add(line, SHADERS_LINE, "%s ids other", count);
     if (wait->first_ms > 0.0)
-        add(line, "  preview %.0f ms", wait->first_ms - wait->saved_ms);
+        text_add(line, SHADERS_LINE, "  preview %.0f ms", wait->first_ms - wait->saved_ms);
     if (wait->whole_ms > 0.0)
-        add(line, ", whole %.1f s", (wait->whole_ms - wait->saved_ms) * 1e-3);
+        text_add(line, SHADERS_LINE, ", whole %.1f s", (wait->whole_ms - wait->saved_ms) * 1e-3);
 }
 
 /* Notes the time of the first call. */

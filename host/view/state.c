@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/platform.h"
+#include "base/text.h"
 #include "view/keys.h"
 #include "view/prices.h"
 #include "view/scenes.h"
@@ -231,16 +232,14 @@ static json_t *keys_json(const struct view *view)
 static void calls_text(const whit_probe_report *r, char *text, size_t bytes)
 {
     char value[4 * 24];
-    size_t used = 0;
     text[0] = '\0';
-    for (uint32_t i = 0; i < r->call_count && used < bytes; ++i) {
+    for (uint32_t i = 0; i < r->call_count; ++i) {
         const whit_probe_call *call = &r->calls[i];
         snprintf(value, sizeof value, "not reached");
         if (call->value_count)
             whit_probe_value_text(&call->values[0], 9, value, sizeof value);
-        int count = snprintf(text + used, bytes - used, "%s%s:%u: %s = %s", i ? "; " : "",
-                             path_name(call->file), call->line, call->text, value);
-        used += count > 0 ? (size_t)count : 0;
+        text_add(text, bytes, "%s%s:%u: %s = %s", i ? "; " : "", path_name(call->file), call->line,
+                 call->text, value);
     }
 }
 

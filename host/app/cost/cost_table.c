@@ -7,6 +7,7 @@
 
 #include "app/cost/cost_table.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "whit/whit_program.h"
 
 /* `is_number`: the column is right-aligned. */
@@ -168,11 +169,9 @@ static void say_list(const struct cost_report *report, enum cost_use use, const 
     char list[800] = "";
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
-        size_t used = strlen(list);
         if (row->measured && row->knob_index != WHIT_NONE && !row->broken &&
             cost_use_of(report, row) == use)
-            snprintf(list + used, sizeof list - used, "%s%s %s", used ? ", " : "", row->knob,
-                     row->setting);
+            text_add(list, sizeof list, "%s%s %s", list[0] ? ", " : "", row->knob, row->setting);
     }
     if (list[0])
         say_it(say, user, "%s: %s.", what, list);
@@ -237,10 +236,8 @@ void cost_say_answers(const struct cost_report *report, cost_say *say, void *use
     say_list(report, COST_USE_FREE, "Cheaper than the usual settings, and as right", say, user);
     say_list(report, COST_USE_NONE, "Buy nothing here (neither cheaper nor more right)", say, user);
     say_break_even(report, say, user);
-    for (uint32_t i = 0; i < report->absent_count; ++i) {
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", report->absent[i].name);
-    }
+    for (uint32_t i = 0; i < report->absent_count; ++i)
+        text_add(list, sizeof list, "%s%s", i ? ", " : "", report->absent[i].name);
     if (list[0])
         say_it(say, user, "Not here: %s.", list);
 }

@@ -1,11 +1,11 @@
 #include "app/render/layers.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "app/render/recipe.h"
+#include "base/text.h"
 
 whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
                         const whit_refine *refine, struct layers *layers)
@@ -51,10 +51,9 @@ bool layers_check(const struct job *job)
         return true;
     whit_shader_get_info(job->shader, &info);
     for (uint32_t i = 0; i < info.aov_count; ++i) {
-        size_t used = strlen(list);
         if (strcmp(info.aovs[i], wanted) == 0)
             return true;
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : ": there is ", info.aovs[i]);
+        text_add(list, sizeof list, "%s%s", i ? ", " : ": there is ", info.aovs[i]);
     }
     cli_error("--aov %s: %s has no such `//@ aov`%s", wanted, job->settings.shader, list);
     return false;

@@ -130,12 +130,10 @@ static whit_result refuse_camera(const struct job *job, const char *wanted, uint
         whit_camera_info camera;
         whit_scene_get_camera(job->scene, i, &camera);
         names[i] = camera.name;
-        size_t used = strlen(list);
         if (i < 8)
-            snprintf(list + used, sizeof list - used, "%s%u `%.40s`", i ? ", " : "", i,
-                     camera.name);
+            text_add(list, sizeof list, "%s%u `%.40s`", i ? ", " : "", i, camera.name);
         else if (i == 8)
-            snprintf(list + used, sizeof list - used, ", ...");
+            text_add(list, sizeof list, ", ...");
     }
     const char *nearest = text_nearest(wanted, names, max);
     if (nearest)
@@ -392,8 +390,7 @@ static void say_done(const struct job *job, const struct render_request *request
         snprintf(about, sizeof about, "%s %u to %u, ", request->cameras.file ? "views" : "frames",
                  frames->first, frames->last);
     if (part_is_given(&request->part))
-        snprintf(about + strlen(about), sizeof about - strlen(about), "%s of ",
-                 part_name(&request->part, part));
+        text_add(about, sizeof about, "%s of ", part_name(&request->part, part));
     if (is_told(job))
         fprintf(stderr, "whit: %s: %s%u x %u, rendered in %.2f s (%.2f Mray/s) on %s\n",
                 cli_shown(request->output), about, job->settings.picture.width,
