@@ -88,7 +88,7 @@ whit_result whit_image_save_layers(const whit_image *image, const whit_image_lay
     struct image_layer items[IMAGE_LAYERS_MAX];
     for (uint32_t i = 0; i < layer_count && i < IMAGE_LAYERS_MAX; ++i)
         items[i] = (struct image_layer){layers[i].name, &layers[i].image->image};
-    return image_save_layers(log, &image->image, items, layer_count, path, texts, text_count);
+    return image_save(log, &image->image, items, layer_count, path, texts, text_count);
 }
 
 struct whit_image_strips {
@@ -166,7 +166,7 @@ whit_result whit_image_load_texts(const char *path, const whit_load_params *para
                                   const whit_log *log, whit_text **texts, uint32_t *text_count)
 {
     const struct foreign_params foreign = load_foreign(params);
-    return image_load_texts_by(log, path, &foreign, texts, text_count);
+    return image_load_texts(log, path, &foreign, texts, text_count);
 }
 
 whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
@@ -179,7 +179,7 @@ whit_result whit_image_load(const char *path, const whit_load_params *params, co
         log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = image_load_by(log, NULL, path, &foreign, &image->image);
+    whit_result result = image_load(log, NULL, path, &foreign, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;

@@ -86,7 +86,7 @@ static whit_result read_picture(whit_shader_compiler *compiler, const char *path
     struct shader_pack pack;
     uint32_t count;
     const char *packed = NULL;
-    whit_result result = image_load_texts_by(&compiler->log, path, &foreign, &texts, &count);
+    whit_result result = image_load_texts(&compiler->log, path, &foreign, &texts, &count);
     if (result != WHIT_OK)
         return result;
     for (uint32_t i = 0; i < count; ++i)

@@ -160,15 +160,9 @@ static whit_result check_layers(const whit_log *log, const struct image *image,
     return WHIT_ERROR_USAGE;
 }
 
-whit_result image_save(const whit_log *log, const struct image *image, const char *path,
+whit_result image_save(const whit_log *log, const struct image *image,
+                       const struct image_layer *layers, uint32_t layer_count, const char *path,
                        const whit_text *texts, uint32_t text_count)
-{
-    return image_save_layers(log, image, NULL, 0, path, texts, text_count);
-}
-
-whit_result image_save_layers(const whit_log *log, const struct image *image,
-                              const struct image_layer *layers, uint32_t layer_count,
-                              const char *path, const whit_text *texts, uint32_t text_count)
 {
     whit_result result = image_check_savable(log, image, path);
     if (result == WHIT_OK)

@@ -28,12 +28,6 @@ WHIT_CHECK whit_result image_init(struct image *image, uint32_t width, uint32_t 
                                   uint32_t channels, bool integers);
 void image_finish(struct image *image);
 
-/* Saves an image by the path's extension. .png: 8-bit sRGB, clamped, with alpha if there are 4
-   channels; non-finite pixels are magenta and counted in a warning. .exr: 32-bit float, or integers
-   as UINT channels. .pfm: 32-bit float RGB or grey. Atomic. Errors are logged with the path.
-   `texts`: the recipe, as PNG text chunks or EXR string attributes; PFM cannot have any. */
-WHIT_CHECK whit_result image_save(const whit_log *log, const struct image *image, const char *path,
-                                  const whit_text *texts, uint32_t text_count);
 /* An additional image of 4 floats for an .exr, of the size of the main image, stored as channels
    NAME.R, .G, .B and .A. The name is borrowed. */
 struct image_layer {
@@ -41,12 +35,15 @@ struct image_layer {
     const struct image *image;
 };
 enum { IMAGE_LAYERS_MAX = 16 };
-/* The same with layers. WHIT_ERROR_USAGE for layers in another format than .exr, and for more than
-   IMAGE_LAYERS_MAX. */
-WHIT_CHECK whit_result image_save_layers(const whit_log *log, const struct image *image,
-                                         const struct image_layer *layers, uint32_t layer_count,
-                                         const char *path, const whit_text *texts,
-                                         uint32_t text_count);
+
+/* Saves an image by the path's extension. .png: 8-bit sRGB, clamped, with alpha if there are 4
+   channels; non-finite pixels are magenta and counted in a warning. .exr: 32-bit float, or integers
+   as UINT channels. .pfm: 32-bit float RGB or grey. Atomic. Errors are logged with the path.
+   `texts`: the recipe, as PNG text chunks or EXR string attributes; PFM cannot have any.
+   WHIT_ERROR_USAGE for layers in another format than .exr, and for more than IMAGE_LAYERS_MAX. */
+WHIT_CHECK whit_result image_save(const whit_log *log, const struct image *image,
+                                  const struct image_layer *layers, uint32_t layer_count,
+                                  const char *path, const whit_text *texts, uint32_t text_count);
 /* Whether image_save knows the path's extension; `integers`: whether it stores uint32 (.exr). */
 bool image_format_known(const char *path, bool integers);
 

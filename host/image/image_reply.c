@@ -104,13 +104,8 @@ static whit_result no_good(struct reading *reading, whit_result result)
     return result;
 }
 
-whit_result image_load(const whit_log *log, const char *path, struct image *image)
-{
-    return image_load_by(log, NULL, path, NULL, image);
-}
-
-whit_result image_load_by(const whit_log *log, const struct roots *roots, const char *path,
-                          const struct foreign_params *params, struct image *image)
+whit_result image_load(const whit_log *log, const struct roots *roots, const char *path,
+                       const struct foreign_params *params, struct image *image)
 {
     struct reading reading = {.log = log, .roots = roots, .path = path};
     const uint32_t *numbers = reading.answer.numbers;
@@ -155,15 +150,9 @@ static whit_text *pack_texts(const struct reading *reading, bool *damaged)
     return packed;
 }
 
-whit_result image_load_texts(const whit_log *log, const char *path, whit_text **texts,
+whit_result image_load_texts(const whit_log *log, const char *path,
+                             const struct foreign_params *params, whit_text **texts,
                              uint32_t *text_count)
-{
-    return image_load_texts_by(log, path, NULL, texts, text_count);
-}
-
-whit_result image_load_texts_by(const whit_log *log, const char *path,
-                                const struct foreign_params *params, whit_text **texts,
-                                uint32_t *text_count)
 {
     struct reading reading = {.log = log, .path = path};
     bool damaged;

@@ -367,21 +367,6 @@ static void read_picture(struct job *job, struct image *image)
         decode_8(job->bytes, image);
 }
 
-whit_result png_load(const struct image_source *source, struct image *image)
-{
-    struct job *job = calloc(1, sizeof *job);
-    if (!job) {
-        log_error(source->log, "%s: no memory to read a PNG", source->path);
-        return WHIT_ERROR_MEMORY;
-    }
-    if (begin_read(job, source) && setjmp(png_jmpbuf(job->png)) == 0)
-        read_picture(job, image);
-    whit_result result = job->result;
-    finish(job);
-    free(job);
-    return result;
-}
-
 static void read_texts(struct job *job, struct text_list *list)
 {
     read_info(job);
@@ -394,17 +379,33 @@ static void read_texts(struct job *job, struct text_list *list)
     }
 }
 
-whit_result png_load_texts(const struct image_source *source, struct text_list *list)
+/* Reads the picture, or its texts where `image` is NULL. */
+static whit_result load(const struct image_source *source, struct image *image,
+                        struct text_list *list)
 {
     struct job *job = calloc(1, sizeof *job);
     if (!job) {
         log_error(source->log, "%s: no memory to read a PNG", source->path);
         return WHIT_ERROR_MEMORY;
     }
-    if (begin_read(job, source) && setjmp(png_jmpbuf(job->png)) == 0)
-        read_texts(job, list);
+    if (begin_read(job, source) && setjmp(png_jmpbuf(job->png)) == 0) {
+        if (image)
+            read_picture(job, image);
+        else
+            read_texts(job, list);
+    }
     whit_result result = job->result;
     finish(job);
     free(job);
     return result;
+}
+
+whit_result png_load(const struct image_source *source, struct image *image)
+{
+    return load(source, image, NULL);
+}
+
+whit_result png_load_texts(const struct image_source *source, struct text_list *list)
+{
+    return load(source, NULL, list);
 }

@@ -20,7 +20,7 @@ static whit_result read_image(const struct scene *scene, const char *path,
 {
     const whit_log *log = &scene->log;
     struct image image = {0};
-    whit_result result = image_load_by(log, &scene->roots, path, foreign, &image);
+    whit_result result = image_load(log, &scene->roots, path, foreign, &image);
     if (result != WHIT_OK)
         return result;
     size_t pixels = (size_t)image.width * image.height;

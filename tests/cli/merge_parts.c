@@ -29,7 +29,7 @@ int main(int argc, char **argv)
         for (size_t i = 0; i < (size_t)side * rows * 4; ++i)
             image.pixels[i] =
                 i % 4 == 3 ? 1.0f : (float)((i / 4 * 7 + first + i % 4) % 256) / 256.0f;
-        whit_result result = image_save(&log, &image, name, texts, 2);
+        whit_result result = image_save(&log, &image, NULL, 0, name, texts, 2);
         image_finish(&image);
         if (result != WHIT_OK)
             return 1;

@@ -10,7 +10,7 @@ static void load_whole(const char *path)
 {
     struct image image;
     fuzz_log_clear();
-    whit_result result = image_load(&fuzz_log, path, &image);
+    whit_result result = image_load(&fuzz_log, NULL, path, NULL, &image);
     fuzz_check_errors(result, path);
     bool empty = !image.pixels && !image.words;
     fuzz_check((result == WHIT_OK) != empty, "a result without its picture");
@@ -22,7 +22,7 @@ static void load_texts(const char *path)
     whit_text *texts;
     uint32_t count;
     fuzz_log_clear();
-    fuzz_check_errors(image_load_texts(&fuzz_log, path, &texts, &count), path);
+    fuzz_check_errors(image_load_texts(&fuzz_log, path, NULL, &texts, &count), path);
     size_t bytes = 0;
     for (uint32_t i = 0; i < count; i++)
         bytes += strlen(texts[i].key) + strlen(texts[i].value);

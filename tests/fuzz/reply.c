@@ -43,7 +43,7 @@ static void check_errors(whit_result result, const char *path)
 static void ask_for_image(const char *path)
 {
     struct image image;
-    whit_result result = image_load(&fuzz_log, path, &image);
+    whit_result result = image_load(&fuzz_log, NULL, path, NULL, &image);
     check_errors(result, path);
     fuzz_check((result == WHIT_OK) == (image.pixels || image.words), "a result, no picture");
     if (result == WHIT_OK) {
@@ -59,7 +59,7 @@ static void ask_for_texts(const char *path)
     whit_text *texts;
     uint32_t count;
     size_t bytes = 0;
-    check_errors(image_load_texts(&fuzz_log, path, &texts, &count), path);
+    check_errors(image_load_texts(&fuzz_log, path, NULL, &texts, &count), path);
     for (uint32_t i = 0; i < count; i++)
         bytes += strlen(texts[i].key) + strlen(texts[i].value);
     fuzz_check(bytes <= answer.size_bytes, "texts of %zu bytes", bytes);

@@ -127,7 +127,8 @@ static void save_image(const char *name, uint32_t channels, bool integers)
             image.pixels[i] = (float)i / 100.0f;
     }
     char *path = seed_path("image", name);
-    fuzz_check(image_save(&fuzz_log, &image, path, texts, 2) == WHIT_OK, "%s: not saved", path);
+    fuzz_check(image_save(&fuzz_log, &image, NULL, 0, path, texts, 2) == WHIT_OK, "%s: not saved",
+               path);
     free(path);
     image_finish(&image);
 }
@@ -207,9 +208,9 @@ static void ask(uint8_t who, const char *target, const char *name)
     whit_result result = WHIT_OK;
     asker = who;
     if (who == 0)
-        result = image_load(&fuzz_log, path, &image);
+        result = image_load(&fuzz_log, NULL, path, NULL, &image);
     else if (who == 1)
-        result = image_load_texts(&fuzz_log, path, &texts, &count);
+        result = image_load_texts(&fuzz_log, path, NULL, &texts, &count);
     else
         fuzz_load(path);
     fuzz_check(result == WHIT_OK, "%s: no answer", path);

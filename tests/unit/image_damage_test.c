@@ -27,7 +27,7 @@ static struct sample sample_of(const char *name, const struct image *image)
     static const whit_text text = {"scene", "a.json"};
     struct sample sample = {.name = name};
     char *path = in_folder(name);
-    assert_int_equal(image_save(&warnings_log, image, path, &text, 1), WHIT_OK);
+    assert_int_equal(image_save(&warnings_log, image, NULL, 0, path, &text, 1), WHIT_OK);
     assert_int_equal(file_read(&warnings_log, NULL, path, 0, &sample.data, &sample.size_bytes),
                      WHIT_OK);
     return sample;
@@ -56,7 +56,7 @@ static bool try_load(const char *path, const uint8_t *data, size_t size_bytes)
     uint32_t text_count;
     fixture_put(path, data, size_bytes);
     messages.errors = 0;
-    whit_result result = image_load(&warnings_log, path, &image);
+    whit_result result = image_load(&warnings_log, NULL, path, NULL, &image);
     assert_int_equal(messages.errors, result == WHIT_OK ? 0 : 1);
     if (result == WHIT_OK) {
         assert_true(image.width > 0 && image.height > 0 && !image.pixels != !image.words);
@@ -67,7 +67,7 @@ static bool try_load(const char *path, const uint8_t *data, size_t size_bytes)
     }
     image_finish(&image);
     messages.errors = 0;
-    whit_result texts_result = image_load_texts(&warnings_log, path, &texts, &text_count);
+    whit_result texts_result = image_load_texts(&warnings_log, path, NULL, &texts, &text_count);
     assert_int_equal(messages.errors, texts_result == WHIT_OK ? 0 : 1);
     free(texts);
     return result == WHIT_OK;

@@ -17,8 +17,9 @@ enum { RECIPE_COUNT = sizeof recipe / sizeof *recipe };
 static void save_and_load(const char *name, const struct image *image, struct image *loaded)
 {
     char *path = in_folder(name);
-    assert_int_equal(image_save(&warnings_log, image, path, recipe, RECIPE_COUNT), WHIT_OK);
-    assert_int_equal(image_load(&warnings_log, path, loaded), WHIT_OK);
+    assert_int_equal(image_save(&warnings_log, image, NULL, 0, path, recipe, RECIPE_COUNT),
+                     WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, loaded), WHIT_OK);
     assert_int_equal(messages.errors, 0);
 }
 
@@ -69,7 +70,7 @@ TEST_IN(pfm_is_bottom_up_little_endian, folder_begin, folder_end)
     assert_memory_equal(data, "Pf\n1 2\n-1.0\n\0\0\0\xc0\0\0\x80\x3f", 20);
     free(data);
     fixture_put(path, "Pf 1 2 2.5 \xc0\0\0\0\x3f\x80\0\0", 19);
-    assert_int_equal(image_load(&warnings_log, path, &loaded), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &loaded), WHIT_OK);
     assert_images_equal(&image, &loaded);
     image_finish(&loaded);
     image_finish(&image);
@@ -156,8 +157,9 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
         char *path = in_folder(names[i]);
         whit_text *texts;
         uint32_t count, found = 0;
-        assert_int_equal(image_save(&warnings_log, &image, path, recipe, RECIPE_COUNT), WHIT_OK);
-        assert_int_equal(image_load_texts(&warnings_log, path, &texts, &count), WHIT_OK);
+        assert_int_equal(image_save(&warnings_log, &image, NULL, 0, path, recipe, RECIPE_COUNT),
+                         WHIT_OK);
+        assert_int_equal(image_load_texts(&warnings_log, path, NULL, &texts, &count), WHIT_OK);
         for (uint32_t t = 0; t < count; ++t) {
             for (int r = 0; r < RECIPE_COUNT; ++r)
                 found += strcmp(texts[t].key, recipe[r].key) == 0 &&
@@ -187,8 +189,9 @@ TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
                  {"a.png", &none, 0, WHIT_ERROR_USAGE, ""},
                  {"a.exr", &floats, 1, WHIT_ERROR_OUTPUT, ""}};
     for (int i = 0; i < 5; ++i) {
-        whit_result result = image_save(&warnings_log, cases[i].image, in_folder(cases[i].name),
-                                        cases[i].texts ? &empty : NULL, cases[i].texts);
+        whit_result result =
+            image_save(&warnings_log, cases[i].image, NULL, 0, in_folder(cases[i].name),
+                       cases[i].texts ? &empty : NULL, cases[i].texts);
         if (result != cases[i].result || messages.errors != i + 1 ||
             !strstr(messages.last, cases[i].says))
             fail_msg("case %d, %s: %d, %s", i, cases[i].name, (int)result, messages.last);
@@ -245,7 +248,7 @@ static struct image load_kind(int colour_type, int bit_depth, int interlace, uin
 {
     struct image image;
     png_write_raw(in_folder("a.png"), colour_type, bit_depth, interlace, 0);
-    assert_int_equal(image_load(&warnings_log, in_folder("a.png"), &image), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, NULL, in_folder("a.png"), NULL, &image), WHIT_OK);
     assert_int_equal(image.channels, channels);
     return image;
 }
@@ -382,19 +385,17 @@ TEST_IN(exr_keeps_layers_beside_the_colour, folder_begin, folder_end)
     }
     const char *const name = "a_name_that_is_longer_than_what_plain_files_take";
     const struct image_layer layers[] = {{"a", &other}, {name, &third}, {"b", &small}};
-    assert_int_equal(
-        image_save_layers(&warnings_log, &color, layers, 2, path, recipe, RECIPE_COUNT), WHIT_OK);
-    assert_int_equal(image_load(&warnings_log, path, &loaded), WHIT_OK);
+    assert_int_equal(image_save(&warnings_log, &color, layers, 2, path, recipe, RECIPE_COUNT),
+                     WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &loaded), WHIT_OK);
     assert_images_equal(&color, &loaded);
     exr_read_layer(path, "a", &loaded);
     assert_images_equal(&other, &loaded);
     exr_read_layer(path, name, &loaded);
     assert_images_equal(&third, &loaded);
-    assert_int_equal(image_save_layers(&warnings_log, &color, layers, 3, path, NULL, 0),
+    assert_int_equal(image_save(&warnings_log, &color, layers, 3, path, NULL, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(image_save(&warnings_log, &color, layers, 2, in_folder("a.png"), NULL, 0),
                      WHIT_ERROR_USAGE);
-    assert_int_equal(
-        image_save_layers(&warnings_log, &color, layers, 2, in_folder("a.png"), NULL, 0),
-        WHIT_ERROR_USAGE);
     struct image *all[] = {&color, &other, &third, &small, &loaded};
     for (int i = 0; i < 5; ++i)
         image_finish(all[i]);
@@ -412,7 +413,7 @@ TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
     for (int kind = 0; kind < 4; ++kind) {
         for (int c = 0; c < 5; ++c) {
             exr_write_raw(path, &image, kind & 1, kind & 2, compressions[c]);
-            assert_int_equal(image_load(&warnings_log, path, &loaded), WHIT_OK);
+            assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &loaded), WHIT_OK);
             assert_images_equal(&image, &loaded);
             image_finish(&loaded);
         }
@@ -436,7 +437,7 @@ TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)
                                "\x88\x88";
     struct image image;
     fixture_put(path, file, sizeof file - 1);
-    assert_int_equal(image_load(&warnings_log, path, &image), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &image), WHIT_OK);
     assert_int_equal(image.width, 8);
     assert_int_equal(image.height, 2);
     assert_int_equal(image.channels, 3);

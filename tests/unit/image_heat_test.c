@@ -152,8 +152,8 @@ TEST_IN(the_file_has_the_codes_of_the_table, folder_begin, folder_end)
         values.pixels[i] = (float)i;
     struct image heat = heat_of(&values, 1499.0, "all of them");
     assert_int_equal(heat.width, 500);
-    assert_int_equal(image_save(&warnings_log, &heat, path, NULL, 0), WHIT_OK);
-    assert_int_equal(image_load(&warnings_log, path, &back), WHIT_OK);
+    assert_int_equal(image_save(&warnings_log, &heat, NULL, 0, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &back), WHIT_OK);
     assert_true(back.width == heat.width && back.height == heat.height);
     for (uint32_t i = 0; i < 1500; ++i) {
         uint8_t codes[3];

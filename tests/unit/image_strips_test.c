@@ -33,7 +33,7 @@ static void check_strips(const char *name, const struct image *image, uint32_t e
     char *one = in_folder(name), strips[64];
     snprintf(strips, sizeof strips, "strips-%s", name);
     char *path = in_folder(strips);
-    assert_int_equal(image_save(&warnings_log, image, one, recipe, RECIPE_COUNT), WHIT_OK);
+    assert_int_equal(image_save(&warnings_log, image, NULL, 0, one, recipe, RECIPE_COUNT), WHIT_OK);
     struct image_rows *rows = begin(path, image);
     for (uint32_t y = 0; y < image->height; y += each) {
         uint32_t left = image->height - y;

@@ -267,7 +267,7 @@ static void write_picture(const char *name, float left_alpha)
     for (uint32_t i = 0; i < 16; i++)
         for (uint32_t k = 0; k < 4; k++)
             image.pixels[4 * i + k] = k == 3 && i % 4 < 2 ? left_alpha : 1.0f;
-    assert_int_equal(image_save(&fixture.log, &image, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_save(&fixture.log, &image, NULL, 0, path, NULL, 0), WHIT_OK);
     image_finish(&image);
 }
 
@@ -307,7 +307,7 @@ TEST_IN(channels_and_ranges_of_maps, fixture_begin, fixture_end)
     assert_int_equal(image_init(&image, 1, 1, 4, false), WHIT_OK);
     for (int k = 0; k < 4; k++)
         image.pixels[k] = k == 3 ? 0.6f : image_linear_from_srgb((float)(50 * (k + 1)) / 255.0f);
-    assert_int_equal(image_save(&fixture.log, &image, path, NULL, 0), WHIT_OK);
+    assert_int_equal(image_save(&fixture.log, &image, NULL, 0, path, NULL, 0), WHIT_OK);
     image_finish(&image);
     const struct scene_material *m = load_material(
         "newmtl m\nillum 2\nKd 1 1 1\nmap_Kd -mm 0.2 0.5 t.png\n"

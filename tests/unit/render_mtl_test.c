@@ -97,7 +97,7 @@ static void write_picture(const char *name, int code)
     assert_int_equal(image_init(&image, 1, 1, 3, false), WHIT_OK);
     for (int k = 0; k < 3; k++)
         image.pixels[k] = image_linear_from_srgb((float)code / 255.0f);
-    assert_int_equal(image_save(&fixture_log, &image, name, NULL, 0), WHIT_OK);
+    assert_int_equal(image_save(&fixture_log, &image, NULL, 0, name, NULL, 0), WHIT_OK);
     image_finish(&image);
 }
 
