@@ -301,15 +301,10 @@ whit_result whit_cameras_load(const char *path, const whit_log *log, whit_camera
 static void world_triangle(const struct scene_mesh *mesh, const struct affine *to_world,
                            uint32_t primitive, whit_triangle *out)
 {
-    for (int corner = 0; corner < 3; ++corner) {
-        const float *p =
-            mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)primitive + (size_t)corner];
-        const double in[3] = {(double)p[0], (double)p[1], (double)p[2]};
-        double world[3];
-        affine_point(to_world, in, world);
-        for (int axis = 0; axis < 3; ++axis)
-            out->vertices[3 * corner + axis] = (float)world[axis];
-    }
+    double world[3][3];
+    scene_mesh_placed_corners(mesh, primitive, to_world, world);
+    for (int i = 0; i < 9; ++i)
+        out->vertices[i] = (float)world[i / 3][i % 3];
     out->primitive = primitive;
 }
 

@@ -1,5 +1,5 @@
-/* The transfer curve of sRGB (IEC 61966-2-1) for values in 0..1, and a curve that keeps highlights
-   below 1. */
+/* The transfer curve of sRGB (IEC 61966-2-1) for values in 0..1, the luminance of its primaries,
+   and a curve that keeps highlights below 1. */
 #ifndef BASE_COLOR_H
 #define BASE_COLOR_H
 
@@ -15,6 +15,11 @@ static inline double srgb_from_linear(double linear)
 static inline double linear_from_srgb(double srgb)
 {
     return srgb <= 0.04045 ? srgb / 12.92 : same_pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+static inline double color_luminance(const float rgb[3])
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
 
 /* Leaves values up to 0.6 alone; from there on a hyperbola with the same slope runs towards 1. */

@@ -155,6 +155,14 @@ static inline double double3_length(const double v[3])
     return sqrt(double3_dot(v, v));
 }
 
+/* The area of the parallelogram with these sides. */
+static inline double double3_area(const double u[3], const double v[3])
+{
+    double across[3];
+    double3_cross(u, v, across);
+    return double3_length(across);
+}
+
 static inline double double3_distance(const double a[3], const double b[3])
 {
     const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};

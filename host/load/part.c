@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 
 void part_finish(struct part *part)
 {
@@ -51,10 +52,8 @@ static void triangle_cross(const struct part *part, uint32_t triangle, double ou
         a[i] = positions[(size_t)index[1] * 3 + (size_t)i] - origin;
         b[i] = positions[(size_t)index[2] * 3 + (size_t)i] - origin;
     }
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    double3_cross(a, b, out);
+    double length = double3_length(out);
     for (int i = 0; i < 3; i++)
         out[i] = length > 0 && isfinite(length) ? out[i] / length : 0;
 }

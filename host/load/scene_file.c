@@ -61,10 +61,7 @@ static bool read_emitter(struct reader *reader, const struct place *place, const
     if (!(rectangle ? read_rectangle : read_triangle)(reader, place, object, out) ||
         !reader_bool(reader, place, object, "two_sided", &out->two_sided))
         return false;
-    const double *u = out->edge_u, *v = out->edge_v;
-    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
-           z = u[0] * v[1] - u[1] * v[0];
-    if (!(x * x + y * y + z * z > 0.0))
+    if (!(double3_area(out->edge_u, out->edge_v) > 0.0))
         return reader_fail(reader, place, "the light has no area");
     return true;
 }

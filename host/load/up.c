@@ -43,14 +43,6 @@ struct shape {
     double lo[3], hi[3];
 };
 
-static void corners_of(const struct scene_mesh *mesh, uint32_t triangle, double out[3][3])
-{
-    for (size_t i = 0; i < 3; ++i)
-        for (size_t k = 0; k < 3; ++k)
-            out[i][k] =
-                (double)mesh->positions[3 * (size_t)mesh->indices[3 * (size_t)triangle + i] + k];
-}
-
 static struct shape measure(const struct scene *scene)
 {
     struct shape shape = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -81,7 +73,7 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
     for (uint32_t m = 0; m < scene->mesh_count; ++m)
         for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t) {
             double p[3][3];
-            corners_of(&scene->meshes[m], t, p);
+            scene_mesh_corners(&scene->meshes[m], t, p);
             double highest = fmax(fmax(p[0][axis], p[1][axis]), p[2][axis]);
             double lowest = fmin(fmin(p[0][axis], p[1][axis]), p[2][axis]);
             double covered = 0.5 * fabs((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) -

@@ -31,17 +31,9 @@ static uint32_t light_code(whit_light_kind kind)
     return LIGHT_POINT;
 }
 
-static bool is_flat(const struct scene_light *light)
-{
-    return light->kind == WHIT_LIGHT_RECTANGLE || light->kind == WHIT_LIGHT_TRIANGLE;
-}
-
 static double emitter_area(const struct scene_light *light)
 {
-    const double *u = light->edge_u, *v = light->edge_v;
-    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
-           z = u[0] * v[1] - u[1] * v[0];
-    double parallelogram = sqrt(x * x + y * y + z * z);
+    double parallelogram = double3_area(light->edge_u, light->edge_v);
     return light->kind == WHIT_LIGHT_TRIANGLE ? 0.5 * parallelogram : parallelogram;
 }
 
@@ -60,7 +52,7 @@ static struct gpu_light make_light(const struct scene_light *light, uint32_t sam
         out.direction[i] = (float)light->direction[i];
         out.color[i] = light->color[i];
     }
-    if (is_flat(light)) {
+    if (scene_light_is_flat(light)) {
         out.falloff = true;
         out.area_share = (float)(emitter_area(light) / (PI * samples));
         for (int i = 0; i < 3; ++i) {

@@ -158,9 +158,7 @@ static void face_normal(const struct scene_mesh *mesh, uint32_t triangle, double
     double e1[3], e2[3];
     edge(a, mesh->positions + 3 * (size_t)index[1], e1);
     edge(a, mesh->positions + 3 * (size_t)index[2], e2);
-    n[0] = e1[1] * e2[2] - e1[2] * e2[1];
-    n[1] = e1[2] * e2[0] - e1[0] * e2[2];
-    n[2] = e1[0] * e2[1] - e1[1] * e2[0];
+    double3_cross(e1, e2, n);
 }
 
 /* Area-weighted face normals summed into the vertices marked bad. */
@@ -277,9 +275,7 @@ static uint32_t mend_tangents(struct scene_mesh *mesh)
 static bool says_the_face(const float *normal, const double face[3])
 {
     const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
-    const double across[3] = {n[1] * face[2] - n[2] * face[1], n[2] * face[0] - n[0] * face[2],
-                              n[0] * face[1] - n[1] * face[0]};
-    return double3_length(across) <= NORMAL_SLACK * double3_length(face);
+    return double3_area(n, face) <= NORMAL_SLACK * double3_length(face);
 }
 
 /* Frees the vertex normals where all of them equal the normals of their faces, so that no kernel

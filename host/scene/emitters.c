@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/color.h"
 #include "base/vec.h"
 #include "scene/freeze.h"
 
@@ -32,27 +33,12 @@ struct emitter_list {
     double power;
 };
 
-static double luminance(const float rgb[3])
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
 /* Whether a material's surfaces become lights. Textured emission does not: signs and screens glow,
    but are no lamps of the texture's average colour. */
 static bool lights_up(const struct scene_material *material)
 {
-    return material->model != WHIT_MODEL_UNLIT && luminance(material->emission) > 0.0 &&
+    return material->model != WHIT_MODEL_UNLIT && color_luminance(material->emission) > 0.0 &&
            material->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE;
-}
-
-static void triangle_corners(const struct scene_mesh *mesh, uint32_t triangle,
-                             const struct affine *matrix, double out[3][3])
-{
-    for (int i = 0; i < 3; ++i) {
-        size_t vertex = mesh->indices[3 * (size_t)triangle + (size_t)i];
-        const float *p = mesh->positions + 3 * vertex;
-        affine_point(matrix, (const double[3]){(double)p[0], (double)p[1], (double)p[2]}, out[i]);
-    }
 }
 
 /* Gives twice the triangle's area; *out is its normal, with that as its length. */
@@ -63,10 +49,8 @@ static double normal_of(double corners[3][3], double out[3])
         a[i] = corners[1][i] - corners[0][i];
         b[i] = corners[2][i] - corners[0][i];
     }
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-    return sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    double3_cross(a, b, out);
+    return double3_length(out);
 }
 
 static bool gather_instance(const struct scene *scene, const struct scene_pose *pose,
@@ -78,8 +62,8 @@ static bool gather_instance(const struct scene *scene, const struct scene_pose *
         if (!lights_up(material))
             continue;
         double corners[3][3], normal[3];
-        triangle_corners(mesh, t, &pose->instances[instance], corners);
-        double power = 0.5 * normal_of(corners, normal) * luminance(material->emission);
+        scene_mesh_placed_corners(mesh, t, &pose->instances[instance], corners);
+        double power = 0.5 * normal_of(corners, normal) * color_luminance(material->emission);
         if (!(power > 0.0) || !isfinite(power))
             continue;
         struct emitter emitter = {instance, mesh->materials[t], t, power};
@@ -151,7 +135,7 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     struct scene_light light = light_of(scene, emitter);
     light.kind = WHIT_LIGHT_AREA_SAMPLE;
     double corners[3][3], normal[3];
-    triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
+    scene_mesh_placed_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     double twice_area = normal_of(corners, normal);
     double side = affine_determinant(&local) < 0.0 ? -1.0 : 1.0;
     /* A one-sided sample lies a little above its surface, which would else shadow it. */
@@ -160,8 +144,8 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     for (int i = 0; i < 3; ++i) {
         light.direction[i] = twice_area > 0.0 ? side * normal[i] / twice_area : -(double)(i == 1);
         light.position[i] += lift * light.direction[i];
-        light.color[i] =
-            (float)((double)material->emission[i] / luminance(material->emission) * power / PI);
+        light.color[i] = (float)((double)material->emission[i] /
+                                 color_luminance(material->emission) * power / PI);
     }
     return scene_add_light(scene, light) != SCENE_NONE;
 }
@@ -237,7 +221,7 @@ static void make_flat(const struct scene *scene, const struct emitter *emitter, 
     const struct scene_instance *instance = &scene->instances[emitter->instance];
     struct affine local = local_of(instance);
     double corners[3][3];
-    triangle_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
+    scene_mesh_placed_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     bool mirrored = affine_determinant(&local) < 0.0;
     *out = (struct flat){.emitter = emitter};
     for (int i = 0; i < 3; ++i) {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/color.h"
 #include "base/file.h"
 #include "base/same.h"
 #include "base/vec.h"
@@ -34,37 +35,24 @@ struct probe_list {
     uint32_t count;
 };
 
-static double luminance(const float rgb[3])
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
 /* Gives a triangle's area in world space, with its corner, edges and unit normal; 0 for an emissive
    one, which counts as a lamp and not as a receiver. */
 static double receiver(const struct scene *scene, const struct scene_pose *pose, uint32_t instance,
                        uint32_t triangle, double corner[3], double edges[2][3], double normal[3])
 {
     const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
-    if (luminance(scene->materials[mesh->materials[triangle]].emission) > 0.0)
+    if (color_luminance(scene->materials[mesh->materials[triangle]].emission) > 0.0)
         return 0.0;
     double p[3][3];
-    for (size_t i = 0; i < 3; ++i) {
-        const float *q = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)triangle + i];
-        affine_point(&pose->instances[instance],
-                     (const double[3]){(double)q[0], (double)q[1], (double)q[2]}, p[i]);
-    }
+    scene_mesh_placed_corners(mesh, triangle, &pose->instances[instance], p);
     for (int i = 0; i < 3; ++i) {
         corner[i] = p[0][i];
         edges[0][i] = p[1][i] - p[0][i];
         edges[1][i] = p[2][i] - p[0][i];
     }
-    for (int i = 0; i < 3; ++i) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        normal[i] = edges[0][j] * edges[1][k] - edges[0][k] * edges[1][j];
-    }
-    double length = sqrt(double3_dot(normal, normal));
-    for (int i = 0; length > 0.0 && i < 3; ++i)
-        normal[i] /= length;
+    double3_cross(edges[0], edges[1], normal);
+    double length = double3_length(normal);
+    double3_unit(normal);
     return isfinite(length) ? 0.5 * length : 0.0;
 }
 
@@ -72,7 +60,7 @@ static double receiver(const struct scene *scene, const struct scene_pose *pose,
    shader computes it. `way`: unit direction in which the light travels. */
 static double arriving(const struct scene_light *light, const double way[3], double distance)
 {
-    double value = luminance(light->color), along = double3_dot(way, light->direction);
+    double value = color_luminance(light->color), along = double3_dot(way, light->direction);
     if (light->kind == WHIT_LIGHT_DIRECTIONAL)
         return value;
     if (light->falloff)
@@ -91,13 +79,9 @@ static double brightness_of_emitter(const struct scene_light *light, const doubl
 {
     enum { GRID = 4 };
     bool triangle = light->kind == WHIT_LIGHT_TRIANGLE;
-    double product[3], sum = 0.0;
+    double sum = 0.0;
     const double *u = light->edge_u, *v = light->edge_v;
-    for (int i = 0; i < 3; ++i) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        product[i] = u[j] * v[k] - u[k] * v[j];
-    }
-    double area = sqrt(double3_dot(product, product)) / (GRID * GRID);
+    double area = double3_area(u, v) / (GRID * GRID);
     for (int cell = 0; cell < GRID * GRID; ++cell) {
         double s = (cell % GRID + 0.5) / GRID, t = (cell / GRID + 0.5) / GRID, way[3];
         double share = !triangle || s + t < 1.0 ? 1.0 : s + t > 1.0 ? 0.0 : 0.5;
@@ -109,7 +93,7 @@ static double brightness_of_emitter(const struct scene_light *light, const doubl
         if (distance > 0.0)
             sum += share * away * fabs(double3_dot(way, normal)) / (distance * square);
     }
-    return luminance(light->color) * area / PI * sum;
+    return color_luminance(light->color) * area / PI * sum;
 }
 
 double freeze_brightness(const struct scene_light *light, const double point[3],
@@ -187,7 +171,7 @@ static bool all_from_models(const struct scene *scene, bool emitters)
 {
     bool all = true;
     for (uint32_t i = 0; emitters && i < scene->material_count; ++i) {
-        if (luminance(scene->materials[i].emission) > 0.0)
+        if (color_luminance(scene->materials[i].emission) > 0.0)
             all = all && is_from_model(&scene->materials[i].origin);
     }
     for (uint32_t i = 0; !emitters && i < scene->light_count; ++i)

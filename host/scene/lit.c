@@ -44,11 +44,8 @@ static bool is_black(const float rgb[3])
 static bool meet(const struct scene_mesh *mesh, uint32_t triangle, const struct ray *ray,
                  struct hit *hit)
 {
-    const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
     double p[3][3], edges[2][3], from[3], across[3], turned[3];
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k)
-            p[i][k] = (double)mesh->positions[3 * (size_t)index[i] + (size_t)k];
+    scene_mesh_corners(mesh, triangle, p);
     for (int k = 0; k < 3; ++k) {
         edges[0][k] = p[1][k] - p[0][k];
         edges[1][k] = p[2][k] - p[0][k];

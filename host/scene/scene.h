@@ -120,6 +120,25 @@ static inline uint32_t scene_mesh_primitives(const struct scene_mesh *mesh)
     return mesh->sphere_count ? mesh->sphere_count : mesh->triangle_count;
 }
 
+/* The corners of a triangle in object space. */
+static inline void scene_mesh_corners(const struct scene_mesh *mesh, uint32_t triangle,
+                                      double out[3][3])
+{
+    const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            out[i][k] = (double)mesh->positions[3 * (size_t)index[i] + (size_t)k];
+}
+
+/* The same behind `matrix`. */
+static inline void scene_mesh_placed_corners(const struct scene_mesh *mesh, uint32_t triangle,
+                                             const struct affine *matrix, double out[3][3])
+{
+    scene_mesh_corners(mesh, triangle, out);
+    for (int i = 0; i < 3; ++i)
+        affine_point(matrix, out[i], out[i]);
+}
+
 /* One node of the tree. The parent's index is smaller than its own. */
 struct scene_node {
     char *name;
