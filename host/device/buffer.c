@@ -285,6 +285,21 @@ whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t u
     return WHIT_OK;
 }
 
+whit_result buffer_create_all(struct device *device, const struct buffer_request *all, size_t count,
+                              uint64_t *bytes)
+{
+    whit_result result = WHIT_OK;
+    for (size_t i = 0; result == WHIT_OK && i < count; ++i) {
+        if (all[i].size_bytes == 0)
+            continue;
+        if (!*all[i].buffer)
+            result =
+                buffer_create(device, all[i].size_bytes, all[i].uses, all[i].name, all[i].buffer);
+        *bytes += result == WHIT_OK ? all[i].size_bytes : 0;
+    }
+    return result;
+}
+
 void buffer_destroy(struct buffer *buffer)
 {
     if (!buffer)

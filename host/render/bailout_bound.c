@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/array.h"
 #include "oracle/nearest.h"
 #include "render/bailout_bound.h"
 #include "render/textures.h"
@@ -113,17 +112,6 @@ static double sky_max(const struct renderer *renderer)
     return max * largest(sky->scale);
 }
 
-bool *bailout_bound_materials(const struct scene *scene)
-{
-    bool *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
-    for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
-        const struct scene_mesh *mesh = &scene->meshes[i];
-        for (uint32_t t = 0; t < scene_mesh_primitives(mesh); ++t)
-            worn[mesh->materials[t]] = true;
-    }
-    return worn;
-}
-
 /* Upper bounds for a ray of weight 1. `radiance`: the sky's, or a surface's own light plus what its
    rays bring. `unshadowed`: light lost at all hits of its ray tree because shadow rays are not
    traced; a hit loses at most BAILOUT_SHADOW_SHARE of its ray's weight, as rays below the bailout
@@ -132,7 +120,7 @@ struct brought {
     double radiance, unshadowed;
 };
 
-static struct brought ray_max(const struct renderer *renderer, const bool *worn)
+static struct brought ray_max(const struct renderer *renderer, const uint8_t *worn)
 {
     const struct scene *scene = renderer->scene;
     bool highlights = false;

@@ -8,7 +8,5 @@
    bound is known (emissive surfaces as points, highlights of flat emitters, a light on a
    surface). */
 double bailout_bound(const struct renderer *renderer);
-/* For each material of the scene whether some primitive has it; free() it. NULL: out of memory. */
-bool *bailout_bound_materials(const struct scene *scene);
 
 #endif

@@ -89,13 +89,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     /* Buffers of 0 bytes are not needed for this picture, and not created. */
     bool lists = renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE || target->probed;
     uint64_t before = renderer->scene_buffers.bytes;
-    whit_result result = WHIT_OK;
-    const struct {
-        struct buffer **buffer;
-        uint64_t bytes;
-        uint32_t uses;
-        const char *name;
-    } all[] = {
+    const struct buffer_request all[] = {
         {&p->pixels, (pixels + sums + (posts ? pixels : 0)) * 16, BUFFER_STORAGE | BUFFER_HOST,
          "pixels"},
         {&p->ids, pixels_have_data(target) ? pixels * 8 : 0, BUFFER_STORAGE | BUFFER_HOST, "ids"},
@@ -107,14 +101,8 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
         {&p->listed, lists ? (uint64_t)p->chunk_slots * 4 : 0, BUFFER_STORAGE | BUFFER_HOST,
          "listed pixels"},
     };
-    for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
-        if (all[i].bytes == 0)
-            continue;
-        if (!*all[i].buffer)
-            result = buffer_create(device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
-        if (result == WHIT_OK)
-            renderer->scene_buffers.bytes += all[i].bytes;
-    }
+    whit_result result =
+        buffer_create_all(device, all, sizeof all / sizeof *all, &renderer->scene_buffers.bytes);
     if (result == WHIT_OK)
         result = hooks_clear_status(target);
     if (result == WHIT_OK)

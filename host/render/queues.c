@@ -95,12 +95,7 @@ whit_result queues_create(struct target *target)
     /* Invocations without an item of their own read another item, which may not have been written
        yet: buffers start as zeros, which are valid ids. */
     const uint32_t loaded = BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_ZEROED;
-    const struct {
-        struct buffer **buffer;
-        uint64_t bytes;
-        uint32_t uses;
-        const char *name;
-    } all[] = {
+    const struct buffer_request all[] = {
         {&queues->generations, heads,
          BUFFER_STORAGE | BUFFER_TEXELS | BUFFER_INDIRECT | BUFFER_HOST, "generations"},
         {&queues->empty, heads, BUFFER_STORAGE | BUFFER_HOST, "empty generations"},
@@ -128,14 +123,8 @@ whit_result queues_create(struct target *target)
          renderer->params.count || target->probed || textures_minify(renderer) ? sent * 4 : 0,
          BUFFER_STORAGE, "kinds of rays"},
     };
-    whit_result result = WHIT_OK;
-    for (size_t i = 0; result == WHIT_OK && i < sizeof all / sizeof *all; ++i) {
-        if (all[i].bytes == 0)
-            continue;
-        result =
-            buffer_create(renderer->device, all[i].bytes, all[i].uses, all[i].name, all[i].buffer);
-        queues->bytes += result == WHIT_OK ? all[i].bytes : 0;
-    }
+    whit_result result =
+        buffer_create_all(renderer->device, all, sizeof all / sizeof *all, &queues->bytes);
     renderer->scene_buffers.bytes += queues->bytes;
     return result == WHIT_OK ? write_empty(renderer, queues) : result;
 }

@@ -92,7 +92,7 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
         result = hooks_read_sliders(renderer, renderer->params.sliders);
     if (result == WHIT_OK)
         result = hooks_find_material(renderer);
-    if (result == WHIT_OK && !(renderer->worn = bailout_bound_materials(renderer->scene)))
+    if (result == WHIT_OK && !(renderer->worn = scene_worn_materials(renderer->scene)))
         result = render_no_memory(renderer, "materials");
     if (renderer->scene->pictures_dropped) {
         log_error(log, "%s: its textures were dropped, no further renderer can be made from it",

@@ -244,7 +244,7 @@ struct renderer {
     struct image costs[RAY_KIND_COUNT]; /* costs of first samples; empty for a kind without rays */
     double create_ms;
     /* Properties of the scene that the pipelines were made for (up to has_secondary). */
-    bool *worn; /* by material: whether some primitive has it */
+    uint8_t *worn; /* of scene_worn_materials */
     uint32_t node_stack_size, packet_stack_size;
     bool single_identity;
     bool has_secondary; /* surfaces send rays on: renderer_bounces */

@@ -138,7 +138,9 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
         struct gpu_chunk again = *chunk;
         again.deferred = 1;
         stage_times_next(target, RENDER_STAGE_DEFERRED);
-        render_take_deferred(target, pass, deferred, &again, sizeof again);
+        render_take_deferred(commands, pass->deferred, pass->deferred_set, deferred, &again,
+                             sizeof again);
+        ++target->stats.dispatches;
     }
     commands_barrier(commands);
     return WHIT_OK;

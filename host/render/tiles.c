@@ -156,15 +156,14 @@ void render_clear_deferred(struct renderer *renderer, struct buffer *deferred)
     commands_fill(renderer->commands, deferred, offsetof(struct gpu_work, count), 4, 0);
 }
 
-void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
-                          const void *push, uint32_t push_bytes)
+void render_take_deferred(struct commands *commands, struct pipeline *pipeline,
+                          struct binding_set *set, struct buffer *deferred, const void *push,
+                          uint32_t push_bytes)
 {
-    struct commands *commands = target->renderer->commands;
     commands_barrier(commands);
-    commands_bind(commands, pass->deferred, pass->deferred_set);
+    commands_bind(commands, pipeline, set);
     commands_push(commands, push, push_bytes);
     commands_dispatch_indirect(commands, deferred, 0);
-    ++target->stats.dispatches;
 }
 
 void render_push_chunk(struct renderer *renderer, struct gpu_chunk *chunk)

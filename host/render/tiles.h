@@ -30,11 +30,11 @@ WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 /* Empties a list of deferred rays; NULL: nothing to do. The caller adds barriers. */
 void render_clear_deferred(struct renderer *renderer, struct buffer *deferred);
-/* Records the second kernel of `pass`, which has exact integers, over the rays that the dispatch
-   before has put on the list `deferred`, with a barrier in between. `push`: its push constants,
-   with `deferred` set. */
-void render_take_deferred(struct target *target, const struct pass *pass, struct buffer *deferred,
-                          const void *push, uint32_t push_bytes);
+/* Records a kernel over the rays that the dispatch before has put on the list `deferred`, with a
+   barrier in between. `push`: its push constants, with `deferred` set. */
+void render_take_deferred(struct commands *commands, struct pipeline *pipeline,
+                          struct binding_set *set, struct buffer *deferred, const void *push,
+                          uint32_t push_bytes);
 /* Records the push constants of the bound kernel, a stage. chunk->blocks_x must not be 0. */
 void render_push_chunk(struct renderer *renderer, struct gpu_chunk *chunk);
 /* Number of workgroups for the camera rays of a chunk, at one ray an invocation. */

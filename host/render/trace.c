@@ -64,43 +64,28 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
 {
     struct trace_state *trace = &renderer->trace;
     whit_result result = beams ? upload_wide(renderer) : WHIT_OK;
+    if (result != WHIT_OK)
+        return result;
     beams = beams && renderer->packet_stack_size <= PACKET_STACK_MAX;
-    uint32_t loads = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
-    if (result == WHIT_OK && !trace->rays) {
+    if (!trace->rays)
         trace->capacity = choose_capacity(renderer->params.trace_rays);
-        result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_ray),
-                               loads | BUFFER_HOST, "rays", &trace->rays);
-    }
-    if (result == WHIT_OK && !trace->hits)
-        result = buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_hit),
-                               BUFFER_STORAGE | BUFFER_HOST, "hits", &trace->hits);
-    if (result == WHIT_OK && renderer->params.count && !trace->costs)
-        result =
-            buffer_create(renderer->device, (uint64_t)trace->capacity * sizeof(struct gpu_cost),
-                          BUFFER_STORAGE | BUFFER_HOST, "trace costs", &trace->costs);
+    uint32_t loads = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     bool lists = variant_has_deferred(&renderer->picture) || variant_has_beams(renderer);
-    if (result == WHIT_OK && lists && !trace->deferred)
-        result =
-            buffer_create(renderer->device, sizeof(struct gpu_work) + (uint64_t)trace->capacity * 4,
-                          BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays", &trace->deferred);
+    uint64_t rays = trace->capacity, bytes = 0;
+    const struct buffer_request all[] = {
+        {&trace->rays, rays * sizeof(struct gpu_ray), loads | BUFFER_HOST, "rays"},
+        {&trace->hits, rays * sizeof(struct gpu_hit), BUFFER_STORAGE | BUFFER_HOST, "hits"},
+        {&trace->costs, renderer->params.count ? rays * sizeof(struct gpu_cost) : 0,
+         BUFFER_STORAGE | BUFFER_HOST, "trace costs"},
+        {&trace->deferred, lists ? sizeof(struct gpu_work) + rays * 4 : 0,
+         BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays"},
+    };
+    result = buffer_create_all(renderer->device, all, sizeof all / sizeof *all, &bytes);
     if (result == WHIT_OK)
         result = prepare_pass(renderer, any, false);
     if (result == WHIT_OK && beams)
         result = prepare_pass(renderer, any, true);
     return result;
-}
-
-/* Records a dispatch over the rays that the dispatch before it has put on the list of deferred
-   rays. */
-static void record_deferred(struct renderer *renderer, struct pipeline *pipeline,
-                            struct binding_set *set, const struct gpu_batch *batch)
-{
-    struct gpu_batch deferred = *batch;
-    deferred.deferred = 1;
-    commands_barrier(renderer->commands);
-    commands_bind(renderer->commands, pipeline, set);
-    commands_push(renderer->commands, &deferred, sizeof deferred);
-    commands_dispatch_indirect(renderer->commands, renderer->trace.deferred, 0);
 }
 
 /* Traces rays [0, batch->ray_count) of the ray buffer. `beams`: in packets where possible, then the
@@ -121,10 +106,12 @@ static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
     commands_push(renderer->commands, batch, sizeof *batch);
     commands_span_begin(renderer->commands, "trace");
     commands_dispatch(renderer->commands, (batch->ray_count + each - 1) / each, 1, 1);
-    if (beams)
-        record_deferred(renderer, singles->pipeline, singles->set, batch);
-    else if (pass->deferred)
-        record_deferred(renderer, pass->deferred, pass->deferred_set, batch);
+    struct gpu_batch again = *batch;
+    again.deferred = 1;
+    if (beams || pass->deferred)
+        render_take_deferred(renderer->commands, beams ? singles->pipeline : pass->deferred,
+                             beams ? singles->set : pass->deferred_set, renderer->trace.deferred,
+                             &again, sizeof again);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
     result = commands_submit(renderer->commands);

@@ -543,26 +543,15 @@ whit_result variant_create_tests(const struct target *target, struct buffer *fou
                                  struct pass *pass)
 {
     const struct renderer *renderer = target->renderer;
-    const struct shader_code *code = &renderer->params.shader->codes[SHADER_KERNEL_TEST];
     struct bindings bindings = bind_stages(target);
     struct gpu_spec spec = variant_spec(target);
     spec.SPEC_SETTLES = 1;
     spec.SPEC_CHECK_WORDS = shader_tests_words(&renderer->params.shader->tests);
     spec.SPEC_LIT_PARTS = lit_parts(renderer, &spec);
     bind(&bindings, BIND_PROBE, BINDING_STORAGE, found);
-    const struct pipeline_params params = {
-        .spirv = code->words,
-        .spirv_bytes = code->bytes,
-        .rewrite = renderer->params.portable ? portable_rewrite : NULL,
-        .rewrite_user = &renderer->portable,
-        .rewrite_as = portable_number(&renderer->portable),
-        .spec = (const uint32_t *)&spec,
-        .spec_count = GPU_SPEC_COUNT,
-        .bindings = bindings.kinds,
-        .binding_count = BIND_STAGES_COUNT,
-        .push_bytes = sizeof(struct gpu_chunk),
-        .name = "tests",
-    };
+    const struct pipeline_params params =
+        pass_params(target, &hook_kernels[HOOK_KERNEL_TEST], &spec, &bindings, BIND_STAGES_COUNT,
+                    sizeof(struct gpu_chunk), "tests");
     whit_result result = pipeline_create(renderer->device, &params, &pass->pipeline);
     return result == WHIT_OK ? create_sets(pass, &bindings, BIND_STAGES_COUNT) : result;
 }

@@ -266,11 +266,7 @@ static void scan_camera(struct scene_effects *out, const struct scene_camera *ca
              (double)camera->lens_radius);
 }
 
-enum { WORN_BY_TRIANGLES = 1, WORN_BY_SPHERES = 2 };
-
-/* Marks the materials that primitives use, by WORN_BY_* bits: effects of unused ones, as in
-   material libraries, are not compiled. NULL when memory runs out; then all count as used. */
-static uint8_t *worn_materials(const struct scene *scene)
+uint8_t *scene_worn_materials(const struct scene *scene)
 {
     uint8_t *worn = array_alloc_zeroed(scene->material_count, sizeof *worn);
     for (uint32_t i = 0; worn && i < scene->mesh_count; ++i) {
@@ -283,7 +279,7 @@ static uint8_t *worn_materials(const struct scene *scene)
 
 uint32_t scene_find_worn(const struct scene *scene, const char *name)
 {
-    uint8_t *worn = worn_materials(scene);
+    uint8_t *worn = scene_worn_materials(scene);
     uint32_t found = SCENE_NONE;
     for (uint32_t i = 0; i < scene->material_count && found == SCENE_NONE; ++i) {
         const char *own = scene->materials[i].name;
@@ -297,7 +293,7 @@ uint32_t scene_find_worn(const struct scene *scene, const char *name)
 uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_materials which,
                                       struct scene_effects *out)
 {
-    uint8_t *worn = worn_materials(scene);
+    uint8_t *worn = scene_worn_materials(scene);
     uint32_t count = 0;
     for (uint32_t i = 0; i < scene->material_count; ++i) {
         bool glass = any(scene->materials[i].transmission);

@@ -6,6 +6,11 @@
 
 const char *scene_effect_name(enum scene_effect effect);
 void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
+/* Marks the materials that primitives use, by WORN_BY_* bits; free() it. Effects of unused ones, as
+   in material libraries, are not compiled. NULL when memory runs out; here all count as used
+   then. */
+enum { WORN_BY_TRIANGLES = 1, WORN_BY_SPHERES = 2 };
+uint8_t *scene_worn_materials(const struct scene *scene);
 /* The first material of this name that some primitive uses; name "": the first used one of any
    name. SCENE_NONE: there is none. */
 uint32_t scene_find_worn(const struct scene *scene, const char *name);
