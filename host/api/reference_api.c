@@ -47,24 +47,18 @@ void whit_reference_destroy(whit_reference *reference)
 
 whit_result whit_reference_render(whit_reference *reference, whit_image **color, whit_image **ids)
 {
-    whit_image *to_color = calloc(1, sizeof *to_color);
-    whit_image *to_ids = ids ? calloc(1, sizeof *to_ids) : NULL;
-    whit_result result = to_color && (to_ids || !ids) ? WHIT_OK : WHIT_ERROR_MEMORY;
-    if (result != WHIT_OK)
-        log_error(&reference->log, "out of memory");
-    else
-        result = reference_render(reference->reference, &to_color->image,
-                                  to_ids ? &to_ids->image : NULL, &reference->stats);
-    if (result != WHIT_OK) {
-        free(to_color);
-        free(to_ids);
-        to_color = to_ids = NULL;
-    } else {
-        whit_image_display_as(to_color, &reference->params);
-    }
-    *color = to_color;
+    struct image made = {0}, made_ids = {0};
+    whit_result result =
+        reference_render(reference->reference, &made, ids ? &made_ids : NULL, &reference->stats);
+    result = api_hand_out(&reference->log, &made, result, color);
     if (ids)
-        *ids = to_ids;
+        result = api_hand_out(&reference->log, &made_ids, result, ids);
+    if (result == WHIT_OK) {
+        whit_image_display_as(*color, &reference->params);
+        return WHIT_OK;
+    }
+    whit_image_destroy(*color);
+    *color = NULL;
     return result;
 }
 
