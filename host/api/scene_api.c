@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/vec.h"
 #include "load/scene_cameras.h"
+#include "picture/camera.h"
 #include "scene/effects.h"
 #include "scene/pose.h"
 #include "scene/small.h"
@@ -326,4 +327,10 @@ whit_result whit_scene_triangles(const whit_scene *handle, double time_s,
     }
     scene_pose_finish(&pose);
     return result;
+}
+
+whit_result whit_camera_rays(const whit_scene *scene, const whit_camera *camera, uint32_t width,
+                             uint32_t height, const whit_log *log, whit_ray *rays)
+{
+    return camera_all_rays(log, &scene->pose, camera, width, height, (struct gpu_ray *)rays);
 }

@@ -67,6 +67,12 @@ WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const wh
 WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
                                                   whit_cost *cost);
 
+/* Makes the camera ray through the middle of each pixel, row by row, at time 0, with the bits of
+   those of kernels. WHIT_ERROR_USAGE where there is no such camera, or it is degenerate. */
+WHIT_CHECK whit_result whit_camera_rays(const whit_scene *scene, const whit_camera *camera,
+                                        uint32_t width, uint32_t height, const whit_log *log,
+                                        whit_ray *rays);
+
 /* ---- A device, opened beside other work ---- */
 
 /* Runs whit_device_create in a thread of its own while the caller does something else, such as

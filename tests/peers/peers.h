@@ -10,7 +10,7 @@ extern const whit_log peers_log;
 /* ---- rays.c ---- */
 
 enum ray_kind {
-    RAYS_PRIMARY, /* from the scene's first camera, jittered over a 16:9 picture */
+    RAYS_PRIMARY, /* from the scene's first camera, for pixels of a 16:9 picture */
     RAYS_RANDOM,  /* between random points in and around the bounds */
     RAYS_AIMED,   /* at vertices and points of edges */
     RAYS_KINDS

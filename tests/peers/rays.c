@@ -1,9 +1,11 @@
 /* Sets of rays, the same on every machine for a seed. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "base/vec.h"
 #include "peers.h"
+#include "picture/camera.h"
 
 static void print_log(void *user, whit_log_level level, const char *message)
 {
@@ -61,45 +63,15 @@ void random_target(const struct scene *scene, const struct scene_pose *pose, uin
     affine_point(&pose->instances[i], at, out);
 }
 
-/* ---- Cameras ---- */
-
-struct view {
-    double eye[3], forward[3], right[3], up[3];
-    bool parallel;
-};
-
-static void scale_to(double v[3], double length)
+/* The camera ray of a random pixel of a 16:9 picture. */
+static struct gpu_ray primary_ray(const struct gpu_frame *frame, uint32_t kind, uint64_t *state)
 {
-    double size = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3; ++k)
-        v[k] *= length / size;
-}
-
-static struct view view_of(const struct scene_camera *camera)
-{
-    struct view view = {.parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC};
-    for (int k = 0; k < 3; ++k) {
-        view.eye[k] = camera->eye[k];
-        view.forward[k] = camera->target[k] - camera->eye[k];
-    }
-    scale_to(view.forward, 1.0);
-    double half = view.parallel ? 0.5 * (double)camera->height : tan(0.5 * (double)camera->fov_y);
-    double3_cross(view.forward, camera->up, view.right);
-    double3_cross(view.right, view.forward, view.up);
-    scale_to(view.right, half * 16.0 / 9.0);
-    scale_to(view.up, half);
-    return view;
-}
-
-static struct gpu_ray primary_ray(const struct view *view, uint64_t *state)
-{
-    double x = random_signed(state), y = random_signed(state), origin[3], target[3];
-    for (int k = 0; k < 3; ++k) {
-        double off = x * view->right[k] + y * view->up[k];
-        origin[k] = view->eye[k] + (view->parallel ? off : 0.0);
-        target[k] = view->eye[k] + off + view->forward[k];
-    }
-    return ray_to(origin, target);
+    const struct gpu_chunk middle = {0};
+    uint32_t x = (uint32_t)(random_bits64(state) % frame->width);
+    uint32_t y = (uint32_t)(random_bits64(state) % frame->height);
+    struct gpu_ray ray;
+    camera_ray(frame, kind, x, y, &middle, &ray);
+    return ray;
 }
 
 /* In the bounds, stretched about their middle. */
@@ -114,12 +86,16 @@ static void random_point(const struct scene_pose *pose, double stretch, uint64_t
 void rays_fill(enum ray_kind kind, const struct scene *scene, const struct scene_pose *pose,
                uint64_t seed, struct gpu_ray *rays, uint64_t count)
 {
-    const struct view view = view_of(&pose->cameras[0]);
+    const whit_camera first = {0};
+    struct gpu_frame frame = {0};
+    uint32_t camera = CAMERA_PERSPECTIVE;
+    if (camera_frame(&peers_log, pose, &first, 4096, 2304, &frame, &camera) != WHIT_OK)
+        exit(2);
     uint64_t state = seed * RAYS_KINDS + (uint64_t)kind;
     for (uint64_t i = 0; i < count; ++i) {
         double from[3], to[3];
         if (kind == RAYS_PRIMARY) {
-            rays[i] = primary_ray(&view, &state);
+            rays[i] = primary_ray(&frame, camera, &state);
             continue;
         }
         random_point(pose, 1.5, &state, from);

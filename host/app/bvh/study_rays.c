@@ -6,6 +6,7 @@
 #include "app/bvh/study_rays.h"
 #include "base/random.h"
 #include "base/vec.h"
+#include "whit/whit_program.h"
 
 static whit_ray make_ray(struct dvec3 origin, struct dvec3 dir, double t_min, double t_max)
 {
@@ -28,49 +29,6 @@ static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
 
 /* ---- Primary ---- */
 
-struct view {
-    struct dvec3 eye, right, up, ahead; /* right and up span half the picture at the distance of
-                                           `ahead` */
-    bool parallel, panorama;
-};
-
-static struct view camera_view(const whit_camera_info *camera, double aspect)
-{
-    struct view view = {.eye = dvec3_load(camera->eye)};
-    view.ahead = dvec3_unit(dvec3_along(dvec3_load(camera->target), view.eye, -1.0));
-    view.right = dvec3_unit(dvec3_cross(view.ahead, dvec3_load(camera->up)));
-    view.up = dvec3_cross(view.right, view.ahead);
-    view.parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
-    view.panorama = camera->kind == WHIT_CAMERA_PANORAMA;
-    if (view.panorama)
-        return view;
-    double half = view.parallel ? 0.5 * camera->height : tan(camera->fov_y_degrees * PI / 360.0);
-    view.right = dvec3_along((struct dvec3){0, 0, 0}, view.right, half * aspect);
-    view.up = dvec3_along((struct dvec3){0, 0, 0}, view.up, half);
-    return view;
-}
-
-static whit_ray panorama_ray(const struct view *view, double x, double y)
-{
-    double longitude = x * PI, latitude = y * 0.5 * PI;
-    struct dvec3 dir = dvec3_along((struct dvec3){0, 0, 0}, view->up, sin(latitude));
-    dir = dvec3_along(dir, view->ahead, cos(latitude) * cos(longitude));
-    dir = dvec3_along(dir, view->right, cos(latitude) * sin(longitude));
-    return make_ray(view->eye, dir, 0.0, INFINITY);
-}
-
-/* x and y are from -1 to 1, y upwards. Rays of a lens go through its middle. */
-static whit_ray camera_ray(const struct view *view, double x, double y)
-{
-    if (view->panorama)
-        return panorama_ray(view, x, y);
-    struct dvec3 aside =
-        dvec3_along(dvec3_along((struct dvec3){0, 0, 0}, view->right, x), view->up, y);
-    if (view->parallel)
-        return make_ray(dvec3_along(view->eye, aside, 1.0), view->ahead, 0.0, INFINITY);
-    return make_ray(view->eye, dvec3_along(view->ahead, aside, 1.0), 0.0, INFINITY);
-}
-
 /* The pixel of ray `i`: row by row, or by tiles of 8x8 pixels, and within a tile by 4x2 pixels, as
    a subgroup of 8 takes them. */
 static void pixel_of(uint32_t i, uint32_t width, bool tiles, uint32_t *x, uint32_t *y)
@@ -83,19 +41,20 @@ static void pixel_of(uint32_t i, uint32_t width, bool tiles, uint32_t *x, uint32
 whit_result study_camera_rays(const whit_scene *scene, uint32_t width, uint32_t height, bool tiles,
                               struct study_rays *rays)
 {
-    whit_result result = alloc_rays(rays, width * height);
-    if (result != WHIT_OK)
-        return result;
-    whit_camera_info camera;
-    whit_scene_get_camera(scene, 0, &camera);
-    struct view view = camera_view(&camera, (double)width / height);
-    for (uint32_t i = 0; i < rays->count; ++i) {
+    const whit_camera first = {0};
+    whit_ray *rows = malloc((size_t)width * height * sizeof *rows);
+    if (!rows)
+        return cli_no_memory();
+    whit_result result = whit_camera_rays(scene, &first, width, height, &cli_log, rows);
+    if (result == WHIT_OK)
+        result = alloc_rays(rays, width * height);
+    for (uint32_t i = 0; result == WHIT_OK && i < rays->count; ++i) {
         uint32_t x, y;
         pixel_of(i, width, tiles, &x, &y);
-        rays->rays[i] =
-            camera_ray(&view, 2.0 * (x + 0.5) / width - 1.0, 1.0 - 2.0 * (y + 0.5) / height);
+        rays->rays[i] = rows[(size_t)y * width + x];
     }
-    return WHIT_OK;
+    free(rows);
+    return result;
 }
 
 whit_result study_primary_rays(struct study *study)
