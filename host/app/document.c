@@ -54,6 +54,27 @@ void document_put(json_t *object, const char *key, json_t *value)
         out_of_memory();
 }
 
+json_t *document_child(json_t *object, const char *key)
+{
+    json_t *child = document_object();
+    document_put(object, key, child);
+    return child;
+}
+
+json_t *document_list(json_t *object, const char *key)
+{
+    json_t *list = document_array();
+    document_put(object, key, list);
+    return list;
+}
+
+json_t *document_entry(json_t *array)
+{
+    json_t *entry = document_object();
+    document_append(array, entry);
+    return entry;
+}
+
 static json_t *from_text(const char *text)
 {
     if (!text)
@@ -106,6 +127,11 @@ void document_number(json_t *object, const char *key, double value)
     document_put(object, key, from_number(value));
 }
 
+double document_known(double value)
+{
+    return value >= 0.0 ? value : (double)NAN;
+}
+
 void document_ms(json_t *object, const char *key, double time_ms)
 {
     document_number(object, key, floor(time_ms * 1e3 + 0.5) * 1e-3);
@@ -147,6 +173,15 @@ void document_numbers(json_t *object, const char *key, const double *values, uin
     for (uint32_t i = 0; i < count; ++i)
         document_append(array, from_number(values[i]));
     document_put(object, key, array);
+}
+
+json_t *document_device(const whit_device_info *info)
+{
+    json_t *device = document_object();
+    document_text(device, "name", info->name);
+    document_text(device, "driver", info->driver);
+    document_text(device, "kind", whit_device_kind_name(info->kind));
+    return device;
 }
 
 /* Does not use json_dumps: jansson 2.14 silently drops a key that it has no memory for, while a

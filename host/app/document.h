@@ -21,8 +21,15 @@ json_t *document_array(void);
 void document_append(json_t *array, json_t *value);                /* takes over `value` */
 void document_put(json_t *object, const char *key, json_t *value); /* likewise */
 
+/* An empty object or array, which its parent already holds: keys are written in the order in which
+   they were put. */
+json_t *document_child(json_t *object, const char *key);
+json_t *document_list(json_t *object, const char *key);
+json_t *document_entry(json_t *array);
+
 void document_text(json_t *object, const char *key, const char *text); /* NULL: null */
 void document_number(json_t *object, const char *key, double value);
+double document_known(double value); /* NAN, which is written as null, where it is negative */
 void document_ms(json_t *object, const char *key, double time_ms); /* in whole microseconds */
 void document_float(json_t *object, const char *key, float value); /* the shortest text that reads
                                                                       back as the same float */
@@ -31,6 +38,8 @@ void document_flag(json_t *object, const char *key, bool value);
 void document_hash(json_t *object, const char *key, uint64_t value); /* 16 hex digits */
 void document_floats(json_t *object, const char *key, const float *values, uint32_t count);
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
+json_t *document_device(const whit_device_info *info); /* its name, driver and kind */
+
 /* Writes `value` to a file, indented, and takes it over. */
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
 /* Writes `text` to a file and frees it; `text` NULL: memory ran out before. Errors were printed. */

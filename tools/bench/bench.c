@@ -99,11 +99,12 @@ static whit_result make_folder(struct bench *bench)
 static whit_result write_json(struct bench *bench)
 {
     const struct bench_request *ask = &bench->ask;
-    json_t *root = document_root(), *device = document_object(), *settings = document_object();
+    json_t *root = document_root();
     document_text(root, "bench", bench_kinds[ask->which].name);
+    json_t *device = document_child(root, "device");
     document_text(device, "name", bench->device_info.name);
     document_text(device, "driver", bench->device_info.driver);
-    document_put(root, "device", device);
+    json_t *settings = document_child(root, "settings");
     document_flag(settings, "quick", ask->quick);
     document_count(settings, "width", ask->width);
     document_count(settings, "height", ask->height);
@@ -112,7 +113,6 @@ static whit_result write_json(struct bench *bench)
         document_count(settings, "depth", 0);
     }
     document_count(settings, "runs", ask->runs);
-    document_put(root, "settings", settings);
     document_put(root, "tables", json_incref(bench->tables));
     char *text = document_line(root);
     whit_result result =

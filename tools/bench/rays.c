@@ -53,7 +53,7 @@ static json_t *row_document(const struct model *model, uint32_t kind, const stru
     document_count(row, "triangles", model->loaded.info.triangle_count);
     document_count(row, "count", model->count);
     for (uint32_t order = 0; order < 2; ++order) {
-        json_t *times = document_object();
+        json_t *times = document_child(row, order ? "shuffled" : "tiles");
         for (uint32_t side = 0; side < RAYS_BACK; ++side) {
             const struct sample_runs *of =
                 side ? batch_quicker(&batches[order], (enum rays_side)side)
@@ -61,7 +61,6 @@ static json_t *row_document(const struct model *model, uint32_t kind, const stru
             if (of->count)
                 document_put(times, keys[side], table_times(of));
         }
-        document_put(row, order ? "shuffled" : "tiles", times);
     }
     document_put(row, "hits", hits_document(&agreement[PEER_EMBREE]));
     document_put(row, "pipeline_hits", hits_document(&agreement[PEER_PIPELINE]));

@@ -343,11 +343,10 @@ static double quantile(const struct sample_runs *runs, double share)
 static void put_times(struct table *table, json_t *row, const char *name,
                       const struct sample_runs *runs)
 {
-    json_t *times = document_object();
+    json_t *times = document_child(row, name);
     document_number(times, "p50", quantile(runs, 0.5));
     document_number(times, "p95", quantile(runs, 0.95));
     document_count(times, "runs", runs->count);
-    document_put(row, name, times);
     table_cell(table, "%.0f", quantile(runs, 0.5));
     table_cell(table, "%.0f", quantile(runs, 0.95));
 }
@@ -356,10 +355,9 @@ static void put_times(struct table *table, json_t *row, const char *name,
 static void put_max(struct table *table, json_t *row, const char *name,
                     const struct sample_runs *saved, const struct sample_runs *alone)
 {
-    json_t *times = document_object();
+    json_t *times = document_child(row, name);
     document_number(times, "saved", quantile(saved, 1.0));
     document_number(times, "alone", quantile(alone, 1.0));
-    document_put(row, name, times);
     table_cell(table, "%.0f, %.0f", quantile(saved, 1.0), quantile(alone, 1.0));
 }
 

@@ -25,15 +25,15 @@ void table_begin(struct table *table, struct bench *bench, const char *name,
     static const char *const last[] = {"figure", "must", "aim", "verdict", NULL};
     *table = (struct table){.bench = bench,
                             .object = document_object(),
-                            .rows = document_array(),
-                            .sentences = document_array(),
-                            .left_out = document_array(),
                             .has_goals = has_goals,
                             .column_count = TABLE_COLUMNS_MAX};
     if (!bench->has_head)
         print_head(bench);
     bench->has_head = true;
     document_text(table->object, "table", name);
+    table->rows = document_list(table->object, "rows");
+    table->sentences = document_list(table->object, "sentences");
+    table->left_out = document_list(table->object, "left_out");
     table_row(table);
     for (; *heads; ++heads)
         table_cell(table, "%s", *heads);
@@ -150,10 +150,9 @@ void table_say(struct table *table, const char *format, ...)
 
 void table_leave_out(struct table *table, const char *name, const char *why)
 {
-    json_t *object = document_object();
+    json_t *object = document_entry(table->left_out);
     document_text(object, "name", name);
     document_text(object, "why", why);
-    document_append(table->left_out, object);
     table_say(table, "Left out: %s: %s.", cli_shown(name), cli_shown(why));
 }
 
@@ -208,9 +207,6 @@ whit_result table_end(struct table *table, const char *title, whit_result result
 {
     const struct bench *bench = table->bench;
     cli_progress_finish(&table->bench->progress);
-    document_put(table->object, "rows", table->rows);
-    document_put(table->object, "sentences", table->sentences);
-    document_put(table->object, "left_out", table->left_out);
     if (result != WHIT_OK) {
         json_decref(table->object);
         return result;

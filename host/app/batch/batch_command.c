@@ -200,13 +200,14 @@ static int print_stats(const struct batch *batch)
 {
     const struct batch_made *made = &batch->made;
     const whit_stats *stats = &batch->stats;
-    json_t *root = document_root(), *times = document_object();
+    json_t *root = document_root();
     document_count(root, "lines", batch->lines.count);
     document_count(root, "written", batch->written);
     document_count(root, "kept", batch->kept);
     document_count(root, "scenes", made->scenes);
     document_count(root, "trees", made->trees);
     document_count(root, "renderers", made->renderers);
+    json_t *times = document_child(root, "times");
     document_ms(times, "device_ms", made->device_ms);
     document_ms(times, "load_ms", made->load_ms);
     document_ms(times, "build_ms", made->build_ms);
@@ -214,7 +215,6 @@ static int print_stats(const struct batch *batch)
     document_ms(times, "render_ms", stats->render_ms);
     document_ms(times, "save_ms", batch->save_ms);
     document_ms(times, "total_ms", whit_clock_ms() - batch->start_ms);
-    document_put(root, "times", times);
     document_put(root, "rays", recipe_rays(stats));
     return cli_print_json(root);
 }

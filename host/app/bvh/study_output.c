@@ -165,10 +165,9 @@ static json_t *build_document(const struct study *study, const struct study_row 
 {
     json_t *list = document_array();
     for (uint32_t i = 0; i < study->thread_count; ++i) {
-        json_t *entry = document_object();
+        json_t *entry = document_entry(list);
         document_count(entry, "threads", study->threads[i]);
         put_times(entry, &row->build_ms[i]);
-        document_append(list, entry);
     }
     return list;
 }
@@ -196,12 +195,11 @@ static json_t *rates_document(const struct study *study, const struct study_row 
 {
     json_t *rates = document_object();
     for (uint32_t kind = 0; kind < STUDY_KINDS; ++kind) {
-        json_t *entry = NULL;
-        if (study->traced && study->rays[kind].count) {
-            entry = document_object();
-            put_spread(entry, &row->mrays_per_s[kind]);
-        }
-        document_put(rates, study_kind_name((enum study_kind)kind), entry ? entry : json_null());
+        const char *name = study_kind_name((enum study_kind)kind);
+        if (study->traced && study->rays[kind].count)
+            put_spread(document_child(rates, name), &row->mrays_per_s[kind]);
+        else
+            document_put(rates, name, json_null());
     }
     return rates;
 }
@@ -257,11 +255,7 @@ static json_t *device_document(const struct study *study)
         return json_null();
     whit_device_info info;
     whit_device_get_info(study->job.device, &info);
-    json_t *device = document_object();
-    document_text(device, "name", info.name);
-    document_text(device, "driver", info.driver);
-    document_text(device, "kind", whit_device_kind_name(info.kind));
-    return device;
+    return document_device(&info);
 }
 
 static json_t *hits_document(const struct study *study)
@@ -276,16 +270,16 @@ static json_t *hits_document(const struct study *study)
 
 static int print_json(const struct study *study)
 {
-    json_t *root = document_root(), *rays = document_object(), *rows = document_array();
+    json_t *root = document_root();
     document_put(root, "scene", scene_document(study));
     document_put(root, "device", device_document(study));
     document_count(root, "runs", study->run_count);
+    json_t *rays = document_child(root, "rays");
     for (uint32_t kind = 0; kind < STUDY_KINDS; ++kind)
         document_count(rays, study_kind_name((enum study_kind)kind), study->rays[kind].count);
-    document_put(root, "rays", rays);
+    json_t *rows = document_list(root, "builders");
     for (uint32_t i = 0; i < study->row_count; ++i)
         document_append(rows, row_document(study, &study->rows[i]));
-    document_put(root, "builders", rows);
     document_put(root, "hits", hits_document(study));
     return cli_print_json(root);
 }

@@ -87,7 +87,7 @@ static json_t *case_document(const struct check *check, uint32_t index)
 
 json_t *check_document(const struct check *check, int status)
 {
-    json_t *root = document_root(), *cases = document_array();
+    json_t *root = document_root();
     document_text(root, "suite", check->suite.path);
     document_text(root, "on", golden_kind_word((enum golden_kind)check->on));
     document_text(root, "golden", check->golden_path);
@@ -95,10 +95,10 @@ json_t *check_document(const struct check *check, int status)
     document_text(root, "device", check->device.name[0] ? check->device.name : NULL);
     document_text(root, "driver", check->device.driver[0] ? check->device.driver : NULL);
     document_count(root, "exit_code", (uint64_t)status);
+    json_t *cases = document_list(root, "cases");
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         if (check->results[i].verdict != CHECK_NOT_RUN)
             document_append(cases, case_document(check, i));
     }
-    document_put(root, "cases", cases);
     return root;
 }

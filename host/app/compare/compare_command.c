@@ -172,8 +172,7 @@ static whit_result save_json(const struct compare *compare)
     }
     document_put(root, "flip", flip);
     document_text(root, "metric", value_word(values_metric, (int)compare->metric));
-    document_number(root, "tolerance",
-                    compare->tolerance >= 0.0 ? compare->tolerance : (double)NAN);
+    document_number(root, "tolerance", document_known(compare->tolerance));
     document_put(root, "within",
                  compare->tolerance >= 0.0 ? json_boolean(is_within(compare)) : json_null());
     return document_save(root, compare->json);

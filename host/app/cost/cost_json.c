@@ -27,17 +27,16 @@ static json_t *price_document(const struct cost_price *price)
     document_count(out, "height", price->height);
     document_number(out, "verdict", price->verdict);
     for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
-        json_t *clock = document_object();
+        const char *name = cost_clock_name((enum cost_clock)c);
         if (price->ratio[c].count == 0) {
-            json_decref(clock);
-            document_put(out, cost_clock_name((enum cost_clock)c), json_null());
+            document_put(out, name, json_null());
             continue;
         }
+        json_t *clock = document_child(out, name);
         document_put(clock, "usual_ms", median_document(&price->usual_ms[c]));
         document_put(clock, "setting_ms", median_document(&price->setting_ms[c]));
         document_put(clock, "difference_ms", median_document(&price->difference[c]));
         document_put(clock, "ratio", median_document(&price->ratio[c]));
-        document_put(out, cost_clock_name((enum cost_clock)c), clock);
     }
     return out;
 }
@@ -93,11 +92,11 @@ static json_t *row_document(const struct cost_row *row)
     for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
         char key[32];
         snprintf(key, sizeof key, "%s_ms", cost_clock_name((enum cost_clock)c));
-        document_number(out, key, row->ms[c] >= 0.0 ? row->ms[c] : (double)NAN);
+        document_number(out, key, document_known(row->ms[c]));
     }
     document_number(out, "ms_low", row->ms_low);
     document_number(out, "ms_high", row->ms_high);
-    document_number(out, "build_ms", row->build_ms >= 0.0 ? row->build_ms : (double)NAN);
+    document_number(out, "build_ms", document_known(row->build_ms));
     document_put(out, "price", price_document(&row->price));
     document_put(out, "error", difference_document(&row->error));
     document_put(out, "alone", difference_document(&row->alone));
@@ -134,12 +133,11 @@ static json_t *answer_document(const struct cost_report *report, const struct co
 /* `cost`: the request; NULL: the report is kept for choices, which need no request. */
 static void put_head(json_t *out, const struct cost_report *report, const struct cost *cost)
 {
-    json_t *picture = document_object();
     document_text(out, "command", cost ? cost->command : NULL);
     document_text(out, "scene", cost ? cost->job.settings.scene : NULL);
+    json_t *picture = document_child(out, "picture");
     if (cost)
         settings_describe(&cost->job.settings, IN_COST, picture);
-    document_put(out, "picture", picture);
     document_hash(out, "scene_hash", report->scene_hash);
     document_text(out, "device", report->device);
     document_text(out, "driver", report->driver);
@@ -175,39 +173,35 @@ static void put_findings(json_t *out, const struct cost_report *report)
 {
     struct cost_finding findings[COST_FINDINGS_MAX];
     char sentence[COST_SENTENCE_BYTES];
-    json_t *list = document_array();
     uint32_t count = cost_findings(report, findings);
     cost_sentence(report, sentence);
     document_text(out, "sentence", sentence);
+    json_t *list = document_list(out, "findings");
     for (uint32_t i = 0; i < count; ++i) {
-        json_t *entry = document_object();
+        json_t *entry = document_entry(list);
         document_text(entry, "text", findings[i].text);
         document_numbers(entry, "values", findings[i].values, findings[i].value_count);
-        document_append(list, entry);
     }
-    document_put(out, "findings", list);
 }
 
 static json_t *report_document(const struct cost_report *report, const struct cost *cost)
 {
-    json_t *out = document_root(), *rows = document_array(), *answers = document_array();
-    json_t *absent = document_array();
+    json_t *out = document_root();
     put_head(out, report, cost);
     put_findings(out, report);
     document_put(out, "reference", reference_document(report));
+    json_t *rows = document_list(out, "rows");
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(rows, row_document(&report->rows[i]));
+    json_t *answers = document_list(out, "answers");
     for (uint32_t i = 0; i < report->answer_count; ++i)
         document_append(answers, answer_document(report, &report->answers[i]));
+    json_t *absent = document_list(out, "not_here");
     for (uint32_t i = 0; i < report->absent_count; ++i) {
-        json_t *entry = document_object();
+        json_t *entry = document_entry(absent);
         document_text(entry, "name", report->absent[i].name);
         document_text(entry, "why", report->absent[i].why);
-        document_append(absent, entry);
     }
-    document_put(out, "rows", rows);
-    document_put(out, "answers", answers);
-    document_put(out, "not_here", absent);
     return out;
 }
 

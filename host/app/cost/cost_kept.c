@@ -56,7 +56,7 @@ void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice
 
 static json_t *choice_document(const struct cost_kept_choice *kept)
 {
-    json_t *out = document_object(), *settings = document_object();
+    json_t *out = document_object();
     uint32_t count;
     const struct knob *table = knob_table(&count);
     document_number(out, "budget_ms", kept->budget_ms);
@@ -65,21 +65,21 @@ static json_t *choice_document(const struct cost_kept_choice *kept)
     document_number(out, "predicted_error", kept->choice.error);
     document_count(out, "samples", kept->choice.samples);
     document_number(out, "bailout", kept->choice.bailout);
+    json_t *settings = document_child(out, "settings");
     for (uint32_t k = 0; k < count; ++k)
         document_text(settings, table[k].name,
                       knob_setting_name(&table[k], kept->choice.settings[k]));
-    document_put(out, "settings", settings);
     return out;
 }
 
 void cost_kept_save(const struct cost_kept *kept, const char *name)
 {
-    json_t *root = document_root(), *choices = document_array();
+    json_t *root = document_root();
     document_text(root, "made", kept->made);
     document_put(root, "figures", cost_report_document(&kept->report));
+    json_t *choices = document_list(root, "choices");
     for (uint32_t i = 0; i < kept->choice_count; ++i)
         document_append(choices, choice_document(&kept->choices[i]));
-    document_put(root, "choices", choices);
     char *text = document_line(root);
     if (text && kept->report.complete)
         store_write(&cli_log, name, text, strlen(text));

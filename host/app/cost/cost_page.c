@@ -55,18 +55,15 @@ static void say_text(void *user, const char *sentence)
 
 static json_t *page_document(const struct cost_report *report)
 {
-    json_t *out = document_object(), *pictures = document_array(), *answers = document_array(),
-           *method = document_array();
-    for (uint32_t i = 0; i < report->row_count; ++i)
-        document_append(pictures, picture_document(&report->rows[i], i == 0));
+    json_t *out = document_object();
     if (report->reference)
         put_image(out, "reference", report->reference);
-    cost_say_answers(report, say_text, answers);
-    cost_say_method(report, say_text, method);
     document_put(out, "crop", crop_document(report));
-    document_put(out, "pictures", pictures);
-    document_put(out, "answers", answers);
-    document_put(out, "method", method);
+    json_t *pictures = document_list(out, "pictures");
+    for (uint32_t i = 0; i < report->row_count; ++i)
+        document_append(pictures, picture_document(&report->rows[i], i == 0));
+    cost_say_answers(report, say_text, document_list(out, "answers"));
+    cost_say_method(report, say_text, document_list(out, "method"));
     return out;
 }
 

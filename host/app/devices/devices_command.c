@@ -105,11 +105,9 @@ static json_t *hints_document(const struct device_hints *hints)
 static int print_json(const whit_device_info *infos, uint32_t count,
                       const struct device_hints *hints)
 {
-    json_t *list = document_array();
+    json_t *root = document_root(), *list = document_list(root, "devices");
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, device_document(&infos[i]));
-    json_t *root = document_root();
-    document_put(root, "devices", list);
     document_put(root, "hints", hints_document(hints));
     document_put(root, "cache", cache_document());
     return cli_print_json(root);

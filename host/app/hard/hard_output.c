@@ -192,7 +192,7 @@ static json_t *surface_document(const whit_hard_report *report)
 whit_result hard_save_json(const struct hard *hard)
 {
     const whit_hard_report *report = hard->report;
-    json_t *out = document_root(), *rows = document_array();
+    json_t *out = document_root();
     whit_device_info device;
     whit_device_get_info(hard->job.device, &device);
     document_text(out, "scene", hard->job.settings.scene);
@@ -206,8 +206,8 @@ whit_result hard_save_json(const struct hard *hard)
         document_put(out, "surface", surface_document(report));
     document_flag(out, "equal_bits", report->equal_bits);
     document_count(out, "broken", report->broken);
+    json_t *rows = document_list(out, "rows");
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(rows, row_document(&report->rows[i]));
-    document_put(out, "rows", rows);
     return document_save(out, hard->json_path);
 }

@@ -61,19 +61,16 @@ static bool check_request(struct cli_reader *reader, struct merge_request *reque
 static int print_stats(const struct merge *merge, const struct merge_request *request)
 {
     const struct part_place *place = &merge->parts[0].place;
-    json_t *root = document_root(), *picture = document_object();
+    json_t *root = document_root(), *picture = document_child(root, "picture");
     document_text(picture, "file", request->output);
     document_count(picture, "width", place->width);
     document_count(picture, "height", place->height);
     document_count(picture, "samples", place->samples);
-    document_put(root, "picture", picture);
     document_count(root, "parts", merge->count);
     document_count(root, "tiles", merge->tiles);
     document_count(root, "samples_parts", merge->sets);
     document_put(root, "rays", recipe_rays(&merge->stats));
-    json_t *memory = document_object();
-    document_count(memory, "host_peak_bytes", platform_peak_memory_bytes());
-    document_put(root, "memory", memory);
+    document_count(document_child(root, "memory"), "host_peak_bytes", platform_peak_memory_bytes());
     return cli_print_json(root);
 }
 

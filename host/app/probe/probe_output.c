@@ -326,21 +326,20 @@ static json_t *pixel_document(const struct probe *probe)
 whit_result probe_save_json(const struct probe *probe)
 {
     const whit_probe_report *report = probe->report;
-    json_t *out = document_root(), *picture = document_object(), *rays = document_array();
+    json_t *out = document_root();
     whit_device_info device;
     whit_device_get_info(probe->job.device, &device);
     document_text(out, "scene", probe->job.settings.scene);
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);
-    settings_describe(&probe->job.settings, IN_PROBE, picture);
-    document_put(out, "picture", picture);
+    settings_describe(&probe->job.settings, IN_PROBE, document_child(out, "picture"));
     document_put(out, "pixel", pixel_document(probe));
     document_put(out, "shader", probe_shader_document(probe));
     document_put(out, "dbg", probe_calls_document(report));
     document_count(out, "differing", report->differing);
     document_count(out, "dropped", report->dropped);
+    json_t *rays = document_list(out, "rays");
     for (uint32_t i = 0; i < report->ray_count; ++i)
         document_append(rays, ray_document(probe, &report->rays[i]));
-    document_put(out, "rays", rays);
     return document_save(out, probe->json_path);
 }

@@ -132,15 +132,14 @@ json_t *probe_calls_document(const whit_probe_report *report)
     json_t *out = document_array();
     for (uint32_t i = 0; i < report->call_count; ++i) {
         const whit_probe_call *call = &report->calls[i];
-        json_t *one = document_object(), *values = document_array();
+        json_t *one = document_entry(out);
         document_text(one, "file", call->file);
         document_count(one, "line", call->line);
         document_text(one, "text", call->text);
         document_count(one, "count", call->count);
+        json_t *values = document_list(one, "values");
         for (uint32_t k = 0; k < call->value_count; ++k)
             document_append(values, value_document(&call->values[k]));
-        document_put(one, "values", values);
-        document_append(out, one);
     }
     return out;
 }

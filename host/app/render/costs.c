@@ -66,14 +66,13 @@ static json_t *kind_document(const whit_cost *cost)
     uint64_t max[FIGURES];
     find_means(cost, means);
     find_max(cost, max);
-    json_t *kind = document_object(), *mean = document_object(), *largest = document_object();
+    json_t *kind = document_object();
     document_count(kind, "rays", cost->rays);
+    json_t *mean = document_child(kind, "mean"), *largest = document_child(kind, "max");
     for (int i = 0; i < FIGURES; ++i) {
         document_number(mean, figure_names[i], means[i]);
         document_count(largest, figure_names[i], max[i]);
     }
-    document_put(kind, "mean", mean);
-    document_put(kind, "max", largest);
     return kind;
 }
 

@@ -42,10 +42,7 @@ static json_t *times_document(const struct job *job, const struct figures *figur
     document_ms(times, "upload_ms", figures->render->upload_ms);
     document_ms(times, "compile_ms", figures->render->compile_ms);
     document_ms(times, "render_ms", figures->render->render_ms);
-    if (figures->render->render_device_ms >= 0.0)
-        document_ms(times, "render_device_ms", figures->render->render_device_ms);
-    else
-        document_put(times, "render_device_ms", json_null());
+    document_ms(times, "render_device_ms", document_known(figures->render->render_device_ms));
     document_ms(times, "save_ms", figures->save_ms);
     document_ms(times, "total_ms", figures->total_ms);
     return times;
@@ -97,10 +94,7 @@ static json_t *rays_document(const struct job *job, const struct figures *figure
     document_put(
         rays, "cut_by_bailout",
         cut_document(figures->render->rays_cut_bailout, figures->render->weight_cut_bailout));
-    if (figures->render->bailout_bound >= 0.0)
-        document_number(rays, "bailout_bound", figures->render->bailout_bound);
-    else
-        document_put(rays, "bailout_bound", json_null());
+    document_number(rays, "bailout_bound", document_known(figures->render->bailout_bound));
     return rays;
 }
 
@@ -128,12 +122,11 @@ static json_t *shares_document(const struct job *job, const struct figures *figu
             continue;
         whit_material_info material;
         whit_scene_get_material(job->scene, share->material, &material);
-        json_t *object = document_object();
+        shares = shares ? shares : document_array();
+        json_t *object = document_entry(shares);
         document_count(object, "material", share->material);
         document_text(object, "name", material.name);
         document_put(object, "share", json_real(share->share));
-        shares = shares ? shares : document_array();
-        document_append(shares, object);
     }
     return shares;
 }
@@ -145,17 +138,13 @@ static json_t *stages_document(const struct job *job, const struct figures *figu
         const whit_stage *stage = &figures->render->stages[i];
         if (!stage->rays)
             continue;
-        json_t *object = document_object();
+        json_t *object = document_entry(stages);
         document_text(object, "name", stage->name);
         document_count(object, "rays", stage->rays);
-        if (stage->ms >= 0.0)
-            document_ms(object, "ms", stage->ms);
-        else
-            document_put(object, "ms", json_null());
+        document_ms(object, "ms", document_known(stage->ms));
         json_t *shares = shares_document(job, figures, (uint32_t)i);
         if (shares)
             document_put(object, "shares", shares);
-        document_append(stages, object);
     }
     return stages;
 }
@@ -174,14 +163,8 @@ static json_t *refined_document(const struct figures *figures)
     const struct refined *refined = figures->refined;
     json_t *object = document_object();
     document_count(object, "samples", refined->samples);
-    if (refined->error >= 0.0)
-        document_number(object, "rmse_estimate", refined->error);
-    else
-        document_put(object, "rmse_estimate", json_null());
-    if (refined->error_of_cuts >= 0.0)
-        document_number(object, "rmse_estimate_of_cuts", refined->error_of_cuts);
-    else
-        document_put(object, "rmse_estimate_of_cuts", json_null());
+    document_number(object, "rmse_estimate", document_known(refined->error));
+    document_number(object, "rmse_estimate_of_cuts", document_known(refined->error_of_cuts));
     document_number(object, "cut_radiance", refined->cut_radiance);
     document_count(object, "estimate_rays", figures->render->rays_of_estimate);
     document_flag(object, "reached", refined->reached);
@@ -213,20 +196,18 @@ static void put_frame_times(json_t *object, const struct frame_times *times)
 
 static json_t *frames_document(const struct job *job, const struct sequence *sequence)
 {
-    json_t *frames = document_object(), *median = document_object(), *each = document_array();
+    json_t *frames = document_object();
     document_count(frames, "count", sequence->count);
     document_count(frames, "kept", sequence->kept);
     document_number(frames, "fps", job->settings.fps);
-    put_frame_times(median, &sequence->median);
-    document_put(frames, "median", median);
+    put_frame_times(document_child(frames, "median"), &sequence->median);
+    json_t *each = document_list(frames, "each");
     for (uint32_t i = 0; i < sequence->count; ++i) {
-        json_t *frame = document_object();
+        json_t *frame = document_entry(each);
         document_count(frame, "frame", sequence->each[i].frame);
         document_number(frame, "time_s", sequence->each[i].time_s);
         put_frame_times(frame, &sequence->each[i]);
-        document_append(each, frame);
     }
-    document_put(frames, "each", each);
     return frames;
 }
 
@@ -236,11 +217,7 @@ static int print_json(const struct job *job, const struct render_request *reques
     json_t *root = document_root();
     document_put(root, "scene", scene_document(job, figures));
     document_put(root, "picture", picture_document(job, request));
-    json_t *device = document_object();
-    document_text(device, "name", figures->device.name);
-    document_text(device, "driver", figures->device.driver);
-    document_text(device, "kind", whit_device_kind_name(figures->device.kind));
-    document_put(root, "device", device);
+    document_put(root, "device", document_device(&figures->device));
     document_put(root, "times", times_document(job, figures));
     document_put(root, "rays", rays_document(job, figures));
     document_put(root, "stages", stages_document(job, figures));
@@ -256,18 +233,16 @@ static int print_json(const struct job *job, const struct render_request *reques
         document_put(root, "frames", frames_document(job, figures->sequence));
     if (part_is_given(&request->part))
         document_put(root, "part", part_document(&request->part, &job->settings));
-    json_t *work = document_object();
+    json_t *work = document_child(root, "work");
     document_count(work, "dispatches", figures->render->dispatches);
     document_count(work, "tiles", figures->render->tiles);
     document_count(work, "tile_size", figures->render->tile_size);
     document_count(work, "deferred", figures->render->deferred);
     document_text(work, "load_path", value_word(values_load_path, (int)figures->render->load_path));
     document_flag(work, "packets", figures->render->packets);
-    document_put(root, "work", work);
-    json_t *memory = document_object();
+    json_t *memory = document_child(root, "memory");
     document_count(memory, "host_peak_bytes", platform_peak_memory_bytes());
     document_count(memory, "device_bytes", figures->render->device_bytes);
-    document_put(root, "memory", memory);
     return cli_print_json(root);
 }
 

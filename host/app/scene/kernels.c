@@ -40,33 +40,28 @@ static int print_text(const struct job *job, const whit_device_info *device,
 
 static json_t *kernel_document(const whit_kernel *kernel)
 {
-    json_t *object = document_object(), *told = document_object();
+    json_t *object = document_object();
     document_text(object, "name", kernel->name);
     document_flag(object, "deferred", kernel->deferred);
     document_count(object, "instructions", kernel->instructions);
     document_ms(object, "create_ms", kernel->create_ms);
+    json_t *told = document_child(object, "driver");
     for (uint32_t i = 0; i < kernel->statistic_count; ++i)
         document_number(told, kernel->statistics[i].name, kernel->statistics[i].value);
-    document_put(object, "driver", told);
     return object;
 }
 
 static int print_json(const struct job *job, const whit_device_info *info,
                       const whit_kernel *kernels, uint32_t count)
 {
-    json_t *root = document_root(), *device = document_object(), *list = document_array();
-    json_t *of = document_object();
+    json_t *root = document_root(), *device = document_device(info);
     document_text(root, "file", job->settings.scene);
-    document_text(device, "name", info->name);
-    document_text(device, "driver", info->driver);
-    document_text(device, "kind", whit_device_kind_name(info->kind));
     document_count(device, "subgroup_size", info->subgroup_size);
     document_put(root, "device", device);
-    settings_describe(&job->settings, IN_SCENE, of);
-    document_put(root, "picture", of);
+    settings_describe(&job->settings, IN_SCENE, document_child(root, "picture"));
+    json_t *list = document_list(root, "kernels");
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, kernel_document(&kernels[i]));
-    document_put(root, "kernels", list);
     return cli_print_json(root);
 }
 

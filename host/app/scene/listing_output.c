@@ -111,10 +111,9 @@ static json_t *note_document(const whit_scene *scene, uint32_t index)
 static void put_list(json_t *root, const char *key, const whit_scene *scene, uint32_t count,
                      json_t *(*describe)(const whit_scene *scene, uint32_t index))
 {
-    json_t *list = document_array();
+    json_t *list = document_list(root, key);
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, describe(scene, i));
-    document_put(root, key, list);
 }
 
 static json_t *bounds_document(const whit_scene_info *info)
@@ -142,10 +141,9 @@ int listing_print_json(const struct job *job, const whit_scene_info *info)
     document_number(root, "time_end_s", info->time_end_s);
     document_flag(root, "one_tree", info->one_tree);
     document_put(root, "bounds", bounds_document(info));
-    json_t *environment = document_object();
+    json_t *environment = document_child(root, "environment");
     document_text(environment, "kind", whit_environment_kind_name(info->environment));
     document_flag(environment, "made_by_whit", info->environment_made_by_whit);
-    document_put(root, "environment", environment);
     put_list(root, "meshes", job->scene, info->mesh_count, mesh_document);
     put_list(root, "instances", job->scene, info->instance_count, instance_document);
     put_list(root, "materials", job->scene, info->material_count, material_document);

@@ -122,29 +122,23 @@ int receipt_print_json(const struct receipt *receipt)
     whit_device_info info;
     whit_scene_get_info(receipt->job->scene, &scene);
     whit_device_get_info(receipt->job->device, &info);
-    json_t *root = document_root(), *device = document_object(), *kernel = document_object();
-    json_t *effects = document_array();
+    json_t *root = document_root();
     document_text(root, "file", receipt->job->settings.scene);
     document_hash(root, "hash", scene.hash);
-    document_text(device, "name", info.name);
-    document_text(device, "driver", info.driver);
-    document_text(device, "kind", whit_device_kind_name(info.kind));
-    document_put(root, "device", device);
-    json_t *picture = document_object();
-    settings_describe(&receipt->job->settings, IN_SCENE, picture);
-    document_put(root, "picture", picture);
+    document_put(root, "device", document_device(&info));
+    settings_describe(&receipt->job->settings, IN_SCENE, document_child(root, "picture"));
+    json_t *kernel = document_child(root, "kernel");
     document_count(kernel, "instructions", receipt->kernel.instructions);
     document_count(kernel, "general_instructions", receipt->kernel.general_instructions);
     document_count(kernel, "bindings", receipt->kernel.bindings);
     document_count(kernel, "general_bindings", receipt->kernel.general_bindings);
-    document_put(root, "kernel", kernel);
     document_put(root, "frame_ms", times_document(&receipt->frame_ms, COST_ROUNDS_MIN));
+    json_t *effects = document_list(root, "effects");
     for (uint32_t i = 0; i < receipt->row_count; ++i) {
         whit_effect_info effect;
         whit_scene_get_effect(receipt->job->scene, i, &effect);
         document_append(effects, row_document(&effect, &receipt->rows[i],
                                               is_left_out(receipt, &receipt->rows[i])));
     }
-    document_put(root, "effects", effects);
     return cli_print_json(root);
 }

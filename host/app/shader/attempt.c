@@ -222,15 +222,14 @@ static json_t *describe_tests(const struct attempt *attempt, const whit_shader_i
     json_t *list = document_array();
     for (uint32_t i = 0; attempt->checks && i < info->test_count; ++i) {
         const whit_shader_test *test = &info->tests[i];
-        json_t *object = document_object(), *checks = document_array();
-        for (uint32_t c = test->first_check; c < test->first_check + test->check_count; ++c)
-            document_append(checks, describe_check(&info->checks[c], &attempt->checks[c]));
+        json_t *object = document_entry(list);
         document_text(object, "name", test->name);
         document_text(object, "file", test->file);
         document_count(object, "line", test->line);
         document_count(object, "seeds", WHIT_TEST_SEEDS);
-        document_put(object, "checks", checks);
-        document_append(list, object);
+        json_t *checks = document_list(object, "checks");
+        for (uint32_t c = test->first_check; c < test->first_check + test->check_count; ++c)
+            document_append(checks, describe_check(&info->checks[c], &attempt->checks[c]));
     }
     return list;
 }
@@ -240,12 +239,11 @@ static json_t *describe_kernels(const struct attempt *attempt)
     json_t *list = document_array();
     for (uint32_t i = 0; i < attempt->kernel_count; ++i) {
         const whit_kernel *kernel = &attempt->kernels[i];
-        json_t *object = document_object();
+        json_t *object = document_entry(list);
         document_text(object, "name", kernel->name);
         document_count(object, "instructions", kernel->instructions);
         document_count(object, "base_instructions", base_instructions(attempt, kernel));
         document_ms(object, "create_ms", kernel->create_ms);
-        document_append(list, object);
     }
     return list;
 }
@@ -253,23 +251,21 @@ static json_t *describe_kernels(const struct attempt *attempt)
 void attempt_describe(const struct attempt *attempt, const whit_shader *shader, json_t *object)
 {
     whit_shader_info info;
-    json_t *expected = document_array(), *times = document_object();
     whit_shader_get_info(shader, &info);
+    document_put(object, "variants", describe_kernels(attempt));
+    document_put(object, "tests", describe_tests(attempt, &info));
+    json_t *expected = document_list(object, "expected");
     for (uint32_t i = 0; i < info.expectation_count; ++i) {
-        json_t *one = document_object();
+        json_t *one = document_entry(expected);
         document_text(one, "name", info.expectations[i].word);
         document_text(one, "file", info.expectations[i].file);
         document_count(one, "line", info.expectations[i].line);
-        document_append(expected, one);
     }
-    document_put(object, "variants", describe_kernels(attempt));
-    document_put(object, "tests", describe_tests(attempt, &info));
-    document_put(object, "expected", expected);
     document_flag(object, "held", attempt->held || !attempt->expected);
+    json_t *times = document_child(object, "test_times");
     document_ms(times, "compile_ms", attempt->compile_ms);
     document_ms(times, "driver_ms", attempt->driver_ms);
     document_ms(times, "run_ms", attempt->run_ms);
-    document_put(object, "test_times", times);
 }
 
 int attempt_status(const struct attempt *attempt, const whit_shader *shader)

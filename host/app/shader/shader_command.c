@@ -143,11 +143,8 @@ static json_t *describe_slider(const whit_slider *slider)
 static json_t *list_texts(const char *const *texts, uint32_t count)
 {
     json_t *list = document_array();
-    for (uint32_t i = 0; i < count; ++i) {
-        json_t *object = document_object();
-        document_text(object, "name", texts[i]);
-        document_append(list, object);
-    }
+    for (uint32_t i = 0; i < count; ++i)
+        document_text(document_entry(list), "name", texts[i]);
     return list;
 }
 
@@ -158,10 +155,9 @@ static json_t *list_kernels(const whit_shader *shader)
     const char *name;
     json_t *list = document_array();
     for (uint32_t i = 0; (name = whit_shader_kernel(shader, i, &words, &bytes)); ++i) {
-        json_t *object = document_object();
+        json_t *object = document_entry(list);
         document_text(object, "name", name);
         document_count(object, "spirv_bytes", bytes);
-        document_append(list, object);
     }
     return list;
 }
@@ -171,13 +167,13 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     whit_shader_info info;
     whit_shader_get_info(shader, &info);
     const char *names[WHIT_HOOKS];
-    json_t *object = document_root(), *sliders = document_array();
-    for (uint32_t i = 0; i < info.slider_count; ++i)
-        document_append(sliders, describe_slider(&info.sliders[i]));
+    json_t *object = document_root();
     document_put(object, "files", list_texts(info.files, info.file_count));
     document_put(object, "functions", list_texts(names, job_functions(&info, names)));
     document_put(object, "aovs", list_texts(info.aovs, info.aov_count));
-    document_put(object, "sliders", sliders);
+    json_t *sliders = document_list(object, "sliders");
+    for (uint32_t i = 0; i < info.slider_count; ++i)
+        document_append(sliders, describe_slider(&info.sliders[i]));
     document_put(object, "kernels", list_kernels(shader));
     document_count(object, "instructions", info.instructions);
     document_flag(object, "trusted", info.fuel == 0);
