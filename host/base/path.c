@@ -36,3 +36,10 @@ void path_extension(const char *path, char *out, size_t out_bytes)
         out[i] = (char)(*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c);
     out[i] = 0;
 }
+
+bool path_is(const char *path, const char *extension)
+{
+    char own[16];
+    path_extension(path, own, sizeof own);
+    return strcmp(own, extension) == 0;
+}

@@ -3,7 +3,6 @@
    lights made of them are scaled until what they light best comes out bright, and not burnt out. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/color.h"
 #include "base/file.h"
@@ -160,11 +159,7 @@ static int compare_values(const void *a, const void *b)
    are meant as they stand. */
 static bool is_from_model(const struct scene_origin *origin)
 {
-    char extension[8];
-    if (!origin->file)
-        return false;
-    path_extension(origin->file, extension, sizeof extension);
-    return strcmp(extension, "json") != 0;
+    return origin->file && !path_is(origin->file, "json");
 }
 
 static bool all_from_models(const struct scene *scene, bool emitters)

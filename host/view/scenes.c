@@ -96,13 +96,6 @@ static void recall_camera(struct view *view)
 
 /* ---- Scenes that are asked for ---- */
 
-static bool is_state(const char *path)
-{
-    char extension[8];
-    path_extension(path, extension, sizeof extension);
-    return strcmp(extension, "view") == 0;
-}
-
 /* Watches the file that is asked for; the file of the shown scene is watched by view->watch
    already. */
 static void set_asked(struct view *view, const char *path)
@@ -133,7 +126,7 @@ static void open_scene(struct view *view, const char *path)
 
 void view_open(struct view *view, const char *path)
 {
-    if (is_state(path)) {
+    if (path_is(path, "view")) {
         panels_load(view, path);
         return;
     }

@@ -9,13 +9,7 @@
 
 static bool is_radiance(const char *path)
 {
-    static const char *const extensions[] = {"hdr", "exr", "pfm"};
-    char extension[8];
-    path_extension(path, extension, sizeof extension);
-    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; ++i)
-        if (strcmp(extension, extensions[i]) == 0)
-            return true;
-    return false;
+    return path_is(path, "hdr") || path_is(path, "exr") || path_is(path, "pfm");
 }
 
 bool skies_drop(struct view *view, const char *path)

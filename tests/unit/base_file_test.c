@@ -293,6 +293,12 @@ TEST(paths)
         path_extension(cases[i].path, extension, sizeof extension);
         assert_string_equal(extension, cases[i].extension);
     }
+    assert_true(path_is("a/b.EXR", "exr"));
+    assert_true(path_is("exr", ""));
+    assert_false(path_is("a/.exr", "exr"));
+    assert_false(path_is("exr", "exr"));
+    assert_false(path_is("a.exr/b", "exr"));
+    assert_false(path_is("b.exrs", "exr"));
     char *beside = path_beside("scenes/a.json", "models/b.obj");
     assert_string_equal(beside, "scenes/models/b.obj");
     free(beside);

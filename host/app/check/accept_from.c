@@ -153,9 +153,7 @@ static bool read_report(struct check *check, const char *path)
 
 static int is_report(const struct dirent *entry)
 {
-    char extension[8];
-    path_extension(entry->d_name, extension, sizeof extension);
-    return entry->d_name[0] != '.' && strcmp(extension, "json") == 0;
+    return entry->d_name[0] != '.' && path_is(entry->d_name, "json");
 }
 
 /* Reads all .json files in a folder, in the order of their names. */

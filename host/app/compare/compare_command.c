@@ -2,7 +2,7 @@
 #include "app/commands.h"
 #include "app/document.h"
 #include "app/job.h"
-#include "app/render/view_image.h"
+#include "base/path.h"
 #include <math.h>
 
 enum metric {
@@ -215,7 +215,7 @@ static whit_result save_values(const whit_image *values, const char *path,
 {
     whit_image *colours = NULL;
     whit_result result = WHIT_OK;
-    if (view_is_png(path))
+    if (path_is(path, "png"))
         result = whit_image_heat(values, heat, &colours);
     if (result == WHIT_OK) {
         cli_set_saving();

@@ -2,9 +2,9 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "app/render/recipe.h"
+#include "base/path.h"
 #include "base/text.h"
 
 whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
@@ -59,12 +59,6 @@ bool layers_check(const struct job *job)
     return false;
 }
 
-bool layers_is_exr(const char *path)
-{
-    size_t length = strlen(path);
-    return length > 4 && strcasecmp(path + length - 4, ".exr") == 0;
-}
-
 static whit_result leave_alpha_out(const whit_image *image, whit_image **out)
 {
     whit_image_info info;
@@ -88,7 +82,7 @@ whit_result layers_save(const struct layers *layers, const char *name, const cha
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; i < layers->count; ++i)
         image = strcmp(layers->items[i].name, name) == 0 ? layers->images[i] : image;
-    if (!layers_is_exr(path))
+    if (!path_is(path, "exr"))
         result = leave_alpha_out(image, &opaque);
     if (result == WHIT_OK)
         result =

@@ -27,7 +27,6 @@ void drawn_images_finish(struct drawn_images *images);
    from `refine` where `renderer` is NULL. After an error there are none. */
 WHIT_CHECK whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
                                    const whit_refine *refine, struct layers *layers);
-bool layers_is_exr(const char *path); /* whether the file format can hold layers */
 void layers_finish(struct layers *layers);
 
 /* Whether the shader has the function of --aov NAME; prints an error where it does not. */

@@ -102,7 +102,7 @@ static bool check_samples(struct cli_reader *reader, const struct settings *sett
                           "--samples-part %u/%u: N has to be a power of 4, such as 4 or 16, that "
                           "divides the samples of --aa, a power of 2; these are %u",
                           part->set, part->sets, samples);
-    if (view_is_png(request->output))
+    if (path_is(request->output, "png"))
         return cli_misuse(reader, "%s: sums of samples need .exr or .pfm", request->output);
     if (settings->aov[0])
         return cli_misuse(reader, "--samples-part and --aov: sums are kept of colours alone");
@@ -145,7 +145,7 @@ bool part_check_shader(const struct job *job, const struct render_request *reque
         return true;
     whit_shader_get_info(job->shader, &info);
     const char *what = NULL;
-    if (info.aov_count && layers_is_exr(request->output) && !job->settings.aov[0])
+    if (info.aov_count && path_is(request->output, "exr") && !job->settings.aov[0])
         what = "its `//@ aov` images are kept beside the colours of whole pictures alone; .pfm and "
                ".png are without them, and --aov NAME is one of them";
     if (request->part.sets && (info.hooks >> WHIT_HOOK_POST & 1))
@@ -264,13 +264,6 @@ bool part_of_line(const char *line, struct part_place *place)
            (!part->sets || (place->samples % part->sets == 0 && is_power_of_2(place->samples)));
 }
 
-bool part_is_pfm(const char *path)
-{
-    char extension[8];
-    path_extension(path, extension, sizeof extension);
-    return strcmp(extension, "pfm") == 0;
-}
-
 static char *beside(const char *path)
 {
     char *name = string_format("%s.part", path);
@@ -360,6 +353,6 @@ whit_result part_load_texts(const char *path, const whit_load_params *params, wh
                             uint32_t *count)
 {
     *texts = NULL;
-    return part_is_pfm(path) ? load_beside(path, texts, count)
-                             : whit_image_load_texts(path, params, &cli_log, texts, count);
+    return path_is(path, "pfm") ? load_beside(path, texts, count)
+                                : whit_image_load_texts(path, params, &cli_log, texts, count);
 }

@@ -61,7 +61,6 @@ bool part_of_line(const char *line, struct part_place *place);
 
 /* A PFM has no room for a recipe: it is kept in NAME.pfm.part beside it, with a hash of the
    picture's file. */
-bool part_is_pfm(const char *path);
 WHIT_CHECK whit_result part_save_beside(const char *path, const struct recipe *recipe);
 /* Loads the recipe of a part, from the picture or from the file beside it; *texts is for
    whit_memory_destroy. WHIT_ERROR_INPUT, with a message: it is missing, damaged, or belongs to

@@ -11,6 +11,7 @@
 #include "app/render/resume.h"
 #include "app/render/stats.h"
 #include "base/file.h"
+#include "base/path.h"
 #include "base/text.h"
 
 enum { CAMERA_NAMES_MAX = 4096 };
@@ -86,7 +87,7 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);
     if (request->ids && !whit_image_format_known(request->ids, true))
         return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
-    if (distances && (view_is_png(distances) || !whit_image_format_known(distances, false)))
+    if (distances && (path_is(distances, "png") || !whit_image_format_known(distances, false)))
         return cli_misuse(reader, "%s: distances are .exr or .pfm", distances);
     if (request->ids && strcmp(request->ids, request->output) == 0)
         return cli_misuse(reader, "%s: -o and --ids name the same file", request->ids);
@@ -279,7 +280,7 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
    place. */
 static bool keeps_layers(const struct settings *settings, const struct render_request *request)
 {
-    bool beside = layers_is_exr(request->output) && !request->thumbnail;
+    bool beside = path_is(request->output, "exr") && !request->thumbnail;
     return settings->paint == PAINT_COLOR && (settings->aov[0] || beside);
 }
 
@@ -319,7 +320,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
         result = images->color
                      ? save_colors(renderer, settings, request, images->color, images, &recipe)
                      : save_own_colors(renderer, settings, request, images, &recipe);
-    if (result == WHIT_OK && part && part_is_pfm(request->output))
+    if (result == WHIT_OK && part && path_is(request->output, "pfm"))
         result = part_save_beside(request->output, &recipe);
     recipe_finish(&recipe);
     return result;

@@ -26,11 +26,9 @@ struct recipe_read {
 
 const char *repeat_picture(const struct cli_reader *reader, const struct repeat *repeat)
 {
-    char extension[8];
     if (repeat->picture || !reader->positional || is_input(reader->positional))
         return repeat->picture;
-    path_extension(reader->positional, extension, sizeof extension);
-    bool is_picture = strcmp(extension, "png") == 0 || strcmp(extension, "exr") == 0;
+    bool is_picture = path_is(reader->positional, "png") || path_is(reader->positional, "exr");
     return is_picture ? reader->positional : NULL;
 }
 

@@ -15,7 +15,7 @@
    picture. */
 static bool has_recipe(const struct render_request *request)
 {
-    return part_is_given(&request->part) || !request->output || !part_is_pfm(request->output);
+    return part_is_given(&request->part) || !request->output || !path_is(request->output, "pfm");
 }
 
 bool resume_check(struct cli_reader *reader, const struct job *job,

@@ -1,8 +1,8 @@
 #include "app/render/view_image.h"
 
 #include <math.h>
-#include <string.h>
-#include <strings.h>
+
+#include "base/path.h"
 
 static void find_figures(const whit_image *values, struct view_figures *out)
 {
@@ -32,12 +32,6 @@ static whit_result heat_map(const struct settings *settings, const struct view_f
     return result;
 }
 
-bool view_is_png(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ".png") == 0;
-}
-
 whit_result view_image(whit_renderer *renderer, const struct settings *settings, const char *output,
                        struct view_figures *figures, whit_image **out)
 {
@@ -52,7 +46,7 @@ whit_result view_image(whit_renderer *renderer, const struct settings *settings,
     find_figures(values, figures);
     figures->scale =
         settings->paint_scale > 0.0 ? settings->paint_scale : whit_image_heat_scale(values);
-    if (!view_is_png(output)) {
+    if (!path_is(output, "png")) {
         *out = values;
         return WHIT_OK;
     }

@@ -12,9 +12,6 @@ struct view_figures {
                                 is drawn */
 };
 
-/* True for .png files, which get the colours of a heat map in place of numbers. */
-bool view_is_png(const char *path);
-
 /* The cost image of the picture just rendered: as a heat map with a legend for a .png, as numbers
    for other files. */
 WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct settings *settings,
