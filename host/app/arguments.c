@@ -346,6 +346,20 @@ bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path
     return !path || strcmp(path, "-") != 0 || cli_misuse(reader, "%s -: %s", option, hint);
 }
 
+bool cli_check_writable(struct cli_reader *reader, const char *path)
+{
+    if (!path || cli_can_write(path))
+        return true;
+    reader->status = EXIT_USAGE;
+    return false;
+}
+
+bool cli_check_output(struct cli_reader *reader, const char *option, const char *path,
+                      const char *hint)
+{
+    return cli_no_dash(reader, option, path, hint) && cli_check_writable(reader, path);
+}
+
 /* ---- Words of a file ---- */
 
 /* Decodes the bytes of a word such as $'\x1b\x5b' into `to`. *from is behind the first quote, then

@@ -51,6 +51,11 @@ bool cli_misuse(struct cli_reader *reader, const char *format, ...) WHIT_PRINTF(
 /* Calls cli_misuse where `path` is `-`, which other programs take for a pipe; `hint` says what to
    write instead. */
 bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint);
+/* Checks by cli_can_write that `path` can be written, and sets `status`; NULL: nothing to check. */
+bool cli_check_writable(struct cli_reader *reader, const char *path);
+/* Both checks. */
+bool cli_check_output(struct cli_reader *reader, const char *option, const char *path,
+                      const char *hint);
 
 /* Option `i` of a command, including --help and options of kind SETTING_GONE; NULL: there are no
    more. */

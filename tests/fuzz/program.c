@@ -24,3 +24,8 @@ int cli_finish_stdout(int status)
 {
     return status;
 }
+
+bool cli_can_write(const char *path)
+{
+    return *path != '\0';
+}

@@ -89,12 +89,9 @@ static bool check_request(struct cli_reader *reader, const struct bench_request 
     for (uint32_t i = 0; i < request->name_count; ++i)
         if (request->which == BENCH_FRAME && strcmp(request->names[i], "viewer") == 0)
             return cli_misuse(reader, "`viewer` is a bench of its own: `whit bench view`");
-    if (!cli_no_dash(reader, "--json", request->json, "figures go to a file; tables are printed") ||
-        !cli_no_dash(reader, "--plot", request->plot, "the drawing goes to a file"))
-        return false;
-    reader->status = EXIT_USAGE;
-    return (!request->json || cli_can_write(request->json)) &&
-           (!request->plot || cli_can_write(request->plot));
+    return cli_check_output(reader, "--json", request->json,
+                            "figures go to a file; tables are printed") &&
+           cli_check_output(reader, "--plot", request->plot, "the drawing goes to a file");
 }
 
 bool bench_read(struct cli_reader *reader, struct bench_request *request)

@@ -104,17 +104,10 @@ bool check_names_match(const struct check_names *names, const char *name)
 
 static bool check_outputs(struct cli_reader *reader, const struct check *check)
 {
-    static const char *const names[] = {"--json", "--junit", "--report"};
-    const char *const outputs[] = {check->json, check->junit, check->report};
-    for (uint32_t i = 0; i < sizeof outputs / sizeof outputs[0]; ++i) {
-        if (!cli_no_dash(reader, names[i], outputs[i], "for a pipe give /dev/stdout"))
-            return false;
-        if (outputs[i] && !cli_can_write(outputs[i])) {
-            reader->status = EXIT_USAGE;
-            return false;
-        }
-    }
-    return true;
+    static const char *const hint = "for a pipe give /dev/stdout";
+    return cli_check_output(reader, "--json", check->json, hint) &&
+           cli_check_output(reader, "--junit", check->junit, hint) &&
+           cli_check_output(reader, "--report", check->report, hint);
 }
 
 static bool check_request(struct cli_reader *reader, struct check *check)

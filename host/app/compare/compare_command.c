@@ -331,22 +331,15 @@ static bool check_picture(struct cli_reader *reader, const char *option, const c
 
 static bool check_request(struct cli_reader *reader, struct compare *compare)
 {
-    const char *const outputs[] = {compare->diff, compare->flip, compare->json};
     compare->paths[0] = reader->positional;
     compare->paths[1] = reader->second;
     if (!compare->paths[1])
         return cli_misuse(reader, "%s missing", compare->paths[0] ? "B is" : "A and B are");
-    if (!check_picture(reader, "--diff", compare->diff) ||
-        !check_picture(reader, "--flip", compare->flip) ||
-        !cli_no_dash(reader, "--json", compare->json, "for a pipe give /dev/stdout"))
-        return false;
-    for (uint32_t i = 0; i < sizeof outputs / sizeof outputs[0]; ++i) {
-        if (outputs[i] && !cli_can_write(outputs[i])) {
-            reader->status = EXIT_USAGE;
-            return false;
-        }
-    }
-    return true;
+    return check_picture(reader, "--diff", compare->diff) &&
+           check_picture(reader, "--flip", compare->flip) &&
+           cli_no_dash(reader, "--json", compare->json, "for a pipe give /dev/stdout") &&
+           cli_check_writable(reader, compare->diff) && cli_check_writable(reader, compare->flip) &&
+           cli_check_writable(reader, compare->json);
 }
 
 static int run(const struct cli_command *command, int argc, char **argv)

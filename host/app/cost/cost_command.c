@@ -93,10 +93,8 @@ static bool check_files(struct cli_reader *reader, const struct cost *cost)
             if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
                 return cli_misuse(reader, "%s: %s and %s name the same file", files[i], names[k],
                                   names[i]);
-        if (files[i] && !cli_can_write(files[i])) {
-            reader->status = EXIT_USAGE;
+        if (!cli_check_writable(reader, files[i]))
             return false;
-        }
     }
     return true;
 }

@@ -137,21 +137,13 @@ static bool check_view(struct cli_reader *reader, const struct hard *hard)
         return true;
     if (!whit_image_format_known(hard->output, false))
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", hard->output);
-    if (cli_can_write(hard->output))
-        return true;
-    reader->status = EXIT_USAGE;
-    return false;
+    return cli_check_writable(reader, hard->output);
 }
 
 static bool check_request(struct cli_reader *reader, const struct hard *hard)
 {
-    if (!cli_no_dash(reader, "--json", hard->json_path, "for a pipe give /dev/stdout"))
-        return false;
-    if (hard->json_path && !cli_can_write(hard->json_path)) {
-        reader->status = EXIT_USAGE;
-        return false;
-    }
-    if (!check_view(reader, hard))
+    if (!cli_check_output(reader, "--json", hard->json_path, "for a pipe give /dev/stdout") ||
+        !check_view(reader, hard))
         return false;
     if (reader->positional && hard->params.filter)
         return cli_misuse(reader, "--case is of the built-in cases, not of a scene");

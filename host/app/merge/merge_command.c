@@ -52,10 +52,7 @@ static bool check_request(struct cli_reader *reader, struct merge_request *reque
     }
     if (!whit_image_format_known(request->output, false))
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);
-    if (cli_can_write(request->output))
-        return true;
-    reader->status = EXIT_USAGE;
-    return false;
+    return cli_check_writable(reader, request->output);
 }
 
 static int print_stats(const struct merge *merge, const struct merge_request *request)

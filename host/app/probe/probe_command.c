@@ -55,12 +55,7 @@ static bool check_request(struct cli_reader *reader, const struct probe *probe)
     if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return cli_misuse(reader, "--aa adaptive: how many samples a pixel gets is a matter of its "
                                   "neighbours; say 4, 16 or 64");
-    if (!cli_no_dash(reader, "--json", probe->json_path, "for a pipe give /dev/stdout"))
-        return false;
-    if (!probe->json_path || cli_can_write(probe->json_path))
-        return true;
-    reader->status = EXIT_USAGE;
-    return false;
+    return cli_check_output(reader, "--json", probe->json_path, "for a pipe give /dev/stdout");
 }
 
 static whit_result find_out(struct probe *probe)

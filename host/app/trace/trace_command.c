@@ -172,13 +172,8 @@ static bool check_request(struct cli_reader *reader, const struct trace *trace)
         return cli_misuse(reader, "--input FILE is missing");
     if (!trace->output)
         return cli_misuse(reader, "-o FILE is missing: where should the hits go?");
-    if (!cli_no_dash(reader, "--input", trace->rays_path, "for a pipe give /dev/stdin") ||
-        !cli_no_dash(reader, "-o", trace->output, "for a pipe give /dev/stdout"))
-        return false;
-    if (cli_can_write(trace->output))
-        return true;
-    reader->status = EXIT_USAGE;
-    return false;
+    return cli_no_dash(reader, "--input", trace->rays_path, "for a pipe give /dev/stdin") &&
+           cli_check_output(reader, "-o", trace->output, "for a pipe give /dev/stdout");
 }
 
 /* The renderer only traces rays, so its picture is kept small. */
