@@ -1,10 +1,10 @@
 /* Draws one picture with one session. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "view/engine_draw.h"
 #include "view/engine_private.h"
+#include "view/palette.h"
 #include "whit/whit_program.h"
 
 enum { ADAPTIVE_SAMPLES = 8 }; /* expected; they are 4 and more */
@@ -96,23 +96,6 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
     task->asked_ms = lane->asked_ms;
 }
 
-/* Cuts the heat map out of its image, which has a legend below and may be wider on both sides. */
-static whit_result cut_out(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
-{
-    whit_image_info info;
-    whit_image_get_info(heat, &info);
-    uint8_t *all = malloc((size_t)info.width * info.height * 4);
-    if (!all)
-        return WHIT_ERROR_MEMORY;
-    whit_image_display_bytes(heat, all);
-    size_t left = (info.width - width) / 2;
-    for (uint32_t y = 0; y < height; ++y)
-        memcpy(rgba + (size_t)y * width * 4, all + ((size_t)y * info.width + left) * 4,
-               (size_t)width * 4);
-    free(all);
-    return WHIT_OK;
-}
-
 static whit_result paint_costs(const struct engine_task *task, struct engine_frame *frame)
 {
     const struct settings *settings = &task->settings;
@@ -127,7 +110,7 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     const whit_heat_params params = {.scale = frame->scale};
     result = whit_image_heat(frame->color, &params, &heat);
     if (result == WHIT_OK)
-        result = cut_out(heat, frame->width, frame->height, frame->rgba);
+        result = palette_cut(heat, frame->width, frame->height, frame->rgba);
     whit_image_destroy(heat);
     return result;
 }

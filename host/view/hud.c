@@ -12,6 +12,8 @@
 #include "view/scenes.h"
 #include "view/view_private.h"
 
+const char *const hud_names[HUD_COUNT] = {"off", "small", "full"};
+
 static const float ROOM_FOR_BOTH = 400.0f; /* height of figures and a panel below them, pixels */
 
 void hud_quality(const struct view *view, char text[HUD_QUALITY_BYTES])
@@ -185,14 +187,15 @@ static void draw_more(const struct view *view)
                 chain.draw_ms, chain.wait_ms);
 }
 
-/* Draws the parts of `line`, which two spaces separate, each on a line of its own. */
-static void draw_reload(const char *line)
+/* Draws the parts of `text`, which `between` separates, each on a line of its own, of which it
+   draws at most `most` bytes. */
+static void draw_parts(const char *text, const char *between, int most)
 {
-    for (const char *at = line; *at;) {
-        const char *end = strstr(at, "  ");
+    for (const char *at = text; *at;) {
+        const char *end = strstr(at, between);
         int length = end ? (int)(end - at) : (int)strlen(at);
-        ui_text("%.*s", length, at);
-        at += length + (end ? 2 : 0);
+        ui_text("%.*s", length < most ? length : most, at);
+        at += length + (end ? (int)strlen(between) : 0);
     }
 }
 
@@ -217,14 +220,9 @@ static void draw_change(const struct view *view)
     if (c->number == 0 || !settings_same(&c->settings, &view->settings))
         return;
     ui_separator();
-    for (const char *at = c->what; *at;) {
-        const char *end = strstr(at, ", ");
-        int length = end ? (int)(end - at) : (int)strlen(at);
-        ui_text("%.*s", length < 46 ? length : 46, at);
-        at += length + (end ? 2 : 0);
-    }
+    draw_parts(c->what, ", ", 46);
     if (view->shaders.line[0]) {
-        draw_reload(view->shaders.line);
+        draw_parts(view->shaders.line, "  ", (int)sizeof view->shaders.line);
         return;
     }
     draw_change_ms(c);

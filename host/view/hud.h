@@ -5,6 +5,7 @@
 struct view;
 
 enum view_hud { HUD_OFF, HUD_SMALL, HUD_FULL, HUD_COUNT };
+extern const char *const hud_names[HUD_COUNT];
 
 /* Draws everything over the picture, between ui_begin and ui_end. */
 void hud_draw(struct view *view);

@@ -332,8 +332,7 @@ static void next_hud(struct view *view)
 
 static void say_hud(const struct view *view, char *text, size_t bytes)
 {
-    static const char *const names[HUD_COUNT] = {"off", "small", "full"};
-    snprintf(text, bytes, "%s", names[view->hud]);
+    snprintf(text, bytes, "%s", hud_names[view->hud]);
 }
 
 static void switch_fullscreen(struct view *view)

@@ -7,19 +7,19 @@
 
 #include "view/ui.h"
 
-/* Reads the colours from the middle of the first row of a heat map, which has a legend below and
-   may be wider than its values. */
-static whit_result read_ramp(const whit_image *heat, struct palette *palette)
+whit_result palette_cut(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
 {
     whit_image_info info;
     whit_image_get_info(heat, &info);
-    uint32_t *rgba = malloc((size_t)info.width * info.height * sizeof *rgba);
-    if (!rgba)
+    uint8_t *all = malloc((size_t)info.width * info.height * 4);
+    if (!all)
         return WHIT_ERROR_MEMORY;
-    whit_image_display_bytes(heat, (uint8_t *)rgba);
-    memcpy(palette->colors, rgba + (info.width - PALETTE_COLORS) / 2,
-           PALETTE_COLORS * sizeof *rgba);
-    free(rgba);
+    whit_image_display_bytes(heat, all);
+    size_t left = (info.width - width) / 2;
+    for (uint32_t y = 0; y < height; ++y)
+        memcpy(rgba + (size_t)y * width * 4, all + ((size_t)y * info.width + left) * 4,
+               (size_t)width * 4);
+    free(all);
     return WHIT_OK;
 }
 
@@ -35,7 +35,7 @@ whit_result palette_init(struct palette *palette)
     if (result == WHIT_OK)
         result = whit_image_heat(values, &params, &heat);
     if (result == WHIT_OK)
-        result = read_ramp(heat, palette);
+        result = palette_cut(heat, PALETTE_COLORS, 1, (uint8_t *)palette->colors);
     whit_image_destroy(values);
     whit_image_destroy(heat);
     return result;

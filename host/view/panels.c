@@ -128,9 +128,8 @@ static void draw_choice(struct view *view, const struct setting *row)
 
 static void draw_hud_choice(struct view *view)
 {
-    static const char *const names[HUD_COUNT] = {"off", "small", "full"};
     int value = (int)view->hud;
-    if (ui_choice("figures", names[value], names, HUD_COUNT, &value))
+    if (ui_choice("figures", hud_names[value], hud_names, HUD_COUNT, &value))
         view->hud = (enum view_hud)value;
 }
 

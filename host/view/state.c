@@ -347,7 +347,6 @@ static json_t *memory_json(void)
 /* The whole state; the caller calls json_decref. */
 static json_t *state_json(struct view *view, const char *name)
 {
-    static const char *const huds[HUD_COUNT] = {"off", "small", "full"};
     char words[4096], line[4096], quality[HUD_QUALITY_BYTES];
     struct swapchain_info chain;
     json_t *root = json_object();
@@ -363,7 +362,7 @@ static json_t *state_json(struct view *view, const char *name)
     put_count(root, "window_width", chain.width);
     put_count(root, "window_height", chain.height);
     put_number(root, "ui_scale", (double)ui_scale(view->ui));
-    put_text(root, "hud", huds[view->hud]);
+    put_text(root, "hud", hud_names[view->hud]);
     hud_quality(view, quality);
     put_text(root, "quality", quality);
     put_bool(root, "help", view->help);
