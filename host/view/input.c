@@ -15,24 +15,6 @@ static const double FLY_A_SECOND = 0.8; /* multiples of the distance to the targ
 static const double CLICK_PIXELS = 4.0; /* a shorter move is a click, not a drag */
 static const double STEP_MAX_S = 0.25;  /* most time that one step of moving covers */
 
-static enum ui_key ui_key_of(int key)
-{
-    static const struct {
-        int key;
-        enum ui_key ui;
-    } all[] = {{KEY_TAB, UI_KEY_TAB},      {KEY_LEFT, UI_KEY_LEFT},
-               {KEY_RIGHT, UI_KEY_RIGHT},  {KEY_UP, UI_KEY_UP},
-               {KEY_DOWN, UI_KEY_DOWN},    {KEY_HOME, UI_KEY_HOME},
-               {KEY_END, UI_KEY_END},      {KEY_DELETE, UI_KEY_DELETE},
-               {KEY_ENTER, UI_KEY_ENTER},  {KEY_BACKSPACE, UI_KEY_BACKSPACE},
-               {KEY_ESCAPE, UI_KEY_ESCAPE}};
-    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
-        if (all[i].key == key)
-            return all[i].ui;
-    }
-    return UI_KEY_COUNT;
-}
-
 /* ---- Keys ---- */
 
 /* Whether the key moves the camera, and does nothing else. */
@@ -44,11 +26,9 @@ static bool flies(const struct view_event *event)
 
 static void on_key(struct view *view, const struct view_event *event)
 {
-    enum ui_key own = ui_key_of(event->key);
     if (event->key >= 0 && event->key < KEYS_MAX)
         view->input.down[event->key] = event->down;
-    if (own != UI_KEY_COUNT)
-        ui_key_event(view->ui, own, event->down);
+    ui_key_event(view->ui, event->key, event->down);
     view->dirty |= ui_has_keys(view->ui);
     if (!event->down || ui_has_keys(view->ui) || flies(event))
         return;

@@ -14,6 +14,7 @@
 extern "C" {
 #include "device/layers.h"
 #include "device/swapchain.h"
+#include "view/events.h"
 }
 
 struct ui {
@@ -279,12 +280,18 @@ static void set_style(float scale)
 
 static void set_keys()
 {
-    static const ImGuiKey_ keys[UI_KEY_COUNT] = {
-        ImGuiKey_Tab,       ImGuiKey_LeftArrow, ImGuiKey_RightArrow, ImGuiKey_UpArrow,
-        ImGuiKey_DownArrow, ImGuiKey_Home,      ImGuiKey_End,        ImGuiKey_Delete,
-        ImGuiKey_Backspace, ImGuiKey_Enter,     ImGuiKey_Escape};
-    for (int i = 0; i < UI_KEY_COUNT; ++i)
-        ImGui::GetIO().KeyMap[keys[i]] = i;
+    int *keys = ImGui::GetIO().KeyMap;
+    keys[ImGuiKey_Tab] = KEY_TAB;
+    keys[ImGuiKey_LeftArrow] = KEY_LEFT;
+    keys[ImGuiKey_RightArrow] = KEY_RIGHT;
+    keys[ImGuiKey_UpArrow] = KEY_UP;
+    keys[ImGuiKey_DownArrow] = KEY_DOWN;
+    keys[ImGuiKey_Home] = KEY_HOME;
+    keys[ImGuiKey_End] = KEY_END;
+    keys[ImGuiKey_Delete] = KEY_DELETE;
+    keys[ImGuiKey_Backspace] = KEY_BACKSPACE;
+    keys[ImGuiKey_Enter] = KEY_ENTER;
+    keys[ImGuiKey_Escape] = KEY_ESCAPE;
 }
 
 static void start_backend(struct ui *ui)
@@ -431,9 +438,10 @@ void ui_wheel(struct ui *, float x, float y)
     ImGui::GetIO().MouseWheel += y;
 }
 
-void ui_key_event(struct ui *, enum ui_key key, bool down)
+void ui_key_event(struct ui *, int key, bool down)
 {
-    ImGui::GetIO().KeysDown[key] = down;
+    if (key >= 0 && key < IM_ARRAYSIZE(ImGuiIO::KeysDown))
+        ImGui::GetIO().KeysDown[key] = down;
 }
 
 void ui_character(struct ui *, uint32_t code_point)

@@ -28,25 +28,11 @@ WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, const
                                  size_t font_bytes, struct ui **out);
 void ui_destroy(struct ui *ui); /* call it before destroying the swapchain; NULL is fine */
 
-/* Input of the user since the last frame. Keys are those of ui_key. */
-enum ui_key {
-    UI_KEY_TAB,
-    UI_KEY_LEFT,
-    UI_KEY_RIGHT,
-    UI_KEY_UP,
-    UI_KEY_DOWN,
-    UI_KEY_HOME,
-    UI_KEY_END,
-    UI_KEY_DELETE,
-    UI_KEY_BACKSPACE,
-    UI_KEY_ENTER,
-    UI_KEY_ESCAPE,
-    UI_KEY_COUNT,
-};
+/* Input of the user since the last frame. Keys are those of view_event. */
 void ui_mouse(struct ui *ui, float x, float y);
 void ui_button_event(struct ui *ui, int button, bool down); /* 0 left, 1 right, 2 middle */
 void ui_wheel(struct ui *ui, float x, float y);
-void ui_key_event(struct ui *ui, enum ui_key key, bool down);
+void ui_key_event(struct ui *ui, int key, bool down);
 void ui_character(struct ui *ui, uint32_t code_point);
 /* Whether a panel uses the mouse, or a text field the keys: the picture then ignores them. */
 bool ui_has_mouse(const struct ui *ui);
