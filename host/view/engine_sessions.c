@@ -152,24 +152,29 @@ bool engine_same_but_version(const struct settings *a, const struct settings *b)
     return settings_same_kernel(&same, b);
 }
 
-/* A session that differs from `settings` only by the version of its shader and is not shown: its
-   device, trees and buffers serve the next version. NULL: none. */
-static struct session *find_version(const struct engine *engine, const struct settings *settings)
+/* The least recently used session that is not shown; `like` not NULL: among those that differ from
+   it only by the version of their shader. NULL: none. */
+static struct session *find_oldest(const struct engine *engine, const struct settings *like)
 {
-    uint32_t oldest = ENGINE_SESSIONS_MAX;
-    for (uint32_t i = 0; settings->shader[0] && i < ENGINE_SESSIONS_MAX; ++i) {
-        const struct session *session = engine->sessions[i];
-        if (!session || is_shown(engine, session))
+    struct session *oldest = NULL;
+    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
+        struct session *session = engine->sessions[i];
+        if (!session || is_shown(engine, session) ||
+            (like && !engine_same_but_version(like, &session->settings)))
             continue;
-        if (engine_same_but_version(settings, &session->settings) &&
-            (oldest == ENGINE_SESSIONS_MAX ||
-             session->last_use < engine->sessions[oldest]->last_use))
-            oldest = i;
+        if (!oldest || session->last_use < oldest->last_use)
+            oldest = session;
     }
-    return oldest < ENGINE_SESSIONS_MAX ? engine->sessions[oldest] : NULL;
+    return oldest;
 }
 
-/* Takes a session off the engine's list: the job owns it until it is done. */
+/* A session whose device, trees and buffers serve another version of its shader. NULL: none. */
+static struct session *find_version(const struct engine *engine, const struct settings *settings)
+{
+    return settings->shader[0] ? find_oldest(engine, settings) : NULL;
+}
+
+/* Takes a session off the engine's lists: the caller owns it from then on. */
 static void take_out(struct engine *engine, struct session *session)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
@@ -232,24 +237,19 @@ void engine_make_spare(struct engine *engine)
 
 /* ---- The sessions that there are ---- */
 
-static void forget_session(struct engine *engine, uint32_t index)
+static void forget_session(struct engine *engine, struct session *session)
 {
-    struct session *session = engine->sessions[index];
-    engine->sessions[index] = NULL;
-    for (int i = 0; i < ENGINE_LANES; ++i) {
-        if (engine->lanes[i].session == session)
-            engine->lanes[i].session = NULL;
-    }
+    take_out(engine, session);
     pthread_mutex_unlock(&engine->lock);
     engine_drop_session(engine, session);
     pthread_mutex_lock(&engine->lock);
 }
 
-static void forget_if(struct engine *engine, const struct session *session)
+static void forget_if(struct engine *engine, struct session *session)
 {
     for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
         if (engine->sessions[i] == session && session)
-            forget_session(engine, i);
+            forget_session(engine, session);
     }
 }
 
@@ -264,17 +264,11 @@ static uint32_t sessions_max(const struct engine *engine, const struct session *
 static void make_room(struct engine *engine, const struct session *newest)
 {
     for (;;) {
-        uint32_t count = 0, oldest = ENGINE_SESSIONS_MAX;
-        for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-            const struct session *session = engine->sessions[i];
-            count += session != NULL;
-            if (!session || is_shown(engine, session))
-                continue;
-            if (oldest == ENGINE_SESSIONS_MAX ||
-                session->last_use < engine->sessions[oldest]->last_use)
-                oldest = i;
-        }
-        if (count < sessions_max(engine, newest) || oldest == ENGINE_SESSIONS_MAX)
+        struct session *oldest = find_oldest(engine, NULL);
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i)
+            count += engine->sessions[i] != NULL;
+        if (count < sessions_max(engine, newest) || !oldest)
             return;
         forget_session(engine, oldest);
     }
